@@ -1,0 +1,53 @@
+"""viscoroll: a viscoelastic cylinder rolling with partial slip on a half-space of its material.
+
+Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  Everything
+is dimensionless unless its name says SI.  Names load on first use: importing the package
+imports neither numba nor xarray nor matplotlib.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Scene": "scene",
+    "Cylinder": "scene",
+    "PAPER_CYLINDER": "scene",
+    "PAPER_SECTION_5": "scene",
+    "PAPER_SECTION_5_ROUNDED": "scene",
+    "PAPER_FIGURES_2_3": "scene",
+    "PAPER_STARTS": "scene",
+    "contact": "rolling_contact",
+    "stress": "rolling_contact",
+    "roll": "motion",
+    "ensemble": "motion",
+    "ViscorollError": "errors",
+    "ParameterError": "errors",
+    "OutOfTableError": "errors",
+    "TableError": "errors",
+    "OutputError": "errors",
+    "ConfigError": "errors",
+    "ConvergenceError": "errors",
+    "MotionStatus": "errors",
+    "MOTION_STATUS": "errors",
+}
+_SUBPACKAGES = ("tables", "sampling")
+__all__ = [*_HOME, *_SUBPACKAGES, "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        value = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    elif name in _SUBPACKAGES:
+        value = import_module(f".{name}", __name__)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

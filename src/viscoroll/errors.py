@@ -1,0 +1,83 @@
+"""The exception tree, and what a kernel's status code means.
+
+Which error when:
+
+- :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be,
+  an unknown name, inputs that do not fit together.  Also a ``ValueError``.
+- :class:`OutOfTableError`: a point outside a table's grid.
+- :class:`TableError`: a file that is missing, damaged, of another schema, or not a table.
+- :class:`OutputError`: a result that cannot be written.
+- :class:`ConfigError`: a TOML file with a misspelt key or a value of the wrong type.
+- :class:`ConvergenceError`: an iteration that hit its cap.
+
+Kernels never raise; they return a status.  Motions carry one each, with a sentence
+(:data:`MOTION_STATUS`); only a failed contact solve is turned into an exception.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+
+class ViscorollError(Exception):
+    """Base of every exception that this package raises on purpose."""
+
+
+class ParameterError(ViscorollError, ValueError):
+    """``name`` has a ``value`` outside what is ``allowed``."""
+
+    def __init__(self, name: str, value: Any, allowed: str) -> None:
+        self.name, self.value, self.allowed = name, value, allowed
+        super().__init__(f"{name} = {value!s}: must be {allowed}")
+
+
+class OutOfTableError(ParameterError):
+    """A point lies outside the grid of a table: nothing is extrapolated."""
+
+    def __init__(self, name: str, value: float, low: float, high: float) -> None:
+        self.low, self.high = low, high
+        super().__init__(name, f"{value:.6g}", f"within the table's range [{low:.6g}, {high:.6g}]")
+
+
+class FileProblem(ViscorollError):
+    """Something is wrong with the file at ``path``."""
+
+    def __init__(self, path: Any, problem: str) -> None:
+        self.path = path
+        super().__init__(f"{path}: {problem}")
+
+
+class TableError(FileProblem):
+    """The file is missing, damaged, of another schema version, or not a table."""
+
+
+class OutputError(FileProblem):
+    """The result cannot be written there."""
+
+
+class ConfigError(FileProblem):
+    """The TOML file cannot be read as a scene."""
+
+
+class ConvergenceError(ViscorollError):
+    """An iteration reached its cap; a defect of this package, please report the input."""
+
+
+class MotionStatus(IntEnum):
+    """How a motion ended."""
+
+    DONE = 0
+    RESTED = 1
+    STEP_LIMIT = 2
+    STEP_TOO_SMALL = 3
+    NOT_CONVERGED = 4
+
+
+MOTION_STATUS = {
+    MotionStatus.DONE: "reached the last output time",
+    MotionStatus.RESTED: "max(|V|, |omega|) fell below the rest threshold",
+    MotionStatus.STEP_LIMIT: "the step limit was reached first: loosen rtol or shorten the motion",
+    MotionStatus.STEP_TOO_SMALL: "the step size fell to rounding level: rtol is too tight for this start",
+    MotionStatus.NOT_CONVERGED: "a contact solve did not converge: please report the input",
+}

@@ -1,0 +1,231 @@
+"""What rolls: :class:`Scene` (dimensionless), :class:`Cylinder` (SI), the paper's presets."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import ParameterError
+
+
+def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> NDArray[np.float64]:
+    """``value`` as float64, finite and >= ``low`` (> if ``strict``).
+
+    Raises
+    ------
+    ParameterError
+        If it is not numeric, not finite, or below ``low``.
+    """
+    allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ParameterError(name, f"{value!r:.60}", allowed) from None
+    bad = ~np.isfinite(array) | (array <= low if strict else array < low)
+    if bad.any():
+        raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
+    return array
+
+
+def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
+    if array.ndim == 0:
+        return float(array)
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Dimensionless parameters of the rolling cylinder (Eqs. (4) and Sect. 3.1).
+
+    Each may be an array; they broadcast against each other and against speeds.
+
+    Parameters
+    ----------
+    alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic).
+    kappa : R/l0 = sqrt(E' R/(32 P)), radius over contact length at rest, > 0;
+        the half-space theory asks for kappa >> 1.
+    mu : coefficient of friction, > 0.
+    gamma : P T_epsilon^2/(m R), > 0; only scales time.  Not used by contact or stress.
+    j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
+
+    Raises
+    ------
+    ParameterError
+        Where a value is not finite or out of range, or the shapes do not broadcast.
+    """
+
+    alpha: Any
+    kappa: Any
+    mu: Any
+    gamma: Any = 1.0
+    j: Any = 0.5
+
+    def __post_init__(self) -> None:
+        arrays = {
+            "alpha": checked("alpha", self.alpha, low=1.0),
+            **{name: checked(name, getattr(self, name), low=0.0, strict=True) for name in ("kappa", "mu", "gamma", "j")},
+        }
+        broadcast_shape(**arrays)
+        for name, array in arrays.items():
+            object.__setattr__(self, name, _frozen(array))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape that the parameters broadcast to; () for one scene."""
+        return np.broadcast_shapes(*(np.shape(getattr(self, f.name)) for f in fields(self)))
+
+    def replace(self, **changes: ArrayLike) -> Scene:
+        """A copy with some parameters changed."""
+        return replace(self, **changes)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return all(np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
+    """Common shape of the named arrays.
+
+    Raises
+    ------
+    ParameterError
+        Naming the shapes, where they do not broadcast.
+    """
+    try:
+        return np.broadcast_shapes(*(a.shape for a in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise ParameterError("shapes", shapes, "broadcastable against each other") from None
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A viscoelastic cylinder on a half-space of the same material, in SI units.
+
+    Parameters
+    ----------
+    R : radius, m.
+    m : mass per unit length, kg/m.
+    E : long-time Young's modulus, Pa.
+    nu : Poisson's ratio, in (-1, 0.5].
+    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.
+    mu : coefficient of friction.
+    j : J/(m R^2); 1/2 for a solid cylinder.
+    g : gravitational acceleration, m/s^2; the load is P = m g (Sect. 3.5).
+    plane : "strain", or "stress" (then E' = pi E).
+
+    Raises
+    ------
+    ParameterError
+        Where a value is not finite or out of range.
+    """
+
+    R: float
+    m: float
+    E: float
+    nu: float
+    T_epsilon: float
+    T_sigma: float
+    mu: float
+    j: float = 0.5
+    g: float = 9.81
+    plane: Literal["strain", "stress"] = "strain"
+
+    def __post_init__(self) -> None:
+        for name in ("R", "m", "E", "T_epsilon", "T_sigma", "mu", "j", "g"):
+            if checked(name, getattr(self, name), low=0.0, strict=True).ndim:
+                raise ParameterError(name, getattr(self, name), "a single number")
+        if not -1.0 < float(checked("nu", self.nu)) <= 0.5:
+            raise ParameterError("nu", self.nu, "in (-1, 0.5]")
+        if self.T_epsilon < self.T_sigma:
+            raise ParameterError("T_epsilon", self.T_epsilon, f">= T_sigma = {self.T_sigma}")
+        if self.plane not in ("strain", "stress"):
+            raise ParameterError("plane", repr(self.plane), "'strain' or 'stress'")
+
+    @property
+    def load(self) -> float:
+        """P = m g, N/m."""
+        return self.m * self.g
+
+    @property
+    def E_prime(self) -> float:
+        """E' = pi E/(1 - nu^2) in plane strain, pi E in plane stress, Pa (Sect. 3.1)."""
+        return math.pi * self.E / (1.0 - self.nu**2 if self.plane == "strain" else 1.0)
+
+    @property
+    def l0(self) -> float:
+        """Contact length at rest, sqrt(32 R P/E'), m."""
+        return math.sqrt(32.0 * self.R * self.load / self.E_prime)
+
+    def scene(self) -> Scene:
+        """The dimensionless scene: alpha, kappa, gamma of Sect. 3.1 and Eq. (4)."""
+        return Scene(
+            alpha=self.T_epsilon / self.T_sigma,
+            kappa=self.R / self.l0,
+            mu=self.mu,
+            gamma=self.load * self.T_epsilon**2 / (self.m * self.R),
+            j=self.j,
+        )
+
+    def V_from_si(self, V_si: ArrayLike) -> Any:
+        """Dimensionless V = T_epsilon V_si/R from m/s."""
+        return np.asarray(V_si, float)[()] * (self.T_epsilon / self.R)
+
+    def V_to_si(self, V: ArrayLike) -> Any:
+        """Speed in m/s."""
+        return np.asarray(V, float)[()] * (self.R / self.T_epsilon)
+
+    def omega_from_si(self, omega_si: ArrayLike) -> Any:
+        """Dimensionless omega = T_epsilon omega_si from rad/s."""
+        return np.asarray(omega_si, float)[()] * self.T_epsilon
+
+    def omega_to_si(self, omega: ArrayLike) -> Any:
+        """Angular velocity in rad/s."""
+        return np.asarray(omega, float)[()] / self.T_epsilon
+
+    def t_from_si(self, t_si: ArrayLike) -> Any:
+        """Dimensionless time t_si/T_epsilon from s."""
+        return np.asarray(t_si, float)[()] / self.T_epsilon
+
+    def t_to_si(self, t: ArrayLike) -> Any:
+        """Time in s."""
+        return np.asarray(t, float)[()] * self.T_epsilon
+
+    def x_to_si(self, x: ArrayLike) -> Any:
+        """Distance travelled in m, from units of R."""
+        return np.asarray(x, float)[()] * self.R
+
+    def traction_to_si(self, Q: ArrayLike, M: ArrayLike) -> Any:
+        """Horizontal force F_xi = Q - M/(2R) of Eq. (20), N per m of length."""
+        return self.load * (np.asarray(Q, float) - 0.5 * np.asarray(M, float))[()]
+
+    def torque_to_si(self, Q: ArrayLike, M: ArrayLike) -> Any:
+        """Moment about the axis M_zeta = R Q + M/2 of Eq. (21), N m per m of length."""
+        return self.load * self.R * (np.asarray(Q, float) + 0.5 * np.asarray(M, float))[()]
+
+
+#: Sect. 5 as it was computed: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and
+#: mu = 0.2.  Gives alpha = 11.031, kappa = 2.9210, gamma = 11231 and the paper's numbers.
+PAPER_CYLINDER = Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+PAPER_SECTION_5 = PAPER_CYLINDER.scene()
+#: The rounded parameters printed at the end of Sect. 4; stick onset of IC1 moves 2 % later.
+PAPER_SECTION_5_ROUNDED = Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0.5)
+#: Figs. 2 and 3 use kappa = 29.1, ten times that of Sects. 4-5; alpha is varied there
+#: (1, 1.5, 21.5, 81.5 in Figs. 2 and 3b, 11 in Fig. 3a).
+PAPER_FIGURES_2_3 = Scene(alpha=11.0, kappa=29.1, mu=0.2, gamma=1.1e4, j=0.5)
+PRESETS = {
+    "paper-section-5": PAPER_SECTION_5,
+    "paper-section-5-rounded": PAPER_SECTION_5_ROUNDED,
+    "paper-figures-2-3": PAPER_FIGURES_2_3,
+}
+#: Initial conditions (V, omega) of Sect. 5.1.
+PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
