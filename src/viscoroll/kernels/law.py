@@ -72,7 +72,7 @@ def contact_length(kappa_V, alpha, c):
     low, high = 1.0 / np.sqrt(alpha), 1.0
     # lam^2 + 2 w lam h = 1 with h between its limits c alpha zeta/2 and c/2
     start = c * 0.5 * w
-    lam = np.sqrt(1.0 + start * start) - start
+    lam = 1.0 / (np.sqrt(1.0 + start * start) + start)
     lam = max(lam, low)
     for _ in range(_MAX_NEWTON):
         z = lam / w
@@ -96,23 +96,25 @@ def contact_length(kappa_V, alpha, c):
 
 @kernel
 def differences(zeta, eta, D, alpha, c):
-    """(F(zeta) - F(eta), H(zeta) - H(eta)) with D = zeta - eta, to full relative accuracy.
+    """(F(zeta) - F(eta), (H(zeta) - H(eta))/zeta) with D = zeta - eta, to full relative accuracy.
 
-    For neighbouring arguments both are integrals of the slopes: no digits cancel.
+    For neighbouring arguments both are integrals of the slopes: no digits cancel.  H comes
+    divided by zeta so that nothing underflows at the highest speeds.
     """
+    ratio = eta / zeta
     if c == 0.0:
-        return D, (zeta + eta) * D
+        return D, (1.0 + ratio) * D
     if D > _CLOSE * zeta:
         g, h = generators(zeta, alpha, c)
         g_eta, h_eta = generators(eta, alpha, c)
-        return D + (g - g_eta), (zeta + eta) * D + 2.0 * (zeta * h - eta * h_eta)
+        return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
     slope_g, slope_zh = 0.0, 0.0
     for n in range(5):
         z = zeta - D * _GAUSS_X[n]
         _, h, dg, dh = generator_slopes(z, alpha, c)
         slope_g += _GAUSS_W[n] * dg
         slope_zh += _GAUSS_W[n] * (h + z * dh)
-    return D * (1.0 + slope_g), D * (zeta + eta + 2.0 * slope_zh)
+    return D * (1.0 + slope_g), D * (1.0 + ratio + 2.0 * slope_zh / zeta)
 
 
 @kernel

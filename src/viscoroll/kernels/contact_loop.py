@@ -1,0 +1,158 @@
+"""The contact law over arrays of states: signs, limits, and only the rows asked for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .jit import kernel
+from .law import (
+    OK,
+    contact_length,
+    differences,
+    generator_slopes,
+    generators,
+    moment_factor,
+    moment_factor_slope,
+    stick_length,
+)
+
+#: Order of the rows of the kernel's output.
+ROWS = (
+    "lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M",
+    "dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV",
+)  # fmt: skip
+LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, DQ_DOMEGA, DM_DV = range(len(ROWS))
+
+#: above this zeta, g <= 1/2 is below rounding beside zeta and the law is Carter's
+FAR = 1e17
+
+
+@kernel
+def signed_slip(V, creep, creep_is_omega):
+    """(omega - V, sign of the slip, direction of travel); V = 0 counts as V -> 0+."""
+    direction = -1.0 if V < 0.0 else 1.0
+    slip = creep - V if creep_is_omega else creep * V
+    if creep_is_omega:
+        sign = np.sign(slip)
+    else:
+        sign = np.sign(creep) * direction
+    return slip, sign, direction
+
+
+@kernel
+def creep_ratio(V, creep, slip, creep_is_omega):
+    """delta of Eq. (5); infinite when V = 0 < |omega|, 0 at rest."""
+    if not creep_is_omega:
+        return creep
+    if V != 0.0:
+        return slip / V
+    return 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
+
+
+@kernel
+def stick(speed, delta, mu, zeta, lam, epsilon, delta_star, alpha, c):
+    """(eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
+    if c == 0.0 or zeta > FAR:
+        s = delta / delta_star
+        return zeta * (1.0 - s), 1.0 - s, s * (2.0 - s), OK
+    eta, D, status = stick_length(zeta, zeta * (1.0 + epsilon), delta / (mu * speed), alpha, c)
+    _, dH = differences(zeta, eta, D, alpha, c)
+    return eta, eta / zeta, dH * (lam / zeta) * lam, status
+
+
+@kernel
+def traction_slopes(speed, delta, kappa, mu, zeta, eta, beta, share, lam, alpha, c):
+    """(d|Q|/d|V| at fixed delta, d|Q|/d|delta|) in partial slip; share = |Q|/mu."""
+    if c == 0.0 or zeta > FAR:
+        return 0.0, 4.0 * kappa * lam * beta
+    _, h, dg, dh = generator_slopes(zeta, alpha, c)
+    _, h_eta, dg_eta, dh_eta = generator_slopes(eta, alpha, c)
+    # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
+    A = 2.0 * (1.0 + (h + zeta * dh) / zeta) / (1.0 + dg)
+    A_eta = 2.0 * (eta + h_eta + eta * dh_eta) / (zeta * (1.0 + dg_eta))
+    H = 1.0 / (lam * lam)
+    d = delta / (mu * speed * zeta)
+    bracket = -share * H + H * (A - A_eta) / A + 0.5 * A_eta * d
+    dQ_dV = -mu * 2.0 * lam * lam * bracket / speed
+    return dQ_dV, 2.0 * kappa * lam * A_eta
+
+
+@kernel
+def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
+    """All rows of one state into ``out``; ``need`` = (shift, stick, moment, slopes)."""
+    need_shift, need_stick, need_moment, need_slopes = need
+    c = (alpha - 1.0) / alpha
+    speed = abs(V)
+    kappa_V = kappa * speed
+    lam, status = contact_length(kappa_V, alpha, c)
+    zeta = lam / (2.0 * kappa_V)
+    out[LAM], out[ZETA] = lam, zeta
+    if need_moment:
+        _moment(V, zeta, lam, alpha, c, need_slopes, out)
+    if not need_shift:
+        return status
+    g, _ = generators(zeta, alpha, c)
+    epsilon = g / zeta
+    delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa
+    slip, sign, direction = signed_slip(V, creep, creep_is_omega)
+    delta = creep_ratio(V, creep, slip, creep_is_omega)
+    if V == 0.0 and creep_is_omega:
+        full_slip = slip != 0.0
+    else:
+        full_slip = abs(delta) >= delta_star
+    out[EPSILON], out[DELTA_STAR], out[DELTA], out[FULL_SLIP] = epsilon, delta_star, delta, 1.0 if full_slip else 0.0
+    if not need_stick:
+        return status
+    if full_slip:
+        out[BETA], out[Q] = 0.0, mu * sign
+        out[DQ_DV] = out[DQ_DDELTA] = out[DQ_DOMEGA] = 0.0
+        return status
+    eta, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, epsilon, delta_star, alpha, c)
+    out[BETA] = beta
+    out[Q] = sign * mu * share
+    if need_slopes:
+        dQ_dV, dQ_ddelta = traction_slopes(speed, abs(delta), kappa, mu, zeta, eta, beta, share, lam, alpha, c)
+        out[DQ_DV] = np.sign(delta) * dQ_dV
+        out[DQ_DDELTA] = direction * dQ_ddelta
+        out[DQ_DOMEGA] = dQ_ddelta / speed
+        if creep_is_omega:
+            out[DQ_DV] -= dQ_ddelta * (1.0 + delta) / speed
+    return max(status, stick_status)
+
+
+@kernel
+def _moment(V, zeta, lam, alpha, c, need_slopes, out):
+    """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
+    if zeta > FAR:
+        out[M], out[DM_DV] = c * V, c
+        return
+    if not need_slopes:
+        out[M] = V * moment_factor(zeta, lam, alpha, c)
+    else:
+        m, dm = moment_factor_slope(zeta, lam, alpha, c)
+        out[M] = V * m
+        _, h, _, dh = generator_slopes(zeta, alpha, c)
+        half_slope = 1.0 + (h + zeta * dh) / zeta
+        out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)
+
+
+@kernel
+def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
+    """States start..stop; inputs hold one value or one a state; ``rows`` picks the output."""
+    state = np.empty(len(ROWS))
+    worst = OK
+    for i in range(start, stop):
+        status = contact_state(
+            alpha[min(i, alpha.size - 1)],
+            kappa[min(i, kappa.size - 1)],
+            mu[min(i, mu.size - 1)],
+            V[min(i, V.size - 1)],
+            creep[min(i, creep.size - 1)],
+            creep_is_omega,
+            need,
+            state,
+        )
+        worst = max(worst, status)
+        for n in range(rows.size):
+            out[n, i] = state[rows[n]]
+    return worst

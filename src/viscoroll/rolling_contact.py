@@ -1,0 +1,172 @@
+"""The public contact law: :func:`contact` and :func:`stress`.
+
+Checks and broadcasts the input, chooses the method, and asks the kernels for no more than
+the fields that were named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .blocks import run_blocks
+from .errors import ConvergenceError, ParameterError
+from .scene import Scene, broadcast_shape, checked
+
+FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
+SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+_NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
+_NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
+_BLOCK = 1 << 15
+
+
+class Values:
+    """Named results of one call; a name that was not asked for is an AttributeError."""
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        self._values = values
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self._values[name]
+        except KeyError:
+            held = ", ".join(self._values)
+            raise AttributeError(f"{name!r} was not computed; this result holds {held}") from None
+
+    def __dir__(self) -> Iterable[str]:
+        return self._values
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{name:>11} = {value}" for name, value in self._values.items())
+
+    def as_dict(self) -> dict[str, Any]:
+        """The results by name."""
+        return dict(self._values)
+
+
+def contact(
+    scene: Scene,
+    V: ArrayLike,
+    delta: ArrayLike | None = None,
+    omega: ArrayLike | None = None,
+    *,
+    fields: Iterable[str] | None = None,
+    slopes: bool = False,
+    method: Literal["table", "direct"] = "table",
+) -> Values:
+    """State of the contact: Eqs. (6)-(10), (15)-(18).
+
+    Everything is dimensionless.  Arguments broadcast against each other and against array
+    parameters of the scene; if all are scalars so are the results.
+
+    Parameters
+    ----------
+    scene : alpha, kappa and mu are used.
+    V : velocity of the axis, any sign.
+    delta, omega : exactly one: creep ratio (omega - V)/V, or angular velocity; any sign.
+        At V = 0 a given ``delta`` means the limit V -> 0+.
+    fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
+        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV``); only these are computed.
+        Default: all nine.
+    slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
+        fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
+        corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
+        ``dQ_domega`` is infinite.
+    method : "table" (the explicit law on tabulated Bessel ratios) or "direct" (the paper's
+        equations as printed, solved by Brent-Dekker; no slopes).
+
+    Returns
+    -------
+    Values
+        The fields as attributes.  ``zeta`` is infinite at V = 0, ``delta`` at V = 0 with
+        omega != 0.  ``epsilon`` may exceed 1: the contact then lies wholly ahead of the axis.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite input, both or neither of delta and omega, unknown field or method,
+        shapes that do not broadcast.
+    ConvergenceError
+        If a solve hits its iteration cap.
+
+    Notes
+    -----
+    Accuracy of method "table": 1e-13 relative in lam, epsilon, delta_star, M and Q for
+    alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
+    its condition number (``tests/test_contact.py``).
+    """
+    if (delta is None) == (omega is None):
+        both = "both" if delta is not None else "neither"
+        raise ParameterError("delta, omega", both, "given exactly one of")
+    names = _field_names(fields, slopes, method)
+    creep_name = "omega" if delta is None else "delta"
+    inputs = {
+        "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
+        "V": V, creep_name: omega if delta is None else delta,
+    }  # fmt: skip
+    arrays = {name: checked(name, value) for name, value in inputs.items()}
+    shape = broadcast_shape(**arrays)
+    flat = [flattened(array, shape) for array in arrays.values()]
+    rows = _compute(flat, creep_name == "omega", names, int(np.prod(shape)), method)
+    return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
+
+
+def _field_names(fields: Iterable[str] | None, slopes: bool, method: str) -> tuple[str, ...]:
+    if method not in ("table", "direct"):
+        raise ParameterError("method", repr(method), "'table' or 'direct'")
+    names = FIELDS if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    for name in names:
+        if name not in FIELDS + SLOPES:
+            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS + SLOPES))
+    if slopes:
+        names += tuple(name for name in SLOPES if name not in names)
+    if method == "direct" and set(names) & set(SLOPES):
+        raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
+    return names
+
+
+def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
+    """One value, or one for each element of ``shape``, as a contiguous vector."""
+    if array.size == 1:
+        return array.reshape(1)
+    return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+
+
+def _compute(flat: list[NDArray], creep_is_omega: bool, names: tuple[str, ...], count: int, method: str) -> NDArray:
+    wanted = set(names)
+    need = (
+        bool(wanted & _NEEDS_SHIFT),
+        bool(wanted & _NEEDS_STICK),
+        bool(wanted & {"M", "dM_dV"}),
+        bool(wanted & set(SLOPES)),
+    )
+    if method == "direct":
+        from .kernels.direct_loop import direct_loop as loop
+    else:
+        from .kernels.contact_loop import contact_loop as loop
+    from .kernels.contact_loop import ROWS
+
+    rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
+    out = np.empty((len(names), count))
+    failures: list[int] = []
+
+    def work(start: int, stop: int) -> None:
+        if loop(*flat, creep_is_omega, need, rows, out, start, stop):
+            failures.append(start)
+
+    run_blocks(work, count, _BLOCK)
+    if failures:
+        raise ConvergenceError(f"contact: an iteration hit its cap near element {min(failures)} (method {method!r})")
+    return out
+
+
+def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
+    values = row.reshape(shape)
+    if name == "full_slip":
+        values = values != 0.0
+    return values if shape else values.item()
