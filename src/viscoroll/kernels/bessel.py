@@ -5,8 +5,8 @@
 This is what the paper's direct method (:mod:`direct`) is built on, and an independent check
 of :mod:`ratios`.  Only ratios occur, so nothing overflows; each step count is fixed by the
 argument before the loop starts, so there is no convergence test to fail.  Against 40 digits
-on 50 000 arguments from 5e-324 to 1.8e308: at most 2.1 ULP (``ratio_i``) and 3.0 ULP
-(``ratio_k0k1``, just below z = 1).
+on 4800 arguments from 5e-324 to 1.8e308: at most 2.7 ULP (``ratio_i``, near 25) and 3.6 ULP
+(``ratio_k0k1``, below 1), in 20 to 200 ns.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _HANKEL_FROM = 25.0
 
 
 def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
-    """sign^n a_n of sqrt(2 pi x) e^-x I = sum (-1)^n a_n x^-n and sqrt(2 x/pi) e^x K = sum a_n x^-n."""
+    """x^-n coefficients of sqrt(2 pi x) e^-x I(x) (sign = -1) or sqrt(2 x/pi) e^x K(x) (sign = +1)."""
     a = [1.0]
     for n in range(1, terms + 1):
         a.append(sign * a[-1] * (4 * order**2 - (2 * n - 1) ** 2) / (8 * n))
@@ -39,9 +39,9 @@ def _temme_k0(terms: int = 10) -> list[list[float]]:
 
 
 def _temme_k1(terms: int = 10) -> list[list[float]]:
-    """q^n coefficients of n q^n/n!^2 and of its K1 companion.
+    """q^n coefficients of z I1 and of z K1 - 1 - (ln(z/2) + gamma) z I1.
 
-    z K1 = 1 + 2 sum q^n/n!^2 (1/2 - n f_n), f_n = -(ln(z/2) + gamma) + (1 + 1/2 + ... + 1/n).
+    z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... + 1/n.
     """
     i0, k0 = _temme_k0(terms)
     return [

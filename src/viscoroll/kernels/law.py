@@ -32,8 +32,8 @@ _CLOSE = 0.1
 
 @kernel
 def generators(z, alpha, c):
-    """(g, h) at z: epsilon zeta = g, H = z^2 + 2 z h."""
-    if c == 0.0:
+    """(g, h) at z: epsilon zeta = g, H = z^2 + 2 z h; 0 for z <= 0 (no stick zone)."""
+    if c == 0.0 or z <= 0.0:
         return 0.0, 0.0
     r, _ = ratio_r(alpha * z)
     k, _ = ratio_k(z)
@@ -44,8 +44,8 @@ def generators(z, alpha, c):
 
 @kernel
 def generator_slopes(z, alpha, c):
-    """(g, h, g', h') at z."""
-    if c == 0.0:
+    """(g, h, g', h') at z, all 0 for z <= 0."""
+    if c == 0.0 or z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     x = alpha * z
     r, rc = ratio_r(x)

@@ -1,0 +1,172 @@
+"""Right-hand side and Jacobian of Eq. (22) in partial slip, in unknowns that stay good as V -> 0.
+
+Unknowns: y = ln zeta and the signed D = zeta - eta (sign of delta), in a frame where V > 0.
+The law is explicit in them, so no equation is solved.  With V -> 0, y grows linearly in
+time and D tends to a constant, while omega - V would drown in rounding.  Time is tau =
+gamma t; with a = V'/V = Q/V - M/(2V), d = sign(D) (F(zeta) - F(eta)) = delta/(mu V):
+
+    y' = -2 H/(zeta H') a
+    D' = (d' - sign(D) (F'(zeta) - F'(eta)) zeta y')/F'(eta)
+    d' = -((1 + 1/j) Q/V + (1/j - 1) M/(2V))/(mu V) - 2 d a
+
+and the distance and the angle turned (times gamma) follow V and omega = V + mu V^2 d.
+
+For eta < 0 the law is continued by F(eta) = eta, H(eta) = 0: then Q = +-mu and d still
+measures the slip, so the equations go over into those of full slip without a jump.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .jit import kernel
+from .law import differences, generator_slopes, generators, moment_factor_slope
+from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+
+#: differences of g and h lose log10(zeta/D) digits: below this D/zeta use `differences`
+_NEAR = 1e-3
+
+
+@kernel
+def second_slopes(z, alpha, c):
+    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
+    if c == 0.0 or z <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x = alpha * z
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(z)
+    s = slope_r(x, r, rc)
+    dr = alpha * s
+    dk = slope_k(z, k, kc)
+    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
+    ddk = 2.0 * k * dk + (dk - k / z) / z
+    p = r * k
+    dp = dr * k + r * dk
+    ddp = ddr * k + 2.0 * dr * dk + r * ddk
+    whole = 1.0 / (1.0 + p)
+    share = c * whole
+    dg = share * whole * dp
+    dh_top = dr - r * r * dk
+    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
+    ddg = whole * (share * ddp - 2.0 * dg * dp)
+    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
+    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
+
+
+@kernel
+def slopes_and_moment(z, alpha, c):
+    """(g, h, g', h', m) at z with M = V m, from one pair of ratios."""
+    if c == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    x = alpha * z
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(z)
+    dr = alpha * slope_r(x, r, rc)
+    dk = slope_k(z, k, kc)
+    p = r * k
+    whole = 1.0 / (1.0 + p)
+    share = c * whole
+    h = share * r
+    m = share * (ratio_i2(x, r) / (1.0 + 2.0 * h / z) + p)
+    return share * p, h, share * whole * (dr * k + r * dk), share * whole * (dr - r * r * dk), m
+
+
+@kernel
+def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
+    """(F(zeta) - F(eta), (H(zeta) - H(eta))/zeta) from the generators already at hand."""
+    eta = zeta - D
+    if eta <= 0.0:
+        return zeta + g - eta, zeta + 2.0 * h
+    if D < _NEAR * zeta:
+        return differences(zeta, eta, D, alpha, c)
+    ratio = eta / zeta
+    return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
+
+
+@kernel
+def partial_rhs(y, D, par):
+    """(y', D', V, omega) at y = ln zeta and D."""
+    alpha, c, kappa, mu, j = par
+    zeta = np.exp(y)
+    size = abs(D)
+    g, h, dg, dh, m = slopes_and_moment(zeta, alpha, c)
+    g_eta, h_eta, dg_eta, _ = generator_slopes(zeta - size, alpha, c)
+    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
+    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
+    V = np.sqrt(lam2) / (2.0 * kappa * zeta)
+    sign = np.sign(D)
+    q_over_V = sign * mu * rise_H * lam2 / zeta / V
+    rate = q_over_V - 0.5 * m
+    dy = -rate / (lam2 * (1.0 + h / zeta + dh))
+    d = sign * rise_F
+    dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) / (mu * V) - 2.0 * d * rate
+    dD = (dd - sign * (dg - dg_eta) * zeta * dy) / (1.0 + dg_eta)
+    return dy, dD, V, V * (1.0 + mu * V * d)
+
+
+@kernel
+def partial_jacobian(y, D, par):
+    """d(y', D', V, omega)/d(y, D), row by row."""
+    alpha, c, kappa, mu, j = par
+    zeta = np.exp(y)
+    size = abs(D)
+    sign = 1.0 if D >= 0.0 else -1.0
+    g, h, dg, dh, ddg, ddh = second_slopes(zeta, alpha, c)
+    g_eta, h_eta, dg_eta, dh_eta, ddg_eta, _ = second_slopes(zeta - size, alpha, c)
+    eta = max(zeta - size, 0.0)
+    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
+    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
+    V = np.sqrt(lam2) / (2.0 * kappa * zeta)
+    m, dm = moment_factor_slope(zeta, np.sqrt(lam2), alpha, c)
+    # U = H'/(2 zeta), W = H'(eta)/(2 zeta); H = zeta^2/lam2
+    U = 1.0 + h / zeta + dh
+    dU = (dh - h / zeta) / zeta + ddh
+    W = (eta + h_eta + eta * dh_eta) / zeta if eta > 0.0 else 0.0
+    U_less_W = (size * (1.0 + dh_eta) + (h - h_eta) + zeta * (dh - dh_eta)) / zeta if eta > 0.0 else U
+    share = rise_H * lam2 / zeta
+    share_z = 2.0 * lam2 * (U_less_W - share * U) / zeta
+    share_E = 2.0 * lam2 * W / zeta
+    inv_V_z = lam2 * U / zeta / V  # d(1/V)/d zeta
+    G = sign * mu * share / V
+    G_z = sign * mu * (share_z / V + share * inv_V_z)
+    G_E = sign * mu * share_E / V
+    a = G - 0.5 * m
+    a_z = G_z - 0.5 * dm
+    dy = -a / (lam2 * U)
+    lam2_z = -2.0 * lam2 * lam2 * (dh - h / zeta) / zeta
+    dy_z = -a_z / (lam2 * U) - dy * (lam2_z / lam2 + dU / U)
+    dy_E = -G_E / (lam2 * U)
+    d = sign * rise_F
+    d_z = sign * (dg - dg_eta)
+    d_E = sign * (1.0 + dg_eta)
+    B = (1.0 + 1.0 / j) * G + (1.0 / j - 1.0) * 0.5 * m
+    B_z = (1.0 + 1.0 / j) * G_z + (1.0 / j - 1.0) * 0.5 * dm
+    B_E = (1.0 + 1.0 / j) * G_E
+    N = -B / (mu * V) - 2.0 * d * a - d_z * zeta * dy
+    N_z = (
+        -(B_z / V + B * inv_V_z) / mu - 2.0 * (d_z * a + d * a_z)
+        - sign * (ddg - ddg_eta) * zeta * dy - d_z * (dy + zeta * dy_z)
+    )  # fmt: skip
+    N_E = -B_E / (mu * V) - 2.0 * (d_E * a + d * G_E) - sign * ddg_eta * zeta * dy - d_z * zeta * dy_E
+    slope = 1.0 + dg_eta
+    D_z = (N_z - N * ddg_eta / slope) / slope
+    D_E = (N_E + N * ddg_eta / slope) / slope
+    V_z = -V * V * inv_V_z
+    slip_z = mu * V * (2.0 * V_z * d + V * d_z)
+    return (
+        dy_z * zeta, dy_E * sign, D_z * zeta, D_E * sign,
+        V_z * zeta, 0.0, (V_z + slip_z) * zeta, mu * V * V * d_E * sign,
+    )  # fmt: skip
+
+
+@kernel
+def partial_speeds(y, D, par):
+    """(V, delta) at y = ln zeta and D."""
+    alpha, c, kappa, mu, _ = par
+    zeta = np.exp(y)
+    size = abs(D)
+    g, h = generators(zeta, alpha, c)
+    g_eta, h_eta = generators(zeta - size, alpha, c)
+    rise_F, _ = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
+    V = 1.0 / (np.sqrt(1.0 + 2.0 * h / zeta) * 2.0 * kappa * zeta)
+    return V, np.sign(D) * mu * V * rise_F

@@ -1,0 +1,136 @@
+"""One step of the Rosenbrock method RODAS5P on the four unknowns of a motion.
+
+RODAS5P: 8 stages, order 5, embedded order 4, stiffly accurate and L-stable, no order
+reduction on the problem of Prothero and Robinson, dense output of order 4.  Coefficients:
+G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks
+within the Julia Differential Equations package, BIT Numer. Math. 63:27 (2023),
+doi:10.1007/s10543-023-00967-x.
+
+The unknowns are two that couple (V and w, or y and D) and two quadratures (distance, angle).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .full_slip import full_jacobian, full_rhs
+from .jit import kernel
+from .partial_slip import partial_jacobian, partial_rhs
+
+FULL, PARTIAL, REST = 0, 1, 2
+STAGES = 8
+ORDER = 5
+
+GAMMA = 0.21193756319429014
+_A6 = (-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946)
+_A = (
+    (),
+    (3.0,),
+    (2.849394379747939, 0.45842242204463923),
+    (-6.954028509809101, 2.489845061869568, -10.358996098473584),
+    (2.8029986275628964, 0.5072464736228206, -0.3988312541770524, -0.04721187230404641),
+    _A6,
+    (*_A6, 1.0),
+    (*_A6, 1.0, 1.0),
+)
+_C = (
+    (),
+    (-14.155112264123755,),
+    (-17.97296035885952, -2.859693295451294),
+    (147.12150275711716, -1.41221402718213, 71.68940251302358),
+    (165.43517024871676, -0.4592823456491126, 42.90938336958603, -5.961986721573306),
+    (24.854864614690072, -3.0009227002832186, 47.4931110020768, 5.5814197821558125, -0.6610691825249471),
+    (30.91273214028599, -3.1208243349937974, 77.79954646070892, 34.28646028294783, -19.097331116725623,
+     -28.087943162872662),
+    (37.80277123390563, -3.2571969029072276, 112.26918849496327, 66.9347231244047, -40.06618937091002,
+     -54.66780262877968, -9.48861652309627),
+)  # fmt: skip
+_H = np.array((
+    (25.948786856663858, -2.5579724845846235, 10.433815404888879, -2.3679251022685204,
+     0.524948541321073, 1.1241088310450404, 0.4272876194431874, -0.17202221070155493),
+    (-9.91568850695171, -0.9689944594115154, 3.0438037242978453, -24.495224566215796,
+     20.176138334709044, 15.98066361424651, -6.789040303419874, -6.710236069923372),
+    (11.419903575922262, 2.8879645146136994, 72.92137995996029, 80.12511834622643,
+     -52.072871366152654, -59.78993625266729, -0.15582684282751913, 4.883087185713722),
+))  # fmt: skip
+
+
+def _square(rows: tuple) -> np.ndarray:
+    return np.array([(*row, *[0.0] * (STAGES - len(row))) for row in rows])
+
+
+A, C = _square(_A), _square(_C)
+
+
+@kernel
+def rhs(regime, u0, u1, sigma, par):
+    """Right-hand side of the regime."""
+    if regime == FULL:
+        return full_rhs(u0, u1, sigma, par)
+    return partial_rhs(u0, u1, par)
+
+
+@kernel
+def jacobian(regime, u0, u1, par):
+    """Jacobian of the regime, as (f0_0, f0_1, f1_0, ..., f3_1)."""
+    if regime == FULL:
+        return full_jacobian(u0, u1, par)
+    return partial_jacobian(u0, u1, par)
+
+
+@kernel
+def step(regime, u, h, J, sigma, par, K, new):
+    """Advance u by h into ``new``; stages stay in K for :func:`dense_terms`.
+
+    The last stage K[7] is the difference to the embedded solution of order 4.
+    """
+    J00, J01, J10, J11, J20, J21, J30, J31 = J
+    diagonal = 1.0 / (h * GAMMA)
+    a, d = diagonal - J00, diagonal - J11
+    inverse = 1.0 / (a * d - J01 * J10)
+    per_h = 1.0 / h
+    scale = h * GAMMA
+    for i in range(STAGES):
+        s0, s1, s2, s3 = u[0], u[1], u[2], u[3]
+        r0 = r1 = r2 = r3 = 0.0
+        for n in range(i):
+            weight = A[i, n]
+            s0 += weight * K[n, 0]
+            s1 += weight * K[n, 1]
+            weight = C[i, n] * per_h
+            r0 += weight * K[n, 0]
+            r1 += weight * K[n, 1]
+            r2 += weight * K[n, 2]
+            r3 += weight * K[n, 3]
+        f0, f1, f2, f3 = rhs(regime, s0, s1, sigma, par)
+        r0 += f0
+        r1 += f1
+        k0 = (d * r0 + J01 * r1) * inverse
+        k1 = (a * r1 + J10 * r0) * inverse
+        K[i, 0], K[i, 1] = k0, k1
+        K[i, 2] = (r2 + f2 + J20 * k0 + J21 * k1) * scale
+        K[i, 3] = (r3 + f3 + J30 * k0 + J31 * k1) * scale
+    for m in range(4):
+        total = u[m] + K[STAGES - 1, m]
+        for n in range(STAGES - 1):
+            total += A[STAGES - 1, n] * K[n, m]
+        new[m] = total
+
+
+@kernel
+def dense_terms(K, terms):
+    """Coefficients of the dense output of the step whose stages are in K."""
+    for row in range(3):
+        for m in range(4):
+            total = 0.0
+            for n in range(STAGES):
+                total += _H[row, n] * K[n, m]
+            terms[row, m] = total
+
+
+@kernel
+def dense(theta, old, new, terms, m):
+    """Unknown m at the fraction theta of the step."""
+    rest = 1.0 - theta
+    inner = terms[0, m] + theta * (terms[1, m] + theta * terms[2, m])
+    return rest * old[m] + theta * (new[m] + rest * inner)

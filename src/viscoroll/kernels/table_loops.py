@@ -1,0 +1,65 @@
+"""The contact law over the grids of the tables: root solves at every node, nothing else.
+
+Both loops run over pairs of the two outer axes, so that the contact length is solved once a
+pair; ``start`` and ``stop`` cut the flattened pairs into blocks for the threads.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, ROWS, M, Q, contact_state, stick
+from .jit import kernel
+from .law import OK, contact_length, generators, moment_factor
+
+#: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.
+ATLAS_PLANE = ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
+ATLAS_VOLUME = ("beta", "Q_over_mu")
+#: Likewise of :func:`literal_loop`.
+LITERAL_PLANE = ("lam", "epsilon", "M", "delta_star")
+LITERAL_VOLUME = ("beta", "Q")
+
+
+@kernel
+def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
+    """Pairs start..stop of (alpha, kappa_V): ``plane`` (4, pairs), ``volume`` (2, pairs, s)."""
+    worst = OK
+    for i in range(start, stop):
+        a, w = alpha[i // kappa_V.size], kappa_V[i % kappa_V.size]
+        c = (a - 1.0) / a
+        lam, status = contact_length(w, a, c)
+        worst = max(worst, status)
+        zeta = lam / (2.0 * w)
+        g, _ = generators(zeta, a, c)
+        epsilon = g / zeta
+        # mu = kappa = 1 turns V into kappa V, Q into Q/mu, delta_star into kappa delta_star/mu
+        delta_star = 0.5 * lam * (1.0 + epsilon)
+        plane[0, i] = lam
+        plane[1, i] = epsilon
+        plane[2, i] = w * moment_factor(zeta, lam, a, c)
+        plane[3, i] = delta_star
+        for n in range(s.size):
+            if s[n] >= 1.0:
+                volume[0, i, n], volume[1, i, n] = 0.0, 1.0
+                continue
+            _, beta, share, status = stick(w, s[n] * delta_star, 1.0, zeta, lam, epsilon, delta_star, a, c)
+            worst = max(worst, status)
+            volume[0, i, n], volume[1, i, n] = beta, share
+    return worst
+
+
+@kernel
+def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
+    """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
+    need = (True, True, True, False)
+    state = np.empty(len(ROWS))
+    worst = OK
+    for i in range(start, stop):
+        v, a = V[i // alpha.size], alpha[i % alpha.size]
+        for n in range(delta.size):
+            status = contact_state(a, kappa, mu, v, delta[n], False, need, state)
+            worst = max(worst, status)
+            volume[0, i, n], volume[1, i, n] = state[BETA], state[Q]
+        plane[0, i], plane[1, i] = state[LAM], state[EPSILON]
+        plane[2, i], plane[3, i] = state[M], state[DELTA_STAR]
+    return worst

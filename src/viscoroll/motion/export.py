@@ -1,0 +1,106 @@
+"""Motions and ensembles as xarray datasets, with names, units and provenance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from .. import __version__
+from ..errors import MOTION_STATUS
+from ..symbols import SYMBOLS
+
+if TYPE_CHECKING:
+    from .batch import Ensemble
+    from .single import Motion
+
+_PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+_REGIME = {
+    "long_name": "regime of motion",
+    "flag_values": np.array([0, 1, 2], dtype=np.int8),
+    "flag_meanings": "full_slip partial_slip rest",
+}
+
+
+def attributes(name: str) -> dict[str, str]:
+    """long_name, units, symbol and equation of a quantity."""
+    symbol = SYMBOLS[name]
+    return {"long_name": symbol.long_name, "units": symbol.units, "symbol": symbol.latex, "equation": symbol.equation}
+
+
+def _globals(title: str) -> dict[str, str]:
+    return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
+
+
+def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
+    return xr.Variable(dims, values, attributes(name))
+
+
+def motion_dataset(motion: Motion) -> xr.Dataset:
+    """One motion over t."""
+    data = {name: _variable(("t",), name, getattr(motion, name)) for name in ("V", "omega", "x", "angle", "delta")}
+    data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
+    return xr.Dataset(
+        data,
+        coords={"t": _variable(("t",), "t", motion.t)},
+        attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
+        | {name: getattr(motion.scene, name) for name in _PARAMETERS}
+        | {
+            "onset_time": motion.onset_time,
+            "rest_time": motion.rest_time,
+            "switches": "; ".join(f"t = {s.t:.15g}: {s.regime}" for s in motion.switches),
+            "status": motion.message,
+            "steps": motion.steps,
+        },
+    )
+
+
+def ensemble_dataset(result: Ensemble) -> xr.Dataset:
+    """All motions over (motion, t)."""
+    dims = ("motion", "t")
+    data = {
+        name: _variable(dims, name, getattr(result, name))
+        for name in ("V", "omega", "x", "angle", "delta")
+        if getattr(result, name) is not None
+    }
+    if result.regime is not None:
+        data["regime"] = xr.Variable(dims, result.regime.astype(np.int8), _REGIME)
+    for name, start in (("V0", "V"), ("omega0", "omega")):
+        data[name] = xr.Variable("motion", getattr(result, name), attributes(start))
+        data[name].attrs["long_name"] = "initial " + data[name].attrs["long_name"]
+    for name in _PARAMETERS:
+        value = np.asarray(getattr(result.scene, name))
+        data[name] = _variable(("motion",) if value.ndim else (), name, value)
+    data["onset_time"] = _variable(("motion",), "onset_time", result.onset_time)
+    data["rest_time"] = xr.Variable(
+        "motion", result.rest_time, {"long_name": "time at which the rest threshold was crossed", "units": "1"}
+    )
+    data["status"] = xr.Variable(
+        "motion",
+        result.status,
+        {
+            "long_name": "how the motion ended",
+            "flag_values": np.array([int(s) for s in MOTION_STATUS], dtype=np.int8),
+            "flag_meanings": " ".join(s.name.lower() for s in MOTION_STATUS),
+        },
+    )
+    return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=_globals("Ensemble of motions"))
+
+
+def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:
+    """Mean, standard deviation and quantiles over the motions that reached each time."""
+    data: dict[str, xr.Variable] = {}
+    for name in ("V", "omega", "x", "angle"):
+        values = getattr(result, name)
+        if values is None:
+            continue
+        data[f"{name}_mean"] = _variable(("t",), name, np.nanmean(values, axis=0))
+        data[f"{name}_std"] = _variable(("t",), name, np.nanstd(values, axis=0))
+        data[f"{name}_quantiles"] = _variable(("quantile", "t"), name, np.nanquantile(values, quantiles, axis=0))
+    onset = result.onset_time[np.isfinite(result.onset_time)]
+    if onset.size:
+        data["onset_time_quantiles"] = _variable(("quantile",), "onset_time", np.quantile(onset, quantiles))
+    coords = {"t": _variable(("t",), "t", result.t), "quantile": ("quantile", np.array(quantiles))}
+    attrs = _globals("Summary of an ensemble of motions") | {"motions": len(result)}
+    return xr.Dataset(data, coords=coords, attrs=attrs | {f"ended: {text}": n for text, n in result.messages().items()})

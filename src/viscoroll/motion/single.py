@@ -1,0 +1,182 @@
+"""One motion: :func:`roll` and its result."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..rolling_contact import Values, contact
+from ..scene import Scene
+from .checks import controls, output_times, start_speed
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+REGIMES = ("full slip", "partial slip", "rest")
+_QUANTITIES = ("V", "omega", "x", "angle", "delta")
+_SWITCHES_KEPT = 1000
+
+
+class Switch(NamedTuple):
+    """A change of regime: when, and what follows."""
+
+    t: float
+    regime: str
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One motion of the cylinder; everything dimensionless.
+
+    Attributes
+    ----------
+    t, V, omega : output times and speeds.
+    x, angle : distance travelled over R, and angle turned in radians, both 0 at t = 0.
+    delta : creep ratio (infinite where V = 0 while sliding).
+    regime : 0 full slip, 1 partial slip, 2 rest (see ``REGIMES``).
+    switches : every change of regime, located to rounding.
+    onset_time : first change from full to partial slip; NaN if there is none.
+    rest_time : when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
+    status, message : how the motion ended; outputs it did not reach are NaN.
+    steps : integration steps taken, rejected ones included.
+    """
+
+    scene: Scene
+    t: NDArray[np.float64]
+    V: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    x: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    delta: NDArray[np.float64]
+    regime: NDArray[np.int8]
+    switches: tuple[Switch, ...]
+    onset_time: float
+    rest_time: float
+    status: MotionStatus
+    steps: int
+    _inputs: tuple = field(repr=False)
+
+    @property
+    def message(self) -> str:
+        """The status in words."""
+        return MOTION_STATUS[self.status]
+
+    def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
+        """Contact state (:func:`viscoroll.contact`) along the motion.
+
+        At rest, and where V passes through zero while sliding, the limits V -> 0 stand.
+        """
+        delta, sliding = self.delta, ~np.isfinite(self.delta)
+        if sliding.any():
+            delta = np.where(sliding, np.copysign(1e300, self.delta), self.delta)
+        return contact(self.scene, self.V, delta=delta, fields=fields, **options)
+
+    def at(self, t: ArrayLike) -> Motion:
+        """The same motion at other times within [0, end]; dense output of order 4.
+
+        Raises
+        ------
+        ParameterError
+            Times that are not ascending or lie beyond the end of the motion.
+        """
+        times = output_times(t)
+        V0, omega0, end, rtol, rest, max_steps = self._inputs
+        if times[-1] > end:
+            raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
+        return _integrate(self.scene, V0, omega0, times, end, rtol, rest, max_steps)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
+        from .export import motion_dataset
+
+        return motion_dataset(self)
+
+
+def roll(
+    scene: Scene,
+    V0: float,
+    omega0: float,
+    t: ArrayLike,
+    rtol: float = 1e-8,
+    *,
+    rest: float | None = None,
+    max_steps: int = 100_000,
+) -> Motion:
+    """Motion of the cylinder from (V0, omega0), Eq. (22), through all regimes.
+
+    Parameters
+    ----------
+    scene : one scene (no arrays).
+    V0, omega0 : start speeds, any sign, zero included.
+    t : output times, ascending, or one end time: then output falls on the steps taken.
+    rtol : tolerance in [1e-12, 1e-2]; the global relative error of V, omega, x and the
+        switch times is proportional to it (at most 30 rtol; ``tests/test_motion.py``).
+    rest : end the motion where max(|V|, |omega|) falls below this.  Nothing stops in
+        finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
+        c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
+        there on V = omega = 0 and x, angle stay; the distance so left out is close to
+        (1 + j) V/(gamma c).
+    max_steps : step limit.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ParameterError
+        NaN, infinite or oversized input, unsorted times, an array where one number belongs.
+    """
+    times = output_times(t)
+    inputs = (start_speed("V0", V0), start_speed("omega0", omega0))
+    for name, value in (("scene", scene), ("V0", inputs[0]), ("omega0", inputs[1])):
+        if value.shape != ():
+            raise ParameterError(name, f"array of shape {value.shape}", "one motion's; for many use ensemble")
+    rtol, threshold, max_steps = controls(rtol, rest, max_steps)
+    start = (scene, float(inputs[0]), float(inputs[1]))
+    if np.ndim(t) == 0:
+        times = _step_times(*start, times, rtol, threshold, max_steps)
+    motion = _integrate(*start, times, times[-1], rtol, threshold, max_steps)
+    if motion.status > MotionStatus.RESTED:
+        warnings.warn(f"roll: {motion.message}; outputs not reached are NaN", RuntimeWarning, stacklevel=2)
+    return motion
+
+
+def _step_times(scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int) -> NDArray:
+    """0, the ends of the accepted steps, and the end time."""
+    from ..kernels.integrate import OUTPUTS, integrate
+
+    ends = np.full(max_steps, np.nan)
+    integrate(
+        scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, end, rtol, rest, max_steps,
+        np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
+    )  # fmt: skip
+    return np.unique(np.concatenate(([0.0], ends[np.isfinite(ends)], end)))
+
+
+def _integrate(
+    scene: Scene, V0: float, omega0: float, times: NDArray, end: float, rtol: float, rest: float, max_steps: int
+) -> Motion:
+    from ..kernels.integrate import OUTPUTS, integrate
+
+    asked = times if times[-1] == end else np.append(times, end)
+    out = np.full((OUTPUTS, asked.size), np.nan)
+    switches = np.empty((_SWITCHES_KEPT, 2))
+    status, steps, turns, onset_time, rest_time = integrate(
+        scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, asked, rtol, rest, max_steps,
+        out, switches, np.empty(0),
+    )  # fmt: skip
+    rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
+    regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]
+    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in switches[: min(turns, _SWITCHES_KEPT)])
+    inputs = (V0, omega0, end, rtol, rest, max_steps)
+    return Motion(
+        scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
+        status=MotionStatus(status), steps=steps, _inputs=inputs,
+    )  # fmt: skip

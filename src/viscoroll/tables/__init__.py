@@ -1,0 +1,20 @@
+"""Tables of the contact law for other tools: build, save, load, interpolate.
+
+:class:`AtlasGrid` asks for the universal table over (alpha, kappa V, s), one for every mu and
+kappa; :class:`LiteralGrid` for Q, beta, ... over (V, delta, alpha) at one kappa and mu.
+
+    import viscoroll as vr
+    atlas = vr.tables.build(vr.tables.AtlasGrid())
+    vr.tables.save(atlas, "atlas.nc")
+    vr.tables.interpolate(vr.tables.load("atlas.nc"), alpha=11.0, kappa_V=0.7, s=0.3).Q_over_mu
+
+Read in this order: :mod:`grid` (axes and coordinate maps), :mod:`build`, :mod:`schema` (what
+a file holds), :mod:`store` (atomic save, checked load), :mod:`interpolate`.
+"""
+
+from .build import build
+from .grid import AtlasGrid, LiteralGrid, spread
+from .interpolate import Interpolant, interpolate
+from .store import info, load, save
+
+__all__ = ["AtlasGrid", "Interpolant", "LiteralGrid", "build", "info", "interpolate", "load", "save", "spread"]

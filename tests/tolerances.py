@@ -1,0 +1,43 @@
+"""Every tolerance of the tests, by name, with its reason."""
+
+# --- bessel.py and direct.py (test_direct.py) ---
+#: Units in the last place of the textbook Bessel ratios; measured 2.7 (I) and 3.6 (K, where Temme's two sums are
+#: divided).
+BESSEL_ULP = 4.0
+#: lam and delta_star of the printed forms against the explicit law: a few roundings each; measured 6.7e-16.
+DIRECT_LENGTH = 2e-15
+#: epsilon, absolute over max(1, epsilon): lam^-2 - 1 rounds at 1e-16 lam^-2 k, which epsilon itself exceeds;
+#: measured 3e-15.
+DIRECT_SHIFT = 1e-14
+#: beta, absolute: the rounding of epsilon (up to 6.9 at alpha = 1e4) enters Eq. (10) undiminished; measured 3.3e-15.
+DIRECT_STICK = 1e-14
+#: Q/mu, absolute: K1/K0 <= 1e3 (kappa V = 1e3) magnifies the rounding of Eq. (15)'s bracket; measured 1.1e-13.
+DIRECT_TRACTION = 4e-13
+#: kappa M, absolute: kappa V <= 1e3 magnifies the rounding of lam^2 - 1/alpha in Eq. (16); measured 1.7e-13.
+DIRECT_MOMENT = 6e-13
+#: Carter's closed forms from the printed equations at alpha = 1: same magnification as DIRECT_TRACTION.
+DIRECT_CARTER = 4e-13
+#: lam and epsilon from their limits at kappa V <= 1e-12 or >= 1e12: the limits' own error, c kappa V or
+#: alpha/(kappa V) ln; measured 8e-10.
+DIRECT_EXTREME = 1e-8
+
+# --- stress.py (test_stress.py) ---
+#: Stress against Eqs. (11) and (13) as printed at 160 digits, relative to the peak: a few roundings; measured 2.4e-15.
+STRESS_PRINTED = 2e-14
+#: Closures Int p, Int tau, Int x p, relative to Int p: 26 Gauss-Legendre panels in the test; measured 1.3e-14.
+STRESS_CLOSURE = 1e-13
+#: p >= 0 and tau <= mu p hold exactly in the form used.
+STRESS_SIGN = 0.0
+#: tau at the stick edge +- 1e-12 of the contact: it leaves mu p like a square root there; measured 1.9e-6.
+STRESS_EDGE = 1e-5
+#: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
+STRESS_ELLIPSE = 1e-15
+#: Carter's shear: near the stick edge the reference's beta^2 - (..)^2 cancels; relative to mu times the peak;
+#: measured 7e-15.
+STRESS_CARTER = 1e-13
+#: p of the half-space code over the inner 97 % of the contact, relative to p_max: 1.1e-4 by its README (rounded).
+HALF_SPACE_CODE_P = 1.15e-4
+#: tau of the half-space code relative to mu p_max, worst cell (the one that holds the edge): by its README.
+HALF_SPACE_CODE_TAU = 6.7e-3
+#: the same, root mean square: by its README.
+HALF_SPACE_CODE_TAU_RMS = 5e-4
