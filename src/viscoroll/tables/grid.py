@@ -98,7 +98,7 @@ class AtlasGrid:
 
     alpha: tuple[float, float] = (1.0, 100.0)
     kappa_V: tuple[float, float] = (1e-3, 1e3)
-    nodes: tuple[int, int, int] = (48, 128, 64)
+    nodes: tuple[int, int, int] = (48, 128, 128)
     block: tuple[int, int, int] = (4, 8, 8)
     allowed: tuple[float, float] = (1e-6, 5e-6)
 
