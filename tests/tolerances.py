@@ -41,3 +41,23 @@ HALF_SPACE_CODE_P = 1.15e-4
 HALF_SPACE_CODE_TAU = 6.7e-3
 #: the same, root mean square: by its README.
 HALF_SPACE_CODE_TAU_RMS = 5e-4
+
+# --- tables (test_tables.py) ---
+#: Coordinate maps there and back: s, alpha to a few roundings; exp magnifies that of ln(kappa V) <= 16 in modulus.
+TABLE_MAP = 1e-14
+#: Node values against another evaluation of the law, absolute: rounding of delta = s delta_star, which beta near
+#: s = 1 and Q at high kappa V magnify (DIRECT_TRACTION); the files state 1e-12.
+TABLE_NODE = 1e-12
+#: A spline at its own nodes: the banded solves round at 1e-16 times their condition, below 10 an axis.
+TABLE_SPLINE_NODE = 1e-13
+#: A random error over the map's entry for its block: the map samples eight points a cell, a random one may lie
+#: nearer the worst; measured 1.09 here, 1.38 over 1.5e6 points of the whole atlas.
+TABLE_MAP_SLACK = 1.5
+
+# --- ratios.py (test_ratios.py) ---
+#: r, k, i2 and the complements 1 - r, 1 - k in units in the last place; the stated bound of the module.
+RATIO_ULP = 2.0
+#: A bin's polynomial alone, in numpy without fused multiply-add: eight additions; measured below.
+RATIO_BIN_ULP = 2.0
+#: r', k' over |r'| + 1/(1 + x): the two terms of the Riccati equations, each rounded; measured below.
+RATIO_SLOPE = 1e-15

@@ -35,7 +35,7 @@ _HOME = {
     "MOTION_STATUS": "errors",
 }
 _SUBPACKAGES = ("tables", "sampling")
-__all__ = [*_HOME, *_SUBPACKAGES, "__version__"]
+__all__ = ["__version__", *_HOME, *_SUBPACKAGES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 def thread_count(threads: int | None = None) -> int:
     """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use."""
     if threads is None:
-        threads = int(os.environ.get("VISCOROLL_THREADS", 0)) or len(os.sched_getaffinity(0))
+        threads = int(os.environ.get("VISCOROLL_THREADS", "0")) or len(os.sched_getaffinity(0))
     return max(1, threads)
 
 

@@ -69,7 +69,7 @@ class Scene:
     def __post_init__(self) -> None:
         arrays = {
             "alpha": checked("alpha", self.alpha, low=1.0),
-            **{name: checked(name, getattr(self, name), low=0.0, strict=True) for name in ("kappa", "mu", "gamma", "j")},
+            **{n: checked(n, getattr(self, n), low=0.0, strict=True) for n in ("kappa", "mu", "gamma", "j")},
         }
         broadcast_shape(**arrays)
         for name, array in arrays.items():

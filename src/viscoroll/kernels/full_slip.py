@@ -8,8 +8,6 @@ sigma (omega - V) - delta_star |V|: positive in full slip, through zero where st
 
 from __future__ import annotations
 
-import numpy as np
-
 from .jit import kernel
 from .law import contact_length, generator_slopes, moment_factor, moment_factor_slope
 

@@ -65,7 +65,7 @@ class _Locator(caching.UserProvidedCacheLocator):
 
 
 class _Implementation(caching.CompileResultCacheImpl):
-    _locator_classes = [_Locator]
+    _locator_classes = (_Locator,)
 
 
 class _CheckedFile(caching.IndexDataCacheFile):

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .integrate import OUTPUTS, integrate
+from .integrate import integrate
 from .jit import kernel
+from .motion_output import OUTPUTS
 
 #: columns of the per-motion information
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")

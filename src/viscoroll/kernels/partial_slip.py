@@ -23,7 +23,8 @@ from .jit import kernel
 from .law import differences, generator_slopes, generators, moment_factor_slope
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
-#: differences of g and h lose log10(zeta/D) digits: below this D/zeta use `differences`
+#: differences of g and h, which are at most min(zeta, 1/2), lose digits where D is a small
+#: part of that: there they are integrated instead
 _NEAR = 1e-3
 
 
@@ -77,7 +78,7 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
     eta = zeta - D
     if eta <= 0.0:
         return zeta + g - eta, zeta + 2.0 * h
-    if D < _NEAR * zeta:
+    if D < _NEAR * min(zeta, 1.0):
         return differences(zeta, eta, D, alpha, c)
     ratio = eta / zeta
     return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)

@@ -91,7 +91,7 @@ def step(regime, u, h, J, sigma, par, K, new):
     per_h = 1.0 / h
     scale = h * GAMMA
     for i in range(STAGES):
-        s0, s1, s2, s3 = u[0], u[1], u[2], u[3]
+        s0, s1 = u[0], u[1]
         r0 = r1 = r2 = r3 = 0.0
         for n in range(i):
             weight = A[i, n]

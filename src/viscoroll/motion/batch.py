@@ -134,7 +134,7 @@ def ensemble(
     run_blocks(work, count, _BLOCK, threads=threads, progress="motions" if progress else None)
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, out, strict=True))
     return Ensemble(
-        scene, *(np.broadcast_to(arrays[name], (count,)) for name in ("V0", "omega0")), times, **kept,
+        scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
         onset_time=info[:, 3].copy(), rest_time=info[:, 4].copy(), status=info[:, 0].astype(np.int8),
         switches=info[:, 2].astype(np.int64), steps=info[:, 1].astype(np.int64),
     )  # fmt: skip

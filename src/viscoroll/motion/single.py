@@ -148,9 +148,12 @@ def roll(
     return motion
 
 
-def _step_times(scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int) -> NDArray:
+def _step_times(
+    scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int
+) -> NDArray:
     """0, the ends of the accepted steps, and the end time."""
-    from ..kernels.integrate import OUTPUTS, integrate
+    from ..kernels.integrate import integrate
+    from ..kernels.motion_output import OUTPUTS
 
     ends = np.full(max_steps, np.nan)
     integrate(
@@ -163,7 +166,8 @@ def _step_times(scene: Scene, V0: float, omega0: float, end: NDArray, rtol: floa
 def _integrate(
     scene: Scene, V0: float, omega0: float, times: NDArray, end: float, rtol: float, rest: float, max_steps: int
 ) -> Motion:
-    from ..kernels.integrate import OUTPUTS, integrate
+    from ..kernels.integrate import integrate
+    from ..kernels.motion_output import OUTPUTS
 
     asked = times if times[-1] == end else np.append(times, end)
     out = np.full((OUTPUTS, asked.size), np.nan)

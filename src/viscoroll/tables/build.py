@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..blocks import run_blocks
 from ..errors import ConvergenceError, ParameterError
 from . import schema
-from .grid import ATLAS_MAPS, AtlasGrid, LiteralGrid, s_of_u, u_of_s
+from .grid import ATLAS_MAPS, AtlasGrid, LiteralGrid, u_of_s
 from .interpolate import spline_coefficients, spline_on_grid
 
 if TYPE_CHECKING:
@@ -23,7 +23,11 @@ _BLOCK = 128
 _SEED = 20260101
 #: Distances from u = 1, in steps, of the extra sample in the last cell, where the law is least smooth.
 _NEAR_FULL_SLIP = (0.3, 0.1, 0.03, 0.01)
-_NODE_ERROR = "nodes are root solves, relative error below 1e-12"
+_SAMPLE = (
+    "tensor product, over the axes, of the middle and a random point of every cell, and points close to s = 1; "
+    f"generator seed {_SEED}; a single point may exceed its block's entry by up to 1.5 times (tests/test_tables.py)"
+)
+_NODE_ERROR = "nodes are root solves, error below 1e-12 of the largest value of each field"
 
 
 def build(
@@ -89,7 +93,9 @@ def solve_atlas(
     plane = np.empty((len(ATLAS_PLANE), pairs))
     volume = np.empty((len(ATLAS_VOLUME), pairs, s.size))
     _run(lambda start, stop: atlas_loop(alpha, kappa_V, s, plane, volume, start, stop), pairs, threads, label)
-    fields = {name: row.reshape(alpha.size, kappa_V.size) for name, row in zip(ATLAS_PLANE, plane, strict=True)}
+    fields: dict[str, NDArray] = {
+        name: row.reshape(alpha.size, kappa_V.size) for name, row in zip(ATLAS_PLANE, plane, strict=True)
+    }
     for name, row in zip(ATLAS_VOLUME, volume, strict=True):
         fields[name] = row.reshape(alpha.size, kappa_V.size, s.size)
     return fields
@@ -185,7 +191,9 @@ def _add_error_maps(
         coordinates |= {block: schema.variable(block, (block,), values) for block, values in blocks.items()}
     for name in ("beta", "Q_over_mu"):
         maxima = _block_maxima(errors[name], list(sample.values()), list(edges.values()))
-        variables[f"error_{name}"] = schema.variable(f"error_{name}", schema.VARIABLES["atlas"][f"error_{name}"], maxima)
+        variables[f"error_{name}"] = schema.variable(
+            f"error_{name}", schema.VARIABLES["atlas"][f"error_{name}"], maxima, sample=_SAMPLE
+        )
 
 
 def _tolerances(method: str, measured: dict[str, Any], allowed: dict[str, float]) -> str:
@@ -217,7 +225,9 @@ def solve_literal(
         return literal_loop(V, delta, alpha, grid.kappa, grid.mu, plane, volume, start, stop)
 
     _run(solve, pairs, threads, label)
-    fields = {name: row.reshape(V.size, alpha.size) for name, row in zip(LITERAL_PLANE, plane, strict=True)}
+    fields: dict[str, NDArray] = {
+        name: row.reshape(V.size, alpha.size) for name, row in zip(LITERAL_PLANE, plane, strict=True)
+    }
     for name, row in zip(LITERAL_VOLUME, volume, strict=True):
         fields[name] = np.ascontiguousarray(row.reshape(V.size, alpha.size, delta.size).swapaxes(1, 2))
     return fields
@@ -235,10 +245,11 @@ def _literal_errors(
     exact = solve_literal(grid, {**axes, "V": _middles(grid.V), "delta": _middles(grid.delta)}, threads, label)
     errors = {}
     for name, values in fields.items():
+        middle = values
         for n, dim in enumerate(schema.VARIABLES["literal"][name]):
             if dim != "alpha" and axes[dim].size > 1:
-                values = 0.5 * (np.delete(values, 0, axis=n) + np.delete(values, -1, axis=n))
-        errors[name] = float(np.abs(values - exact[name]).max())
+                middle = 0.5 * (np.delete(middle, 0, axis=n) + np.delete(middle, -1, axis=n))
+        errors[name] = float(np.abs(middle - exact[name]).max())
     return errors
 
 

@@ -34,7 +34,7 @@ VARIABLES: dict[str, dict[str, tuple[str, ...]]] = {
     "atlas": {
         "beta": AXES["atlas"],
         "Q_over_mu": AXES["atlas"],
-        **{name: _PLANE for name in ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")},
+        **dict.fromkeys(("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu"), _PLANE),
         "error_beta": _BLOCKS,
         "error_Q_over_mu": _BLOCKS,
         **{block: (block,) for block in _BLOCKS},
@@ -43,7 +43,9 @@ VARIABLES: dict[str, dict[str, tuple[str, ...]]] = {
     "literal": {
         "beta": AXES["literal"],
         "Q": AXES["literal"],
-        **{name: ("V", "alpha") for name in ("lam", "epsilon", "M", "delta_star")},
+        **dict.fromkeys(("lam", "epsilon", "M", "delta_star"), ("V", "alpha")),
+        "kappa": (),
+        "mu": (),
     },
 }
 #: Variables that can be interpolated.
@@ -68,9 +70,9 @@ _SIGNS = (
 COMMENTS = {
     "atlas": (
         "One table for every mu and kappa. For given kappa, mu, V, delta: kappa_V = kappa |V|; "
-        "delta_star = (mu/kappa) kappa_delta_star_over_mu, because delta_star is mu/kappa times a function of alpha and "
-        "kappa_V alone, Eq. (9); s = |delta|/delta_star, and where s >= 1 the contact slips fully: beta = 0, |Q| = mu; "
-        "else |Q| = mu Q_over_mu; M = kappa_M/kappa. Q has the sign of omega - V, M that of V, Eqs. (17), (18). "
+        "delta_star = (mu/kappa) kappa_delta_star_over_mu, because delta_star is mu/kappa times a function of alpha "
+        "and kappa_V alone, Eq. (9); s = |delta|/delta_star, and where s >= 1 the contact slips fully: beta = 0, "
+        "|Q| = mu; else |Q| = mu Q_over_mu; M = kappa_M/kappa. Q has the sign of omega - V, M that of V, Eqs. (17), (18). "
         "Interpolate by a cubic spline in (ln alpha, ln kappa_V, u) with u = 1 - sqrt(1 - s), in which all nodes are "
         "uniform. epsilon may exceed 1."
     ),
@@ -143,7 +145,7 @@ def check_version(schema_version: Any, path: Any) -> None:
     if str(schema_version).partition(".")[0] != major:
         raise TableError(
             path,
-            f"schema version {str(schema_version):.20}: this viscoroll ({__version__}) reads {major}.x; "
+            f"schema version {schema_version!s:.20}: this viscoroll ({__version__}) reads {major}.x; "
             "rebuild the table, or install the version that wrote it",
         )
 
@@ -156,17 +158,19 @@ def check(table: xr.Dataset, path: Any) -> str:
     TableError
         Naming ``path`` and the first thing that is wrong.
     """
-    kind = table.attrs.get(KIND)
-    if kind not in AXES:
-        raise TableError(path, f"not a viscoroll table: attribute {KIND} = {kind!r:.40}, must be one of {', '.join(AXES)}")
+    kind = getattr(table, "attrs", {}).get(KIND)
+    if not isinstance(kind, str) or kind not in AXES:
+        raise TableError(
+            path, f"not a viscoroll table: attribute {KIND} = {kind!r:.40}, must be one of {', '.join(AXES)}"
+        )
     check_version(table.attrs.get("schema_version"), path)
     for name, dims in {**{axis: (axis,) for axis in AXES[kind]}, **VARIABLES[kind]}.items():
         if name not in table.variables:
             raise TableError(path, f"not a whole table: variable {name!r} is missing")
         if table[name].dims != dims:
             raise TableError(path, f"variable {name!r} has dimensions {table[name].dims}, must be {dims}")
-    for name, values in table.variables.items():
-        _check_values(str(name), values.values, name in table.indexes, path)
+    for key, variable in table.variables.items():
+        _check_values(str(key), variable.values, key in table.indexes, path)
     return kind
 
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import secrets
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import OutputError, TableError
+from ..errors import TableError
+from ..files import write_dataset
 from . import schema
 
 if TYPE_CHECKING:
@@ -24,42 +21,6 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 #: No table is larger, in the file or in memory; anything larger is refused before it is read.
 _MAX_BYTES = 1 << 31
 _EXPECTED = f"expected a viscoroll table of schema {schema.SCHEMA_VERSION.partition('.')[0]}.x (see `make tables`)"
-
-
-@contextmanager
-def replacing(path: str | PathLike[str]) -> Iterator[Path]:
-    """A temporary path beside ``path``, put in its place when the body ends well.
-
-    The file and its folder are synced to disk; after any failure ``path`` is as it was and
-    the temporary file is gone.  A symbolic link is followed.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written there.
-    """
-    target = Path(path).resolve()
-    temporary = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.tmp")
-    try:
-        if target.is_dir():
-            raise OutputError(path, "cannot be written: it is a directory")
-        yield temporary
-        _sync(temporary)
-        os.replace(temporary, target)
-        _sync(target.parent)
-    except OSError as error:
-        raise OutputError(path, f"cannot be written ({error.strerror or error})") from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
-
-
-def _sync(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def content_hash(table: xr.Dataset) -> str:
@@ -87,24 +48,6 @@ def content_hash(table: xr.Dataset) -> str:
     return digest.hexdigest()
 
 
-def _encoding(table: xr.Dataset) -> dict[str, dict[str, Any]]:
-    """Fletcher-32 and compression wherever HDF5 allows them (not on scalars); no fill values."""
-    filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
-    return {
-        str(name): {"_FillValue": None} | ({**filters, "chunksizes": _chunks(v.shape)} if v.ndim else {})
-        for name, v in table.variables.items()
-    }
-
-
-def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Chunks of at most 1 MB: whole planes of the last two dimensions where they fit."""
-    chunks = list(shape)
-    for n in range(len(chunks)):
-        excess = int(np.prod(chunks)) * 8 / (1 << 20)
-        chunks[n] = max(1, int(chunks[n] / max(excess, 1.0)))
-    return tuple(chunks)
-
-
 def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     """Write a table as netCDF-4/HDF5: whole and synced, or not at all.
 
@@ -122,11 +65,7 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     for variable in stamped.variables.values():
         variable.encoding = {}
     stamped.attrs[HASH] = content_hash(table)
-    with replacing(path) as temporary:
-        try:
-            stamped.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=_encoding(stamped))
-        except RuntimeError as error:  # HDF5's way to report a full disk while closing
-            raise OutputError(path, f"cannot be written ({error})") from error
+    write_dataset(stamped, path)
 
 
 def _require_table(path: Path) -> None:
@@ -137,16 +76,17 @@ def _require_table(path: Path) -> None:
     TableError
         Naming what was found and what is expected.
     """
-    if not path.is_file():
-        raise TableError(path, f"{'is not a file' if path.exists() else 'does not exist'}: {_EXPECTED}")
     try:
+        if not path.is_file():
+            raise TableError(path, f"{'is not a file' if path.exists() else 'does not exist'}: {_EXPECTED}")
         with path.open("rb") as file:
             signature = file.read(len(_SIGNATURE))
+        size = path.stat().st_size
     except OSError as error:
-        raise TableError(path, f"cannot be read ({error.strerror})") from error
+        raise TableError(path, f"cannot be read ({error.strerror}): {_EXPECTED}") from error
     if signature != _SIGNATURE:
         raise TableError(path, f"is not an HDF5 file: {_EXPECTED}")
-    if path.stat().st_size > _MAX_BYTES:
+    if size > _MAX_BYTES:
         raise TableError(path, f"is larger than {_MAX_BYTES} bytes: {_EXPECTED}")
     try:
         attributes, size = _survey(path)
@@ -213,9 +153,9 @@ def info(path: str | PathLike[str]) -> str:
         As :func:`load`.
     """
     table = load(path)
-    kind, about = table.attrs[schema.KIND], table.attrs
+    kind, about, size = table.attrs[schema.KIND], table.attrs, Path(path).stat().st_size / 1e6
     lines = [
-        f"{path}: {kind} table, schema {about['schema_version']}, {Path(path).stat().st_size / 1e6:.2f} MB, content verified",
+        f"{path}: {kind} table, schema {about['schema_version']}, {size:.2f} MB, content verified",
         about["title"],
         "",
         *(f"  {axis:<8} {table[axis].size:>5} nodes in [{table[axis].values[0]:g}, {table[axis].values[-1]:g}]"
@@ -226,7 +166,9 @@ def info(path: str | PathLike[str]) -> str:
         *(_field_line(table[name]) for name in schema.FIELDS[kind]),
         "",
     ]  # fmt: skip
-    lines += [f"{key}: {about[key]}" for key in ("grid", "tolerances", "comment", "source", "software", "history", HASH)]
+    lines += [
+        f"{key}: {about[key]}" for key in ("grid", "tolerances", "comment", "source", "software", "history", HASH)
+    ]
     return "\n".join(lines)
 
 

@@ -1,0 +1,54 @@
+# Every target sets up .venv first and repeats nothing that is up to date.
+PYTHON ?= python3
+BIN := .venv/bin
+RUN := $(BIN)/python
+CONFIG ?= pipeline/config/production.toml
+SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
+STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
+TABLES := data/tables/atlas.nc data/tables/paper.nc
+.DEFAULT_GOAL := help
+.PHONY: help setup demo tables validate figures test check clean
+
+help: ## this list
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
+
+setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
+.venv/stamp: pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	touch $@
+
+demo: out/index.html ## tables, validation, motions, an ensemble of 10^6, figures and a summary page
+	@$(RUN) pipeline/summary.py --config $(CONFIG) --show
+
+tables: $(TABLES) ## build data/tables/atlas.nc and paper.nc
+$(TABLES) &: pipeline/tabulate.py $(SOURCES) $(STAGE)
+	$(RUN) $< --config $(CONFIG)
+
+validate: out/validation.nc ## tables and motions against direct solves; exit code 1 beyond a stated tolerance
+out/validation.nc: pipeline/validate.py $(TABLES) $(SOURCES) $(STAGE)
+	$(RUN) $< --config $(CONFIG)
+
+out/motions.nc: pipeline/motions.py $(SOURCES) $(STAGE)
+	$(RUN) $< --config $(CONFIG)
+
+out/ensemble.nc: pipeline/ensemble.py $(SOURCES) $(STAGE)
+	$(RUN) $< --config $(CONFIG)
+
+figures: out/figures/figure-5.png ## the paper's figures and more, as PNG under out/figures
+out/figures/figure-5.png: pipeline/figures.py $(TABLES) out/ensemble.nc $(SOURCES) $(STAGE)
+	$(RUN) $< --config $(CONFIG)
+
+out/index.html: pipeline/summary.py out/validation.nc out/motions.nc out/ensemble.nc out/figures/figure-5.png
+	$(RUN) $< --config $(CONFIG)
+
+test: setup ## the whole test suite
+	$(BIN)/pytest -n 2
+
+check: setup ## ruff, mypy and the import contract
+	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
+
+clean: ## remove what was built (tables, out, caches), keep .venv
+	rm -rf data/tables out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -1,0 +1,9 @@
+"""The program ``viscoroll``: arguments -> one call of the library -> text, CSV or netCDF.
+
+Read in this order: :mod:`program` (parser, errors, exit codes), :mod:`arguments` (numbers,
+ranges, distributions, scenes), :mod:`output` (formats), then a module per group of commands.
+"""
+
+from .program import main
+
+__all__ = ["main"]

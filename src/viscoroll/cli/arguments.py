@@ -1,0 +1,138 @@
+"""What options mean: numbers, ranges, distributions, and the scene."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ..scene import Scene
+
+PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+NUMBERS = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between"
+DISTRIBUTIONS = "a number, uniform:LOW:HIGH or normal:MEAN:SD"
+
+
+def number(text: str) -> float:
+    """One number; NaN and infinity pass, for the library to refuse by name."""
+    try:
+        return float(text)
+    except ValueError:
+        raise ArgumentTypeError(f"{text!r} must be a number") from None
+
+
+def numbers(text: str) -> float | NDArray[np.float64]:
+    """:data:`NUMBERS`; a single number stays a scalar."""
+    import numpy as np
+
+    parts = [_part(part) for part in text.split(",")]
+    return float(parts[0]) if len(parts) == 1 and np.ndim(parts[0]) == 0 else np.hstack(parts)
+
+
+def _part(text: str) -> float | NDArray[np.float64]:
+    from ..tables import spread
+
+    low, *rest = text.split(":")
+    try:
+        if not rest:
+            return float(low)
+        high, count, *spacing = rest
+        return spread(float(low), float(high), int(count), *spacing)
+    except ParameterError as error:
+        raise ArgumentTypeError(f"{text!r}: {error}") from None
+    except (ValueError, TypeError):
+        raise ArgumentTypeError(f"{text!r} must be {NUMBERS}") from None
+
+
+def distribution(text: str) -> Any:
+    """:data:`DISTRIBUTIONS`, as a float or a frozen scipy.stats distribution."""
+    name, *rest = text.split(":")
+    if not rest and name not in ("uniform", "normal"):
+        return number(text)
+    try:
+        first, second = map(float, rest)
+    except ValueError:
+        raise ArgumentTypeError(f"{text!r} must be {DISTRIBUTIONS}") from None
+    allowed = {"uniform": second > first, "normal": second > 0.0}
+    if not allowed.get(name, False) or not abs(first) + abs(second) < float("inf"):
+        raise ArgumentTypeError(f"{text!r} must be {DISTRIBUTIONS}, finite, HIGH > LOW, SD > 0")
+    from scipy import stats
+
+    return stats.uniform(first, second - first) if name == "uniform" else stats.norm(first, second)
+
+
+def whole(text: str) -> int:
+    """A whole number."""
+    try:
+        return int(text)
+    except ValueError:
+        raise ArgumentTypeError(f"{text!r} must be a whole number") from None
+
+
+def add_scene_options(
+    parser: ArgumentParser, value: Callable[[str], Any] = number, meaning: str = "a number"
+) -> None:
+    """Options that name a scene; each parameter is parsed by ``value``."""
+    group = parser.add_argument_group(
+        "scene", "a preset or a file, changed by any of the parameters; or --alpha, --kappa and --mu alone"
+    )
+    base = group.add_mutually_exclusive_group()
+    base.add_argument("--preset", metavar="NAME", help="paper-section-5, paper-section-5-rounded or paper-figures-2-3")
+    base.add_argument("--scene", metavar="FILE.toml", help="a file with [scene], [cylinder] (SI) or preset")
+    for name in PARAMETERS:
+        default = {"gamma": " (default 1)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")
+        group.add_argument(f"--{name}", type=value, help=f"{name}: {meaning}{default}")
+
+
+def scene_parameters(arguments: Namespace) -> dict[str, Any]:
+    """The five parameters, or those given of them: file or preset first, options over it.
+
+    Raises
+    ------
+    ParameterError
+        An unknown preset, or too little given.
+    ConfigError
+        A scene file that cannot be read.
+    """
+    from ..config import preset, read_scene
+
+    base: Scene | None = None
+    if arguments.preset is not None:
+        base = preset(arguments.preset)
+    elif arguments.scene is not None:
+        base = read_scene(arguments.scene)
+    parameters = {} if base is None else {name: getattr(base, name) for name in PARAMETERS}
+    parameters |= {name: getattr(arguments, name) for name in PARAMETERS if getattr(arguments, name) is not None}
+    if not {"alpha", "kappa", "mu"} <= parameters.keys():
+        given = ", ".join(f"--{name}" for name in parameters) or "nothing"
+        raise ParameterError("scene", given, "--preset, --scene, or --alpha, --kappa and --mu")
+    return parameters
+
+
+def scene_of(arguments: Namespace) -> Scene:
+    """The scene that the options name; errors as :func:`scene_parameters`, and of Scene."""
+    from ..scene import Scene
+
+    return Scene(**scene_parameters(arguments))
+
+
+def add_creep_options(parser: ArgumentParser, value: Callable[[str], Any]) -> None:
+    """--V and one of --delta, --omega."""
+    parser.add_argument("--V", type=value, required=True, help="velocity of the axis, any sign")
+    parser.add_argument("--delta", type=value, help="creep ratio (omega - V)/V; this or --omega")
+    parser.add_argument("--omega", type=value, help="angular velocity; this or --delta")
+
+
+def add_time_options(parser: ArgumentParser, end: str) -> None:
+    """One of --t-end and --times, and the controls of a motion."""
+    times = parser.add_mutually_exclusive_group(required=True)
+    times.add_argument("--t-end", type=number, dest="t", metavar="T", help=f"end time; {end}")
+    times.add_argument("--times", type=numbers, dest="t", metavar="TIMES", help=f"output times: {NUMBERS}")
+    parser.add_argument("--rtol", type=number, default=1e-8, help="relative tolerance in [1e-12, 1e-2] (default 1e-8)")
+    parser.add_argument("--rest", type=number, help="end a motion where max(|V|, |omega|) falls below this")

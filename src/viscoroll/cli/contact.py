@@ -1,0 +1,96 @@
+"""``viscoroll contact`` and ``viscoroll stress``."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+from .arguments import NUMBERS, add_creep_options, add_scene_options, number, numbers, scene_of
+
+_POINTS = 101
+
+
+def add_commands(commands: Any) -> None:
+    """Add both commands to the program."""
+    from .output import FORMATS, add_output_option
+
+    parser = commands.add_parser(
+        "contact",
+        help="state of the contact: lam, epsilon, delta_star, beta, Q, M",
+        description=f"State of the contact over every pair of V and delta (or omega), each {NUMBERS}.",
+        epilog="example:\n  viscoroll contact --preset paper-section-5 --V 0.5,1 --delta -0.04:0.04:5 --fields beta,Q,M",
+    )
+    add_creep_options(parser, numbers)
+    parser.add_argument("--fields", help="names with commas between; default: all")
+    parser.add_argument("--slopes", action="store_true", help="also dQ_dV, dQ_ddelta, dQ_domega, dM_dV")
+    parser.add_argument("--method", default="table", help="table (default) or direct")
+    add_scene_options(parser)
+    add_output_option(parser, *FORMATS)
+    parser.set_defaults(run=_contact)
+
+    parser = commands.add_parser(
+        "stress",
+        help="pressure and shear stress along the contact",
+        description="p/E' and tau/E' at positions x/l0, from the foot of the axis, at one V and delta (or omega).",
+        epilog="example:\n  viscoroll stress --preset paper-section-5 --V 0.5 --delta -0.01 --x -0.2:0.6:9",
+    )
+    add_creep_options(parser, number)
+    parser.add_argument("--x", type=numbers, help=f"{NUMBERS}; default: {_POINTS} points across the contact")
+    add_scene_options(parser)
+    add_output_option(parser, *FORMATS)
+    parser.set_defaults(run=_stress)
+
+
+def _constants(scene: Any) -> dict[str, float]:
+    return {name: getattr(scene, name) for name in ("alpha", "kappa", "mu")}
+
+
+def _contact(arguments: Namespace) -> int:
+    import numpy as np
+
+    from ..rolling_contact import contact
+    from .output import Sheet, as_dataset, deliver
+
+    scene = scene_of(arguments)
+    V = np.atleast_1d(arguments.V)
+    creep = {
+        name: np.atleast_1d(value)
+        for name, value in (("delta", arguments.delta), ("omega", arguments.omega))
+        if value is not None
+    }
+    result = contact(
+        scene, V[:, np.newaxis], **creep, slopes=arguments.slopes, method=arguments.method,
+        fields=None if arguments.fields is None else arguments.fields.split(","),
+    )  # fmt: skip
+    axes = {"V": V, **creep}
+    values = {name: value for name, value in result.as_dict().items() if name not in axes}
+    columns = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
+    columns |= {name: value.ravel() for name, value in values.items()}
+    constants, title = _constants(scene), "Contact of a viscoelastic cylinder rolling with partial slip"
+    deliver(
+        Sheet((title,), constants, columns, lambda: as_dataset(title, axes, values, constants)), arguments.output
+    )
+    return 0
+
+
+def _stress(arguments: Namespace) -> int:
+    import numpy as np
+
+    from ..rolling_contact import contact, stress
+    from .output import Sheet, as_dataset, deliver
+
+    scene = scene_of(arguments)
+    speeds = {"V": arguments.V, "delta": arguments.delta, "omega": arguments.omega}
+    state = contact(scene, **speeds, fields=("lam", "epsilon", "delta", "beta"))
+    if arguments.x is None:
+        # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
+        edges = 0.5 * state.lam * (state.epsilon + np.array([-1.0, 1.0]))
+        x = np.linspace(*(edges if arguments.V >= 0.0 else -edges[::-1]), _POINTS)
+    else:
+        x = np.atleast_1d(arguments.x)
+    values = stress(scene, x, **speeds).as_dict()
+    title = "Pressure and shear stress of a rolling viscoelastic cylinder"
+    constants = {**_constants(scene), "V": arguments.V, **state.as_dict()}
+    sheet = Sheet((title,), constants, {"x": x, **values}, lambda: as_dataset(title, {"x": x}, values, constants))
+    deliver(sheet, arguments.output)
+    return 0

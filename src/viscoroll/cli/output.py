@@ -1,0 +1,130 @@
+"""Results as text, CSV or netCDF, to standard output or whole into a file."""
+
+from __future__ import annotations
+
+import csv
+import io
+from argparse import ArgumentParser, ArgumentTypeError
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import __version__
+from ..symbols import SYMBOLS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMATS = (".txt", ".csv", ".nc")
+
+
+def add_output_option(parser: ArgumentParser, *suffixes: str, required: bool = False) -> None:
+    """-o FILE with one of ``suffixes``; what cannot be written is refused before any work."""
+
+    def path(text: str) -> Path:
+        if Path(text).suffix not in suffixes:
+            raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
+        if not Path(text).parent.is_dir():
+            raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
+        if Path(text).is_dir():
+            raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
+        return Path(text)
+
+    where = "" if required else "; without it: text to standard output"
+    parser.add_argument(
+        "-o", dest="output", metavar="FILE", type=path, required=required, help=f"{' or '.join(suffixes)}{where}"
+    )
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A result in every format: ``columns`` of equal length under ``heading`` lines, or ``dataset()``.
+
+    ``constants`` hold for all rows: a line of the text, columns of the CSV.
+    """
+
+    heading: tuple[str, ...]
+    constants: dict[str, float]
+    columns: dict[str, NDArray]
+    dataset: Callable[[], xr.Dataset]
+
+    def text(self) -> str:
+        """Aligned columns; a single row stands as lines with what each number means."""
+        lines = [*self.heading, ", ".join(f"{name} = {value:.10g}" for name, value in self.constants.items()), ""]
+        cells = [[name, *map(_short, values.tolist())] for name, values in self.columns.items()]
+        if len(cells[0]) == 2:
+            lines += [f"{name:>11} = {value:<18} {meaning(name)}".rstrip() for name, value in cells]
+        else:
+            widths = [max(map(len, column)) for column in cells]
+            lines += ["  ".join(map(str.rjust, row, widths)) for row in zip(*cells, strict=True)]
+        return "\n".join(lines) + "\n"
+
+    def csv(self) -> str:
+        """A row of names, then numbers that read back to the same bits."""
+        rows = len(next(iter(self.columns.values())))
+        columns = [[value] * rows for value in self.constants.values()]
+        columns += [values.tolist() for values in self.columns.values()]
+        file = io.StringIO()
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*self.constants, *self.columns])
+        writer.writerows(zip(*columns, strict=True))
+        return file.getvalue()
+
+
+def deliver(sheet: Sheet, path: Path | None) -> None:
+    """Print ``sheet`` as text, or write it in the format of the suffix.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    from ..files import write_dataset, write_text
+
+    if path is None:
+        print(sheet.text(), end="")
+    elif path.suffix == ".nc":
+        write_dataset(sheet.dataset(), path)
+    else:
+        write_text(path, sheet.csv() if path.suffix == ".csv" else sheet.text())
+
+
+def as_dataset(
+    title: str, axes: dict[str, NDArray], values: dict[str, NDArray], constants: dict[str, float]
+) -> xr.Dataset:
+    """``values`` over the tensor product of ``axes``, with names, units and provenance."""
+    import xarray as xr
+
+    dims = tuple(axes)
+    data = {name: xr.Variable(dims, _numeric(array), _attributes(name)) for name, array in values.items()}
+    coordinates = {name: xr.Variable((name,), axis, _attributes(name)) for name, axis in axes.items()}
+    provenance = {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
+    return xr.Dataset(data, coordinates, provenance | constants)
+
+
+def meaning(name: str) -> str:
+    """What a quantity is, in words."""
+    if name in SYMBOLS:
+        return SYMBOLS[name].long_name
+    if name.startswith("d") and "_d" in name:
+        upper, _, lower = name[1:].partition("_d")
+        return f"partial derivative of {upper} with respect to {lower}"
+    return {"full_slip": "1 where the contact slips fully"}.get(name, "")
+
+
+def _attributes(name: str) -> dict[str, Any]:
+    from ..motion.export import attributes
+
+    return attributes(name) if name in SYMBOLS else {"long_name": meaning(name), "units": "1"}
+
+
+def _numeric(array: NDArray) -> NDArray:
+    return array.astype(np.int8) if array.dtype == bool else array
+
+
+def _short(value: Any) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(int(value) if isinstance(value, bool) else value)

@@ -1,0 +1,78 @@
+"""Parser and exit codes of the program: 0 done, 1 a validation failed, 2 an error in one line."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from .. import __version__
+from ..errors import ViscorollError
+from . import contact, motion, plot, tables
+
+#: What a shell reports for a program ended by SIGINT or SIGPIPE.
+_INTERRUPTED, _BROKEN_PIPE = 130, 141
+_NEGATIVE = re.compile(r"-\.?(\d|inf|nan)")
+
+
+class UsageError(ViscorollError):
+    """The command line does not parse."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that raises instead of exiting, and shows epilogs as they are written."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message} (see {self.prog} --help)")
+
+
+def parser() -> Parser:
+    """The whole command line."""
+    program = Parser(
+        prog="viscoroll",
+        description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
+        "material.  Everything is dimensionless but the [cylinder] section of a scene file (SI).",
+        epilog="example:\n  viscoroll roll --preset paper-section-5 --ic IC1 --t-end 3e-3",
+    )
+    program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
+    commands = program.add_subparsers(metavar="COMMAND", required=True)
+    for group in (contact, motion, tables, plot):
+        group.add_commands(commands)
+    return program
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the program on ``argv`` (default: that of the process); returns its exit code."""
+    try:
+        arguments = parser().parse_args(_joined(sys.argv[1:] if argv is None else argv))
+        code: int = arguments.run(arguments)
+        sys.stdout.flush()
+        return code
+    except ViscorollError as error:
+        print("viscoroll: error:", " ".join(str(error).split()), file=sys.stderr)
+        return 2
+    except SystemExit as finished:  # argparse's own way to end after --help and --version
+        return int(finished.code or 0)
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    except BrokenPipeError:
+        # the reader has gone: let the interpreter flush what is left into nothing
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _BROKEN_PIPE
+
+
+def _joined(argv: Sequence[str]) -> list[str]:
+    """``--V -1:1:5`` as ``--V=-1:1:5``: argparse takes a value like -1:1:5 or -1e-3 for an option."""
+    joined: list[str] = []
+    for text in argv:
+        if joined and joined[-1].startswith("--") and "=" not in joined[-1] and _NEGATIVE.match(text):
+            joined[-1] += f"={text}"
+        else:
+            joined.append(text)
+    return joined

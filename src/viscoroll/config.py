@@ -1,0 +1,176 @@
+"""TOML files: a scene, or the grids of the tables.
+
+A section is read by :func:`_section`: misspelt keys are refused with the nearest allowed one,
+types are checked by msgspec, ranges by what the section describes.
+"""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_type_hints
+
+import msgspec
+
+from .errors import ConfigError, ParameterError
+from .scene import PRESETS, Cylinder, Scene
+
+if TYPE_CHECKING:
+    from .tables import AtlasGrid, LiteralGrid
+
+T = TypeVar("T")
+_SCENES = ("preset", "scene", "cylinder")
+
+
+class SceneSection(msgspec.Struct):
+    """[scene]: the parameters of :class:`Scene`, one number each."""
+
+    alpha: float
+    kappa: float
+    mu: float
+    gamma: float = 1.0
+    j: float = 0.5
+
+
+class Spread(msgspec.Struct):
+    """An axis as the arguments of :func:`viscoroll.tables.spread`."""
+
+    low: float
+    high: float
+    count: int
+    spacing: Literal["linear", "log"] = "linear"
+
+
+Axis = tuple[float, ...] | dict[str, Any]
+
+
+class PaperSection(msgspec.Struct):
+    """[tables.paper]: :class:`viscoroll.tables.LiteralGrid`, an axis as a list or as a :class:`Spread`."""
+
+    kappa: float
+    mu: float
+    V: Axis
+    delta: Axis
+    alpha: Axis
+
+
+#: The paper's Sect. 5.  delta_star is at most 0.0344 there, so |delta| = 0.04 is full slip at
+#: every (V, alpha); the alphas are those of its figures, and some between.
+_PAPER_DEFAULT = {
+    "kappa": 2.91,
+    "mu": 0.2,
+    "V": {"low": 1e-3, "high": 2.0, "count": 201, "spacing": "log"},
+    "delta": {"low": -0.04, "high": 0.04, "count": 401},
+    "alpha": [1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 11.0, 21.5, 81.5],
+}
+
+
+def preset(name: str) -> Scene:
+    """The paper's scene of that name.
+
+    Raises
+    ------
+    ParameterError
+        An unknown name.
+    """
+    if not isinstance(name, str) or name not in PRESETS:
+        raise ParameterError("preset", repr(name), "out of " + ", ".join(PRESETS))
+    return PRESETS[name]
+
+
+def read_scene(path: str | PathLike[str]) -> Scene:
+    """Scene of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
+
+    ``preset`` names a scene of the paper, ``[scene]`` gives alpha, kappa, mu (gamma, j),
+    ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane) in SI units.
+
+    Raises
+    ------
+    ConfigError
+        A file that cannot be read, is not TOML, holds none or several of the three, a
+        misspelt or missing key, a value of the wrong type or out of its range.
+    """
+    content = _read(path)
+    _refuse_unknown(path, "", content, _SCENES)
+    given = [name for name in _SCENES if name in content]
+    if len(given) != 1:
+        found = " and ".join(given) or "none"
+        raise ConfigError(path, f"must hold exactly one of preset, [scene] and [cylinder], found {found}")
+    try:
+        if "preset" in content:
+            return preset(content["preset"])
+        if "cylinder" in content:
+            return _section(path, "cylinder", content["cylinder"], Cylinder).scene()
+        return Scene(**msgspec.structs.asdict(_section(path, "scene", content["scene"], SceneSection)))
+    except ParameterError as error:
+        raise ConfigError(path, str(error)) from error
+
+
+def read_grids(path: str | PathLike[str] | None = None) -> dict[str, AtlasGrid | LiteralGrid]:
+    """Grids "atlas" and "paper" from the sections of [tables]; what is left out has its default.
+
+    Other sections of the file are not looked at.  Without a file: the grids of production.
+
+    Raises
+    ------
+    ConfigError
+        A file that cannot be read, is not TOML, without [tables], a misspelt key, a value of
+        the wrong type or out of its range.
+    """
+    from .tables import AtlasGrid, LiteralGrid, spread
+
+    content = {"tables": {}} if path is None else _read(path)
+    if "tables" not in content:
+        raise ConfigError(path, "section [tables] is missing" + _hint("tables", content))
+    sections = content["tables"]
+    _refuse_unknown(path, "tables", sections, ("atlas", "paper"))
+    atlas = _section(path, "tables.atlas", sections.get("atlas", {}), AtlasGrid)
+    given = sections.get("paper", {})
+    _refuse_unknown(path, "tables.paper", given, _PAPER_DEFAULT)
+    paper = msgspec.structs.asdict(_section(path, "tables.paper", _PAPER_DEFAULT | given, PaperSection))
+    try:
+        for name, value in paper.items():
+            if isinstance(value, dict):
+                axis = _section(path, f"tables.paper.{name}", value, Spread)
+                paper[name] = spread(**msgspec.structs.asdict(axis))
+        return {"atlas": atlas, "paper": LiteralGrid(**paper)}
+    except ParameterError as error:
+        raise ConfigError(path, f"[tables.paper] {error}") from error
+
+
+def _read(path: str | PathLike[str]) -> dict[str, Any]:
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(path, f"is not TOML ({error})") from error
+
+
+def _section(path: Any, name: str, content: Any, kind: type[T]) -> T:
+    """``content`` of section ``name`` as a ``kind``."""
+    known = list(get_type_hints(kind))
+    _refuse_unknown(path, name, content, known)
+    try:
+        return msgspec.convert(content, kind)
+    except msgspec.ValidationError as error:
+        raise ConfigError(path, f"[{name}] {error}") from error
+
+
+def _refuse_unknown(path: Any, section: str, content: Any, allowed: Iterable[str]) -> None:
+    if not isinstance(content, dict):
+        raise ConfigError(path, f"{section} = {content!r:.40}: must be a section [{section}]")
+    for key in content:
+        if key not in allowed:
+            where, known = f"[{section}] " if section else "", ", ".join(allowed)
+            raise ConfigError(path, f"{where}unknown key {key!r}: must be one of {known}{_hint(key, allowed)}")
+
+
+def _hint(name: str, candidates: Iterable[str]) -> str:
+    near = difflib.get_close_matches(name, candidates, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""

@@ -1,0 +1,5 @@
+"""Reference values of the contact law that share no code with the kernels."""
+
+from .precise import MissingDependencyError, contact_precise
+
+__all__ = ["MissingDependencyError", "contact_precise"]

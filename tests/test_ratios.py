@@ -1,0 +1,184 @@
+"""The Bessel ratios r, k, i2 and their slopes against 40 digits; the table against a refit of it."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import precise
+import pytest
+import tolerances as tol
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from viscoroll.kernels import ratio_layout as layout
+from viscoroll.kernels.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+
+DIGITS = 40
+EXACT: dict[str, Callable] = {
+    "r(x)/x": lambda x: precise.ratio_r(x) / x,
+    "x (1 - r(x))": lambda x: x * (1 - precise.ratio_r(x)),
+    "k(z)/z": lambda z: precise.ratio_k(z) / z,
+    "z (1 - k(z))": lambda z: z * (1 - precise.ratio_k(z)),
+    "i2(x)/x^2": lambda x: precise.ratio_i2(x) / x**2,
+}
+HALF_BIN = 0.5 / layout.BINS
+
+
+def seams() -> list[float]:
+    """Every power of two in reach of a table or a series, and every bin edge near the ends; neighbours too."""
+    powers = [2.0**n for n in range(-34, 9)]
+    edges = [2.0**n * (1.0 + b / layout.BINS) for n in (-30, -4, -1, 0, 1, 5) for b in range(layout.BINS)]
+    middle = np.array([*powers, *edges, 1e-8])
+    return [*middle, *np.nextafter(middle, 0.0), *np.nextafter(middle, np.inf)]
+
+
+def scattered() -> list[float]:
+    rng = np.random.default_rng(7)
+    ends = [5e-324, 1e-320, 2.3e-308, 1e-100, 1e17, 1e100, 1e300, 1.7976931348623157e308]
+    return [*ends, *(10.0 ** rng.uniform(-10, 4, 300)), *rng.uniform(0.0, 70.0, 300), *(10.0 ** rng.uniform(-320, 300, 60))]
+
+
+def far_series(x: mp.mpf, order: int, sign: int) -> mp.mpf:
+    """Hankel's expansion (DLMF 10.40.1, 10.40.2) without its common factor; sign -1: I, +1: K."""
+    total = term = mp.mpf(1)
+    for n in range(1, 12):
+        term *= sign * (4 * order**2 - (2 * n - 1) ** 2) / (8 * n * x)
+        total += term
+    return total
+
+
+def exact_r(x: float) -> mp.mpf:
+    x = mp.mpf(x)
+    return far_series(x, 1, -1) / far_series(x, 0, -1) if x > 1e6 else precise.ratio_r(x)
+
+
+def exact_k(z: float) -> mp.mpf:
+    z = mp.mpf(z)
+    return far_series(z, 0, +1) / far_series(z, 1, +1) if z > 1e6 else precise.ratio_k(z)
+
+
+def exact_i2(x: float) -> mp.mpf:
+    x = mp.mpf(x)
+    return far_series(x, 2, -1) / far_series(x, 0, -1) if x > 1e6 else precise.ratio_i2(x)
+
+
+@pytest.fixture(autouse=True)
+def precision():
+    with mp.workdps(DIGITS):
+        yield
+
+
+def check_point(x: float) -> None:
+    """r, k, i2 and the complements 1 - r, 1 - k at one x."""
+    r, r_complement = ratio_r(x)
+    k, k_complement = ratio_k(x)
+    values = {"r": (r, exact_r(x)), "k": (k, exact_k(x)), "i2": (ratio_i2(x, r), exact_i2(x))}
+    with mp.workdps(DIGITS + 330 if x > 1e20 else DIGITS):
+        values["1 - r"] = (r_complement, 1 - exact_r(x))
+        values["1 - k"] = (k_complement, 1 - exact_k(x))
+    for name, (value, exact) in values.items():
+        assert precise.ulps(value, exact) <= tol.RATIO_ULP, (name, x, value)
+
+
+@pytest.mark.parametrize("points", [seams, scattered])
+def test_within_two_ulp_of_40_digits(points):
+    for x in points():
+        check_point(float(x))
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.floats(min_value=5e-324, max_value=1.7e308, allow_subnormal=True))
+def test_any_positive_double(x):
+    with mp.workdps(DIGITS):
+        check_point(x)
+
+
+def test_ends():
+    assert ratio_r(0.0) == (0.0, 1.0) and ratio_k(0.0) == (0.0, 1.0) and ratio_i2(0.0, 0.0) == 0.0
+    assert ratio_r(np.inf) == (1.0, 0.0) and ratio_k(np.inf) == (1.0, 0.0) and ratio_i2(np.inf, 1.0) == 1.0
+
+
+def test_slopes_against_differences():
+    """r' and k' against central differences with 40 digits, which know nothing of the Riccati equations."""
+    for x in 10.0 ** np.linspace(-9, 4, 60):
+        x = float(x)
+        h = mp.mpf(x) * mp.mpf(10) ** -13
+        for ratio, slope, exact in ((ratio_r, slope_r, precise.ratio_r), (ratio_k, slope_k, precise.ratio_k)):
+            difference = (exact(mp.mpf(x) + h) - exact(mp.mpf(x) - h)) / (2 * h)
+            error = abs(mp.mpf(slope(x, *ratio(x))) - difference)
+            # the two terms of a Riccati equation cancel at large x: r' and k' fall like x^-2, its terms like 1/x
+            assert error <= tol.RATIO_SLOPE * (abs(difference) + 1 / (1 + mp.mpf(x))), (x, ratio)
+
+
+@pytest.mark.parametrize("ratio", [ratio_r, ratio_k, lambda x: (ratio_i2(x, ratio_r(x)[0]),)])
+def test_monotone(ratio):
+    """Never falls by more than rounding, from any double to its neighbour and across every seam."""
+    x = np.sort(np.concatenate([seams(), scattered(), np.geomspace(1e-12, 1e12, 4000)]))
+    values = np.array([ratio(at)[0] for at in x])
+    assert np.all(np.diff(values) >= -tol.RATIO_ULP * np.spacing(values[1:]))
+
+
+# --- the table ---
+
+
+def refit() -> np.ndarray:
+    """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
+    source = Path(__file__).parents[1] / "pipeline" / "ratios.py"
+    spec = importlib.util.spec_from_file_location("pipeline_ratios", source)
+    assert spec is not None and spec.loader is not None
+    pipeline = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(pipeline)
+    points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * pipeline.NODES)) for i in range(pipeline.NODES)]
+    rows = []
+    for segment in layout.SEGMENTS:
+        for octave in range(segment.low, segment.high):
+            for index in range(layout.BINS):
+                centre = 1 + (2 * index + 1) * mp.mpf(HALF_BIN)
+                values = [EXACT[segment.function]((centre + t) * mp.mpf(2) ** octave) for t in points]
+                rows += [float(m) for m in pipeline.chebyshev_fit(values, mp.mpf(HALF_BIN))]
+    return np.array(rows)
+
+
+def table_value(table: np.ndarray, segment: int, octave: int, index: int, t: float) -> float:
+    """The polynomial of one bin, in numpy."""
+    at = layout.segment_start(segment) + ((octave - layout.SEGMENTS[segment].low) * layout.BINS + index) * layout.COEFFICIENTS
+    return float(np.polynomial.polynomial.polyval(t, table[at : at + layout.COEFFICIENTS]))
+
+
+def test_every_coefficient_is_the_rounded_fit():
+    """All 7,488 coefficients, bit for bit: a change of one, however small or high its order, shows."""
+    assert TABLE.shape == (layout.TABLE_SIZE,)
+    again = refit()
+    assert np.flatnonzero(TABLE != again).size == 0
+
+
+def test_every_bin_at_its_ends_and_middle():
+    """Truncation shows at the ends of a bin, where |t| = 1/32."""
+    for number, segment in enumerate(layout.SEGMENTS):
+        for octave in range(segment.low, segment.high):
+            for index in range(layout.BINS):
+                for t in (-HALF_BIN, 0.4 * HALF_BIN):
+                    x = mp.mpf(2) ** octave * (1 + (2 * index + 1) * mp.mpf(HALF_BIN) + mp.mpf(t))
+                    value = table_value(TABLE, number, octave, index, t)
+                    assert precise.ulps(value, EXACT[segment.function](x)) <= tol.RATIO_BIN_ULP, (segment, octave, index, t)
+
+
+@pytest.mark.parametrize("order", range(4))
+def test_a_planted_error_of_1e_9_is_noticed(order):
+    """Up to third order by the values themselves (beyond, 1e-9 of a term is below rounding: the refit sees it)."""
+    rng = np.random.default_rng(order)
+    for _ in range(20):
+        number = int(rng.integers(len(layout.SEGMENTS)))
+        segment = layout.SEGMENTS[number]
+        octave, index = int(rng.integers(segment.low, segment.high)), int(rng.integers(layout.BINS))
+        bin_start = (octave - segment.low) * layout.BINS + index
+        planted = TABLE.copy()
+        planted[layout.segment_start(number) + bin_start * layout.COEFFICIENTS + order] *= 1.0 + 1e-9
+        x = mp.mpf(2) ** octave * (1 + 2 * index * mp.mpf(HALF_BIN))
+        exact = EXACT[segment.function](x)
+        assert precise.ulps(table_value(TABLE, number, octave, index, -HALF_BIN), exact) <= tol.RATIO_BIN_ULP
+        assert precise.ulps(table_value(planted, number, octave, index, -HALF_BIN), exact) > tol.RATIO_BIN_ULP
