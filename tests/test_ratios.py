@@ -81,7 +81,8 @@ def check_point(x: float) -> None:
         values["1 - r"] = (r_complement, 1 - exact_r(x))
         values["1 - k"] = (k_complement, 1 - exact_k(x))
     for name, (value, exact) in values.items():
-        assert precise.ulps(value, exact) <= tol.RATIO_ULP, (name, x, value)
+        bound = tol.RATIO_COMPLEMENT_ULP if name.startswith("1") else tol.RATIO_ULP
+        assert precise.ulps(value, exact) <= bound, (name, x, value)
 
 
 @pytest.mark.parametrize("points", [seams, scattered])
@@ -150,9 +151,10 @@ def table_value(table: np.ndarray, segment: int, octave: int, index: int, t: flo
 
 
 def test_every_coefficient_is_the_rounded_fit():
-    """All 7,488 coefficients, bit for bit: a change of one, however small or high its order, shows."""
+    """All of them, bit for bit: a change of one, however small and of whatever order, shows."""
     assert TABLE.shape == (layout.TABLE_SIZE,)
-    again = refit()
+    with mp.workdps(60):  # the highest orders are 1e-26 of the values
+        again = refit()
     assert np.flatnonzero(TABLE != again).size == 0
 
 
@@ -167,18 +169,21 @@ def test_every_bin_at_its_ends_and_middle():
                     assert precise.ulps(value, EXACT[segment.function](x)) <= tol.RATIO_BIN_ULP, (segment, octave, index, t)
 
 
-@pytest.mark.parametrize("order", range(4))
-def test_a_planted_error_of_1e_9_is_noticed(order):
-    """Up to third order by the values themselves (beyond, 1e-9 of a term is below rounding: the refit sees it)."""
-    rng = np.random.default_rng(order)
-    for _ in range(20):
+def test_a_planted_error_of_1e_9_is_noticed():
+    """By the values alone wherever 1e-9 of the term reaches 4 ULP of them (the refit sees it everywhere)."""
+    rng = np.random.default_rng(11)
+    noticed = 0
+    for _ in range(150):
         number = int(rng.integers(len(layout.SEGMENTS)))
         segment = layout.SEGMENTS[number]
         octave, index = int(rng.integers(segment.low, segment.high)), int(rng.integers(layout.BINS))
-        bin_start = (octave - segment.low) * layout.BINS + index
+        order = int(rng.integers(4))
+        first = layout.segment_start(number) + ((octave - segment.low) * layout.BINS + index) * layout.COEFFICIENTS
         planted = TABLE.copy()
-        planted[layout.segment_start(number) + bin_start * layout.COEFFICIENTS + order] *= 1.0 + 1e-9
-        x = mp.mpf(2) ** octave * (1 + 2 * index * mp.mpf(HALF_BIN))
-        exact = EXACT[segment.function](x)
-        assert precise.ulps(table_value(TABLE, number, octave, index, -HALF_BIN), exact) <= tol.RATIO_BIN_ULP
+        planted[first + order] *= 1.0 + 1e-9
+        if 1e-9 * abs(TABLE[first + order]) * HALF_BIN**order < 4 * np.spacing(TABLE[first]):
+            continue
+        exact = EXACT[segment.function](mp.mpf(2) ** octave * (1 + 2 * index * mp.mpf(HALF_BIN)))
         assert precise.ulps(table_value(planted, number, octave, index, -HALF_BIN), exact) > tol.RATIO_BIN_ULP
+        noticed += 1
+    assert noticed > 50

@@ -29,7 +29,7 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
     OutputError
         If it cannot be written there.
     """
-    target = Path(path).resolve()
+    target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
     try:
         if target.is_dir():

@@ -1,12 +1,14 @@
-"""What options mean: numbers, ranges, distributions, and the scene."""
+"""What options mean: numbers, ranges, distributions, the scene, the output file."""
 
 from __future__ import annotations
 
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
+from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
 
     from ..scene import Scene
 
+FORMATS = (".txt", ".csv", ".nc")
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 NUMBERS = "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these with commas between"
 DISTRIBUTIONS = "a number, uniform:LOW:HIGH or normal:MEAN:SD"
@@ -75,9 +78,7 @@ def whole(text: str) -> int:
         raise ArgumentTypeError(f"{text!r} must be a whole number") from None
 
 
-def add_scene_options(
-    parser: ArgumentParser, value: Callable[[str], Any] = number, meaning: str = "a number"
-) -> None:
+def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = number) -> None:
     """Options that name a scene; each parameter is parsed by ``value``."""
     group = parser.add_argument_group(
         "scene", "a preset or a file, changed by any of the parameters; or --alpha, --kappa and --mu alone"
@@ -87,7 +88,8 @@ def add_scene_options(
     base.add_argument("--scene", metavar="FILE.toml", help="a file with [scene], [cylinder] (SI) or preset")
     for name in PARAMETERS:
         default = {"gamma": " (default 1)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")
-        group.add_argument(f"--{name}", type=value, help=f"{name}: {meaning}{default}")
+        symbol = SYMBOLS[name]
+        group.add_argument(f"--{name}", type=value, help=f"{symbol.long_name}, {symbol.range}{default}")
 
 
 def scene_parameters(arguments: Namespace) -> dict[str, Any]:
@@ -136,3 +138,21 @@ def add_time_options(parser: ArgumentParser, end: str) -> None:
     times.add_argument("--times", type=numbers, dest="t", metavar="TIMES", help=f"output times: {NUMBERS}")
     parser.add_argument("--rtol", type=number, default=1e-8, help="relative tolerance in [1e-12, 1e-2] (default 1e-8)")
     parser.add_argument("--rest", type=number, help="end a motion where max(|V|, |omega|) falls below this")
+
+
+def add_output_option(parser: ArgumentParser, *suffixes: str, required: bool = False) -> None:
+    """-o FILE with one of ``suffixes``; what cannot be written is refused before any work."""
+
+    def path(text: str) -> Path:
+        if Path(text).suffix not in suffixes:
+            raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
+        if not Path(text).parent.is_dir():
+            raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
+        if Path(text).is_dir():
+            raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
+        return Path(text)
+
+    where = "" if required else "; without it: text to standard output"
+    parser.add_argument(
+        "-o", dest="output", metavar="FILE", type=path, required=required, help=f"{' or '.join(suffixes)}{where}"
+    )

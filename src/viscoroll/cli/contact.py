@@ -5,19 +5,26 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from .arguments import NUMBERS, add_creep_options, add_scene_options, number, numbers, scene_of
+from .arguments import (
+    FORMATS,
+    NUMBERS,
+    add_creep_options,
+    add_output_option,
+    add_scene_options,
+    number,
+    numbers,
+    scene_of,
+)
 
 _POINTS = 101
 
 
 def add_commands(commands: Any) -> None:
     """Add both commands to the program."""
-    from .output import FORMATS, add_output_option
-
     parser = commands.add_parser(
         "contact",
         help="state of the contact: lam, epsilon, delta_star, beta, Q, M",
-        description=f"State of the contact over every pair of V and delta (or omega), each {NUMBERS}.",
+        description=f"State of the contact for every pair of V and delta (or omega), each\n{NUMBERS}.",
         epilog="example:\n  viscoroll contact --preset paper-section-5 --V 0.5,1 --delta -0.04:0.04:5 --fields beta,Q,M",
     )
     add_creep_options(parser, numbers)
@@ -31,7 +38,7 @@ def add_commands(commands: Any) -> None:
     parser = commands.add_parser(
         "stress",
         help="pressure and shear stress along the contact",
-        description="p/E' and tau/E' at positions x/l0, from the foot of the axis, at one V and delta (or omega).",
+        description="p/E' and tau/E' at positions x/l0 from the foot of the axis, at one V and delta (or omega).",
         epilog="example:\n  viscoroll stress --preset paper-section-5 --V 0.5 --delta -0.01 --x -0.2:0.6:9",
     )
     add_creep_options(parser, number)
@@ -67,9 +74,7 @@ def _contact(arguments: Namespace) -> int:
     columns = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
     columns |= {name: value.ravel() for name, value in values.items()}
     constants, title = _constants(scene), "Contact of a viscoelastic cylinder rolling with partial slip"
-    deliver(
-        Sheet((title,), constants, columns, lambda: as_dataset(title, axes, values, constants)), arguments.output
-    )
+    deliver(Sheet((title,), constants, columns, lambda: as_dataset(title, axes, values, constants)), arguments.output)
     return 0
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-from argparse import ArgumentParser, ArgumentTypeError
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,26 +17,6 @@ from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
     import xarray as xr
-
-FORMATS = (".txt", ".csv", ".nc")
-
-
-def add_output_option(parser: ArgumentParser, *suffixes: str, required: bool = False) -> None:
-    """-o FILE with one of ``suffixes``; what cannot be written is refused before any work."""
-
-    def path(text: str) -> Path:
-        if Path(text).suffix not in suffixes:
-            raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
-        if not Path(text).parent.is_dir():
-            raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
-        if Path(text).is_dir():
-            raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
-        return Path(text)
-
-    where = "" if required else "; without it: text to standard output"
-    parser.add_argument(
-        "-o", dest="output", metavar="FILE", type=path, required=required, help=f"{' or '.join(suffixes)}{where}"
-    )
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .full_slip import onset, onset_slope
 from .jit import kernel
-from .partial_slip import partial_speeds
+from .partial_slip import partial_speeds, signed_D
 from .stepper import FULL, PARTIAL, REST, step
 
 NO_EVENT, STICK, SLIP, REVERSAL, AT_REST = range(5)
@@ -40,7 +40,7 @@ def event_value(event, regime, u, sigma, par, rest):
     if event == STICK:
         return onset(u[0], u[1], sigma, par)
     if event == SLIP:
-        return 1.0 - abs(u[1]) * np.exp(-u[0])
+        return 1.0 - abs(signed_D(u[0], u[1], par)) * np.exp(-u[0])
     V, omega, _ = speeds(regime, u[0], u[1], par)
     return max(abs(V), abs(omega)) - rest
 
@@ -90,7 +90,7 @@ def first_event(regime, u, h, J, sigma, par, rest, K, new):
             event = STICK
         elif event == NO_EVENT and dips(u, new, h, sigma, par):
             return STICK, -1.0
-    elif abs(new[1]) >= np.exp(new[0]):
+    elif event_value(SLIP, regime, new, sigma, par, rest) <= 0.0:
         h = locate(SLIP, regime, u, h, J, sigma, par, rest, K, new)
         event = SLIP
     if rest > 0.0 and event_value(AT_REST, regime, new, sigma, par, rest) < 0.0:

@@ -12,6 +12,7 @@ from .full_slip import onset, onset_slope, sliding_scale, stick_limit
 from .jit import kernel
 from .law import OK, generator_slopes, stick_length
 from .motion_output import coast, fill, write_outputs
+from .partial_slip import signed_D, slow_D
 from .stepper import FULL, PARTIAL, REST, dense_terms, jacobian, step
 
 DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
@@ -43,11 +44,12 @@ def start(V, omega, par, u):
     if zeta > _COAST:
         # the fast transient lasts a time of order V: it is over, V + j omega is kept
         u[0] = -np.log(2.0 * kappa * (V + j * omega) / (1.0 + j))
-        u[1] = -c * (1.0 - j) / (8.0 * kappa * mu * (1.0 + j))
+        u[1] = 0.0
         return PARTIAL, direction, sigma, OK
     g, _, _, _ = generator_slopes(zeta, alpha, c)
     _, D, status = stick_length(zeta, zeta + g, abs(slip) / V / (mu * V), alpha, c)
-    u[0], u[1] = np.log(zeta), sigma * D
+    u[0] = np.log(zeta)
+    u[1] = sigma * D - slow_D(u[0], par)[0]
     return PARTIAL, direction, sigma, status
 
 
@@ -62,7 +64,7 @@ def error_norm(regime, u, new, K, travelled, rtol, par):
         # whose error y carries: it is held more loosely, relative to itself and, near its
         # zero, to a small part of the contact
         floor = 1e-4 * np.exp(new[0])
-        worst = max(abs(K[7, 0]), _D_SHARE * D_error / (max(abs(new[1]), abs(u[1])) + floor))
+        worst = max(abs(K[7, 0]), _D_SHARE * D_error / (abs(signed_D(new[0], new[1], par)) + floor))
     for m in range(2):
         span = travelled[m] + abs(new[2 + m] - u[2 + m])
         error = abs(K[7, 2 + m])
@@ -90,10 +92,11 @@ def switch(event, regime, direction, sigma, u, par, offset):
     j = par[4]
     if event == STICK:
         _, zeta = stick_limit(u[0], par)
-        u[0], u[1] = np.log(zeta), sigma * zeta
+        u[0] = np.log(zeta)
+        u[1] = sigma * zeta - slow_D(u[0], par)[0]
         return PARTIAL, direction, sigma
     if event == SLIP:
-        sigma = np.sign(u[1])
+        sigma = np.sign(signed_D(u[0], u[1], par))
         V, omega, _ = speeds(PARTIAL, u[0], u[1], par)
         u[0], u[1] = V, V - j * omega
         return FULL, direction, sigma

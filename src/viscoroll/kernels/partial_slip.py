@@ -1,13 +1,17 @@
 """Right-hand side and Jacobian of Eq. (22) in partial slip, in unknowns that stay good as V -> 0.
 
-Unknowns: y = ln zeta and the signed D = zeta - eta (sign of delta), in a frame where V > 0.
-The law is explicit in them, so no equation is solved.  With V -> 0, y grows linearly in
-time and D tends to a constant, while omega - V would drown in rounding.  Time is tau =
-gamma t; with a = V'/V = Q/V - M/(2V), d = sign(D) (F(zeta) - F(eta)) = delta/(mu V):
+Unknowns: y = ln zeta, and D = zeta - eta with the sign of delta, counted from D0(y), its
+value on the slow manifold to leading order; in a frame where V > 0.  The law is explicit in
+(zeta, eta), so no equation is solved.  With V -> 0, y grows linearly in time and D tends to
+a constant, while omega - V would drown in rounding.  Counted from D0 the stiff unknown
+hardly moves once the boundary layer is over, which spares an integrator most of the order
+reduction that following a curved manifold costs.  Time is tau = gamma t; with a = V'/V =
+Q/V - M/(2V), d = sign(D) (F(zeta) - F(eta)) = delta/(mu V):
 
     y' = -2 H/(zeta H') a
     D' = (d' - sign(D) (F'(zeta) - F'(eta)) zeta y')/F'(eta)
     d' = -((1 + 1/j) Q/V + (1/j - 1) M/(2V))/(mu V) - 2 d a
+    (D - D0)' = D' - D0'(y) y'
 
 and the distance and the angle turned (times gamma) follow V and omega = V + mu V^2 d.
 
@@ -20,12 +24,14 @@ from __future__ import annotations
 import numpy as np
 
 from .jit import kernel
-from .law import differences, generator_slopes, generators, moment_factor_slope
+from .law import differences, generator_slopes, generators
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 #: differences of g and h, which are at most min(zeta, 1/2), lose digits where D is a small
 #: part of that: there they are integrated instead
 _NEAR = 1e-3
+#: step in y of the one difference quotient, D0'' of the Jacobian
+_STEP = 1e-3
 
 
 @kernel
@@ -36,9 +42,43 @@ def second_slopes(z, alpha, c):
     x = alpha * z
     r, rc = ratio_r(x)
     k, kc = ratio_k(z)
-    s = slope_r(x, r, rc)
+    return _assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
+
+
+@kernel
+def _assemble(z, x, r, k, s, dk, alpha, c):
+    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
     dr = alpha * s
-    dk = slope_k(z, k, kc)
+    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
+    ddk = 2.0 * k * dk + (dk - k / z) / z
+    p = r * k
+    dp = dr * k + r * dk
+    ddp = ddr * k + 2.0 * dr * dk + r * ddk
+    whole = 1.0 / (1.0 + p)
+    share = c * whole
+    dg = share * whole * dp
+    dh_top = dr - r * r * dk
+    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
+    ddg = whole * (share * ddp - 2.0 * dg * dp)
+    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
+    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
+
+
+@kernel
+def second_slopes(z, alpha, c):
+    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
+    if c == 0.0 or z <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x = alpha * z
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(z)
+    return _assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
+
+
+@kernel
+def _assemble(z, x, r, k, s, dk, alpha, c):
+    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
+    dr = alpha * s
     ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
     ddk = 2.0 * k * dk + (dk - k / z) / z
     p = r * k
@@ -73,6 +113,50 @@ def slopes_and_moment(z, alpha, c):
 
 
 @kernel
+def at_contact(z, alpha, c):
+    """(g, h, g', h', g'', h'', m, m') at z = zeta from one pair of ratios; M = V m."""
+    if c == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x = alpha * z
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(z)
+    s = slope_r(x, r, rc)
+    dk = slope_k(z, k, kc)
+    g, h, dg, dh, ddg, ddh = _assemble(z, x, r, k, s, dk, alpha, c)
+    i2 = ratio_i2(x, r)
+    lam2 = 1.0 / (1.0 + 2.0 * h / z)
+    whole = 1.0 / (1.0 + r * k)
+    d_lam2 = -2.0 * lam2 * lam2 * (dh - h / z) / z
+    d_i2 = alpha * 2.0 * (r * r - i2) / x
+    m = c * (lam2 * i2 + r * k) * whole
+    dp = alpha * s * k + r * dk
+    return g, h, dg, dh, ddg, ddh, m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)
+
+
+@kernel
+def leading_order(zeta, h, dh, ddh, m, dm, par):
+    """(D0, dD0/d ln zeta): the slow manifold to leading order, linear in D.
+
+    Q = -M (1 - j)/(2 (1 + j)) with Q = mu D H'/H.
+    """
+    _, _, kappa, mu, j = par
+    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
+    U = 1.0 + h / zeta + dh  # H'/(2 zeta)
+    dU = (dh - h / zeta) / zeta + ddh
+    d_ln_lam = -lam2 * (dh - h / zeta) / zeta
+    factor = -(1.0 - j) / (8.0 * (1.0 + j) * kappa * mu * np.sqrt(lam2) * U)
+    return factor * m, factor * zeta * (dm - m * (d_ln_lam + dU / U))
+
+
+@kernel
+def slow_D(y, par):
+    """(D0, dD0/dy) at y = ln zeta."""
+    zeta = np.exp(y)
+    _, h, _, dh, _, ddh, m, dm = at_contact(zeta, par[0], par[1])
+    return leading_order(zeta, h, dh, ddh, m, dm, par)
+
+
+@kernel
 def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
     """(F(zeta) - F(eta), (H(zeta) - H(eta))/zeta) from the generators already at hand."""
     eta = zeta - D
@@ -85,12 +169,14 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
 
 
 @kernel
-def partial_rhs(y, D, par):
-    """(y', D', V, omega) at y = ln zeta and D."""
+def partial_rhs(y, offset, par):
+    """(y', offset', V, omega) at y = ln zeta and offset = D - D0(y)."""
     alpha, c, kappa, mu, j = par
     zeta = np.exp(y)
+    g, h, dg, dh, _, ddh, m, dm = at_contact(zeta, alpha, c)
+    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
+    D = D0 + offset
     size = abs(D)
-    g, h, dg, dh, m = slopes_and_moment(zeta, alpha, c)
     g_eta, h_eta, dg_eta, _ = generator_slopes(zeta - size, alpha, c)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
     lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
@@ -102,23 +188,27 @@ def partial_rhs(y, D, par):
     d = sign * rise_F
     dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) / (mu * V) - 2.0 * d * rate
     dD = (dd - sign * (dg - dg_eta) * zeta * dy) / (1.0 + dg_eta)
-    return dy, dD, V, V * (1.0 + mu * V * d)
+    return dy, dD - D0_y * dy, V, V * (1.0 + mu * V * d)
 
 
 @kernel
-def partial_jacobian(y, D, par):
-    """d(y', D', V, omega)/d(y, D), row by row."""
+def partial_jacobian(y, offset, par):
+    """d(y', offset', V, omega)/d(y, offset), row by row."""
     alpha, c, kappa, mu, j = par
     zeta = np.exp(y)
+    g, h, dg, dh, ddg, ddh, m, dm = at_contact(zeta, alpha, c)
+    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
+    _, after = slow_D(y + _STEP, par)
+    _, before = slow_D(y - _STEP, par)
+    D0_yy = (after - before) / (2.0 * _STEP)
+    D = D0 + offset
     size = abs(D)
     sign = 1.0 if D >= 0.0 else -1.0
-    g, h, dg, dh, ddg, ddh = second_slopes(zeta, alpha, c)
     g_eta, h_eta, dg_eta, dh_eta, ddg_eta, _ = second_slopes(zeta - size, alpha, c)
     eta = max(zeta - size, 0.0)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
     lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
     V = np.sqrt(lam2) / (2.0 * kappa * zeta)
-    m, dm = moment_factor_slope(zeta, np.sqrt(lam2), alpha, c)
     # U = H'/(2 zeta), W = H'(eta)/(2 zeta); H = zeta^2/lam2
     U = 1.0 + h / zeta + dh
     dU = (dh - h / zeta) / zeta + ddh
@@ -154,20 +244,28 @@ def partial_jacobian(y, D, par):
     D_E = (N_E + N * ddg_eta / slope) / slope
     V_z = -V * V * inv_V_z
     slip_z = mu * V * (2.0 * V_z * d + V * d_z)
-    return (
-        dy_z * zeta, dy_E * sign, D_z * zeta, D_E * sign,
-        V_z * zeta, 0.0, (V_z + slip_z) * zeta, mu * V * V * d_E * sign,
-    )  # fmt: skip
+    y_y, y_D, D_y, D_D = dy_z * zeta, dy_E * sign, D_z * zeta, D_E * sign
+    V_y, w_y, w_D = V_z * zeta, (V_z + slip_z) * zeta, mu * V * V * d_E * sign
+    # from D at fixed y to D = D0(y) + offset
+    y_y, D_y, w_y = y_y + y_D * D0_y, D_y + D_D * D0_y, w_y + w_D * D0_y
+    return y_y, y_D, D_y - D0_yy * dy - D0_y * y_y, D_D - D0_y * y_D, V_y, 0.0, w_y, w_D
 
 
 @kernel
-def partial_speeds(y, D, par):
-    """(V, delta) at y = ln zeta and D."""
+def signed_D(y, offset, par):
+    """D = sign(delta) (zeta - eta)."""
+    D0, _ = slow_D(y, par)
+    return D0 + offset
+
+
+@kernel
+def partial_speeds(y, offset, par):
+    """(V, delta) at y = ln zeta and offset = D - D0(y)."""
     alpha, c, kappa, mu, _ = par
     zeta = np.exp(y)
-    size = abs(D)
+    D = signed_D(y, offset, par)
     g, h = generators(zeta, alpha, c)
-    g_eta, h_eta = generators(zeta - size, alpha, c)
-    rise_F, _ = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
+    g_eta, h_eta = generators(zeta - abs(D), alpha, c)
+    rise_F, _ = slip_differences(zeta, abs(D), g, h, g_eta, h_eta, alpha, c)
     V = 1.0 / (np.sqrt(1.0 + 2.0 * h / zeta) * 2.0 * kappa * zeta)
     return V, np.sign(D) * mu * V * rise_F

@@ -59,7 +59,7 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
     MissingDependencyError
         If mpmath is not installed.
     ConvergenceError
-        If a root is not found within 1000 bracketing steps; none was ever seen to take 40.
+        If a root is not found within 1000 bracketing steps; 90 is the most that was seen.
 
     Notes
     -----

@@ -72,9 +72,9 @@ COMMENTS = {
         "One table for every mu and kappa. For given kappa, mu, V, delta: kappa_V = kappa |V|; "
         "delta_star = (mu/kappa) kappa_delta_star_over_mu, because delta_star is mu/kappa times a function of alpha "
         "and kappa_V alone, Eq. (9); s = |delta|/delta_star, and where s >= 1 the contact slips fully: beta = 0, "
-        "|Q| = mu; else |Q| = mu Q_over_mu; M = kappa_M/kappa. Q has the sign of omega - V, M that of V, Eqs. (17), (18). "
-        "Interpolate by a cubic spline in (ln alpha, ln kappa_V, u) with u = 1 - sqrt(1 - s), in which all nodes are "
-        "uniform. epsilon may exceed 1."
+        "|Q| = mu; else |Q| = mu Q_over_mu; M = kappa_M/kappa. Q has the sign of omega - V, M that of V, "
+        "Eqs. (17), (18). Interpolate by a cubic spline in (ln alpha, ln kappa_V, u) with u = 1 - sqrt(1 - s), "
+        "in which all nodes are uniform. epsilon may exceed 1."
     ),
     "literal": (
         _SIGNS + " Interpolate linearly; Q and beta have a kink at |delta| = delta_star(V, alpha), "

@@ -1,0 +1,33 @@
+"""``viscoroll plot``."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+from ..errors import ParameterError
+from .arguments import add_output_option
+
+FORMATS = (".png", ".pdf", ".svg")
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "plot",
+        help="one of the figures",
+        description="Draw one of the figures of viscoroll.figures; a wrong name gets the list of names.",
+        epilog="example:\n  viscoroll plot figure-5 -o figure-5.png",
+    )
+    parser.add_argument("what", metavar="WHAT", help="name of the figure")
+    add_output_option(parser, *FORMATS, required=True)
+    parser.set_defaults(run=_plot)
+
+
+def _plot(arguments: Namespace) -> int:
+    from ..figures import FIGURES, save
+
+    if arguments.what not in FIGURES:
+        raise ParameterError("plot", repr(arguments.what), "out of " + ", ".join(FIGURES))
+    save(FIGURES[arguments.what](), arguments.output)
+    return 0
