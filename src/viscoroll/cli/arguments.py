@@ -46,7 +46,7 @@ def _part(text: str) -> float | NDArray[np.float64]:
         if not rest:
             return float(low)
         high, count, *spacing = rest
-        return spread(float(low), float(high), int(count), *spacing)
+        return spread(float(low), float(high), int(count), *spacing)  # type: ignore[arg-type]
     except ParameterError as error:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
@@ -76,6 +76,14 @@ def whole(text: str) -> int:
         return int(text)
     except ValueError:
         raise ArgumentTypeError(f"{text!r} must be a whole number") from None
+
+
+def count(text: str) -> int:
+    """A whole number in [1, 10^12]: more, numpy cannot even be asked for."""
+    value = whole(text)
+    if not 1 <= value <= 10**12:
+        raise ArgumentTypeError(f"{text!r} must be a whole number in [1, 1000000000000]")
+    return value
 
 
 def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = number) -> None:

@@ -25,7 +25,8 @@ def add_commands(commands: Any) -> None:
         "contact",
         help="state of the contact: lam, epsilon, delta_star, beta, Q, M",
         description=f"State of the contact for every pair of V and delta (or omega), each\n{NUMBERS}.",
-        epilog="example:\n  viscoroll contact --preset paper-section-5 --V 0.5,1 --delta -0.04:0.04:5 --fields beta,Q,M",
+        epilog="example:\n  viscoroll contact --preset paper-section-5 --V 0.5,1 --delta -0.04:0.04:5"
+        " --fields beta,Q,M",
     )
     add_creep_options(parser, numbers)
     parser.add_argument("--fields", help="names with commas between; default: all")
@@ -89,8 +90,8 @@ def _stress(arguments: Namespace) -> int:
     state = contact(scene, **speeds, fields=("lam", "epsilon", "delta", "beta"))
     if arguments.x is None:
         # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
-        edges = 0.5 * state.lam * (state.epsilon + np.array([-1.0, 1.0]))
-        x = np.linspace(*(edges if arguments.V >= 0.0 else -edges[::-1]), _POINTS)
+        ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
+        x = 0.5 * state.lam * (ahead if arguments.V >= 0.0 else -ahead[::-1])
     else:
         x = np.atleast_1d(arguments.x)
     values = stress(scene, x, **speeds).as_dict()

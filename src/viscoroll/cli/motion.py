@@ -16,6 +16,7 @@ from .arguments import (
     add_output_option,
     add_scene_options,
     add_time_options,
+    count,
     distribution,
     number,
     scene_of,
@@ -59,7 +60,7 @@ def add_commands(commands: Any) -> None:
         epilog="example:\n  viscoroll ensemble --preset paper-section-5 -n 1000 --seed 1 "
         "--V0 uniform:-2:2 --omega0 normal:0:1 --mu uniform:0.1:0.3 --times 1e-3,3e-3",
     )
-    parser.add_argument("-n", type=whole, required=True, help="number of motions")
+    parser.add_argument("-n", type=count, required=True, help="number of motions")
     parser.add_argument(
         "--seed", type=whole, default=0, help="seed of the random numbers, kept in the file (default 0)"
     )
@@ -138,7 +139,7 @@ def _ensemble(arguments: Namespace) -> int:
     parameters = scene_parameters(arguments)
     random = {name: value for name, value in parameters.items() if hasattr(value, "ppf")}
     drawn = {"V0": arguments.V0, "omega0": arguments.omega0, **random}
-    columns = sample(arguments.n, arguments.seed, arguments.design, **drawn)  # type: ignore[arg-type]
+    columns = sample(arguments.n, arguments.seed, arguments.design, **drawn)
     scene = Scene(**{name: columns.columns.get(name, value) for name, value in parameters.items()})
     result = ensemble(
         scene, columns["V0"], columns["omega0"], arguments.t,

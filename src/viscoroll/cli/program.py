@@ -50,21 +50,32 @@ def parser() -> Parser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the program on ``argv`` (default: that of the process); returns its exit code."""
     try:
-        arguments = parser().parse_args(_joined(sys.argv[1:] if argv is None else argv))
-        code: int = arguments.run(arguments)
-        sys.stdout.flush()
-        return code
+        return _run(sys.argv[1:] if argv is None else argv)
     except ViscorollError as error:
-        print("viscoroll: error:", " ".join(str(error).split()), file=sys.stderr)
-        return 2
-    except SystemExit as finished:  # argparse's own way to end after --help and --version
-        return int(finished.code or 0)
+        return _failed(error)
+    except MemoryError as error:
+        return _failed(f"not enough memory ({error})")
     except KeyboardInterrupt:
         return _INTERRUPTED
-    except BrokenPipeError:
-        # the reader has gone: let the interpreter flush what is left into nothing
+    except OSError as error:  # files raise OutputError and the like: this is standard output
+        # whatever is still buffered goes nowhere, or the interpreter would complain at its end
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _BROKEN_PIPE
+        return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")
+
+
+def _run(argv: Sequence[str]) -> int:
+    try:
+        arguments = parser().parse_args(_joined(argv))
+        code: int = arguments.run(arguments)
+    except SystemExit as finished:  # argparse's own way to end after --help and --version
+        code = int(finished.code or 0)
+    sys.stdout.flush()
+    return code
+
+
+def _failed(error: object) -> int:
+    print("viscoroll: error:", " ".join(str(error).split()), file=sys.stderr)
+    return 2
 
 
 def _joined(argv: Sequence[str]) -> list[str]:

@@ -8,7 +8,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from .arguments import NUMBERS, add_output_option, number, numbers, whole
+from .arguments import NUMBERS, add_output_option, count, number, numbers, whole
 
 
 def add_commands(commands: Any) -> None:
@@ -27,7 +27,8 @@ def _add_build(group: Any) -> None:
     parser = group.add_parser(
         "build",
         help="atlas.nc (universal) and paper.nc (the paper's Sect. 5)",
-        description="Build atlas.nc, the universal table in similarity variables, and paper.nc, at the paper's kappa and mu.",
+        description="Build atlas.nc, the universal table in similarity variables, and paper.nc, the table at the\n"
+        "paper's kappa and mu.",
         epilog="example:\n  viscoroll tables build -o data/tables",
     )
     parser.add_argument(
@@ -68,12 +69,12 @@ def _add_validate(group: Any) -> None:
     parser = group.add_parser(
         "validate",
         help="compare a table file with direct solves",
-        description="Solve the printed equations at random nodes and between nodes of a table and compare with the errors\n"
-        "that the file states; exit code 1 where one is exceeded.",
+        description="Solve the printed equations at random nodes and between nodes of a table and compare with the\n"
+        "errors that the file states; exit code 1 where one is exceeded.",
         epilog="example:\n  viscoroll tables validate data/tables/atlas.nc",
     )
     parser.add_argument("file", metavar="FILE")
-    parser.add_argument("-n", type=whole, default=10_000, help="points at nodes, and as many between (default 10000)")
+    parser.add_argument("-n", type=count, default=10_000, help="points at nodes, and as many between (default 10000)")
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random points (default 0)")
     parser.set_defaults(run=_validate)
 

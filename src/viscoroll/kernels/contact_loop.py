@@ -12,9 +12,9 @@ from .law import (
     generator_slopes,
     generators,
     moment_factor,
-    moment_factor_slope,
     stick_length,
 )
+from .slopes import at_contact
 
 #: Order of the rows of the kernel's output.
 ROWS = (
@@ -129,9 +129,8 @@ def _moment(V, zeta, lam, alpha, c, need_slopes, out):
     if not need_slopes:
         out[M] = V * moment_factor(zeta, lam, alpha, c)
     else:
-        m, dm = moment_factor_slope(zeta, lam, alpha, c)
+        _, h, _, dh, _, _, m, dm = at_contact(zeta, alpha, c)
         out[M] = V * m
-        _, h, _, dh = generator_slopes(zeta, alpha, c)
         half_slope = 1.0 + (h + zeta * dh) / zeta
         out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)
 

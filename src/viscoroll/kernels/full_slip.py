@@ -9,7 +9,8 @@ sigma (omega - V) - delta_star |V|: positive in full slip, through zero where st
 from __future__ import annotations
 
 from .jit import kernel
-from .law import contact_length, generator_slopes, moment_factor, moment_factor_slope
+from .law import contact_length, generator_slopes, moment_factor
+from .slopes import at_contact
 
 
 @kernel
@@ -41,8 +42,7 @@ def full_jacobian(V, w, par):
     if c > 0.0 and kappa_V >= 1e-17:
         lam, _ = contact_length(kappa_V, alpha, c)
         zeta = lam / (2.0 * kappa_V)
-        m, dm = moment_factor_slope(zeta, lam, alpha, c)
-        _, h, _, dh = generator_slopes(zeta, alpha, c)
+        _, h, _, dh, _, _, m, dm = at_contact(zeta, alpha, c)
         slope = m - zeta * dm / (lam * lam * (1.0 + h / zeta + dh))
     return -0.5 * slope, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0 / j, -1.0 / j
 

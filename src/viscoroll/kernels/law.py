@@ -186,27 +186,3 @@ def moment_factor(zeta, lam, alpha, c):
     k, _ = ratio_k(zeta)
     p = r * k
     return c * (lam * lam * ratio_i2(x, r) + p) / (1.0 + p)
-
-
-@kernel
-def moment_factor_slope(zeta, lam, alpha, c):
-    """(m, dm/dzeta) with m = M/V and lam^2 = zeta^2/H(zeta)."""
-    if c == 0.0:
-        return 0.0, 0.0
-    x = alpha * zeta
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(zeta)
-    i2 = ratio_i2(x, r)
-    dr = slope_r(x, r, rc)
-    dk = slope_k(zeta, k, kc)
-    p = r * k
-    dp = alpha * dr * k + r * dk
-    whole = 1.0 / (1.0 + p)
-    h = c * r * whole
-    dh = c * whole * whole * (alpha * dr - r * r * dk)
-    lam2 = lam * lam
-    # lam^-2 = 1 + 2 h/zeta
-    d_lam2 = -2.0 * lam2 * lam2 * (dh - h / zeta) / zeta
-    d_i2 = alpha * 2.0 * (r * r - i2) / x
-    m = c * (lam2 * i2 + p) * whole
-    return m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)

@@ -25,112 +25,13 @@ import numpy as np
 
 from .jit import kernel
 from .law import differences, generator_slopes, generators
-from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from .slopes import at_contact, second_slopes
 
 #: differences of g and h, which are at most min(zeta, 1/2), lose digits where D is a small
 #: part of that: there they are integrated instead
 _NEAR = 1e-3
 #: step in y of the one difference quotient, D0'' of the Jacobian
 _STEP = 1e-3
-
-
-@kernel
-def second_slopes(z, alpha, c):
-    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
-    if c == 0.0 or z <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    return _assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
-
-
-@kernel
-def _assemble(z, x, r, k, s, dk, alpha, c):
-    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
-    dr = alpha * s
-    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
-    ddk = 2.0 * k * dk + (dk - k / z) / z
-    p = r * k
-    dp = dr * k + r * dk
-    ddp = ddr * k + 2.0 * dr * dk + r * ddk
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    dg = share * whole * dp
-    dh_top = dr - r * r * dk
-    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
-    ddg = whole * (share * ddp - 2.0 * dg * dp)
-    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
-    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
-
-
-@kernel
-def second_slopes(z, alpha, c):
-    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
-    if c == 0.0 or z <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    return _assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
-
-
-@kernel
-def _assemble(z, x, r, k, s, dk, alpha, c):
-    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
-    dr = alpha * s
-    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
-    ddk = 2.0 * k * dk + (dk - k / z) / z
-    p = r * k
-    dp = dr * k + r * dk
-    ddp = ddr * k + 2.0 * dr * dk + r * ddk
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    dg = share * whole * dp
-    dh_top = dr - r * r * dk
-    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
-    ddg = whole * (share * ddp - 2.0 * dg * dp)
-    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
-    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
-
-
-@kernel
-def slopes_and_moment(z, alpha, c):
-    """(g, h, g', h', m) at z with M = V m, from one pair of ratios."""
-    if c == 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    dr = alpha * slope_r(x, r, rc)
-    dk = slope_k(z, k, kc)
-    p = r * k
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    h = share * r
-    m = share * (ratio_i2(x, r) / (1.0 + 2.0 * h / z) + p)
-    return share * p, h, share * whole * (dr * k + r * dk), share * whole * (dr - r * r * dk), m
-
-
-@kernel
-def at_contact(z, alpha, c):
-    """(g, h, g', h', g'', h'', m, m') at z = zeta from one pair of ratios; M = V m."""
-    if c == 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    s = slope_r(x, r, rc)
-    dk = slope_k(z, k, kc)
-    g, h, dg, dh, ddg, ddh = _assemble(z, x, r, k, s, dk, alpha, c)
-    i2 = ratio_i2(x, r)
-    lam2 = 1.0 / (1.0 + 2.0 * h / z)
-    whole = 1.0 / (1.0 + r * k)
-    d_lam2 = -2.0 * lam2 * lam2 * (dh - h / z) / z
-    d_i2 = alpha * 2.0 * (r * r - i2) / x
-    m = c * (lam2 * i2 + r * k) * whole
-    dp = alpha * s * k + r * dk
-    return g, h, dg, dh, ddg, ddh, m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)
 
 
 @kernel
