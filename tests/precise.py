@@ -92,14 +92,42 @@ class State(NamedTuple):
 
 
 def root(equation, low, high, seed=None) -> mp.mpf:
-    """The root between low and high: bracketed with few digits, then by the secant method.
+    """The root between low and high: by the Illinois method with few digits, then by secants.
 
     ``seed``: a nearby root, instead of the bracketing.
     """
     if seed is None:
         with mp.workdps(20):
-            seed = mp.findroot(equation, (mp.mpf(low), mp.mpf(high)), solver="anderson", tol=1e-34, verify=False)
-    return mp.findroot(equation, (seed, seed * (1 - mp.mpf(10) ** -14)), tol=mp.eps**1.9, verify=False)
+            seed = bracketed(equation, mp.mpf(low), mp.mpf(high))
+    old, new = seed * (1 - mp.mpf(10) ** -14), seed
+    f_old = equation(old)
+    for _ in range(12):
+        f_new = equation(new)
+        if f_new == f_old:
+            break
+        step = f_new * (new - old) / (f_new - f_old)
+        old, f_old, new = new, f_new, new - step
+        if abs(step) < abs(new) * mp.eps * 100:
+            break
+    return new
+
+
+def bracketed(equation, low: mp.mpf, high: mp.mpf) -> mp.mpf:
+    """The root to about 16 digits."""
+    at_low, at_high = equation(low), equation(high)
+    if at_low * at_high >= 0:  # rounding has spoilt a sign: the root is that end
+        return low if abs(at_low) < abs(at_high) else high
+    while abs(high - low) > mp.mpf(10) ** -15 * abs(high):
+        middle = (at_low * high - at_high * low) / (at_low - at_high)
+        value = equation(middle)
+        if value == 0:
+            return middle
+        if value * at_high < 0:
+            low, at_low = high, at_high
+        else:
+            at_low /= 2
+        high, at_high = middle, value
+    return high
 
 
 def contact_length(kappa_V: mp.mpf, alpha: mp.mpf, seed: mp.mpf | None = None) -> mp.mpf:

@@ -295,14 +295,14 @@ def test_slopes_against_50_digits(alpha, kappa, mu, kappa_V, s):
 
 
 @pytest.mark.xfail(strict=True, reason="traction_slopes subtracts A - A_eta: dQ_dV at fixed delta loses 1e-16/s")
-@pytest.mark.parametrize("s", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("s", [1e-5, 1e-7])
 def test_slope_by_V_at_slight_creep(s):
     """dQ_dV at fixed delta relative to itself."""
     delta = s * delta_star(SCENE, 0.3)
     slope = vr.contact(SCENE, 0.3, delta=delta, fields="dQ_dV").dQ_dV
     with mp.workdps(precise.DIGITS):
         exact = precise.slope(SCENE.alpha, KAPPA, MU, 0.3, delta, "V")["Q"]
-    assert slope == pytest.approx(float(exact), rel=tol.SLOPE, abs=0.0)
+    assert slope == pytest.approx(float(exact), rel=tol.SLOPE_SLIGHT, abs=0.0)
 
 
 @settings(max_examples=40, deadline=None)

@@ -148,7 +148,7 @@ def _read(path: str | PathLike[str]) -> dict[str, Any]:
         raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
     except UnicodeDecodeError as error:
         raise ConfigError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # tomllib's own error is a ValueError; so is a number of 5000 digits
         raise ConfigError(path, f"is not TOML ({error})") from error
 
 

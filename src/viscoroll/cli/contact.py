@@ -75,7 +75,11 @@ def _contact(arguments: Namespace) -> int:
     columns = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
     columns |= {name: value.ravel() for name, value in values.items()}
     constants, title = _constants(scene), "Contact of a viscoelastic cylinder rolling with partial slip"
-    deliver(Sheet((title,), constants, columns, lambda: as_dataset(title, axes, values, constants)), arguments.output)
+    deliver(
+        arguments.output,
+        lambda: Sheet((title,), constants, columns),
+        lambda: as_dataset(title, axes, values, constants),
+    )
     return 0
 
 
@@ -97,6 +101,9 @@ def _stress(arguments: Namespace) -> int:
     values = stress(scene, x, **speeds).as_dict()
     title = "Pressure and shear stress of a rolling viscoelastic cylinder"
     constants = {**_constants(scene), "V": arguments.V, **state.as_dict()}
-    sheet = Sheet((title,), constants, {"x": x, **values}, lambda: as_dataset(title, {"x": x}, values, constants))
-    deliver(sheet, arguments.output)
+    deliver(
+        arguments.output,
+        lambda: Sheet((title,), constants, {"x": x, **values}),
+        lambda: as_dataset(title, {"x": x}, values, constants),
+    )
     return 0

@@ -76,11 +76,11 @@ def add_commands(commands: Any) -> None:
 def _start(arguments: Namespace) -> tuple[float, float]:
     from ..scene import PAPER_STARTS
 
-    speeds = arguments.V0, arguments.omega0
-    if arguments.ic is None and None not in speeds:
-        return speeds
-    if arguments.ic is None or speeds != (None, None):
-        raise ParameterError("start", "both or neither", "--V0 and --omega0, or --ic")
+    given = {f"--{name}": value for name in ("V0", "omega0", "ic") if (value := getattr(arguments, name)) is not None}
+    if given.keys() == {"--V0", "--omega0"}:
+        return arguments.V0, arguments.omega0
+    if given.keys() != {"--ic"}:
+        raise ParameterError("start", ", ".join(given) or "nothing", "--V0 and --omega0, or --ic")
     if arguments.ic not in PAPER_STARTS:
         raise ParameterError("ic", repr(arguments.ic), "out of " + ", ".join(PAPER_STARTS))
     return PAPER_STARTS[arguments.ic]
@@ -101,7 +101,7 @@ def _roll(arguments: Namespace) -> int:
     if arguments.output is None and np.ndim(arguments.t) == 0 and rows.size > _ROWS_SHOWN:
         heading.append(f"{_ROWS_SHOWN} of {rows.size} output times are shown; -o FILE keeps all")
         rows = np.linspace(0, rows.size - 1, _ROWS_SHOWN).astype(int)
-    deliver(_motion_sheet(motion, heading, rows), arguments.output)
+    deliver(arguments.output, lambda: _motion_sheet(motion, heading, rows), motion.to_xarray)
     if arguments.output is not None:
         print("\n".join(heading))
     return 0
@@ -127,7 +127,7 @@ def _motion_sheet(motion: Motion, heading: list[str], rows: NDArray[np.intp]) ->
     columns = {name: getattr(motion, name)[rows] for name in ("t", "V", "omega", "x", "angle", "delta")}
     columns["regime"] = np.array([REGIMES[code] if code >= 0 else "not reached" for code in motion.regime[rows]])
     constants = {name: getattr(motion.scene, name) for name in PARAMETERS}
-    return Sheet(tuple(heading), constants, columns, motion.to_xarray)
+    return Sheet(tuple(heading), constants, columns)
 
 
 def _ensemble(arguments: Namespace) -> int:
@@ -147,10 +147,14 @@ def _ensemble(arguments: Namespace) -> int:
     )  # fmt: skip
     record = {"seed": arguments.seed, "design": arguments.design}
     record |= {f"drawn_{name}": _formula(value) for name, value in drawn.items()}
-    to_screen = arguments.output is None or arguments.output.suffix == ".txt"
-    if not to_screen:
-        deliver(_motions_sheet(result, record), arguments.output)
-    deliver(_summary_sheet(result, record), arguments.output if to_screen else None)
+    path, summary = arguments.output, _summary_sheet(result, record)
+    deliver(
+        path,
+        lambda: _motions_sheet(result) if path is not None and path.suffix == ".csv" else summary,
+        lambda: result.to_xarray().assign_attrs(record),
+    )
+    if path is not None and path.suffix != ".txt":
+        print(summary.text(), end="")
     return 0
 
 
@@ -174,7 +178,7 @@ def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
         warnings.simplefilter("ignore", RuntimeWarning)  # of a time that no motion reached: NaN says it
         summary = result.summary()
     heading = [f"Ensemble of {len(result)} motions: " + ", ".join(f"{name} {value}" for name, value in record.items())]
-    heading += [f"{count} motions {text}" for text, count in result.messages().items()]
+    heading += [f"{n} motions {text}" for text, n in result.messages().items()]
     names = [name for name in ("V", "omega", "x") if f"{name}_mean" in summary]
     levels = {f"{level:.0%}": n for n, level in enumerate(summary["quantile"].values)}
     columns = {"quantity": np.repeat(names, result.t.size), "t": np.tile(result.t, len(names))}
@@ -186,20 +190,19 @@ def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
             f"{v:.6g} ({level})" for level, v in zip(levels, summary["onset_time_quantiles"].values, strict=True)
         )
         heading.append(f"onset of partial slip: t = {onset}")
-    return Sheet(tuple(heading), _constants(result), columns, lambda: summary)
+    return Sheet(tuple(heading), _constants(result), columns)
 
 
-def _motions_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
+def _motions_sheet(result: Ensemble) -> Sheet:
     """A row per motion and output time."""
     import numpy as np
 
     from .output import Sheet
 
-    count = result.t.size
     each = {"motion": np.arange(len(result)), "V0": result.V0, "omega0": result.omega0}
     each |= {name: getattr(result.scene, name) for name in PARAMETERS if np.ndim(getattr(result.scene, name))}
     each |= {name: getattr(result, name) for name in ("onset_time", "rest_time", "status")}
-    columns = {name: np.repeat(value, count) for name, value in each.items()}
-    columns |= {"t": np.tile(result.t, len(result))}
+    columns = {name: np.repeat(value, result.t.size) for name, value in each.items()}
+    columns["t"] = np.tile(result.t, len(result))
     columns |= {name: getattr(result, name).ravel() for name in ("V", "omega", "x")}
-    return Sheet((), _constants(result), columns, lambda: result.to_xarray().assign_attrs(record))
+    return Sheet((), _constants(result), columns)

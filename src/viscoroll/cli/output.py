@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A result in every format: ``columns`` of equal length under ``heading`` lines, or ``dataset()``.
+    """A result as a table: ``columns`` of equal length under ``heading`` lines.
 
     ``constants`` hold for all rows: a line of the text, columns of the CSV.
     """
@@ -29,7 +29,6 @@ class Sheet:
     heading: tuple[str, ...]
     constants: dict[str, float]
     columns: dict[str, NDArray]
-    dataset: Callable[[], xr.Dataset]
 
     def text(self) -> str:
         """Aligned columns; a single row stands as lines with what each number means."""
@@ -46,7 +45,7 @@ class Sheet:
         """A row of names, then numbers that read back to the same bits."""
         rows = len(next(iter(self.columns.values())))
         columns = [[value] * rows for value in self.constants.values()]
-        columns += [values.tolist() for values in self.columns.values()]
+        columns += [_numeric(values).tolist() for values in self.columns.values()]
         file = io.StringIO()
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*self.constants, *self.columns])
@@ -54,8 +53,8 @@ class Sheet:
         return file.getvalue()
 
 
-def deliver(sheet: Sheet, path: Path | None) -> None:
-    """Print ``sheet`` as text, or write it in the format of the suffix.
+def deliver(path: Path | None, sheet: Callable[[], Sheet], dataset: Callable[[], xr.Dataset]) -> None:
+    """Print the sheet as text, or write it or the dataset in the format of the suffix.
 
     Raises
     ------
@@ -65,11 +64,11 @@ def deliver(sheet: Sheet, path: Path | None) -> None:
     from ..files import write_dataset, write_text
 
     if path is None:
-        print(sheet.text(), end="")
+        print(sheet().text(), end="")
     elif path.suffix == ".nc":
-        write_dataset(sheet.dataset(), path)
+        write_dataset(dataset(), path)
     else:
-        write_text(path, sheet.csv() if path.suffix == ".csv" else sheet.text())
+        write_text(path, sheet().csv() if path.suffix == ".csv" else sheet().text())
 
 
 def as_dataset(

@@ -7,21 +7,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from .events import AT_REST, NO_EVENT, SLIP, STICK, first_event, speeds
+from .events import AT_REST, NO_EVENT, REVERSAL, SLIP, STICK, first_event, speeds
 from .full_slip import onset, onset_slope, sliding_scale, stick_limit
 from .jit import kernel
 from .law import OK, generator_slopes, stick_length
 from .motion_output import coast, fill, write_outputs
-from .partial_slip import signed_D, slow_D
+from .partial_slip import partial_rhs, signed_D, slow_D
 from .stepper import FULL, PARTIAL, REST, dense_terms, jacobian, step
 
 DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 
 #: step control: local error per step is kept at this share of rtol
-_SHARE = 0.1
+_SHARE = 0.25
 _D_SHARE = 0.04
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 _MOST_REJECTIONS = 60
+#: kappa V below which M(V) is smooth on the scale of V
+_BEND = 0.05
 #: beyond this zeta (kappa V < 1e-17) the slow motion is exponential to rounding
 _COAST = 1e17
 
@@ -62,9 +64,10 @@ def error_norm(regime, u, new, K, travelled, rtol, par):
     else:
         # D matters through omega - V = mu V^2 d, a small part of omega, and through V',
         # whose error y carries: it is held more loosely, relative to itself and, near its
-        # zero, to a small part of the contact
-        floor = 1e-4 * np.exp(new[0])
-        worst = max(abs(K[7, 0]), _D_SHARE * D_error / (abs(signed_D(new[0], new[1], par)) + floor))
+        # zero, to a small part of the contact; but not where it decides on the end of stick
+        zeta = np.exp(new[0])
+        D = abs(signed_D(new[0], new[1], par))
+        worst = max(abs(K[7, 0]), max(_D_SHARE, (D / zeta) ** 2) * D_error / (D + 1e-4 * zeta))
     for m in range(2):
         span = travelled[m] + abs(new[2 + m] - u[2 + m])
         error = abs(K[7, 2 + m])
@@ -77,10 +80,16 @@ def error_norm(regime, u, new, K, travelled, rtol, par):
 def first_length(regime, u, J, rtol, par):
     """Length of the first step in a regime."""
     if regime == FULL:
-        mu, j = par[3], par[4]
+        _, _, kappa, mu, j = par
         slip = abs((u[0] - u[1]) / j - u[0])
-        return 0.5 * slip / (mu * (1.0 + 1.0 / j)) + 1e-300
-    return 2.0 * rtol ** (1.0 / 5.0) / (abs(J[3]) + abs(J[0]) + 1e-300)
+        length = 0.5 * slip / (mu * (1.0 + 1.0 / j)) + 1e-300
+        # M(V) bends at kappa V of order 1: from rest, step first to where that begins
+        return length if kappa * abs(u[0]) > _BEND else min(length, _BEND / (kappa * mu))
+    # where the stick zone is small the law bends on the scale eta ~ 1/alpha, however large zeta
+    _, drift, _, _ = partial_rhs(u[0], u[1], par)
+    eta = np.exp(u[0]) - abs(signed_D(u[0], u[1], par))
+    bend = abs(drift) / (max(eta, 0.0) + 1.0 / par[0])
+    return 2.0 * rtol ** (1.0 / 5.0) / (abs(J[3]) + abs(J[0]) + bend + 1e-300)
 
 
 @kernel
@@ -103,6 +112,15 @@ def switch(event, regime, direction, sigma, u, par, offset):
     # REVERSAL: V = 0; look from the other side, where V rises
     u[0], u[1] = 0.0, -u[1]
     return FULL, -direction, -sigma
+
+
+@kernel
+def leap(u, new, par):
+    """Share of a step in full slip that may be kept: V may not fall to under 1/8 in one step
+    before it is below the bend of M(V), which the error estimate would not see."""
+    if par[1] == 0.0 or par[2] * u[0] < _BEND or new[0] > 0.125 * u[0]:
+        return 1.0
+    return (u[0] - 0.15 * u[0]) / (u[0] - new[0])
 
 
 @kernel
@@ -176,6 +194,10 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
                 rejected += 1
                 h = next_length(length, error)
                 continue
+            kept = leap(u, new, par) if regime == FULL else 1.0
+            if kept < 1.0:
+                h = kept * length
+                continue
             event, reached = first_event(regime, u, length, J, sigma, par, rest, K, new)
             if reached < 0.0:
                 h = 0.5 * length
@@ -199,6 +221,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         if event != NO_EVENT:
             regime, direction, sigma = switch(event, regime, direction, sigma, u, par, offset)
         J = jacobian(regime, u[0], u[1], par)
+        if event == REVERSAL:
+            h = min(h, first_length(regime, u, J, rtol, par))
         if event == STICK or event == SLIP:
             if turns < switches.shape[0]:
                 switches[turns, 0], switches[turns, 1] = tau / gamma, regime

@@ -1,0 +1,112 @@
+"""Eq. (22) by scipy's integrators on the printed contact law: what :func:`viscoroll.roll` is held against."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ConvergenceError
+from ..scene import Scene
+
+#: Both are near the tightest that the methods accept; the noise of Q as printed, 1e-13 mu, is above them at small V.
+_SLIDING_RTOL, _STICKING_RTOL, _STICKING_ATOL = 1e-12, 1e-11, 1e-12
+_MOST_PHASES = 100
+
+
+class DirectMotion(NamedTuple):
+    """V and omega at the times asked for, and the first change from full to partial slip (NaN: none)."""
+
+    V: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    onset_time: float
+
+
+def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) -> DirectMotion:
+    """Motion from (V0, omega0) != (0, 0) at ascending times ``t``, on root solves of the printed equations.
+
+    Full slip: unknowns (V, omega), DOP853.  Partial slip: (ln |V|, delta/|V|), LSODA, because
+    with (V, omega) the slip omega - V drowns in rounding as V falls.  The regime is carried
+    as state and changes only at events that look one way.
+
+    Raises
+    ------
+    ConvergenceError
+        If scipy's integrator gives up, or a motion changes its regime without end.
+
+    Notes
+    -----
+    V and omega differ from ``data/reference/section5.csv``, itself good to 1e-9, by less than
+    2e-9 (``tests/test_validation.py``).
+    """
+    parameters = tuple(float(getattr(scene, name)) for name in ("alpha", "kappa", "mu", "gamma", "j"))
+    V, omega = np.full(t.size, np.nan), np.full(t.size, np.nan)
+    now, state, onset_time = 0.0, (float(V0), float(omega0)), np.nan
+    sticking = _sticks(*state, parameters)
+    for _ in range(_MOST_PHASES):
+        phase = _stick if sticking else _slide
+        solution, speeds = phase(now, t[-1], state, parameters)
+        reached = solution.t[-1]
+        inside = (t >= now) & (t <= reached)
+        V[inside], omega[inside] = speeds(solution.sol(t[inside]))
+        if solution.status != 1:
+            return DirectMotion(V, omega, onset_time)
+        now, state = reached, tuple(float(value[0]) for value in speeds(solution.y[:, -1:]))
+        sticking = not sticking
+        if sticking and np.isnan(onset_time):
+            onset_time = now
+    raise ConvergenceError(f"direct motion: more than {_MOST_PHASES} changes of regime")
+
+
+def _sticks(V: float, omega: float, parameters: tuple[float, ...]) -> bool:
+    from ..kernels.direct_motion import direct_sliding
+
+    return abs(omega - V) < direct_sliding(V, 1.0, *parameters)[2]
+
+
+def _slide(now, end, state, parameters):
+    """Full slip from ``state`` (V, omega) to the onset of stick or the end."""
+    from ..kernels.direct_motion import direct_sliding
+
+    sigma = float(np.sign(state[1] - state[0]))
+
+    def rates(_, y):
+        return direct_sliding(y[0], sigma, *parameters)[:2]
+
+    def onset(_, y):
+        return sigma * (y[1] - y[0]) - direct_sliding(y[0], sigma, *parameters)[2]
+
+    onset.direction = -1.0
+    return _solve(rates, now, end, state, onset, "DOP853", _SLIDING_RTOL, 1e-13), lambda y: (y[0], y[1])
+
+
+def _stick(now, end, state, parameters):
+    """Partial slip from ``state`` (V, omega) to the return of full slip or the end, seen with V > 0."""
+    from ..kernels.direct_motion import direct_sticking
+
+    direction, speed = np.sign(state[0]), abs(state[0])
+    start = (np.log(speed), (state[1] - state[0]) / state[0] / speed)
+
+    def rates(_, y):
+        return direct_sticking(y[0], y[1], *parameters)[:2]
+
+    def slip(_, y):
+        return direct_sticking(y[0], y[1], *parameters)[2]
+
+    def speeds(y):
+        V = direction * np.exp(y[0])
+        return V, V * (1.0 + y[1] * np.abs(V))
+
+    slip.direction = 1.0
+    return _solve(rates, now, end, start, slip, "LSODA", _STICKING_RTOL, _STICKING_ATOL), speeds
+
+
+def _solve(rates, now, end, start, event, method, rtol, atol):
+    from scipy.integrate import solve_ivp
+
+    event.terminal = True
+    solution = solve_ivp(rates, (now, end), start, method, events=event, dense_output=True, rtol=rtol, atol=atol)
+    if solution.status < 0:
+        raise ConvergenceError(f"direct motion: {method} gave up at t = {solution.t[-1]:.6g}: {solution.message}")
+    return solution

@@ -1,0 +1,530 @@
+"""The program ``viscoroll``: every command on good and on bad input."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import re
+import shlex
+import subprocess
+import sys
+import types
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+
+import viscoroll as vr
+from viscoroll import config
+from viscoroll.cli import main
+from viscoroll.tables import AtlasGrid, LiteralGrid
+
+PRESET = ["--preset", "paper-section-5"]
+START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
+DRAWN = [*PRESET, "-n", "8", "--V0", "uniform:-2:2", "--omega0", "normal:0:1"]
+EXPORT = ["tables", "export", "--kappa", "2.91", "--mu", "0.2", "--V", "0.1:1:5:log", "--delta", "-0.04:0.04:9"]
+TABLE_COMMANDS = ["tables build", "tables export", "tables info", "tables validate"]
+COMMANDS = ["contact", "stress", "roll", "ensemble", *TABLE_COMMANDS, "plot"]
+POINT = [sys.executable, "-m", "viscoroll", "contact", *PRESET, "--V", "1", "--delta", "0"]
+SMALL = {
+    "atlas": AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2)),
+    "paper": LiteralGrid(2.91, 0.2, np.geomspace(0.01, 1.0, 11), np.linspace(-0.04, 0.04, 21), [1.0, 11.0]),
+}
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Every test runs in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def run(capsys):
+    """Runs a command line that must succeed; returns what it printed."""
+
+    def run(*argv: str) -> str:
+        code = main(argv)
+        out, err = capsys.readouterr()
+        assert (code, err) == (0, "")
+        return out
+
+    return run
+
+
+@pytest.fixture
+def refuse(capsys, here):
+    """Runs a command line that must fail in one line, leaving the folder as it was; returns the line."""
+
+    def refuse(*argv: str) -> str:
+        before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
+        code = main(argv)
+        out, err = capsys.readouterr()
+        assert (code, out) == (2, "")
+        assert re.fullmatch(r"viscoroll: error: [^\n]+\n", err), err
+        assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
+        return err
+
+    return refuse
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory):
+    """Folder with a small atlas.nc and paper.nc."""
+    folder = tmp_path_factory.mktemp("tables")
+    for name, grid in SMALL.items():
+        vr.tables.save(vr.tables.build(grid), folder / f"{name}.nc")
+    return folder
+
+
+@pytest.fixture
+def figures(monkeypatch):
+    """A stand-in for viscoroll.figures: the real ones have tests of their own."""
+    module = types.ModuleType("viscoroll.figures")
+    module.FIGURES = {"figure-5": lambda: "the figure"}
+    module.save = lambda figure, path: path.write_text(figure)
+    monkeypatch.setitem(sys.modules, "viscoroll.figures", module)
+    monkeypatch.setattr(vr, "figures", module, raising=False)
+
+
+def rows(text: str) -> dict[str, np.ndarray]:
+    """Columns of a CSV of numbers."""
+    names, *values = csv.reader(io.StringIO(text))
+    return dict(zip(names, np.array(values, dtype=float).T, strict=True))
+
+
+def interpreter(code: str, **options) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, **options)
+
+
+# --- the program itself ---
+
+
+def test_version_and_module():
+    done = subprocess.run([sys.executable, "-m", "viscoroll", "--version"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"viscoroll {vr.__version__}\n", "")
+
+
+def test_help_imports_nothing_heavy():
+    done = interpreter(
+        "import sys\n"
+        "from viscoroll.cli import main\n"
+        f"for command in {COMMANDS!r}: assert main([*command.split(), '--help']) == 0\n"
+        "assert main(['--help']) == 0\n"
+        "heavy = {'numpy', 'numba', 'scipy', 'xarray', 'matplotlib', 'h5py'} & sys.modules.keys()\n"
+        "assert not heavy, heavy"
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_broken_pipe_is_quiet():
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(POINT, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+def test_full_disk_on_standard_output():
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(POINT, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "viscoroll: error: standard output: No space left on device\n")
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "words"), [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")]
+)
+def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
+    def fail(*_, **__):
+        raise raised
+
+    monkeypatch.setattr("viscoroll.rolling_contact.contact", fail)
+    assert main(["contact", *PRESET, "--V", "1", "--delta", "0"]) == code
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert words in err
+    assert err.count("\n") == bool(words)
+
+
+@pytest.mark.parametrize("command", ["", "tables", *COMMANDS])
+def test_example_of_help_runs(run, tables, here, figures, monkeypatch, command):
+    monkeypatch.setattr(config, "read_grids", lambda path: SMALL)
+    (here / "data").mkdir()
+    (here / "data" / "tables").symlink_to(tables)
+    example = run(*command.split(), "--help").partition("example:\n  viscoroll ")[2]
+    if command in ("tables", "tables build"):
+        example = example.replace("-o data/tables", "-o built")
+    assert run(*shlex.split(example)) or list(here.glob("*.nc")) or list(here.glob("*.png"))
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        ("", "COMMAND"),
+        ("rol", "invalid choice: 'rol'"),
+        ("tables", "COMMAND"),
+        ("tables make", "invalid choice: 'make'"),
+        ("contact --V 1 --delta 0", "scene = nothing"),
+        ("contact --alpha 2 --mu 1 --V 1 --delta 0", "scene = --alpha, --mu"),
+        ("contact --preset paper --V 1 --delta 0", "preset = 'paper'"),
+        ("contact --preset paper-section-5 --scene s.toml --V 1 --delta 0", "not allowed with"),
+        ("contact --scene s.toml --V 1 --delta 0", "s.toml: cannot be read"),
+        ("contact --preset paper-section-5 --alpha 0.5 --V 1 --delta 0", "alpha = 0.5"),
+        ("contact --preset paper-section-5 --mu nan --V 1 --delta 0", "mu = nan"),
+        ("contact --preset paper-section-5 --kappa 0 --V 1 --delta 0", "kappa = 0"),
+        ("contact --preset paper-section-5 --kappa x --V 1 --delta 0", "--kappa: 'x' must be a number"),
+        ("contact --preset paper-section-5 --V 1 --delta 0 --colour red", "--colour"),
+    ],
+)
+def test_refused_command_line_and_scene(refuse, argv, words):
+    assert words in refuse(*argv.split())
+
+
+def test_misspelt_key_of_a_scene_file(refuse, here):
+    (here / "s.toml").write_text("[scene]\nalhpa = 11\n")
+    assert "did you mean 'alpha'?" in refuse("contact", "--scene", "s.toml", "--V", "1", "--delta", "0")
+
+
+@pytest.mark.parametrize("name", ["missing/out.csv", "file/out.csv", "folder.csv", "out", "out.xlsx"])
+@pytest.mark.parametrize(
+    "argv",
+    [
+        ["contact", *PRESET, "--V", "1", "--delta", "0"],
+        ["roll", *START, "--t-end", "1e-3"],
+        ["ensemble", *DRAWN, "--t-end", "1e-3"],
+    ],
+)
+def test_unwritable_output(refuse, here, argv, name):
+    (here / "file").write_text("as it was")
+    (here / "folder.csv").mkdir()
+    assert name in refuse(*argv, "-o", name)
+
+
+@pytest.mark.parametrize("suffix", ["txt", "csv", "nc"])
+def test_failed_write_leaves_the_old_file(refuse, here, monkeypatch, suffix):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    (here / f"out.{suffix}").write_text("as it was")
+    monkeypatch.setattr(os, "replace", full)
+    assert "No space left" in refuse("contact", *PRESET, "--V", "1", "--delta", "0", "-o", f"out.{suffix}")
+
+
+# --- contact and stress ---
+
+
+def test_contact_text_of_one_point(run):
+    out = run("contact", *PRESET, "--V", "0.5", "--delta", "0.01", "--fields", "Q,lam")
+    state = vr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.01)
+    assert re.search(rf"Q = {state.Q:.10g} +traction over load", out)
+    assert f"lam = {state.lam:.10g}" in out
+    assert "beta" not in out
+    assert f"alpha = {vr.PAPER_SECTION_5.alpha:.10g}" in out
+
+
+def test_contact_csv_and_netcdf_hold_the_same_bits(run, here):
+    argv = ["contact", *PRESET, "--mu", "0.3", "--V", "-1:1:3,2", "--omega", "1e-3:1:4:log", "--slopes"]
+    for name in ("a.csv", "a.nc"):
+        assert run(*argv, "-o", name) == ""
+    V, omega = np.array([-1.0, 0.0, 1.0, 2.0]), np.geomspace(1e-3, 1.0, 4)
+    expected = vr.contact(vr.PAPER_SECTION_5.replace(mu=0.3), V[:, None], omega=omega, slopes=True).as_dict()
+    columns = rows((here / "a.csv").read_text())
+    assert set(columns) == {"alpha", "kappa", "mu", "V", "omega", *expected}
+    assert np.array_equal(columns["V"], np.repeat(V, 4))
+    assert np.array_equal(columns["omega"], np.tile(omega, 4))
+    assert (columns["mu"] == 0.3).all()
+    with xr.open_dataset(here / "a.nc", engine="h5netcdf") as dataset:
+        assert dataset.attrs["mu"] == 0.3
+        assert dataset["Q"].attrs["equation"] == "Eqs. (15), (17)"
+        for name, values in expected.items():
+            assert dataset[name].dims == ("V", "omega")
+            assert np.array_equal(dataset[name].values, values)
+            assert np.array_equal(columns[name], np.ravel(values))
+
+
+def test_contact_text_file_and_methods(run, here):
+    argv = ["contact", *PRESET, "--V", "1,2", "--delta", "-1e-3"]
+    assert run(*argv, "--method", "direct", "-o", "b.txt") == ""
+    direct, table = (here / "b.txt").read_text(), run(*argv)
+    assert re.sub(r"\S*\d\S*", "", direct).split() == re.sub(r"\S*\d\S*", "", table).split()
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        ("--V 1", "delta, omega = neither"),
+        ("--V 1 --delta 0 --omega 1", "delta, omega = both"),
+        ("--delta 0", "--V"),
+        ("--V nan --delta 0", "V = nan"),
+        ("--V 1 --delta -inf", "delta = -inf"),
+        ("--V 1 --delta 0 --fields Q,R", "fields = 'R'"),
+        ("--V 1 --delta 0 --method guess", "method = 'guess'"),
+        ("--V 1 --delta 0 --method direct --slopes", "slopes"),
+        ("--V one --delta 0", "--V: 'one' must be a number, LOW:HIGH:COUNT"),
+        ("--V 1:2 --delta 0", "'1:2' must be"),
+        ("--V 1:2:2.5 --delta 0", "'1:2:2.5' must be"),
+        ("--V 2:1:5 --delta 0", "high = 1.0: must be > low = 2"),
+        ("--V 1:2:1 --delta 0", "count = 1"),
+        ("--V 0:1:5:log --delta 0", "low = 0.0"),
+        ("--V 0:1:5:cubic --delta 0", "spacing = 'cubic'"),
+        ("--V 1, --delta 0", "'' must be"),
+        ("--V -1:nan:3 --delta 0", "high = nan"),
+    ],
+)
+def test_refused_contact(refuse, argv, words):
+    assert words in refuse("contact", *PRESET, *argv.split())
+
+
+@pytest.mark.parametrize("V", ["0.5", "-0.5"])
+def test_stress_across_the_contact(run, here, V):
+    run("stress", *PRESET, "--V", V, "--delta", "0.01", "-o", "s.csv")
+    run("stress", *PRESET, "--V", V, "--delta", "0.01", "-o", "s.nc")
+    columns = rows((here / "s.csv").read_text())
+    assert (np.diff(columns["x"]) > 0.0).all()
+    assert (columns["p"][1:-1] > 0.0).all()
+    assert columns["p"][[0, -1]] == pytest.approx(0.0, abs=tol.CLI_EDGE * columns["p"].max())
+    assert np.array_equal(columns["tau"], vr.stress(vr.PAPER_SECTION_5, columns["x"], float(V), delta=0.01).tau)
+    with xr.open_dataset(here / "s.nc", engine="h5netcdf") as dataset:
+        assert np.array_equal(dataset["tau"].values, columns["tau"])
+        assert np.array_equal(dataset["x"].values, columns["x"])
+        assert dataset.attrs["lam"] == columns["lam"][0]
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [("--V 1", "neither"), ("--V 1 --delta 0 --x nan", "x = nan"), ("--V 1,2 --delta 0", "'1,2' must be a number")],
+)
+def test_refused_stress(refuse, argv, words):
+    assert words in refuse("stress", *PRESET, *argv.split())
+
+
+# --- roll and ensemble ---
+
+
+def test_roll_text(run):
+    out = run("roll", *PRESET, "--ic", "IC1", "--t-end", "3e-3")
+    motion = vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, 3e-3)
+    assert f"onset of partial slip: t = {motion.onset_time:.12g}" in out
+    assert f"ended: {motion.message}" in out
+    assert f"20 of {motion.t.size} output times are shown" in out
+    assert len(out.splitlines()) < 30
+
+
+def test_roll_csv_and_netcdf_hold_the_same_bits(run, here):
+    argv = ["roll", *START, "--times", "0:3e-3:7", "--rtol", "1e-6", "--rest", "1e-2"]
+    for name in ("m.csv", "m.nc"):
+        out = run(*argv, "-o", name)
+        assert "rest threshold crossed" in out
+        assert "fell below the rest threshold" in out
+    expected = vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, np.linspace(0.0, 3e-3, 7), 1e-6, rest=1e-2)
+    table = list(csv.DictReader(io.StringIO((here / "m.csv").read_text())))
+    assert [row["regime"] for row in table] == ["full slip"] + 5 * ["partial slip"] + ["rest"]
+    with xr.open_dataset(here / "m.nc", engine="h5netcdf", decode_times=False) as dataset:
+        for name in ("t", "V", "omega", "x", "angle", "delta"):
+            assert np.array_equal([float(row[name]) for row in table], getattr(expected, name), equal_nan=True)
+            assert np.array_equal(dataset[name].values, getattr(expected, name), equal_nan=True)
+        assert dataset.attrs["onset_time"] == expected.onset_time
+
+
+def test_roll_says_how_an_unfinished_motion_ended(run, monkeypatch):
+    import viscoroll.motion
+
+    roll = viscoroll.motion.roll
+    monkeypatch.setattr(viscoroll.motion, "roll", lambda *args, **options: roll(*args, **options, max_steps=20))
+    out = run("roll", *START, "--times", "0,3e-3")
+    assert "ended: the step limit was reached first" in out
+    assert "not reached" in out
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        ("--t-end 1", "start = nothing"),
+        ("--V0 1 --t-end 1", "start = --V0"),
+        ("--ic IC1 --V0 1 --omega0 1 --t-end 1", "start = --V0, --omega0, --ic"),
+        ("--ic IC4 --t-end 1", "ic = 'IC4'"),
+        ("--ic IC1", "--t-end --times"),
+        ("--ic IC1 --t-end 1 --times 1,2", "not allowed with"),
+        ("--ic IC1 --times 1,0.5", "ascending"),
+        ("--ic IC1 --times -1:1:5", "t = -1.0"),
+        ("--ic IC1 --t-end nan", "t = nan"),
+        ("--ic IC1 --t-end 1 --rtol 1", "rtol = 1.0"),
+        ("--ic IC1 --t-end 1 --rest -1e-3", "rest = -0.001"),
+        ("--V0 nan --omega0 1 --t-end 1", "V0 = nan"),
+        ("--V0 1 --omega0 1e200 --t-end 1", "omega0 = 1e+200"),
+        ("--V0 uniform:0:1 --omega0 1 --t-end 1", "'uniform:0:1' must be a number"),
+    ],
+)
+def test_refused_roll(refuse, argv, words):
+    assert words in refuse("roll", *PRESET, *argv.split())
+
+
+def test_ensemble(run, here):
+    argv = ["ensemble", *DRAWN, "--seed", "7", "--design", "sobol", "--mu", "uniform:0.1:0.3", "--times", "1e-3,3e-3"]
+    for name in ("e.nc", "e.csv"):
+        out = run(*argv, "-o", name)
+        assert "Ensemble of 8 motions" in out
+        assert "8 motions reached the last output time" in out
+    from scipy import stats
+
+    drawn = vr.sampling.sample(
+        8, 7, "sobol", V0=stats.uniform(-2, 4), omega0=stats.norm(0, 1), mu=stats.uniform(0.1, 0.3 - 0.1)
+    )
+    scene = vr.PAPER_SECTION_5.replace(mu=drawn["mu"])
+    expected = vr.ensemble(scene, drawn["V0"], drawn["omega0"], [1e-3, 3e-3])
+    columns = rows((here / "e.csv").read_text())
+    with xr.open_dataset(here / "e.nc", engine="h5netcdf", decode_times=False) as dataset:
+        for name in ("V", "omega", "x"):
+            assert np.array_equal(dataset[name].values, getattr(expected, name))
+            assert np.array_equal(columns[name].reshape(8, 2), getattr(expected, name))
+        assert np.array_equal(dataset["mu"].values, drawn["mu"])
+        assert np.array_equal(columns["mu"][::2], drawn["mu"])
+        assert (dataset.attrs["seed"], dataset.attrs["design"]) == (7, "sobol")
+        assert dataset.attrs["drawn_V0"] == "scipy.stats.uniform(-2, 4)"
+
+
+def test_ensemble_summary(run, here):
+    argv = ["ensemble", *DRAWN, "--t-end", "1e-3"]
+    out = run(*argv)
+    assert run(*argv, "-o", "e.txt") == ""
+    assert (here / "e.txt").read_text() == out
+    assert re.search(r"^ +V  0\.001 ", out, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        ("-n 0", "'0' must be a whole number in [1,"),
+        ("-n 1.5", "'1.5' must be a whole number"),
+        ("--seed -1", "seed = -1"),
+        ("--seed x", "'x' must be a whole number"),
+        ("--design grid", "design = 'grid'"),
+        ("--V0 uniform:2:1", "HIGH > LOW"),
+        ("--V0 uniform:0:inf", "finite"),
+        ("--V0 uniform:0", "uniform:LOW:HIGH"),
+        ("--V0 normal:0:0", "SD > 0"),
+        ("--V0 normal", "normal:MEAN:SD"),
+        ("--V0 cauchy:0:1", "uniform:LOW:HIGH or normal:MEAN:SD"),
+        ("--V0 nan", "V0 = nan"),
+        ("--mu normal:0:1", "mu = -"),
+        ("--alpha uniform:0:1", "alpha = 0."),
+        ("--times 2,1", "ascending"),
+        ("--rtol nan", "rtol = nan"),
+    ],
+)
+def test_refused_ensemble(refuse, argv, words):
+    time = [] if "--times" in argv else ["--t-end", "1e-3"]
+    assert words in refuse("ensemble", *DRAWN, *time, *argv.split())
+
+
+# --- tables ---
+
+
+def test_tables_build(run, here):
+    (here / "grids.toml").write_text(
+        "[tables.atlas]\nnodes = [4, 5, 6]\n[tables.paper]\nV = [0.1, 0.2]\ndelta = [0.0, 0.01]\nalpha = [1.0, 11.0]\n"
+    )
+    out = run("tables", "build", "--config", "grids.toml", "-o", "new/folder")
+    assert [line.partition(":")[0] for line in out.splitlines()] == ["new/folder/atlas.nc", "new/folder/paper.nc"]
+    assert vr.tables.load("new/folder/atlas.nc")["beta"].shape == (4, 5, 6)
+    assert vr.tables.load("new/folder/paper.nc")["Q"].shape == (2, 2, 2)
+    assert sorted(path.name for path in (here / "new" / "folder").iterdir()) == ["atlas.nc", "paper.nc"]
+
+
+def test_tables_export_and_info(run):
+    assert run(*EXPORT, "--alpha", "1,11", "-o", "t.nc") == ""
+    table = vr.tables.load("t.nc")
+    assert table["V"].values.tolist() == np.geomspace(0.1, 1.0, 5).tolist()
+    state = vr.contact(vr.Scene(11.0, 2.91, 0.2), 1.0, delta=0.01, method="direct")
+    assert table["Q"].values[-1, 5, 1] == pytest.approx(state.Q, abs=tol.DIRECT_TRACTION)
+    assert run("tables", "info", "t.nc").startswith("t.nc: literal table")
+
+
+@pytest.mark.parametrize("name", ["atlas.nc", "paper.nc"])
+def test_tables_validate(run, tables, name):
+    out = run("tables", "validate", str(tables / name), "-n", "500", "--seed", "3")
+    assert "between nodes" in out
+    assert "EXCEEDED" not in out
+
+
+@pytest.mark.parametrize(("name", "field"), [("atlas.nc", "Q_over_mu"), ("paper.nc", "M")])
+def test_tables_validate_finds_wrong_numbers(capsys, tables, name, field):
+    table = vr.tables.load(tables / name)
+    table[field] = table[field] + tol.CLI_WRONG
+    vr.tables.save(table, name)  # with a hash that agrees
+    assert main(["tables", "validate", name, "-n", "500"]) == 1
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert {line.split()[0] for line in out.splitlines() if "EXCEEDED" in line} == {field}
+
+
+def test_tables_validate_finds_too_coarse_a_table(capsys, tables):
+    table = vr.tables.load(tables / "atlas.nc")
+    table["beta"].attrs["interpolation_error_allowed"] = 1e-6
+    vr.tables.save(table, "coarse.nc")
+    assert main(["tables", "validate", "coarse.nc", "-n", "10"]) == 1
+    assert re.search(r"beta +as stated .* EXCEEDED", capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("command", ["info", "validate"])
+def test_refused_table_file(refuse, here, tables, command):
+    assert "does not exist" in refuse("tables", command, "missing.nc")
+    (here / "text.nc").write_text("not a table")
+    assert "text.nc: is not an HDF5 file" in refuse("tables", command, "text.nc")
+    whole = (tables / "paper.nc").read_bytes()
+    (here / "half.nc").write_bytes(whole[: len(whole) // 2])
+    assert "half.nc" in refuse("tables", command, "half.nc")
+    assert "." in refuse("tables", command, str(here))
+
+
+def test_table_without_stated_errors(refuse, tables, here):
+    table = vr.tables.load(tables / "paper.nc")
+    del table["Q"].attrs["interpolation_error"]
+    vr.tables.save(table, "silent.nc")
+    assert "'Q' states no interpolation_error" in refuse("tables", "validate", "silent.nc")
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["tables", "build", "--config", "missing.toml"], "missing.toml: cannot be read"),
+        (["tables", "build", "-o", "file"], "file: cannot be made a folder"),
+        (["tables", "build", "-o", "file/folder"], "file/folder: cannot be made a folder"),
+        (["tables", "validate", "t.nc", "-n", "0"], "'0' must be"),
+        ([*EXPORT, "--alpha", "1", "-o", "t.csv"], "'t.csv' must end in .nc"),
+        ([*EXPORT, "--alpha", "1"], "-o"),
+        ([*EXPORT, "--alpha", "0.5", "-o", "t.nc"], "alpha = 0.5"),
+        ([*EXPORT, "--alpha", "11,1", "-o", "t.nc"], "alpha"),
+        ([*EXPORT, "--alpha", "1", "--V", "0", "-o", "t.nc"], "V = 0"),
+        ([*EXPORT, "--alpha", "1", "--mu", "-1", "-o", "t.nc"], "mu = -1"),
+    ],
+)
+def test_refused_tables(refuse, here, argv, words):
+    (here / "file").write_text("as it was")
+    assert words in refuse(*argv)
+
+
+def test_negative_seed_of_validate(refuse, tables):
+    assert "seed = -1" in refuse("tables", "validate", str(tables / "paper.nc"), "--seed", "-1")
+
+
+# --- plot ---
+
+
+def test_plot(run, figures, here):
+    assert run("plot", "figure-5", "-o", "f.png") == ""
+    assert (here / "f.png").read_text() == "the figure"
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        ("figure-9 -o f.png", "plot = 'figure-9': must be out of figure-5"),
+        ("figure-5", "-o"),
+        ("figure-5 -o f.gif", "'f.gif'"),
+    ],
+)
+def test_refused_plot(refuse, figures, argv, words):
+    assert words in refuse("plot", *argv.split())

@@ -1,0 +1,283 @@
+"""The public interface, light imports, one-way layers, and the cache of compiled kernels."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import inspect
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+
+import viscoroll as vr
+from viscoroll.kernels import jit
+
+PACKAGE = Path(vr.__file__).parent
+HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}
+#: from the bottom to the top; a module imports from its own layer or from below
+LAYERS = (
+    {"kernels", "errors"},
+    {"scene", "blocks", "files", "sampling", "symbols"},
+    {"rolling_contact", "reference"},
+    {"tables", "motion"},
+    {"validation"},
+    {"figures"},
+    {"config"},
+    {"cli"},
+    {"__main__"},
+)
+
+
+def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", code], env=os.environ | environment, capture_output=True, text=True, timeout=120
+    )
+
+
+# --- the public interface ---
+
+
+def parameters(function) -> list[str]:
+    return list(inspect.signature(function).parameters)
+
+
+def test_documented_names():
+    """The spellings that the documentation promises."""
+    assert parameters(vr.contact)[:4] == ["scene", "V", "delta", "omega"]
+    assert {"fields", "slopes", "method"} <= set(parameters(vr.contact))
+    assert parameters(vr.stress)[:4] == ["scene", "x", "V", "delta"]
+    assert parameters(vr.roll)[:5] == ["scene", "V0", "omega0", "t", "rtol"]
+    assert {"rest", "max_steps"} <= set(parameters(vr.roll))
+    assert inspect.signature(vr.roll).parameters["rtol"].default == 1e-8
+    assert parameters(vr.ensemble)[:4] == ["scene", "V0", "omega0", "t"]
+    assert [f.name for f in dataclasses.fields(vr.Scene)] == ["alpha", "kappa", "mu", "gamma", "j"]
+    assert [f.name for f in dataclasses.fields(vr.Cylinder)] == [
+        "R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "plane",
+    ]  # fmt: skip
+    for preset in (vr.PAPER_SECTION_5, vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_FIGURES_2_3):
+        assert isinstance(preset, vr.Scene)
+    for name in ("build", "save", "load", "interpolate"):
+        assert callable(getattr(vr.tables, name))
+    assert issubclass(vr.ParameterError, vr.ViscorollError)
+
+
+def test_documented_results():
+    state = vr.contact(vr.PAPER_SECTION_5, 0.3, delta=0.001, slopes=True)
+    for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M", "zeta", "full_slip"):
+        assert hasattr(state, name)
+    for name in ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV"):
+        assert hasattr(state, name)
+    motion = vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, 1e-4)
+    for name in ("t", "V", "omega", "x", "angle", "delta", "regime", "switches", "onset_time", "status", "message"):
+        assert hasattr(motion, name)
+    for name in ("contact", "at", "to_xarray"):
+        assert callable(getattr(motion, name))
+    many = vr.ensemble(vr.PAPER_SECTION_5, [1.5], [0.5], [1e-4])
+    for name in ("V", "omega", "x", "onset_time", "status"):
+        assert hasattr(many, name)
+
+
+def test_every_public_name_loads():
+    assert dir(vr) == sorted(vr.__all__)
+    for name in vr.__all__:
+        assert getattr(vr, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'contacts'"):
+        _ = vr.contacts
+    assert all(status in vr.MOTION_STATUS for status in vr.MotionStatus)
+
+
+def test_every_error_is_a_viscoroll_error():
+    errors = [getattr(vr, name) for name in vr.__all__ if name.endswith("Error")]
+    assert len(errors) >= 7
+    assert all(issubclass(error, vr.ViscorollError) for error in errors)
+
+
+def test_the_table_of_coefficients_ships_small():
+    assert (PACKAGE / "kernels" / "ratios.npy").stat().st_size < 300_000
+    assert (PACKAGE / "py.typed").exists()
+
+
+# --- imports ---
+
+
+@pytest.mark.parametrize(
+    "code", ["import viscoroll", "import viscoroll as vr; vr.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.ParameterError"]
+)
+def test_import_is_light(code):
+    done = run(f"{code}\nimport sys\nprint(*{{name.split('.')[0] for name in sys.modules}})")
+    assert done.returncode == 0, done.stderr
+    assert not HEAVY & set(done.stdout.split())
+
+
+def imports_of(path: Path) -> set[str]:
+    """First components, within the package, of everything the module imports, inside functions too."""
+    inside = path.relative_to(PACKAGE).parts[:-1]
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split(".")[1] for alias in node.names if alias.name.startswith("viscoroll.")}
+        elif isinstance(node, ast.ImportFrom) and node.level:
+            base = inside[: len(inside) - node.level + 1]
+            whole = (*base, *(node.module.split(".") if node.module else ()))
+            found |= {whole[0]} if whole else {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("viscoroll."):
+            found.add(node.module.split(".")[1])
+    return found - {"__version__"}
+
+
+def test_layers_point_one_way():
+    level = {name: n for n, names in enumerate(LAYERS) for name in names}
+    for path in PACKAGE.rglob("*.py"):
+        home = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+        if home == "__init__":
+            continue
+        assert home in level, f"{home} has no layer"
+        for name in imports_of(path) - {home}:
+            assert level[name] <= level[home], f"{path.name} in {home} imports {name}"
+            assert home != "kernels" or name == "kernels", f"{path.name} in kernels imports {name}"
+
+
+def test_kernels_import_numpy_and_numba_only():
+    for path in (PACKAGE / "kernels").glob("*.py"):
+        names = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names |= {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                names.add(node.module.split(".")[0])
+        assert names <= {"numpy", "numba"} | set(sys.stdlib_module_names), path.name
+
+
+# --- the cache of compiled kernels ---
+
+FACTOR = 3.0
+
+
+def scaled(x):
+    return FACTOR * x
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch) -> Path:
+    """A cache folder of its own that holds ``scaled`` for one signature."""
+    if numba.config.DISABLE_JIT:
+        pytest.skip("compilation is off")
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
+    assert fresh() == 0
+    return tmp_path / f"kernels-{jit.sources_digest()}"
+
+
+def fresh() -> int:
+    """Use the kernel as a new process would: the value is right; returns the number of cache hits."""
+    function = jit.kernel(scaled)
+    assert function(2.0) == 6.0
+    return sum(function.stats.cache_hits.values())
+
+
+def files(folder: Path, kind: str) -> list[Path]:
+    found = sorted(folder.glob(f"*{kind}"))
+    assert found
+    return found
+
+
+def test_second_use_is_from_the_cache(cache):
+    assert fresh() == 1
+    assert len(files(cache, ".nbc")) == len(files(cache, ".nbi")) == 1
+
+
+DAMAGE = {
+    "flipped early": lambda content: content[:40] + bytes([content[40] ^ 255]) + content[41:],
+    "flipped middle": lambda content: (at := len(content) // 2, content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :])[1],
+    "flipped late": lambda content: content[:-3] + bytes([content[-3] ^ 16]) + content[-2:],
+    "truncated": lambda content: content[: len(content) // 2],
+    "one byte short": lambda content: content[:-1],
+    "empty": lambda content: b"",
+    "zeros": lambda content: bytes(len(content)),
+    "text": lambda content: b"not a cache file\n",
+}
+
+
+@pytest.mark.parametrize("kind", [".nbc", ".nbi"])
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
+def test_a_damaged_file_is_replaced(cache, kind, damage):
+    """The value is right, and the time after that it comes from the cache again."""
+    for path in files(cache, kind):
+        path.write_bytes(damage(path.read_bytes()))
+    fresh()
+    fresh()
+    assert fresh() == 1
+
+
+@pytest.mark.parametrize("kind", [".nbc", ".nbi"])
+def test_a_missing_file_is_replaced(cache, kind):
+    for path in files(cache, kind):
+        path.unlink()
+    assert fresh() == 0
+    assert fresh() == 1
+
+
+def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
+    """A file where the folder should be: stops even the superuser."""
+    if numba.config.DISABLE_JIT:
+        pytest.skip("compilation is off")
+    obstacle = tmp_path / "file"
+    obstacle.write_text("in the way")
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(obstacle))
+    jit._note_cache_trouble.cache_clear()
+    with pytest.warns(RuntimeWarning, match="compiled kernels are not cached"):
+        assert fresh() == 0
+    assert fresh() == 0  # once is enough
+    jit._note_cache_trouble.cache_clear()
+
+
+def test_a_process_with_a_damaged_cache(tmp_path):
+    """The real thing, end to end: a kernel that calls others, every file of its cache spoilt."""
+    code = "from viscoroll.kernels.ratios import ratio_r\nprint(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))"
+    first = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+    assert first.stdout == "0.4463899658965345 0\n", first.stderr
+    for path in tmp_path.rglob("*.nb?"):
+        content = bytearray(path.read_bytes())
+        content[len(content) // 3] ^= 255
+        path.write_bytes(content)
+    for hits in (0, 1):
+        again = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+        assert again.stdout == f"0.4463899658965345 {hits}\n", again.stderr
+        assert again.stderr == ""
+
+
+def test_a_process_without_a_cache_folder(tmp_path):
+    obstacle = tmp_path / "file"
+    obstacle.write_text("in the way")
+    code = "from viscoroll.kernels.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
+    done = run(code, VISCOROLL_CACHE_DIR=str(obstacle))
+    assert done.stdout == "0.4463899658965345\n", done.stderr
+    assert done.stderr.count("compiled kernels are not cached") == 1
+
+
+@pytest.mark.parametrize("name", ["law.py", "ratios.npy", "jit.py"])
+def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, name):
+    """numba's own cache would not notice a change in a function called from another module."""
+    copy = tmp_path / "kernels"
+    shutil.copytree(jit.HERE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    digest = jit.sources_digest.__wrapped__
+    before = digest()
+    monkeypatch.setattr(jit, "HERE", copy)
+    assert digest() == before
+    with (copy / name).open("ab") as file:
+        file.write(b" ")
+    assert digest() != before
+
+
+def test_cache_folder_follows_the_environment(monkeypatch):
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", "/somewhere/else")
+    assert jit.cache_root() == Path("/somewhere/else")
+    monkeypatch.delenv("VISCOROLL_CACHE_DIR")
+    monkeypatch.setenv("XDG_CACHE_HOME", "/xdg")
+    assert jit.cache_root() == Path("/xdg/viscoroll")
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    assert jit.cache_root() == Path.home() / ".cache" / "viscoroll"

@@ -1,0 +1,180 @@
+"""What the documentation says runs, points somewhere, and shows the numbers that were measured."""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll.reference import MissingDependencyError, contact_precise
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, *arguments], check=False, cwd=ROOT, capture_output=True, text=True)
+
+
+def test_readme_block_runs(capsys):
+    code = blocks(ROOT / "README.md", "python")[0]
+    assert len([line for line in code.splitlines() if line.strip()]) <= 15
+    exec(compile(code, "README.md", "exec"), {})
+    assert "(1000, 2)" in capsys.readouterr().out
+
+
+def test_howto_blocks_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    session: dict = {}
+    for n, code in enumerate(blocks(ROOT / "docs/howto.md", "python")):
+        exec(compile(code, f"howto.md, block {n + 1}", "exec"), session)
+    assert (tmp_path / "motion.nc").exists()
+
+
+def test_howto_scene_files_are_read(tmp_path):
+    from viscoroll.config import read_scene
+
+    for text in blocks(ROOT / "docs/howto.md", "toml"):
+        (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+        assert isinstance(read_scene(tmp_path / "scene.toml"), vr.Scene)
+
+
+def test_table_snippets_parse():
+    for code in blocks(ROOT / "README.md", "python"):
+        ast.parse(code)
+
+
+def test_table_snippets_run_on_a_table(tmp_path, monkeypatch):
+    grid = vr.tables.LiteralGrid(kappa=2.91, mu=0.2, V=[0.4, 0.6], delta=np.linspace(-0.02, 0.02, 5), alpha=[8.0, 11.0])
+    (tmp_path / "data/tables").mkdir(parents=True)
+    vr.tables.save(vr.tables.build(grid), tmp_path / "data/tables/paper.nc")
+    monkeypatch.chdir(tmp_path)
+    session: dict = {}
+    for code in blocks(ROOT / "README.md", "python")[1:]:
+        exec(compile(code, "README.md", "exec"), session)
+    assert 0.0 < float(session["beta"]) < 1.0
+    assert session["Q"].shape == (2, 5, 2)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_relative_links_exist(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        if target.startswith(("http://", "https://")):
+            continue
+        name, _, anchor = target.partition("#")
+        found = (page.parent / name).resolve() if name else page
+        assert found.exists(), target
+        if anchor:
+            headings = re.findall(r"^#+ (.+)$", found.read_text(encoding="utf-8"), re.MULTILINE)
+            assert anchor in [re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings], target
+
+
+def test_files_named_in_the_text_exist():
+    named = r"`((?:tests|pipeline|kernels|data/reference)/[\w./]+\.\w+)`"
+    for page in PAGES:
+        for name in re.findall(named, page.read_text(encoding="utf-8")):
+            found = ROOT / "src/viscoroll" / name if name.startswith("kernels/") else ROOT / name
+            assert found.exists(), f"{page.name}: {name}"
+
+
+def test_blocks_show_the_measured_numbers():
+    result = run("pipeline/document.py", "--check")
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_document_fills_and_refuses(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("before\n<!-- measured:stress -->\nold\n<!-- end -->\nafter\n", encoding="utf-8")
+    assert run("pipeline/document.py", "--check", str(page)).returncode == 1
+    assert run("pipeline/document.py", str(page)).returncode == 0
+    filled = page.read_text(encoding="utf-8")
+    assert re.fullmatch(r"before\n.*\nafter\n", filled, re.DOTALL)
+    assert "old" not in filled
+    assert run("pipeline/document.py", "--check", str(page)).returncode == 0
+    for text in ("<!-- measured:stress -->\n", "<!-- measured:nothing -->\n<!-- end -->\n"):
+        page.write_text(text, encoding="utf-8")
+        result = run("pipeline/document.py", str(page))
+        assert result.returncode == 2
+        assert result.stderr.startswith("document: ")
+        assert page.read_text(encoding="utf-8") == text
+
+
+def test_measure_runs_and_document_reads_it(tmp_path):
+    results, page = tmp_path / "measured.json", tmp_path / "README.md"
+    result = run("pipeline/measure.py", "--quick", "-o", str(results))
+    assert result.returncode == 0, result.stderr
+    measured = json.loads(results.read_text(encoding="utf-8"))
+    committed = json.loads((ROOT / "data/results/measured.json").read_text(encoding="utf-8"))
+    assert measured.keys() == committed.keys()
+    assert all(field["worst"] <= tol.MEASURED_CONTACT for field in measured["contact_error"].values())
+    page.write_text("<!-- measured:headline -->\n<!-- end -->\n", encoding="utf-8")
+    assert run("pipeline/document.py", "--results", str(results), str(page)).returncode == 0
+
+
+def test_measure_refuses_a_configuration_without_its_section(tmp_path):
+    (tmp_path / "empty.toml").write_text("", encoding="utf-8")
+    result = run("pipeline/measure.py", "--config", str(tmp_path / "empty.toml"), "-o", str(tmp_path / "out.json"))
+    assert result.returncode == 1
+    assert "[measure]" in result.stderr
+    assert not (tmp_path / "out.json").exists()
+
+
+def test_committed_sizes_are_those_of_production():
+    measured = json.loads((ROOT / "data/results/measured.json").read_text(encoding="utf-8"))
+    section = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["measure"]
+    del section["quick"]
+    assert measured["sizes"] == section
+
+
+STATES = [
+    (11.0, 2.91, 0.2, 0.5, -0.01),
+    (1e4, 29.1, 0.3, -1e3, 1e-6),
+    (1.0 + 1e-8, 2.91, 0.2, 0.3, 0.02),
+    (81.5, 29.1, 0.2, 1e-8, 0.0034),
+    (1.0, 2.91, 0.2, 1.0, 0.01),
+    (11.0, 2.91, 0.2, 0.5, 0.5),
+]
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_precise_values_hold_their_digits(state):
+    few, many = contact_precise(*state, digits=20), contact_precise(*state, digits=50)
+    double = vr.contact(vr.Scene(*state[:3]), state[3], delta=state[4])
+    to_the_limit = abs(1.0 - float(abs(state[4]) / many["delta_star"]))
+    for name, exact in many.items():
+        with mpmath.workdps(60):
+            assert abs(few[name] - exact) <= mpmath.mpf(10) ** -20 * abs(exact), name
+        condition = 1.0 / to_the_limit if name == "beta" else 1.0
+        assert getattr(double, name) == pytest.approx(float(exact), rel=tol.MEASURED_CONTACT * condition, abs=0.0)
+
+
+def test_precise_refuses():
+    for bad in ((0.5, 1, 1, 1, 0), (2, 1, 1, 0.0, 0), (2, 1, 1, 1, float("nan")), (2, 1, 1, [1.0, 2.0], 0)):
+        with pytest.raises(vr.ParameterError):
+            contact_precise(*bad)
+    with pytest.raises(vr.ParameterError, match="digits"):
+        contact_precise(2, 1, 1, 1, 0, digits=3)
+
+
+def test_precise_without_mpmath(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mpmath", None)
+    with pytest.raises(MissingDependencyError, match="mpmath"):
+        contact_precise(11.0, 2.91, 0.2, 0.5, 0.01)
+
+
+def test_citation_names_this_version_and_the_paper():
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"version: {vr.__version__}\n" in text
+    assert "doi: 10.1007/s00707-020-02643-5" in text

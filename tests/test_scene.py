@@ -1,0 +1,185 @@
+"""Scene, Cylinder and the paper's presets."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll.scene import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+
+SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
+
+
+def test_the_papers_dimensional_list_gives_its_numbers():
+    """Sect. 3.1 and Eq. (4): alpha = 11.031, kappa = 2.9210, gamma = 11231."""
+    scene = vr.Cylinder(**SI).scene()
+    assert scene == vr.PAPER_SECTION_5
+    assert scene.alpha == pytest.approx(11.031, abs=5e-4)
+    assert scene.kappa == pytest.approx(2.9210, abs=5e-5)
+    assert scene.gamma == pytest.approx(11231, abs=0.5)
+    assert (scene.mu, scene.j) == (0.2, 0.5)
+
+
+def test_eq_4_spelt_out():
+    cylinder = vr.Cylinder(**SI)
+    P = 35.5 * 9.81
+    E_prime = math.pi * 2.3e5 / (1.0 - 0.49**2)
+    assert cylinder.load == pytest.approx(P, rel=tol.SCENE)
+    assert cylinder.E_prime == pytest.approx(E_prime, rel=tol.SCENE)
+    assert cylinder.l0 == pytest.approx(math.sqrt(32.0 * 0.1 * P / E_prime), rel=tol.SCENE)
+    scene = cylinder.scene()
+    assert scene.alpha == pytest.approx(10.7 / 0.97, rel=tol.SCENE)
+    assert scene.kappa == pytest.approx(math.sqrt(E_prime * 0.1 / (32.0 * P)), rel=tol.SCENE)
+    assert scene.gamma == pytest.approx(P * 10.7**2 / (35.5 * 0.1), rel=tol.SCENE)
+
+
+def test_plane_stress():
+    """E' = pi E: the factor 1/(1 - nu^2) goes."""
+    strain, stress = vr.Cylinder(**SI), vr.Cylinder(**SI, plane="stress")
+    assert stress.E_prime == pytest.approx(math.pi * 2.3e5, rel=tol.SCENE)
+    assert stress.scene().kappa == pytest.approx(strain.scene().kappa * math.sqrt(1.0 - 0.49**2), rel=tol.SCENE)
+    assert stress.scene().gamma == strain.scene().gamma
+
+
+def test_presets():
+    """Figs. 2 and 3 use ten times the kappa of Sects. 4 and 5."""
+    rounded = vr.PAPER_SECTION_5_ROUNDED
+    assert (rounded.alpha, rounded.kappa, rounded.mu, rounded.gamma, rounded.j) == (11.0, 2.91, 0.2, 1.1e4, 0.5)
+    assert vr.PAPER_FIGURES_2_3.kappa == pytest.approx(10.0 * rounded.kappa, rel=tol.SCENE)
+    assert PAPER_CYLINDER.scene() == vr.PAPER_SECTION_5
+    assert set(PRESETS) == {"paper-section-5", "paper-section-5-rounded", "paper-figures-2-3"}
+    assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
+
+
+@pytest.mark.parametrize("value", [1.7, -0.3, 0.0, np.array([1.0, -2.0])])
+def test_round_trips_to_SI(value):
+    cylinder = vr.Cylinder(**SI)
+    for there, back in (
+        (cylinder.V_to_si, cylinder.V_from_si),
+        (cylinder.omega_to_si, cylinder.omega_from_si),
+        (cylinder.t_to_si, cylinder.t_from_si),
+    ):
+        np.testing.assert_allclose(back(there(value)), value, rtol=tol.SCENE)
+        np.testing.assert_allclose(there(back(value)), value, rtol=tol.SCENE)
+
+
+def test_conversions_by_hand():
+    cylinder = vr.Cylinder(**SI)
+    assert cylinder.V_from_si(0.2) == pytest.approx(0.2 * 10.7 / 0.1, rel=tol.SCENE)
+    assert cylinder.omega_from_si(3.0) == pytest.approx(32.1, rel=tol.SCENE)
+    assert cylinder.t_from_si(10.7) == pytest.approx(1.0, rel=tol.SCENE)
+    assert cylinder.x_to_si(2.0) == pytest.approx(0.2, rel=tol.SCENE)
+    # pure rolling stays pure rolling: V_si = omega_si R
+    assert cylinder.V_to_si(0.7) == pytest.approx(cylinder.omega_to_si(0.7) * cylinder.R, rel=tol.SCENE)
+
+
+def test_force_and_torque():
+    """Eqs. (20), (21): F = P (Q - M/2), moment P R (Q + M/2); with Eq. (22) they are Newton's law."""
+    cylinder = vr.Cylinder(**SI)
+    P = cylinder.load
+    assert cylinder.traction_to_si(0.1, 0.03) == pytest.approx(P * 0.085, rel=tol.SCENE)
+    assert cylinder.torque_to_si(0.1, 0.03) == pytest.approx(P * 0.1 * 0.115, rel=tol.SCENE)
+    assert cylinder.traction_to_si([0.1, 0.2], 0.0).shape == (2,)
+    scene = cylinder.scene()
+    Q, M = 0.05, 0.02
+    # (V - j omega)' = 2 gamma Q, (V + j omega)' = -gamma M per unit of T_epsilon
+    acceleration = scene.gamma * (Q - 0.5 * M) * cylinder.R / cylinder.T_epsilon**2
+    spin = scene.gamma * (-Q - 0.5 * M) / scene.j / cylinder.T_epsilon**2
+    assert cylinder.traction_to_si(Q, M) == pytest.approx(cylinder.m * acceleration, rel=tol.SCENE)
+    inertia = scene.j * cylinder.m * cylinder.R**2
+    assert cylinder.torque_to_si(Q, M) == pytest.approx(-inertia * spin, rel=tol.SCENE)
+
+
+def test_frozen():
+    scene = vr.Scene(alpha=[2.0, 3.0], kappa=2.0, mu=0.2)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        scene.mu = 0.3
+    with pytest.raises(ValueError, match="read-only"):
+        scene.alpha[0] = 5.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        vr.Cylinder(**SI).R = 0.2
+
+
+def test_an_array_given_is_copied():
+    alpha = np.array([2.0, 3.0])
+    scene = vr.Scene(alpha, 2.0, 0.2)
+    alpha[0] = 99.0
+    assert scene.alpha[0] == 2.0
+
+
+def test_equality_and_replace():
+    scene = vr.Scene(11, 2.91, 0.2, 1.1e4)
+    assert scene == vr.PAPER_SECTION_5_ROUNDED
+    assert scene != scene.replace(mu=0.3)
+    assert scene.replace(mu=0.3).mu == 0.3
+    assert scene != "scene"
+    assert vr.Scene([2.0, 3.0], 2.0, 0.2) == vr.Scene(np.array([2.0, 3.0]), 2.0, 0.2)
+    assert vr.Scene([2.0, 3.0], 2.0, 0.2) != scene
+    with pytest.raises(vr.ParameterError, match="alpha"):
+        scene.replace(alpha=0.5)
+    assert type(scene.alpha) is float
+
+
+def test_shape():
+    assert vr.PAPER_SECTION_5.shape == ()
+    assert vr.Scene([1.0, 2.0, 3.0], [[1.0], [2.0]], 0.2).shape == (2, 3)
+
+
+BAD_SCENES = [
+    *(({name: bad}, name) for name in ("kappa", "mu", "gamma", "j") for bad in (0.0, -1.0, math.nan, math.inf)),
+    *(({"alpha": bad}, "alpha") for bad in (1.0 - 1e-15, 0.0, -2.0, math.nan, math.inf, "eleven", None)),
+    ({"alpha": [2.0, 0.5]}, "alpha"),
+    ({"kappa": [[1.0, math.nan]]}, "kappa"),
+]
+
+
+@pytest.mark.parametrize("change, name", BAD_SCENES)
+def test_bad_scene(change, name):
+    with pytest.raises(vr.ParameterError) as caught:
+        vr.Scene(**({"alpha": 2.0, "kappa": 2.0, "mu": 0.2} | change))
+    text = str(caught.value)
+    assert text.startswith(f"{name} = ")
+    assert ">" in text
+    assert "\n" not in text
+
+
+def test_bad_value_is_shown():
+    with pytest.raises(vr.ParameterError, match=r"^alpha = 0\.5: must be finite and >= 1$"):
+        vr.Scene([2.0, 0.5], 2.0, 0.2)
+    with pytest.raises(vr.ParameterError, match=r"^mu = -0\.2: must be finite and > 0$"):
+        vr.Scene(2.0, 2.0, -0.2)
+
+
+def test_shapes_that_do_not_broadcast():
+    with pytest.raises(vr.ParameterError, match=r"alpha \(2,\), kappa \(3,\): must be broadcastable"):
+        vr.Scene([1.0, 2.0], [1.0, 2.0, 3.0], 0.2)
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [
+        *(({name: bad}, name) for name in ("R", "m", "E", "mu", "T_sigma") for bad in (0.0, -1.0, math.nan)),
+        ({"nu": 0.51}, "nu"),
+        ({"nu": -1.0}, "nu"),
+        ({"T_epsilon": 0.5}, "T_epsilon"),
+        ({"plane": "bent"}, "plane"),
+        ({"R": [0.1, 0.2]}, "R"),
+        ({"g": 0.0}, "g"),
+        ({"j": -0.5}, "j"),
+    ],
+)
+def test_bad_cylinder(change, name):
+    with pytest.raises(vr.ParameterError, match=f"^{name} = ") as caught:
+        vr.Cylinder(**(SI | change))
+    assert "\n" not in str(caught.value)
+
+
+def test_limits_that_are_allowed():
+    assert vr.Cylinder(**(SI | {"nu": 0.5})).E_prime == pytest.approx(math.pi * 2.3e5 / 0.75, rel=tol.SCENE)
+    assert vr.Cylinder(**(SI | {"T_epsilon": 0.97})).scene().alpha == 1.0
+    assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
