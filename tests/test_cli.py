@@ -254,8 +254,8 @@ def test_contact_text_file_and_methods(run, here):
 @pytest.mark.parametrize(
     ("argv", "words"),
     [
-        ("--V 1", "delta, omega = neither"),
-        ("--V 1 --delta 0 --omega 1", "delta, omega = both"),
+        ("--V 1", "delta, omega given = neither"),
+        ("--V 1 --delta 0 --omega 1", "delta, omega given = both"),
         ("--delta 0", "--V"),
         ("--V nan --delta 0", "V = nan"),
         ("--V 1 --delta -inf", "delta = -inf"),

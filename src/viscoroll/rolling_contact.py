@@ -102,7 +102,7 @@ def contact(
     """
     if (delta is None) == (omega is None):
         both = "both" if delta is not None else "neither"
-        raise ParameterError("delta, omega", both, "given exactly one of")
+        raise ParameterError("delta, omega given", both, "exactly one of the two")
     names = _field_names(fields, slopes, method)
     creep_name = "omega" if delta is None else "delta"
     inputs = {

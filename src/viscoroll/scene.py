@@ -22,7 +22,10 @@ def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool
     """
     allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
     try:
-        array = np.asarray(value, dtype=np.float64)
+        given = np.asarray(value)
+        if given.dtype.kind not in "iuf":
+            raise TypeError
+        array = given.astype(np.float64, copy=False)
     except (TypeError, ValueError):
         raise ParameterError(name, f"{value!r:.60}", allowed) from None
     bad = ~np.isfinite(array) | (array <= low if strict else array < low)

@@ -18,7 +18,7 @@ from .stepper import FULL, PARTIAL, REST, dense_terms, jacobian, step
 DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 
 #: step control: local error per step is kept at this share of rtol
-_SHARE = 0.25
+_SHARE = 0.15
 _D_SHARE = 0.04
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 _MOST_REJECTIONS = 60
