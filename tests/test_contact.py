@@ -66,7 +66,7 @@ def check_against_precise(alpha: float, kappa: float, mu: float, kappa_V: float,
         assert abs(state.beta / exact.beta - 1) <= conditioned, (alpha, kappa_V, s)
 
 
-@pytest.mark.parametrize("alpha, kappa, mu, kappa_V, s", random_states(72, seed=5))
+@pytest.mark.parametrize(("alpha", "kappa", "mu", "kappa_V", "s"), random_states(72, seed=5))
 def test_table_law_against_50_digits(alpha, kappa, mu, kappa_V, s):
     check_against_precise(alpha, kappa, mu, kappa_V, s)
 
@@ -77,7 +77,7 @@ def test_table_law_against_50_digits_anywhere(alpha, kappa_V, s):
     check_against_precise(alpha, KAPPA, MU, kappa_V, s)
 
 
-@pytest.mark.parametrize("alpha, kappa, mu, kappa_V, s", random_states(120, seed=6))
+@pytest.mark.parametrize(("alpha", "kappa", "mu", "kappa_V", "s"), random_states(120, seed=6))
 def test_table_against_direct(alpha, kappa, mu, kappa_V, s):
     """Absolute, as the printed forms cancel: their own errors are the subject of test_direct.py."""
     kappa_V = min(max(kappa_V, 1e-3), 1e3)
@@ -273,7 +273,7 @@ def test_extreme_speeds_stay_finite(V, alpha):
 # --- slopes ---
 
 
-@pytest.mark.parametrize("alpha, kappa, mu, kappa_V, s", random_states(9, seed=8)[1:])
+@pytest.mark.parametrize(("alpha", "kappa", "mu", "kappa_V", "s"), random_states(9, seed=8)[1:])
 def test_slopes_against_50_digits(alpha, kappa, mu, kappa_V, s):
     scene = vr.Scene(alpha, kappa, mu)
     V = kappa_V / kappa
@@ -306,7 +306,7 @@ def test_slope_by_V_at_slight_creep(s):
 
 
 @settings(max_examples=40, deadline=None)
-@given(ALPHAS, st.floats(math.log(1e-2), math.log(1e2)).map(math.exp), st.floats(0.05, 0.9), st.sampled_from([-1.0, 1.0]))
+@given(ALPHAS, st.floats(-4.6, 4.6).map(math.exp), st.floats(0.05, 0.9), st.sampled_from([-1.0, 1.0]))
 def test_slopes_against_differences(alpha, kappa_V, s, sign):
     """All signs, and omega given: central differences in double precision."""
     scene = vr.Scene(alpha, KAPPA, MU)
@@ -398,7 +398,8 @@ def test_memory_layouts_and_number_types():
     assert np.array_equal(vr.contact(SCENE, V[::-1, ::2], delta=0.01).Q, plain[::-1, ::2])
     assert np.array_equal(vr.contact(SCENE, V.astype(">f8"), delta=0.01).Q, plain)
     single = V.astype(np.float32)
-    assert np.array_equal(vr.contact(SCENE, single, delta=0.01).Q, vr.contact(SCENE, single.astype(float), delta=0.01).Q)
+    double = vr.contact(SCENE, single.astype(float), delta=0.01).Q
+    assert np.array_equal(vr.contact(SCENE, single, delta=0.01).Q, double)
     assert vr.contact(SCENE, 2, delta=0).M == vr.contact(SCENE, 2.0, delta=0.0).M
     assert np.array_equal(vr.contact(SCENE, [1, 2], delta=0).M, vr.contact(SCENE, [1.0, 2.0], delta=0.0).M)
     locked = V.copy()
@@ -418,8 +419,8 @@ BAD_CALLS = {
     "V complex": ({"V": 1j, "delta": 0.1}, "V", "1j", "finite"),
     "delta nan": ({"V": 1.0, "delta": math.nan}, "delta", "nan", "finite"),
     "omega inf": ({"V": 1.0, "omega": -math.inf}, "omega", "-inf", "finite"),
-    "both": ({"V": 1.0, "delta": 0.1, "omega": 1.1}, "delta, omega", "both", "exactly one of"),
-    "neither": ({"V": 1.0}, "delta, omega", "neither", "exactly one of"),
+    "both": ({"V": 1.0, "delta": 0.1, "omega": 1.1}, "delta, omega given", "both", "exactly one of"),
+    "neither": ({"V": 1.0}, "delta, omega given", "neither", "exactly one of"),
     "shapes": ({"V": [1.0, 2.0], "delta": [0.1, 0.2, 0.3]}, "shapes", "V (2,), delta (3,)", "broadcast"),
     "field": ({"V": 1.0, "delta": 0.1, "fields": ("Q", "tau")}, "fields", "'tau'", "delta_star"),
     "method": ({"V": 1.0, "delta": 0.1, "method": "magic"}, "method", "'magic'", "'direct'"),
@@ -427,7 +428,7 @@ BAD_CALLS = {
 }
 
 
-@pytest.mark.parametrize("options, name, value, allowed", BAD_CALLS.values(), ids=BAD_CALLS)
+@pytest.mark.parametrize(("options", "name", "value", "allowed"), BAD_CALLS.values(), ids=BAD_CALLS)
 def test_bad_input(options, name, value, allowed):
     """One line that names the thing, its value and what is allowed; a ValueError too."""
     with pytest.raises(vr.ParameterError) as caught:
@@ -481,5 +482,6 @@ def test_wang_and_knothe(case):
     peak = E_prime * vr.stress(scene, x, V, delta=creep).p.max()
     assert peak == pytest.approx(case["p_max_MPa"], rel=tol.WANG_KNOTHE_PEAK)
     width = state.lam * case["R_mm"] / kappa
+    stuck = case["stick_fraction"] * case["width_mm"]
     assert abs(width - case["width_mm"]) <= tol.WANG_KNOTHE_CELLS * case["cell_mm"]
-    assert abs(state.beta * width - case["stick_fraction"] * case["width_mm"]) <= tol.WANG_KNOTHE_CELLS * case["cell_mm"]
+    assert abs(state.beta * width - stuck) <= tol.WANG_KNOTHE_CELLS * case["cell_mm"]

@@ -206,7 +206,7 @@ BAD_CALLS = {
 }
 
 
-@pytest.mark.parametrize("change, text", BAD_CALLS.values(), ids=BAD_CALLS)
+@pytest.mark.parametrize(("change", "text"), BAD_CALLS.values(), ids=BAD_CALLS)
 def test_bad_input(change, text):
     with pytest.raises(vr.ParameterError) as caught:
         vr.ensemble(**({"scene": SCENE, "V0": 1.0, "omega0": 0.5, "t": T} | change))
@@ -258,7 +258,7 @@ def test_constants_alone():
 
 
 @pytest.mark.parametrize(
-    "change, text",
+    ("change", "text"),
     [
         ({"n": 0}, "n = 0: must be a whole number >= 1"),
         ({"n": 2.5}, "n = 2.5"),

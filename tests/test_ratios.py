@@ -39,7 +39,8 @@ def seams() -> list[float]:
 def scattered() -> list[float]:
     rng = np.random.default_rng(7)
     ends = [5e-324, 1e-320, 2.3e-308, 1e-100, 1e17, 1e100, 1e300, 1.7976931348623157e308]
-    return [*ends, *(10.0 ** rng.uniform(-10, 4, 300)), *rng.uniform(0.0, 70.0, 300), *(10.0 ** rng.uniform(-320, 300, 60))]
+    common = [*(10.0 ** rng.uniform(-10, 4, 300)), *rng.uniform(0.0, 70.0, 300)]
+    return [*ends, *common, *(10.0 ** rng.uniform(-320, 300, 60))]
 
 
 def far_series(x: mp.mpf, order: int, sign: int) -> mp.mpf:
@@ -99,14 +100,17 @@ def test_any_positive_double(x):
 
 
 def test_ends():
-    assert ratio_r(0.0) == (0.0, 1.0) and ratio_k(0.0) == (0.0, 1.0) and ratio_i2(0.0, 0.0) == 0.0
-    assert ratio_r(np.inf) == (1.0, 0.0) and ratio_k(np.inf) == (1.0, 0.0) and ratio_i2(np.inf, 1.0) == 1.0
+    assert ratio_r(0.0) == (0.0, 1.0)
+    assert ratio_k(0.0) == (0.0, 1.0)
+    assert ratio_i2(0.0, 0.0) == 0.0
+    assert ratio_r(np.inf) == (1.0, 0.0)
+    assert ratio_k(np.inf) == (1.0, 0.0)
+    assert ratio_i2(np.inf, 1.0) == 1.0
 
 
 def test_slopes_against_differences():
     """r' and k' against central differences with 40 digits, which know nothing of the Riccati equations."""
-    for x in 10.0 ** np.linspace(-9, 4, 60):
-        x = float(x)
+    for x in (10.0 ** np.linspace(-9, 4, 60)).tolist():
         h = mp.mpf(x) * mp.mpf(10) ** -13
         for ratio, slope, exact in ((ratio_r, slope_r, precise.ratio_r), (ratio_k, slope_k, precise.ratio_k)):
             difference = (exact(mp.mpf(x) + h) - exact(mp.mpf(x) - h)) / (2 * h)
@@ -130,7 +134,8 @@ def refit() -> np.ndarray:
     """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
     source = Path(__file__).parents[1] / "pipeline" / "ratios.py"
     spec = importlib.util.spec_from_file_location("pipeline_ratios", source)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     pipeline = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(pipeline)
     points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * pipeline.NODES)) for i in range(pipeline.NODES)]
@@ -146,7 +151,8 @@ def refit() -> np.ndarray:
 
 def table_value(table: np.ndarray, segment: int, octave: int, index: int, t: float) -> float:
     """The polynomial of one bin, in numpy."""
-    at = layout.segment_start(segment) + ((octave - layout.SEGMENTS[segment].low) * layout.BINS + index) * layout.COEFFICIENTS
+    bins_before = (octave - layout.SEGMENTS[segment].low) * layout.BINS + index
+    at = layout.segment_start(segment) + bins_before * layout.COEFFICIENTS
     return float(np.polynomial.polynomial.polyval(t, table[at : at + layout.COEFFICIENTS]))
 
 
@@ -166,7 +172,8 @@ def test_every_bin_at_its_ends_and_middle():
                 for t in (-HALF_BIN, 0.4 * HALF_BIN):
                     x = mp.mpf(2) ** octave * (1 + (2 * index + 1) * mp.mpf(HALF_BIN) + mp.mpf(t))
                     value = table_value(TABLE, number, octave, index, t)
-                    assert precise.ulps(value, EXACT[segment.function](x)) <= tol.RATIO_BIN_ULP, (segment, octave, index, t)
+                    off = precise.ulps(value, EXACT[segment.function](x))
+                    assert off <= tol.RATIO_BIN_ULP, (segment, octave, index, t)
 
 
 def test_a_planted_error_of_1e_9_is_noticed():

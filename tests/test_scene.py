@@ -138,7 +138,7 @@ BAD_SCENES = [
 ]
 
 
-@pytest.mark.parametrize("change, name", BAD_SCENES)
+@pytest.mark.parametrize(("change", "name"), BAD_SCENES)
 def test_bad_scene(change, name):
     with pytest.raises(vr.ParameterError) as caught:
         vr.Scene(**({"alpha": 2.0, "kappa": 2.0, "mu": 0.2} | change))
@@ -161,7 +161,7 @@ def test_shapes_that_do_not_broadcast():
 
 
 @pytest.mark.parametrize(
-    "change, name",
+    ("change", "name"),
     [
         *(({name: bad}, name) for name in ("R", "m", "E", "mu", "T_sigma") for bad in (0.0, -1.0, math.nan)),
         ({"nu": 0.51}, "nu"),

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 PAPER = (
-    "A viscoelastic cylinder rolling with partial slip on a half-space of the same material: "
-    "quasistatic contact and deceleration (see CITATION.cff for the full reference)"
+    "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic half-space, "
+    "Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
 )
 
 

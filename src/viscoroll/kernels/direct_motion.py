@@ -25,14 +25,12 @@ def direct_sliding(V, sigma, alpha, kappa, mu, gamma, j):
 
 
 @kernel
-def direct_sticking(log_V, creep, alpha, kappa, mu, gamma, j):
-    """((ln V)', creep', |delta| - delta_star) in partial slip, V > 0 and creep = delta/V.
+def direct_sticking(log_V, delta, alpha, kappa, mu, gamma, j):
+    """((ln V)', delta', |delta| - delta_star) in partial slip, V > 0.
 
-    delta follows V on the slow manifold, so that creep stays of one size as V -> 0.  Where
-    |delta| >= delta_star the law of full slip stands: it joins without a jump.
+    Where |delta| >= delta_star the law of full slip stands: it joins without a jump.
     """
     V = np.exp(log_V)
-    delta = creep * V
     size = abs(delta)
     lam, zeta, epsilon, _ = direct_contact_length(kappa * V, alpha)
     M = direct_moment(kappa, lam, epsilon, zeta, alpha)
@@ -43,5 +41,4 @@ def direct_sticking(log_V, creep, alpha, kappa, mu, gamma, j):
         Q = direct_traction(beta, size, kappa, mu, lam, epsilon, zeta)
     Q = np.copysign(Q, delta) if delta != 0.0 else 0.0
     rate = gamma * (Q - 0.5 * M) / V
-    turn = -gamma * (Q + 0.5 * M) / (j * V)
-    return rate, (turn - (1.0 + delta) * rate) / V - creep * rate, size - delta_star
+    return rate, -gamma * (Q + 0.5 * M) / (j * V) - (1.0 + delta) * rate, size - delta_star

@@ -115,8 +115,9 @@ def roll(
     scene : one scene (no arrays).
     V0, omega0 : start speeds, any sign, zero included.
     t : output times, ascending, or one end time: then output falls on the steps taken.
-    rtol : tolerance in [1e-12, 1e-2]; the global relative error of V, omega, x and the
-        switch times is proportional to it (at most 30 rtol; ``tests/test_motion.py``).
+    rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
+        proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
+        speed magnifies any earlier error (at most 30 rtol; ``tests/test_motion.py``).
     rest : end the motion where max(|V|, |omega|) falls below this.  Nothing stops in
         finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From

@@ -11,7 +11,7 @@ from ..errors import ConvergenceError
 from ..scene import Scene
 
 #: Both are near the tightest that the methods accept; the noise of Q as printed, 1e-13 mu, is above them at small V.
-_SLIDING_RTOL, _STICKING_RTOL, _STICKING_ATOL = 1e-12, 1e-11, 1e-12
+_SLIDING_RTOL, _STICKING_RTOL, _STICKING_ATOL = 1e-12, 1e-11, 1e-16
 _MOST_PHASES = 100
 
 
@@ -26,7 +26,7 @@ class DirectMotion(NamedTuple):
 def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) -> DirectMotion:
     """Motion from (V0, omega0) != (0, 0) at ascending times ``t``, on root solves of the printed equations.
 
-    Full slip: unknowns (V, omega), DOP853.  Partial slip: (ln |V|, delta/|V|), LSODA, because
+    Full slip: unknowns (V, omega), DOP853.  Partial slip: (ln |V|, delta), LSODA, because
     with (V, omega) the slip omega - V drowns in rounding as V falls.  The regime is carried
     as state and changes only at events that look one way.
 
@@ -49,7 +49,8 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
         solution, speeds = phase(now, t[-1], state, parameters)
         reached = solution.t[-1]
         inside = (t >= now) & (t <= reached)
-        V[inside], omega[inside] = speeds(solution.sol(t[inside]))
+        if inside.any():
+            V[inside], omega[inside] = speeds(solution.sol(t[inside]))
         if solution.status != 1:
             return DirectMotion(V, omega, onset_time)
         now, state = reached, tuple(float(value[0]) for value in speeds(solution.y[:, -1:]))
@@ -86,7 +87,7 @@ def _stick(now, end, state, parameters):
     from ..kernels.direct_motion import direct_sticking
 
     direction, speed = np.sign(state[0]), abs(state[0])
-    start = (np.log(speed), (state[1] - state[0]) / state[0] / speed)
+    start = (np.log(speed), (state[1] - state[0]) / state[0])
 
     def rates(_, y):
         return direct_sticking(y[0], y[1], *parameters)[:2]
@@ -96,7 +97,7 @@ def _stick(now, end, state, parameters):
 
     def speeds(y):
         V = direction * np.exp(y[0])
-        return V, V * (1.0 + y[1] * np.abs(V))
+        return V, V * (1.0 + y[1])
 
     slip.direction = 1.0
     return _solve(rates, now, end, start, slip, "LSODA", _STICKING_RTOL, _STICKING_ATOL), speeds
