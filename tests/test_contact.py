@@ -110,7 +110,7 @@ def test_carter(kappa_V, s, sign):
     assert (state.lam, state.epsilon, state.M) == (1.0, 0.0, 0.0)
     assert state.delta_star == star
     assert abs(state.beta - (1.0 - abs(delta) / star)) <= tol.CARTER
-    assert state.Q == pytest.approx(4 * KAPPA * delta * (1 - abs(delta) * KAPPA / MU), rel=tol.CARTER, abs=0.0)
+    assert state.Q == pytest.approx(4 * KAPPA * delta * (1 - abs(delta) * KAPPA / MU), rel=tol.CARTER, abs=1e-300)
 
 
 @pytest.mark.parametrize("alpha", [1.0 + 1e-6, 2.0, 11.0, 1e4])

@@ -31,7 +31,7 @@ from .slopes import at_contact, second_slopes
 #: part of that: there they are integrated instead
 _NEAR = 1e-3
 #: step in y of the one difference quotient, D0'' of the Jacobian
-_STEP = 1e-3
+_STEP = 1e-6
 
 
 @kernel
@@ -100,8 +100,7 @@ def partial_jacobian(y, offset, par):
     g, h, dg, dh, ddg, ddh, m, dm = at_contact(zeta, alpha, c)
     D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
     _, after = slow_D(y + _STEP, par)
-    _, before = slow_D(y - _STEP, par)
-    D0_yy = (after - before) / (2.0 * _STEP)
+    D0_yy = (after - D0_y) / _STEP
     D = D0 + offset
     size = abs(D)
     sign = 1.0 if D >= 0.0 else -1.0

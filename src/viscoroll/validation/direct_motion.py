@@ -11,7 +11,7 @@ from ..errors import ConvergenceError
 from ..scene import Scene
 
 #: Both are near the tightest that the methods accept; the noise of Q as printed, 1e-13 mu, is above them at small V.
-_SLIDING_RTOL, _STICKING_RTOL, _STICKING_ATOL = 1e-12, 1e-11, 1e-16
+_SLIDING_RTOL, _STICKING_RTOL, _STICKING_ATOL = 1e-12, 1e-13, 1e-16
 _MOST_PHASES = 100
 
 
