@@ -6,11 +6,9 @@ a new major version changes the meaning of something and is refused by older rea
 
 from __future__ import annotations
 
-import platform
 import shlex
 import sys
 from datetime import UTC, datetime
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -112,6 +110,9 @@ def variable(name: str, dims: tuple[str, ...], values: Any, **extra: Any) -> xr.
 
 def global_attributes(kind: str, title: str, grid: str, tolerances: str, command: str | None) -> dict[str, str]:
     """Global attributes of a table made now by ``command`` (default: this process's)."""
+    import platform
+    from importlib.metadata import version
+
     libraries = ("numpy", "scipy", "numba", "xarray", "h5netcdf", "h5py")
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {

@@ -11,8 +11,8 @@ from .report import Check
 
 #: What the package promises at rtol 1e-8, relative to max(|V|, |omega|), down to |V| = 1e-6.
 SPEED_ALLOWED = 1e-7
-#: Onset lies on the smooth phase of full slip; 1e-11 seen.
-ONSET_ALLOWED = 1e-10
+#: A tenth of rtol: 1e-11 seen where the motion starts in full slip, 1.2e-10 where it comes back to it.
+ONSET_ALLOWED = 1e-9
 RTOL = 1e-8
 _LEAST_SPEED = 1e-6
 #: Friction too weak for the slow manifold: the stick zone vanishes again, V turns its sign while sliding.
