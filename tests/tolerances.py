@@ -150,3 +150,29 @@ RETURN_TIME = 3e-9
 # --- sampling.py (test_ensemble.py) ---
 #: Kolmogorov-Smirnov p-value of a recorded seed: fixed, so no chance of a false alarm.
 KOLMOGOROV = 0.01
+
+# --- validation (test_validation.py) ---
+#: The comparison's own integrator against roll at rtol 1e-12, relative to the speed, down to |V| = 1e-6: LSODA at
+#: 1e-13 and the noise of Q as printed; measured 1.9e-10.
+DIRECT_MOTION = 1e-9
+#: its onset time: DOP853 at 1e-12; measured 2e-13.
+DIRECT_ONSET = 1e-11
+#: Added to a field of a table, or share of a stress, that a validation must find: beyond all it allows.
+VALIDATION_WRONG = 1e-4
+
+# --- figures (test_figures.py) ---
+#: Numbers read back from a drawn line: as computed, but for the factor of the axis.
+FIGURE = 1e-12
+
+# --- the benchmark at smoke sizes (test_bench.py) ---
+#: Motions of this package at rtol 1e-6: MOTION_RTOL times that; measured 1.4e-6.
+BENCH_OWN = 3e-5
+#: Those of the peers at loose tolerances, 1e-4 or 1e-3, relative to speeds down to 1e-8: only that they solve the same
+#: problem; measured 0.07.
+BENCH_PEER = 1.0
+#: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
+BENCH_REFERENCE = 1e-9
+#: Q and M against 50 digits (the printed forms: 1e-10 where the slip is slight); measured 5e-16.
+BENCH_LAW = 1e-9
+#: Splines of an atlas with 8 x 16 x 16 nodes; measured 5e-3.
+BENCH_COARSE_ATLAS = 0.05

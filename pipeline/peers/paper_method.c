@@ -116,7 +116,7 @@ static int rates(double t, const double y[], double dydt[], void *data)
 /* Difference Jacobian; the increment, 1e-7 of the speed, is a small part of the stick band. */
 static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *data)
 {
-    double base[2], moved[2], at[2];
+    double base[2], moved[2] = {0.0, 0.0}, at[2];
     int status = rates(t, y, base, data);
     for (int n = 0; n < 2 && status == GSL_SUCCESS; n++) {
         double step = 1e-7 * (fabs(y[n]) + 1e-300);

@@ -2,61 +2,126 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..motion import Motion, roll
 from ..rolling_contact import stress
 from ..scene import PAPER_SECTION_5, PAPER_STARTS, Scene
 from ..symbols import label
-from .style import LINES, SHADE, describe, math, new_figure, number, time_axis
+from .style import LINES, MARKERS, THIN, describe, new_figure, number, scaled
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 #: The times of the paper's Fig. 7, circles in Fig. 6.
 PAPER_TIMES = (1.52e-4, 4e-4, 24e-4, 30e-4)
-_FACTOR = 1e4
-_END = 4e-3
 _SCENE = ("alpha", "kappa", "mu", "gamma")
-
-
-def _times(onset: float) -> NDArray:
-    """Output times: even ones, and closer ones around the onset of stick."""
-    return np.unique(np.concatenate([np.linspace(0.0, _END, 801), np.linspace(0.9 * onset, 1.3 * onset, 401)]))
+_END, _TIMES = 4e-3, 2001
+#: Times are shown in units of 1e-4.
+_EXPONENT, _UNIT = 4, 1e4
 
 
 def _rolled(scene: Scene, start: tuple[float, float]) -> Motion:
-    onset = roll(scene, *start, np.array([_END])).onset_time
-    return roll(scene, *start, _times(onset))
+    """A motion with even output times, and closer ones around the onset of stick if there is one."""
+    motion = roll(scene, *start, np.linspace(0.0, _END, _TIMES))
+    if np.isnan(motion.onset_time):
+        return motion
+    close = motion.onset_time * np.linspace(0.9, 1.3, 401)
+    return motion.at(np.unique(np.concatenate([motion.t, close[close < _END]])))
 
 
 def figure_5(scene: Scene = PAPER_SECTION_5, starts: dict[str, tuple[float, float]] = PAPER_STARTS) -> Figure:
-    """V and omega over time for each start; the inset shows the onset of stick of the first."""
-    figure, axes = new_figure(f"Deceleration, Eq. (22): {describe(scene, *_SCENE)}", size=(7.6, 5.0))
+    """V and omega over time for each start (at most three); the inset shows the onset of stick of the first."""
+    figure, axes = new_figure(f"Deceleration, Eq. (22), for {describe(scene, *_SCENE)}", size=(7.6, 5.4))
     motions = {name: _rolled(scene, start) for name, start in starts.items()}
-    inset = axes.inset_axes((0.5, 0.64, 0.46, 0.33))
-    for (name, motion), line in zip(motions.items(), LINES, strict=False):
-        for box in (axes, inset):
-            box.plot(_FACTOR * motion.t, motion.V, color=line["color"], label=f"{name}: {label('V')}")
-            box.plot(_FACTOR * motion.t, motion.omega, color=line["color"], linestyle="--", label=f"{name}: {label('omega')}")
-        for quantity, shift in (("V", 0.02), ("omega", -0.02)):
-            start = getattr(motion, quantity)[0]
-            axes.annotate(f"{name} {label(quantity)}", (0.0, start), (-4, 0), textcoords="offset points", ha="right", va="center", fontsize="small")
-            del shift
     first = next(iter(motions.values()))
-    onset = first.onset_time
-    middle = np.interp(onset, first.t, first.V)
-    inset.set(xlim=(0.9 * onset * _FACTOR, 1.2 * onset * _FACTOR), ylim=(middle - 0.08, middle + 0.05))
-    inset.axvline(_FACTOR * onset, color="0.6", linewidth=0.8)
-    inset.tick_params(labelsize="x-small")
-    axes.indicate_inset_zoom(inset, edgecolor="0.4")
-    axes.axhline(0.0, color="0.7", linewidth=0.6)
-    axes.set(xlim=(0.0, _FACTOR * _END), ylabel=rf"{label('V')}, {label('omega')}")
-    axes.yaxis.tick_right()
-    axes.yaxis.set_label_position("right")
-    time_axis(axes, _FACTOR)
+    inset = _inset(axes, (0.42, 0.69, 0.55, 0.28), first, (0.96, 1.06))
+    for box, every in ((axes, 0.1), (inset, 0.4))[: 1 if inset is None else 2]:
+        for (name, motion), line, marker in zip(motions.items(), LINES, MARKERS, strict=False):
+            for quantity, dashes in (("V", "-"), ("omega", (0, (4, 2)))):
+                style = {"color": line["color"], "linestyle": dashes, "marker": marker, "markevery": every}
+                hollow = {"markersize": 4.5, "markerfacecolor": line["color"] if quantity == "V" else "white"}
+                text = f"{name}: {label(quantity)}"
+                box.plot(_UNIT * motion.t, getattr(motion, quantity), label=text, **style, **hollow)
+    if inset is not None:
+        middle, onset = np.interp(first.onset_time, first.t, first.V), _UNIT * first.onset_time
+        inset.set_ylim(middle - 0.03, middle + 0.02)
+        inset.axvline(onset, **THIN)
+        inset.annotate(label("onset_time"), (onset, 0.06), (3, 0), ("data", "axes fraction"), "offset points")
+        axes.indicate_inset_zoom(inset, edgecolor="0.3")
+    axes.axhline(0.0, **THIN)
+    low, high = axes.get_ylim()
+    axes.set(xlim=(0.0, _UNIT * _END), ylim=(low, high + 0.2 * (high - low)))  # room for the inset
+    axes.set(xlabel=scaled("t", _EXPONENT), ylabel=f"{label('V')}, {label('omega')}")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=len(motions), frameon=False)
     return figure
+
+
+def _inset(axes: Any, place: tuple[float, ...], motion: Motion, span: tuple[float, float]) -> Any:
+    """An inset over times from ``span[0]`` to ``span[1]`` times the onset of stick; None where there is no onset."""
+    if np.isnan(motion.onset_time):
+        return None
+    inset = axes.inset_axes(place)
+    inset.set_xlim(*(_UNIT * motion.onset_time * share for share in span))
+    inset.locator_params(axis="x", nbins=5)
+    inset.tick_params(labelsize="small")
+    return inset
+
+
+def figure_6(
+    scene: Scene = PAPER_SECTION_5,
+    start: tuple[float, float] = PAPER_STARTS["IC1"],
+    times: tuple[float, ...] = PAPER_TIMES,
+) -> Figure:
+    """delta, lam, epsilon and beta over time; circles at ``times``, the inset around the onset of stick."""
+    title = f"Contact during deceleration from {_start(start)}\nfor {describe(scene, *_SCENE)}"
+    figure, axes = new_figure(title, size=(7.6, 5.2))
+    motion, marked = _rolled(scene, start), roll(scene, *start, times)
+    inset = _inset(axes, (0.3, 0.07, 0.47, 0.36), motion, (0.97, 1.12))
+    for box in (axes, inset) if inset is not None else (axes,):
+        for name, line in zip(("delta", "lam", "epsilon", "beta"), LINES, strict=True):
+            along, at_times = (m.delta if name == "delta" else getattr(m.contact(name), name) for m in (motion, marked))
+            box.plot(_UNIT * motion.t, along, label=label(name), **line)
+            box.plot(_UNIT * marked.t, at_times, "o", color=line["color"], markerfacecolor="none", markersize=5.5)
+    if inset is not None:
+        inset.set_ylim(-0.08, 1.04)
+        axes.indicate_inset_zoom(inset, edgecolor="0.3")
+    axes.axhline(0.0, **THIN)
+    axes.set(xlim=(0.0, _UNIT * _END), ylim=(-1.0, 1.1), xlabel=scaled("t", _EXPONENT))
+    axes.set_ylabel(", ".join(label(name) for name in ("delta", "lam", "epsilon", "beta")))
+    axes.legend(frameon=False, loc="lower right")
+    return figure
+
+
+def figure_7(
+    scene: Scene = PAPER_SECTION_5,
+    start: tuple[float, float] = PAPER_STARTS["IC1"],
+    times: tuple[float, ...] = PAPER_TIMES,
+) -> Figure:
+    """Shear stress and mu p along the contact at four times of a motion."""
+    title = f"Stresses, Eqs. (11)-(13), during deceleration from {_start(start)}\nfor {describe(scene, *_SCENE)}"
+    figure, panels = new_figure(title, 2, 2, (8.4, 6.0), sharex=True, sharey=True)
+    motion = roll(scene, *start, times)
+    state = motion.contact(("lam", "epsilon", "beta"))
+    for n, axes in enumerate(panels.flat):
+        rear, front = 0.5 * state.lam[n] * (state.epsilon[n] + np.array([-1.0, 1.0]))
+        x = 0.5 * (rear + front) - 0.5 * (front - rear) * np.cos(np.linspace(0.0, np.pi, 801))
+        found = stress(scene, x, motion.V[n], delta=motion.delta[n])
+        axes.plot(x, 1e3 * np.abs(found.tau), label=r"$|\tau|/E'$", **LINES[0])
+        axes.plot(x, 1e3 * scene.mu * found.p, label=r"$\mu p/E'$", **LINES[1])
+        axes.axvline(front - state.lam[n] * state.beta[n], **THIN, label="slip | stick")
+        axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
+        text = f"{label('delta')} = ${number(motion.delta[n], 2)}$, {label('beta')} = {state.beta[n]:.3f}"
+        axes.set_title(rf"{label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
+    for axes in panels[1]:
+        axes.set_xlabel("$x/l_0$")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
+    panels[0, 0].legend(frameon=False, loc="upper left")
+    return figure
+
+
+def _start(start: tuple[float, float]) -> str:
+    return f"$V(0) = {start[0]:g}$, {label('omega')}$(0) = {start[1]:g}$"

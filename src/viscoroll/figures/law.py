@@ -9,20 +9,22 @@ import numpy as np
 from ..rolling_contact import contact
 from ..scene import PAPER_FIGURES_2_3, Scene
 from ..symbols import label
-from .style import LINES, describe, math, new_figure
+from .style import LINES, THIN, describe, new_figure, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_MOST_SPEED, _MOST_CREEP = 0.4, 4e-3
+
 
 def figure_2(scene: Scene = PAPER_FIGURES_2_3, alphas: tuple[float, ...] = (1.0, 1.5, 21.5, 81.5)) -> Figure:
-    """Critical creep ratio delta_star over V, one line an alpha."""
-    V = np.linspace(0.0, 0.4, 401)
-    figure, axes = new_figure(f"Critical creep ratio, Eq. (9): {describe(scene, 'mu', 'kappa')}")
+    """Critical creep ratio delta_star over V, one line an alpha (at most four)."""
+    V = np.linspace(0.0, _MOST_SPEED, 401)
+    figure, axes = new_figure(f"Critical creep ratio, Eq. (9), for {describe(scene, 'mu', 'kappa')}")
     for alpha, line in zip(alphas, LINES, strict=False):
         star = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="delta_star").delta_star
-        axes.plot(V, 1e3 * star, label=rf"${math('alpha')} = {alpha:g}$", **line)
-    axes.set(xlabel=label("V"), ylabel=rf"${math('delta_star')}_\alpha\times 10^3$", xlim=(0.0, V[-1]), ylim=(0.0, None))
+        axes.plot(V, 1e3 * star, label=rf"{label('alpha')} = {alpha:g}", **line)
+    axes.set(xlabel=label("V"), ylabel=r"$\delta^*_\alpha\times 10^3$", xlim=(0.0, _MOST_SPEED), ylim=(0.0, None))
     axes.legend(frameon=False)
     return figure
 
@@ -32,21 +34,20 @@ def figure_3(
     speeds: tuple[float, ...] = (0.1, 0.2, 0.4),
     alphas: tuple[float, ...] = (1.5, 21.5, 81.5),
 ) -> Figure:
-    """(a) traction Q over delta at three speeds; (b) moment M over V at three alphas."""
-    figure, (left, right) = new_figure(
-        f"Traction and rolling moment, Eqs. (17), (18): {describe(scene, 'mu', 'kappa')}", 1, 2, (9.0, 4.0)
-    )
-    delta = np.linspace(-4e-3, 4e-3, 801)
-    for V, line in zip(speeds, LINES, strict=False):
-        left.plot(1e3 * delta, contact(scene, V, delta=delta, fields="Q").Q, label=rf"$V = {V:g}$", **line)
-    left.set(xlabel=rf"${math('delta')}\times 10^3$", ylabel=label("Q"), title=rf"a) ${math('alpha')} = {scene.alpha:g}$")
-    V = np.linspace(-0.4, 0.4, 801)
+    """(a) traction Q over delta at some speeds; (b) moment M over V at some alphas (at most four)."""
+    title = f"Traction and rolling resistance, Eqs. (17), (18), for {describe(scene, 'mu', 'kappa')}"
+    figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
+    delta, V = np.linspace(-_MOST_CREEP, _MOST_CREEP, 801), np.linspace(-_MOST_SPEED, _MOST_SPEED, 801)
+    for speed, line in zip(speeds, LINES, strict=False):
+        Q = contact(scene, speed, delta=delta, fields="Q").Q
+        left.plot(1e3 * delta, Q, label=f"{label('V')} = {speed:g}", **line)
     for alpha, line in zip(alphas, LINES, strict=False):
         M = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="M").M
-        right.plot(V, 1e3 * M, label=rf"${math('alpha')} = {alpha:g}$", **line)
-    right.set(xlabel=label("V"), ylabel=rf"${math('M')}\times 10^3$", title="b)")
+        right.plot(V, 1e3 * M, label=f"{label('alpha')} = {alpha:g}", **line)
+    left.set(xlabel=scaled("delta", 3), ylabel=label("Q"), title=f"a) {describe(scene, 'alpha')}")
+    right.set(xlabel=label("V"), ylabel=scaled("M", 3), title=f"b) any {label('delta')}")
     for axes in (left, right):
-        axes.axhline(0.0, color="0.7", linewidth=0.6)
-        axes.axvline(0.0, color="0.7", linewidth=0.6)
+        axes.axhline(0.0, **THIN)
+        axes.axvline(0.0, **THIN)
         axes.legend(frameon=False, loc="upper left")
     return figure

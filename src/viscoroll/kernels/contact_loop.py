@@ -6,15 +6,15 @@ import numpy as np
 
 from .jit import kernel
 from .law import (
+    CLOSE,
     OK,
     contact_length,
     differences,
-    generator_slopes,
     generators,
     moment_factor,
     stick_length,
 )
-from .slopes import at_contact
+from .slopes import at_contact, slope_ratio, slope_ratio_rise
 
 #: Order of the rows of the kernel's output.
 ROWS = (
@@ -51,28 +51,26 @@ def creep_ratio(V, creep, slip, creep_is_omega):
 
 @kernel
 def stick(speed, delta, mu, zeta, lam, epsilon, delta_star, alpha, c):
-    """(eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
+    """(eta, zeta - eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
     if c == 0.0 or zeta > FAR:
         s = delta / delta_star
-        return zeta * (1.0 - s), 1.0 - s, s * (2.0 - s), OK
+        return zeta * (1.0 - s), zeta * s, 1.0 - s, s * (2.0 - s), OK
     eta, D, status = stick_length(zeta, zeta * (1.0 + epsilon), delta / (mu * speed), alpha, c)
     _, dH = differences(zeta, eta, D, alpha, c)
-    return eta, eta / zeta, dH * (lam / zeta) * lam, status
+    return eta, D, eta / zeta, min(dH * (lam / zeta) * lam, 1.0), status
 
 
 @kernel
-def traction_slopes(speed, delta, kappa, mu, zeta, eta, beta, share, lam, alpha, c):
+def traction_slopes(speed, delta, kappa, mu, zeta, eta, D, beta, share, lam, alpha, c):
     """(d|Q|/d|V| at fixed delta, d|Q|/d|delta|) in partial slip; share = |Q|/mu."""
     if c == 0.0 or zeta > FAR:
         return 0.0, 4.0 * kappa * lam * beta
-    _, h, dg, dh = generator_slopes(zeta, alpha, c)
-    _, h_eta, dg_eta, dh_eta = generator_slopes(eta, alpha, c)
     # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
-    A = 2.0 * (1.0 + (h + zeta * dh) / zeta) / (1.0 + dg)
-    A_eta = 2.0 * (eta + h_eta + eta * dh_eta) / (zeta * (1.0 + dg_eta))
+    A, A_eta = slope_ratio(zeta, alpha, c) / zeta, slope_ratio(eta, alpha, c) / zeta
     H = 1.0 / (lam * lam)
     d = delta / (mu * speed * zeta)
-    bracket = -share * H + H * (A - A_eta) / A + 0.5 * A_eta * d
+    fall = A - A_eta if D > CLOSE * zeta else slope_ratio_rise(zeta, D, alpha, c) / zeta
+    bracket = -share * H + H * fall / A + 0.5 * A_eta * d
     dQ_dV = -mu * 2.0 * lam * lam * bracket / speed
     return dQ_dV, 2.0 * kappa * lam * A_eta
 
@@ -107,11 +105,11 @@ def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
         out[BETA], out[Q] = 0.0, mu * sign
         out[DQ_DV] = out[DQ_DDELTA] = out[DQ_DOMEGA] = 0.0
         return status
-    eta, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, epsilon, delta_star, alpha, c)
+    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, epsilon, delta_star, alpha, c)
     out[BETA] = beta
     out[Q] = sign * mu * share
     if need_slopes:
-        dQ_dV, dQ_ddelta = traction_slopes(speed, abs(delta), kappa, mu, zeta, eta, beta, share, lam, alpha, c)
+        dQ_dV, dQ_ddelta = traction_slopes(speed, abs(delta), kappa, mu, zeta, eta, D, beta, share, lam, alpha, c)
         out[DQ_DV] = np.sign(delta) * dQ_dV
         out[DQ_DDELTA] = direction * dQ_ddelta
         out[DQ_DOMEGA] = dQ_ddelta / speed

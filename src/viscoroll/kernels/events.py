@@ -15,6 +15,8 @@ from .stepper import FULL, PARTIAL, REST, step
 
 NO_EVENT, STICK, SLIP, REVERSAL, AT_REST = range(5)
 _LOCATE_CAP = 80
+#: a stick zone that starts at eta = 0 may round to below it before it grows
+_ROUNDING = 1e-15
 
 
 @kernel
@@ -90,7 +92,7 @@ def first_event(regime, u, h, J, sigma, par, rest, K, new):
             event = STICK
         elif event == NO_EVENT and dips(u, new, h, sigma, par):
             return STICK, -1.0
-    elif event_value(SLIP, regime, new, sigma, par, rest) <= 0.0:
+    elif event_value(SLIP, regime, new, sigma, par, rest) < -_ROUNDING:
         h = locate(SLIP, regime, u, h, J, sigma, par, rest, K, new)
         event = SLIP
     if rest > 0.0 and event_value(AT_REST, regime, new, sigma, par, rest) < 0.0:

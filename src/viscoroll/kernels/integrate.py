@@ -11,7 +11,7 @@ from .events import AT_REST, NO_EVENT, REVERSAL, SLIP, STICK, first_event, speed
 from .full_slip import onset, onset_slope, sliding_scale, stick_limit
 from .jit import kernel
 from .law import OK, generator_slopes, stick_length
-from .motion_output import coast, fill, write_outputs
+from .motion_output import coast, fill, put, write_outputs
 from .partial_slip import partial_rhs, signed_D, slow_D
 from .stepper import FULL, PARTIAL, REST, dense_terms, jacobian, step
 
@@ -24,6 +24,8 @@ _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 _MOST_REJECTIONS = 60
 #: kappa V below which M(V) is smooth on the scale of V
 _BEND = 0.05
+#: speeds below this count as 0 beside others, and as already rolling among themselves
+_TINY = 1e-150
 #: beyond this zeta (kappa V < 1e-17) the slow motion is exponential to rounding
 _COAST = 1e17
 
@@ -33,6 +35,11 @@ def start(V, omega, par, u):
     """Put (V, omega) into the unknowns of its regime: (regime, direction, sigma, status)."""
     alpha, c, kappa, mu, j = par
     u[:] = 0.0
+    if max(abs(V), abs(omega)) < _TINY:
+        # sliding ends within a time of that order: V + j omega is kept
+        V = omega = (V + j * omega) / (1.0 + j)
+    elif abs(V) < _TINY:
+        V = 0.0
     if V == 0.0 and omega == 0.0:
         return REST, 1.0, 0.0, OK
     direction = np.sign(V) if V != 0.0 else np.sign(omega)
@@ -88,7 +95,8 @@ def first_length(regime, u, J, rtol, par):
     # where the stick zone is small the law bends on the scale eta ~ 1/alpha, however large zeta
     _, drift, _, _ = partial_rhs(u[0], u[1], par)
     eta = np.exp(u[0]) - abs(signed_D(u[0], u[1], par))
-    bend = abs(drift) / (max(eta, 0.0) + 1.0 / par[0])
+    scale = max(eta, 0.0) + max(1.0 / par[0], 1e-9 * np.exp(u[0]))
+    bend = abs(drift) / scale if par[1] > 0.0 else 0.0
     return 2.0 * rtol ** (1.0 / 5.0) / (abs(J[3]) + abs(J[0]) + bend + 1e-300)
 
 
@@ -170,6 +178,10 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     if regime == REST or max(abs(V0), abs(omega0)) < rest:
         fill(out, 0, 0.0, 0.0, gamma)
         return (RESTED if rest > 0.0 else DONE), steps, turns, onset_time, 0.0
+    while at < tau_out.size and tau_out[at] == 0.0:
+        _, _, delta = speeds(regime, u[0], u[1], par)
+        put(out, at, 1.0, regime, V0, omega0, delta, 0.0, 0.0, gamma)
+        at += 1
     status, tau, just_stuck = DONE, 0.0, False
     J = jacobian(regime, u[0], u[1], par)
     h = first_length(regime, u, J, rtol, par)

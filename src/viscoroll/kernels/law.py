@@ -24,12 +24,12 @@ from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 OK, NOT_CONVERGED = 0, 1
 _MAX_NEWTON = 60
 #: 5-point Gauss-Legendre rule on [0, 1]
-_GAUSS_X = np.array([0.046910077030668004, 0.23076534494715845, 0.5, 0.7692346550528415, 0.953089922969332])
-_GAUSS_W = np.array(
+GAUSS_X = np.array([0.046910077030668004, 0.23076534494715845, 0.5, 0.7692346550528415, 0.953089922969332])
+GAUSS_W = np.array(
     [0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454]
 )
 #: below this (zeta - eta)/zeta differences of g and h are integrals of their slopes
-_CLOSE = 0.1
+CLOSE = 0.1
 
 
 @kernel
@@ -106,16 +106,16 @@ def differences(zeta, eta, D, alpha, c):
     ratio = eta / zeta
     if c == 0.0:
         return D, (1.0 + ratio) * D
-    if D > _CLOSE * zeta:
+    if D > CLOSE * zeta:
         g, h = generators(zeta, alpha, c)
         g_eta, h_eta = generators(eta, alpha, c)
         return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
     slope_g, slope_zh = 0.0, 0.0
     for n in range(5):
-        z = zeta - D * _GAUSS_X[n]
+        z = zeta - D * GAUSS_X[n]
         _, h, dg, dh = generator_slopes(z, alpha, c)
-        slope_g += _GAUSS_W[n] * dg
-        slope_zh += _GAUSS_W[n] * (h + z * dh)
+        slope_g += GAUSS_W[n] * dg
+        slope_zh += GAUSS_W[n] * (h + z * dh)
     return D * (1.0 + slope_g), D * (1.0 + ratio + 2.0 * slope_zh / zeta)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .jit import kernel
+from .law import GAUSS_W, GAUSS_X, generator_slopes
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 
@@ -55,3 +56,23 @@ def at_contact(z, alpha, c):
     m = c * (lam2 * i2 + r * k) * whole
     dp = alpha * s * k + r * dk
     return g, h, dg, dh, ddg, ddh, m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)
+
+
+@kernel
+def slope_ratio(z, alpha, c):
+    """A = H'/F' at z."""
+    _, h, dg, dh = generator_slopes(z, alpha, c)
+    return 2.0 * (z + h + z * dh) / (1.0 + dg)
+
+
+@kernel
+def slope_ratio_rise(z, D, alpha, c):
+    """A(z) - A(z - D) for small D, as the integral of A': no digits cancel."""
+    total = 0.0
+    for n in range(5):
+        x = z - D * GAUSS_X[n]
+        _, h, dg, dh, ddg, ddh = second_slopes(x, alpha, c)
+        dH, ddH = 2.0 * (x + h + x * dh), 2.0 + 4.0 * dh + 2.0 * x * ddh
+        dF = 1.0 + dg
+        total += GAUSS_W[n] * (ddH * dF - dH * ddg) / (dF * dF)
+    return D * total

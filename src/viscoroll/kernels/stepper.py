@@ -85,11 +85,11 @@ def step(regime, u, h, J, sigma, par, K, new):
     The last stage K[7] is the difference to the embedded solution of order 4.
     """
     J00, J01, J10, J11, J20, J21, J30, J31 = J
-    diagonal = 1.0 / (h * GAMMA)
-    a, d = diagonal - J00, diagonal - J11
-    inverse = 1.0 / (a * d - J01 * J10)
-    per_h = 1.0 / h
-    scale = h * GAMMA
+    # (I - h gamma J) k = h gamma (...): scaled so that no step length overflows
+    scale, per_h = h * GAMMA, 1.0 / h
+    a, d = 1.0 - scale * J00, 1.0 - scale * J11
+    b, c = scale * J01, scale * J10
+    whole = scale / (a * d - b * c)
     for i in range(STAGES):
         s0, s1 = u[0], u[1]
         r0 = r1 = r2 = r3 = 0.0
@@ -105,8 +105,8 @@ def step(regime, u, h, J, sigma, par, K, new):
         f0, f1, f2, f3 = rhs(regime, s0, s1, sigma, par)
         r0 += f0
         r1 += f1
-        k0 = (d * r0 + J01 * r1) * inverse
-        k1 = (a * r1 + J10 * r0) * inverse
+        k0 = (d * r0 + b * r1) * whole
+        k1 = (a * r1 + c * r0) * whole
         K[i, 0], K[i, 1] = k0, k1
         K[i, 2] = (r2 + f2 + J20 * k0 + J21 * k1) * scale
         K[i, 3] = (r3 + f3 + J30 * k0 + J31 * k1) * scale

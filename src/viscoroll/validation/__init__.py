@@ -71,7 +71,7 @@ def validate(
         lambda: random_state_checks(states, seed),
         lambda: along_motion_checks(times),
         lambda: stress_checks(stress_states, seed),
-        *(lambda table=table: check_table(table, table_points, seed) for table in tables),  # type: ignore[misc]
+        *(lambda table=table: check_table(table, table_points, seed) for table in tables),
         lambda: motion_checks(times),
     ]
     checks = []

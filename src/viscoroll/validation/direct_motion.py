@@ -11,7 +11,8 @@ from ..errors import ConvergenceError
 from ..scene import Scene
 
 #: The tightest that run smoothly; delta's absolute one is the noise of Q as printed, 1e-16 mu/(4 kappa) and more.
-_SLIDING_RTOL, _STICKING_RTOL, _STICKING_ATOL = 1e-12, 1e-13, 1e-16
+_SLIDING_RTOL, _SLIDING_ATOL = 1e-12, 1e-13
+_STICKING_RTOL, _STICKING_ATOL = 1e-13, 1e-16
 _MOST_PHASES = 100
 
 
@@ -53,7 +54,8 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
             V[inside], omega[inside] = speeds(solution.sol(t[inside]))
         if solution.status != 1:
             return DirectMotion(V, omega, onset_time)
-        now, state = reached, tuple(float(value[0]) for value in speeds(solution.y[:, -1:]))
+        V_reached, omega_reached = speeds(solution.y[:, -1])
+        now, state = reached, (float(V_reached), float(omega_reached))
         sticking = not sticking
         if sticking and np.isnan(onset_time):
             onset_time = now
@@ -78,8 +80,7 @@ def _slide(now, end, state, parameters):
     def onset(_, y):
         return sigma * (y[1] - y[0]) - direct_sliding(y[0], sigma, *parameters)[2]
 
-    onset.direction = -1.0
-    return _solve(rates, now, end, state, onset, "DOP853", _SLIDING_RTOL, 1e-13), lambda y: (y[0], y[1])
+    return _solve(rates, now, end, state, onset, -1.0, "DOP853", _SLIDING_RTOL, _SLIDING_ATOL), lambda y: (y[0], y[1])
 
 
 def _stick(now, end, state, parameters):
@@ -99,14 +100,13 @@ def _stick(now, end, state, parameters):
         V = direction * np.exp(y[0])
         return V, V * (1.0 + y[1])
 
-    slip.direction = 1.0
-    return _solve(rates, now, end, start, slip, "LSODA", _STICKING_RTOL, _STICKING_ATOL), speeds
+    return _solve(rates, now, end, start, slip, 1.0, "LSODA", _STICKING_RTOL, _STICKING_ATOL), speeds
 
 
-def _solve(rates, now, end, start, event, method, rtol, atol):
+def _solve(rates, now, end, start, event, direction, method, rtol, atol):
     from scipy.integrate import solve_ivp
 
-    event.terminal = True
+    event.terminal, event.direction = True, direction
     solution = solve_ivp(rates, (now, end), start, method, events=event, dense_output=True, rtol=rtol, atol=atol)
     if solution.status < 0:
         raise ConvergenceError(f"direct motion: {method} gave up at t = {solution.t[-1]:.6g}: {solution.message}")

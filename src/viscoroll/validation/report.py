@@ -32,7 +32,7 @@ class Report:
     """All checks of a :func:`viscoroll.validation.validate`, and the settings it ran with."""
 
     checks: tuple[Check, ...]
-    settings: dict[str, int | str]
+    settings: dict[str, int]
 
     @property
     def ok(self) -> bool:
@@ -49,7 +49,8 @@ class Report:
         failed = sum(not check.passed for check in self.checks)
         verdict = "every difference is within what is allowed" if self.ok else f"{failed} beyond what is allowed"
         settings = ", ".join(f"{name} {value}" for name, value in self.settings.items())
-        return "\n".join([head, *lines, "", f"{len(self.checks)} checks: {verdict}.", f"viscoroll {__version__}; {settings}"])
+        foot = ["", f"{len(self.checks)} checks: {verdict}.", f"viscoroll {__version__}; {settings}"]
+        return "\n".join([head, *lines, *foot])
 
 
 def report_dataset(report: Report) -> xr.Dataset:

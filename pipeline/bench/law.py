@@ -1,0 +1,114 @@
+"""The contact law alone: time a state, and the error against 50 digits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import viscoroll as vr
+from viscoroll.kernels.law import generators
+from viscoroll.kernels.partial_slip import slip_differences
+from viscoroll.kernels.ratios import ratio_i2, ratio_k, ratio_r
+from viscoroll.reference import contact_precise
+
+from .splines import compiled
+from .timing import alternating
+
+FIELDS = ("Q", "M")
+
+
+@compiled
+def explicit_state(zeta, eta, alpha, kappa, mu):
+    """(V, delta, Q, M), explicit in (zeta, eta): no equation is solved, four Bessel ratios and i2."""
+    c = (alpha - 1.0) / alpha
+    x = alpha * zeta
+    r, _ = ratio_r(x)
+    k, _ = ratio_k(zeta)
+    p = r * k
+    share = c / (1.0 + p)
+    g, h = share * p, share * r
+    g_eta, h_eta = generators(eta, alpha, c)
+    rise_F, rise_H = slip_differences(zeta, zeta - eta, g, h, g_eta, h_eta, alpha, c)
+    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
+    V = np.sqrt(lam2) / (2.0 * kappa * zeta)
+    return V, mu * V * rise_F, mu * rise_H * lam2 / zeta, V * share * (lam2 * ratio_i2(x, r) + p)
+
+
+@compiled
+def explicit_batch(zeta, eta, alpha, kappa, mu, Q, M):
+    """Independent states: the processor may work on several at once."""
+    for i in range(zeta.size):
+        _, _, Q[i], M[i] = explicit_state(zeta[i], eta[i], alpha[i], kappa, mu)
+
+
+@compiled
+def explicit_chain(zeta, eta, alpha, kappa, mu, Q, M):
+    """Each state waits for the one before, as in an integrator."""
+    wait = 0.0
+    for i in range(zeta.size):
+        _, _, Q[i], M[i] = explicit_state(zeta[i] + wait, eta[i] + wait, alpha[i], kappa, mu)
+        wait = 1e-300 * (Q[i] + M[i])
+
+
+def law(sizes: dict[str, Any]) -> dict[str, Any]:
+    """ns a state for each way to ask for Q and M, on one core, and the largest error."""
+    rng = np.random.default_rng(sizes["seed"])
+    n = sizes["states"]
+    scene = vr.PAPER_SECTION_5_ROUNDED
+    alpha = np.exp(rng.uniform(np.log(1.1), np.log(100.0), n))
+    each = scene.replace(alpha=alpha)
+    V, s = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n)), rng.uniform(0.0, 1.0, n)
+    carter = scene.replace(alpha=1.0)
+    calls, tried = {}, {}
+    few = slice(0, max(n // sizes["direct_share"], 1))
+    cases = (
+        ("one_alpha", scene, "table"), ("an_alpha_each", each, "table"), ("alpha_1", carter, "table"),
+        ("direct_one_alpha", scene, "direct"), ("direct_an_alpha_each", each, "direct"),
+    )  # fmt: skip
+    for name, which, method in cases:
+        part = few if method == "direct" else slice(None)
+        own = which if which.shape == () else which.replace(alpha=alpha[part])
+        delta = s[part] * vr.contact(own, V[part], delta=0.0, fields="delta_star").delta_star
+        given = {"scene": own, "V": V[part], "delta": delta, "fields": FIELDS, "method": method}
+        calls[name] = lambda given=given: vr.contact(**given)
+        tried[name] = (own, V[part], delta)
+    state = vr.contact(each, V, delta=tried["an_alpha_each"][2], fields=("zeta", "beta"))
+    zeta, eta = state.zeta, state.beta * state.zeta
+    Q, M = np.empty((2, n))
+    for name, kernel in (("explicit_batched", explicit_batch), ("explicit_scalar", explicit_chain)):
+        calls[name] = lambda kernel=kernel: kernel(zeta, eta, alpha, scene.kappa, scene.mu, Q, M)
+    for call in calls.values():
+        call()
+    seconds = alternating(calls, sizes["repeats"])
+    counts = {name: tried[name][1].size if name in tried else n for name in calls}
+    found = {name: _error(calls[name](), *tried[name], sizes["exact_states"]) for name in tried}
+    found["explicit_batched"] = found["explicit_scalar"] = _explicit_error(zeta, eta, alpha, scene, sizes)
+    return {name: {"ns": 1e9 * seconds[name] / counts[name], "error": found[name]} for name in calls}
+
+
+def _error(values: Any, scene: vr.Scene, V: NDArray, delta: NDArray, count: int) -> dict[str, float]:
+    """Largest relative error of Q and M against 50 digits over the first states."""
+    alpha = np.broadcast_to(scene.alpha, V.shape)
+    worst = dict.fromkeys(FIELDS, 0.0)
+    for i in range(min(count, V.size)):
+        exact = contact_precise(alpha[i], scene.kappa, scene.mu, V[i], delta[i], 50)
+        for name in FIELDS:
+            worst[name] = max(worst[name], _relative(getattr(values, name)[i], exact[name]))
+    return worst
+
+
+def _explicit_error(zeta: NDArray, eta: NDArray, alpha: NDArray, scene: vr.Scene, sizes: dict) -> dict[str, float]:
+    """The same for the explicit law, at the (V, delta) that it gives itself."""
+    worst = dict.fromkeys(FIELDS, 0.0)
+    for i in range(min(sizes["exact_states"], zeta.size)):
+        V, delta, Q, M = explicit_state(zeta[i], eta[i], alpha[i], scene.kappa, scene.mu)
+        exact = contact_precise(alpha[i], scene.kappa, scene.mu, V, delta, 50)
+        for name, value in zip(FIELDS, (Q, M)):
+            worst[name] = max(worst[name], _relative(value, exact[name]))
+    return worst
+
+
+def _relative(value: float, exact: Any) -> float:
+    return float(abs(float(value) - exact) / abs(exact)) if exact else abs(float(value))

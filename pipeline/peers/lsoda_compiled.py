@@ -1,0 +1,136 @@
+"""LSODA, compiled, on this package's explicit right-hand side in (ln zeta, zeta - eta): partial slip only.
+
+The best that a user could make of the reduction without an integrator of his own.  By numbalsoda
+(C++), called from compiled code; where that is not installed, by scipy's LSODA with the compiled
+right-hand side behind a Python call, which costs some 10 times more (:data:`ENGINE` says which).
+
+Full slip is given to it: :func:`prepare` takes onset time and speed, and the outputs before, from
+the package, and none of that is timed.  A motion whose full slip returns is beyond it.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+import viscoroll as vr
+from viscoroll.kernels.partial_slip import partial_rhs, partial_speeds, slow_D
+
+ENGINE = "numbalsoda" if find_spec("numbalsoda") else "scipy"
+#: share of rtol that the absolute tolerance is; 1e-3 and less cost half as much again for the same error
+ATOL_SHARE = 1.0
+_MOST_STEPS = 100_000
+
+
+class Stuck(NamedTuple):
+    """Motions at the begin of partial slip: ``first`` output index, direction, time gamma t, unknowns, parameters."""
+
+    first: NDArray
+    direction: NDArray
+    tau: NDArray
+    u: NDArray
+    par: NDArray
+    gamma: NDArray
+    V: NDArray
+    omega: NDArray
+
+
+def prepare(scene: vr.Scene, V0: NDArray, omega0: NDArray, t: NDArray) -> Stuck:
+    """Full slip by the package: what LSODA continues, and the outputs that lie before."""
+    n = V0.size
+    names = ("alpha", "kappa", "mu", "gamma", "j")
+    alpha, kappa, mu, gamma, j = (np.broadcast_to(np.asarray(getattr(scene, name)), n) for name in names)
+    par = np.column_stack([alpha, (alpha - 1.0) / alpha, kappa, mu, j])
+    V, omega = np.full((2, n, t.size), np.nan)
+    first, tau, direction, u = np.zeros(n, dtype=np.int64), np.zeros(n), np.ones(n), np.zeros((n, 2))
+    for i in range(n):
+        one = vr.Scene(alpha[i], kappa[i], mu[i], gamma[i], j[i])
+        motion = vr.roll(one, V0[i], omega0[i], t, rtol=1e-11)
+        first[i] = t.size
+        sticks = bool(motion.regime[0] == 1) if t[0] == 0.0 else not vr.contact(one, V0[i], omega=omega0[i]).full_slip
+        at = 0.0 if sticks else motion.onset_time
+        if sticks or np.isfinite(at):
+            speed, turn = (V0[i], omega0[i]) if sticks else _state_at(one, V0[i], omega0[i], at)
+            first[i] = np.searchsorted(t, at)
+            state = vr.contact(one, speed, omega=turn)
+            eta = state.beta * state.zeta if sticks else 0.0
+            direction[i], tau[i] = np.sign(speed), at * gamma[i]
+            u[i, 0] = np.log(state.zeta)
+            u[i, 1] = np.sign(state.delta) * (state.zeta - eta) - slow_D(u[i, 0], tuple(par[i]))[0]
+        V[i, : first[i]], omega[i, : first[i]] = motion.V[: first[i]], motion.omega[: first[i]]
+    return Stuck(first, direction, tau, u, par, gamma.copy(), V, omega)
+
+
+def _state_at(scene: vr.Scene, V0: float, omega0: float, t: float) -> tuple[float, float]:
+    motion = vr.roll(scene, V0, omega0, np.array([t]), rtol=1e-12)
+    return motion.V[0], motion.omega[0]
+
+
+def run(stuck: Stuck, t: NDArray, rtol: float) -> tuple[NDArray, NDArray]:
+    """Continue all motions to the end of ``t``: V, omega of shape (n, times); NaN where LSODA gave up."""
+    V, omega = stuck.V.copy(), stuck.omega.copy()
+    _engine()(*stuck[:6], t, rtol, ATOL_SHARE * rtol, V, omega)
+    return V, omega
+
+
+@numba.njit(nogil=True)
+def _put(solution, first, direction, par, V, omega):
+    for m in range(solution.shape[0] - 1):
+        speed, delta = partial_speeds(solution[m + 1, 0], solution[m + 1, 1], par)
+        V[first + m], omega[first + m] = direction * speed, direction * speed * (1.0 + delta)
+
+
+def _engine():
+    if not _cached:
+        _cached.append(_by_numbalsoda() if ENGINE == "numbalsoda" else _by_scipy)
+    return _cached[0]
+
+
+_cached: list = []
+
+
+def _by_numbalsoda():
+    from numbalsoda import lsoda, lsoda_sig
+
+    @numba.cfunc(lsoda_sig)
+    def rates(_, u, du, p):
+        y = numba.carray(u, 2)
+        par = numba.carray(p, 5)
+        dy, dD, _, _ = partial_rhs(y[0], y[1], (par[0], par[1], par[2], par[3], par[4]))
+        du[0], du[1] = dy, dD
+
+    address = rates.address
+
+    @numba.njit(nogil=True)
+    def loop(first, direction, tau, u, par, gamma, t, rtol, atol, V, omega):
+        for i in range(first.size):
+            if first[i] == t.size:
+                continue
+            times = np.empty(t.size - first[i] + 1)
+            times[0] = tau[i]
+            times[1:] = t[first[i] :] * gamma[i]
+            solution, good = lsoda(address, u[i].copy(), times, par[i].copy(), rtol, atol, _MOST_STEPS)
+            if good:
+                own = (par[i, 0], par[i, 1], par[i, 2], par[i, 3], par[i, 4])
+                _put(solution, first[i], direction[i], own, V[i], omega[i])
+
+    loop.keep_alive = rates
+    return loop
+
+
+def _by_scipy(first, direction, tau, u, par, gamma, t, rtol, atol, V, omega):
+    from scipy.integrate import solve_ivp
+
+    for i in np.flatnonzero(first < t.size):
+        own = tuple(par[i])
+        times = np.concatenate([[tau[i]], t[first[i] :] * gamma[i]])
+        solution = solve_ivp(
+            lambda _, y, own=own: partial_rhs(y[0], y[1], own)[:2],
+            (times[0], times[-1]), u[i], "LSODA", t_eval=times, rtol=rtol, atol=atol,
+        )  # fmt: skip
+        if solution.success:
+            _put(np.ascontiguousarray(solution.y.T), first[i], direction[i], own, V[i], omega[i])

@@ -1,0 +1,56 @@
+"""Pictures by name (:data:`FIGURES`): the paper's figures, and what else there is to see.
+
+Each function returns a matplotlib ``Figure`` of its own, without pyplot and its global state,
+and takes what it shows as arguments with the paper's values as defaults.  All are readable
+in grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import OutputError
+from ..files import replacing
+from .deceleration import figure_5, figure_6, figure_7
+from .distribution import ensemble_distribution
+from .law import figure_2, figure_3
+from .maps import atlas_errors
+from .portrait import phase_portrait
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "FIGURES", "atlas_errors", "ensemble_distribution", "figure_2", "figure_3", "figure_5", "figure_6", "figure_7",
+    "phase_portrait", "save",
+]  # fmt: skip
+
+FIGURES: dict[str, Callable[..., Figure]] = {
+    "figure-2": figure_2,
+    "figure-3": figure_3,
+    "figure-5": figure_5,
+    "figure-6": figure_6,
+    "figure-7": figure_7,
+    "phase-portrait": phase_portrait,
+    "atlas-errors": atlas_errors,
+    "ensemble": ensemble_distribution,
+}
+
+
+def save(figure: Figure, path: str | PathLike[str]) -> None:
+    """Write a figure, whole or not at all; the suffix of ``path`` chooses the format.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written there, or the suffix names no format.
+    """
+    formats = sorted(figure.canvas.get_supported_filetypes())
+    suffix = Path(path).suffix
+    if suffix.removeprefix(".").lower() not in formats:
+        raise OutputError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
+    with replacing(path) as temporary:
+        figure.savefig(temporary)

@@ -1,0 +1,62 @@
+"""An ensemble's distribution: speed over time, and the onset of stick."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..scene import PAPER_SECTION_5_ROUNDED
+from ..symbols import label
+from .style import THIN, new_figure, number, scaled
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_UNIT, _EXPONENT = 1e4, 4
+_GREYS = ("0.85", "0.65", "0.45")
+
+
+def ensemble_distribution(summary: xr.Dataset | None = None, sample: xr.Dataset | None = None) -> Figure:
+    """Quantiles of V over time, and a histogram of the onset of stick.
+
+    Parameters
+    ----------
+    summary : of ``Ensemble.summary`` with an odd number of quantiles; one of t holds V.
+    sample : of ``Ensemble.to_xarray``, all of the motions or some; default for both: a small
+        ensemble of starts that are even in [-2, 2]^2, rolled now.
+    """
+    if summary is None or sample is None:
+        summary, sample = _small_ensemble()
+    count = int(summary.attrs["motions"])
+    common = [name for name in ("alpha", "kappa", "mu", "gamma") if sample[name].ndim == 0]
+    scene = ", ".join(f"{label(name)} = ${number(sample[name].item())}$" for name in common)
+    title = f"{count} motions from random starts" + (f" for {scene}" if scene else "")
+    figure, (left, right) = new_figure(title, 1, 2, (9.6, 4.2))
+    t, quantile, V = _UNIT * summary["t"].values, summary["quantile"].values, summary["V_quantiles"].values
+    for n in range(quantile.size // 2):
+        text = f"{100 * quantile[n]:g} % to {100 * quantile[-1 - n]:g} %"
+        left.fill_between(t, V[n], V[-1 - n], color=_GREYS[min(n, len(_GREYS) - 1)], linewidth=0.0, label=text)
+    left.plot(t, V[quantile.size // 2], ".-", color="black", label="median")
+    left.axhline(0.0, **THIN)
+    left.set(xlabel=scaled("t", _EXPONENT), ylabel=label("V"), xlim=(t[0], t[-1]))
+    left.legend(frameon=False, loc="upper right")
+    onset = sample["onset_time"].values
+    stuck = np.isfinite(onset)
+    right.hist(_UNIT * onset[stuck], bins=60, color="0.6", edgecolor="black", linewidth=0.3)
+    right.set(xlabel=scaled("onset_time", _EXPONENT), ylabel=f"motions, of {onset.size}")
+    if not stuck.all():
+        right.set_title(f"{np.count_nonzero(~stuck)} more without onset", fontsize="small")
+    return figure
+
+
+def _small_ensemble() -> tuple[xr.Dataset, xr.Dataset]:
+    from scipy.stats import uniform
+
+    from ..motion import ensemble
+    from ..sampling import sample
+
+    starts = sample(2048, 0, "sobol", V0=uniform(-2, 4), omega0=uniform(-2, 4))
+    result = ensemble(PAPER_SECTION_5_ROUNDED, starts["V0"], starts["omega0"], np.linspace(0.0, 4e-3, 41), rtol=1e-6)
+    return result.summary(), result.to_xarray()

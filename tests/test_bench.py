@@ -1,0 +1,81 @@
+"""The benchmark runs at smoke sizes: results complete, errors sane.  Its times are of no interest here."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import tolerances as tol
+
+ROOT = Path(__file__).parents[1]
+OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess:
+    command = [sys.executable, "pipeline/benchmark.py", *arguments]
+    return subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("bench")
+
+
+def measured(folder: Path, *parts: str) -> list[dict]:
+    result = run(*parts, "--smoke", "-o", str(folder), "--figures", str(folder))
+    assert result.returncode == 0, result.stdout + result.stderr
+    files = [json.loads((folder / f"bench-{part}.json").read_text(encoding="utf-8")) for part in parts]
+    assert all({"cpu", "cores", "date", "numba", "python"} <= file["machine"].keys() for file in files)
+    return [file["measured"] for file in files]
+
+
+def check_rows(result: dict) -> None:
+    named = set(result["methods"]) - set(result["skipped"])
+    assert {row["method"] for row in result["results"]} == named
+    for row in result["results"]:
+        assert row["us"] > 0.0
+        assert row["failed"] == 0, row
+        own = row["method"] == "table"
+        for name in OWN_ERRORS:
+            assert 0.0 <= row[name] < (tol.BENCH_OWN if own else tol.BENCH_PEER), row
+    for group in result["reference"].values():
+        assert group["max"] < tol.BENCH_REFERENCE
+
+
+def test_motions(folder):
+    """Every method and peer that can run here; the paper's method in C is skipped where GSL is missing."""
+    work, own = measured(folder, "work-precision", "own-parameters")
+    check_rows(work)
+    check_rows(own)
+    assert {row["group"] for row in work["results"]} == {"IC1", "IC2", "IC3", "random"}
+    assert (folder / "work-precision.png").stat().st_size > 0
+    if work["skipped"]:
+        assert set(work["skipped"]) <= {"gsl-adams", "gsl-bdf"}, work["skipped"]
+        pytest.skip("; ".join(f"{name}: {reason}" for name, reason in work["skipped"].items()))
+
+
+def test_law_tables_and_the_rest(folder):
+    law, tables, skips, scaling, cold = measured(folder, "law", "tables", "skips", "scaling", "cold-start")
+    for row in law.values():
+        assert row["ns"] > 0.0
+        assert max(row["error"].values()) < tol.BENCH_LAW
+    kinds = {row["kind"]: row for row in tables["rows"]}
+    assert set(kinds) == {"shipped ratios", "1-D ratio splines", "3-D atlas"}
+    shipped, atlas = kinds["shipped ratios"]["error"], kinds["3-D atlas"]["error"]
+    assert max(shipped.values()) < tol.BENCH_LAW < min(atlas.values())
+    assert max(atlas.values()) < tol.BENCH_COARSE_ATLAS
+    assert all(row["ratio"] > 0.0 for row in skips.values())
+    assert {row["threads"] for row in scaling["rows"]} == {1, 2}
+    assert all(row["peak_mb"] >= row["before_mb"] > 0.0 for row in scaling["rows"])
+    assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
+
+
+def test_refuses_what_it_cannot_do(tmp_path):
+    assert "unknown part speed" in run("speed").stderr
+    broken = tmp_path / "broken.toml"
+    broken.write_text("[bench]\n", encoding="utf-8")
+    result = run("law", "--config", str(broken), "-o", str(tmp_path))
+    assert result.returncode == 1
+    assert result.stderr.startswith("benchmark: ")
+    assert not list(tmp_path.glob("*.json"))

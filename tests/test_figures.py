@@ -1,0 +1,300 @@
+"""Every figure draws without a warning, is labelled, and is saved whole or not at all; the stages behind them."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from matplotlib.figure import Figure
+
+import viscoroll as vr
+from viscoroll.errors import OutputError
+from viscoroll.figures import FIGURES, figure_2, figure_3, figure_5, figure_6, figure_7, phase_portrait, save
+from viscoroll.tables import AtlasGrid
+
+ROOT = Path(__file__).parents[1]
+PNG = b"\x89PNG\r\n\x1a\n"
+NAMES = {"figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble"}
+_SMALL_ATLAS = AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2))
+
+
+@pytest.fixture(scope="module")
+def atlas() -> xr.Dataset:
+    return vr.tables.build(_SMALL_ATLAS)
+
+
+@pytest.fixture(scope="module")
+def drawn(atlas) -> dict[str, Figure]:
+    starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
+    few = vr.ensemble(vr.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
+    given = {"atlas-errors": (atlas,), "ensemble": (few.summary(), few.to_xarray())}
+    return {name: draw(*given.get(name, ())) for name, draw in FIGURES.items()}
+
+
+def line(axes, text: str) -> np.ndarray:
+    """x and y of the line with that label."""
+    (found,) = [one for one in axes.get_lines() if one.get_label() == text]
+    return np.array(found.get_data(), dtype=float)
+
+
+def test_names():
+    assert set(FIGURES) == NAMES
+
+
+@pytest.mark.parametrize("name", sorted(NAMES))
+def test_titled_and_labelled(drawn, name):
+    figure = drawn[name]
+    assert figure.get_suptitle()
+    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    assert panels
+    assert any("$" in axes.get_xlabel() for axes in panels)
+    for axes in panels:
+        shared_below = axes.get_shared_x_axes().get_siblings(axes) != [axes]
+        shared_left = axes.get_shared_y_axes().get_siblings(axes) != [axes]
+        assert axes.get_xlabel() or shared_below
+        assert axes.get_ylabel() or shared_left
+
+
+@pytest.mark.parametrize("name", sorted(NAMES))
+def test_saved_without_a_warning(drawn, name, tmp_path):
+    path = tmp_path / f"{name}.png"
+    save(drawn[name], path)
+    assert path.read_bytes().startswith(PNG)
+    assert [item.name for item in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("name", ["figure-2", "figure-3", "figure-5", "figure-6"])
+def test_lines_differ_without_colour(drawn, name):
+    labelled = [one for one in drawn[name].axes[0].get_lines() if not one.get_label().startswith("_")]
+    styles = {(str(one._unscaled_dash_pattern), str(one.get_marker())) for one in labelled}
+    assert len(styles) == len(labelled)
+
+
+def test_figure_2_shows_the_limits():
+    scene, axes = vr.PAPER_FIGURES_2_3, figure_2().axes[0]
+    for alpha in (1, 1.5, 21.5, 81.5):
+        V, star = line(axes, rf"$\alpha$ = {alpha:g}")
+        assert star[0] == pytest.approx(1e3 * scene.mu / (2.0 * scene.kappa), rel=tol.FIGURE)
+        at = vr.contact(scene.replace(alpha=alpha), V[100], delta=0.0).delta_star
+        assert star[100] == pytest.approx(1e3 * at, rel=tol.FIGURE)
+
+
+def test_figure_3_saturates_and_is_odd():
+    left, right = figure_3().axes
+    _, Q = line(left, "$V$ = 0.1")
+    assert (Q[0], Q[-1]) == (-0.2, 0.2)
+    _, M = line(right, r"$\alpha$ = 21.5")
+    assert np.allclose(M, -M[::-1], rtol=tol.FIGURE, atol=0.0)
+
+
+def test_figure_5_starts_where_the_paper_does():
+    axes = figure_5().axes[0]
+    for name, (V0, omega0) in vr.PAPER_STARTS.items():
+        assert line(axes, f"{name}: $V$")[1, 0] == V0
+        assert line(axes, rf"{name}: $\omega$")[1, 0] == omega0
+
+
+def test_figure_6_and_7_at_the_four_times():
+    axes = figure_6().axes[0]
+    assert len([one for one in axes.get_lines() if one.get_marker() == "o"]) == 4
+    panels = figure_7().axes
+    assert len(panels) == 4
+    for panel in panels:
+        tau, bound = line(panel, r"$|\tau|/E'$")[1], line(panel, r"$\mu p/E'$")[1]
+        assert (tau <= bound * (1.0 + tol.FIGURE)).all()
+    assert r"$\beta$ = 0.981" in panels[1].get_title()
+
+
+def test_a_start_that_rolls_and_a_scene_that_never_stops():
+    figure_5(starts={"rolling": (1.0, 1.0)})
+    figure_6(start=(1.0, 1.0))
+    phase_portrait(vr.PAPER_SECTION_5.replace(alpha=1.0))
+
+
+def test_save_is_whole_or_not_at_all(drawn, tmp_path):
+    path = tmp_path / "picture.png"
+    path.write_text("as it was")
+
+    class Broken(Figure):
+        def savefig(self, target, *arguments, **options):
+            Path(target).write_bytes(b"half")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OutputError, match="No space left"):
+        save(Broken(), path)
+    assert path.read_text() == "as it was"
+    assert [item.name for item in tmp_path.iterdir()] == [path.name]
+    with pytest.raises(OutputError, match=r"suffix '\.xyz'"):
+        save(drawn["figure-2"], tmp_path / "picture.xyz")
+    with pytest.raises(OutputError, match="cannot be written"):
+        save(drawn["figure-2"], tmp_path / "nowhere" / "picture.png")
+
+
+def test_import_is_light_and_pyplot_is_left_alone():
+    code = (
+        "import sys; from viscoroll.figures import FIGURES; assert 'matplotlib' not in sys.modules; "
+        "assert 'numba' not in sys.modules; FIGURES['figure-2'](); assert 'matplotlib.pyplot' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+# --- pipeline: motions, ensemble, figures, summary ---
+
+_SMALL = """
+[validate]
+tables = ["{atlas}"]
+states = 500
+stress_states = 1
+table_points = 100
+times = 5
+seed = 0
+[motions]
+preset = "paper-section-5"
+end = 4e-3
+times = 5
+rtol = 1e-6
+[ensemble]
+preset = "paper-section-5-rounded"
+motions = 100
+speed = 2.0
+t = [0.0, 1e-3, 4e-3]
+rtol = 1e-4
+seed = 3
+kept = 40
+[figures]
+atlas = "{atlas}"
+[summary]
+tables = ["{atlas}"]
+"""
+
+
+class Page(HTMLParser):
+    """Tags that are open, and where links and pictures point."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.links: list[str] = []
+        self.pictures = 0
+
+    def handle_starttag(self, tag, attrs):
+        if tag == "img":
+            self.pictures += dict(attrs)["src"].startswith("data:image/png;base64,")
+        elif tag != "meta":
+            self.open.append(tag)
+        if tag == "a":
+            self.links.append(dict(attrs)["href"])
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def stage(name: str, *arguments: str) -> subprocess.CompletedProcess:
+    script = str(ROOT / "pipeline" / f"{name}.py")
+    return subprocess.run([sys.executable, script, *arguments], capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory, atlas) -> tuple[Path, Path]:
+    """Configuration and output folder of a small run of every stage."""
+    folder = tmp_path_factory.mktemp("demo")
+    vr.tables.save(atlas, folder / "atlas.nc")
+    config, out = folder / "small.toml", folder / "out"
+    config.write_text(_SMALL.format(atlas=folder / "atlas.nc"), encoding="utf-8")
+    for name in ("validate", "motions", "ensemble", "figures", "summary"):
+        result = stage(name, "--config", str(config), "-o", str(out))
+        assert result.returncode == 0, result.stdout + result.stderr
+    return config, out
+
+
+def test_stages_leave_records(demo):
+    _, out = demo
+    for name in ("validate", "motions", "ensemble", "figures"):
+        record = json.loads((out / f"stages/{name}.json").read_text(encoding="utf-8"))
+        assert record["stage"] == name
+        assert record["seconds"] >= 0.0
+        assert not record["failed"]
+        assert all((out / file).exists() for file in record["files"])
+
+
+def test_motions_file(demo):
+    with xr.open_dataset(demo[1] / "motions.nc", engine="h5netcdf") as saved:
+        assert list(saved["ic"].values) == list(vr.PAPER_STARTS)
+        assert saved.sel(ic="IC1").V.values[0] == 1.5
+        rolled = vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, saved.t.values, rtol=1e-6)
+        assert np.array_equal(saved.sel(ic="IC1").V.values, rolled.V)
+        assert np.array_equal(saved.sel(ic="IC1").beta.values, rolled.contact("beta").beta)
+        assert saved.sel(ic="IC1").onset_time.item() == rolled.onset_time
+
+
+def test_ensemble_file(demo):
+    with xr.open_dataset(demo[1] / "ensemble.nc", engine="h5netcdf") as saved:
+        assert saved.sizes["motion"] == 40
+        assert saved.attrs["motions"] == 100
+        assert saved.attrs["seed"] == 3
+        assert saved.V_quantiles.dims == ("quantile", "t")
+        one = vr.roll(vr.PAPER_SECTION_5_ROUNDED, saved.V0.values[7], saved.omega0.values[7], saved.t.values, rtol=1e-4)
+        assert np.array_equal(saved.V.values[7], one.V)
+
+
+def test_summary_page(demo):
+    config, out = demo
+    page = Page()
+    page.feed((out / "index.html").read_text(encoding="utf-8"))
+    assert page.open == []
+    assert page.pictures == len(NAMES)
+    assert {"motions.nc", "ensemble.nc", "validation.nc", "validation.txt"} <= set(page.links)
+    assert all((out / target).exists() for target in page.links)
+    before = (out / "index.html").stat().st_mtime_ns
+    shown = stage("summary", "--config", str(config), "-o", str(out), "--show")
+    assert shown.returncode == 0, shown.stderr
+    assert (out / "index.html").stat().st_mtime_ns == before
+    for word in ("atlas.nc", "motions.nc", "ensemble.nc", "index.html", "time per motion"):
+        assert word in shown.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "words"),
+    [
+        ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
+        ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
+        ("motions", '"paper-section-5"', '"paper"', "preset = 'paper'"),
+        ("figures", "[figures]", "[pictures]", "section [figures] is missing"),
+        ("summary", "[summary]", "[summary", "is not TOML"),
+    ],
+)
+def test_stage_refuses_in_one_line(demo, tmp_path, name, old, new, words):
+    config = tmp_path / "bad.toml"
+    config.write_text(demo[0].read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
+    result = stage(name, "--config", str(config), "-o", str(tmp_path / "out"))
+    assert result.returncode == 2
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(("name", "words"), [("figures", "ensemble.nc"), ("summary", "run pipeline/validate.py first")])
+def test_stage_says_what_has_to_run_first(demo, tmp_path, name, words):
+    result = stage(name, "--config", str(demo[0]), "-o", str(tmp_path))
+    assert result.returncode == 2
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_production_configuration_is_read():
+    sys.path.insert(0, str(ROOT / "pipeline"))
+    try:
+        import stage as shared
+    finally:
+        sys.path.pop(0)
+    import tomllib
+
+    content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
+    assert {"validate", "motions", "ensemble", "figures", "summary"} <= content.keys()
+    assert content["ensemble"]["motions"] == 1_000_000

@@ -1,0 +1,223 @@
+"""The validation finds what is right and what is wrong; its integrator; the stage around it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+
+import viscoroll as vr
+from viscoroll import ParameterError
+from viscoroll.tables import AtlasGrid
+from viscoroll.validation import Check, Report, report_dataset, stresses, validate
+from viscoroll.validation.direct_motion import roll_direct
+from viscoroll.validation.motions import motion_checks
+from viscoroll.validation.states import along_motion_checks, random_state_checks, random_states
+from viscoroll.validation.table_check import check_table
+
+ROOT = Path(__file__).parents[1]
+SMALL = {"states": 2000, "stress_states": 3, "table_points": 300, "times": 20}
+RETURNS = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4)
+
+
+@pytest.fixture(scope="module")
+def atlas() -> xr.Dataset:
+    return vr.tables.build(AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2)))
+
+
+@pytest.fixture(scope="module")
+def report(atlas) -> Report:
+    return validate((atlas,), **SMALL, seed=5)
+
+
+def test_all_is_well(report):
+    assert report.ok, str(report)
+    names = [check.name for check in report.checks]
+    assert len(set(names)) == len(names)
+    for part in ("random states: Q", "along IC1-IC3: M", "stress: load", "atlas table: beta between nodes"):
+        assert part in names
+    for start in vr.PAPER_STARTS:
+        assert f"motion {start}: onset time" in names
+
+
+def test_text_names_every_check(report):
+    text = str(report)
+    assert all(check.name in text and check.meaning in text for check in report.checks)
+    assert "EXCEEDED" not in text
+    assert "seed 5" in text
+    bad = Report((Check("one", 2.0, 1.0, "absolute"), Check("two", 0.5, 1.0, "absolute")), {"seed": 0})
+    assert not bad.ok
+    assert "2 checks: 1 beyond what is allowed." in str(bad)
+
+
+def test_nan_does_not_pass():
+    assert not Check("lost", np.nan, 1.0, "absolute").passed
+
+
+def test_dataset_has_a_row_a_check(report):
+    dataset = report_dataset(report)
+    assert dataset.sizes == {"check": len(report.checks)}
+    assert dataset.attrs["ok"] == 1
+    assert dataset.attrs["states"] == SMALL["states"]
+    first = dataset.sel(check="random states: lam")
+    assert first.measured.item() <= first.allowed.item()
+    assert first.passed.item() == 1
+    assert all("long_name" in variable.attrs for variable in dataset.variables.values())
+
+
+def test_sample_holds_every_corner():
+    scene, V, delta = random_states(4000, 1)
+    s = np.abs(delta) / vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    assert (scene.alpha == 1.0).any()
+    assert np.count_nonzero(s == 0.0) > 100
+    assert np.count_nonzero(np.abs(s - 1.0) < 1e-15) > 100
+    assert ((s > 0.0) & (s < 1e-5)).any()
+    assert ((s > 1.0 - 1e-5) & (s < 1.0)).any()
+    assert (s > 1.2).any()
+    for values in (V, delta):
+        assert (values < 0.0).any()
+        assert (values > 0.0).any()
+
+
+def test_same_seed_same_report():
+    assert random_state_checks(500, 3) == random_state_checks(500, 3)
+
+
+@pytest.mark.parametrize("name", ["Q_over_mu", "lam"])
+def test_wrong_table_is_found(atlas, name):
+    wrong = atlas.copy(deep=True)
+    wrong[name].values += tol.VALIDATION_WRONG
+    failed = [check.name for check in check_table(wrong, 200, 0) if not check.passed]
+    assert f"atlas table: {name} at nodes" in failed
+    assert all(name in row for row in failed)
+
+
+def test_wrong_stress_is_found(monkeypatch):
+    def louder(*arguments, **options):
+        found = vr.stress(*arguments, **options)
+        return type(found)({name: values * (1.0 + tol.VALIDATION_WRONG) for name, values in found.as_dict().items()})
+
+    monkeypatch.setattr(stresses, "stress", louder)
+    assert not any(check.passed for check in stresses.stress_checks(3, 0) if check.name == "stress: load")
+
+
+@pytest.mark.parametrize("module", ["states", "motions"])
+def test_wrong_scene_is_found(monkeypatch, module):
+    """The table method at a slightly other kappa."""
+    from viscoroll.validation import motions, states
+
+    def other(scene):
+        return scene.replace(kappa=np.asarray(scene.kappa) * (1.0 + tol.VALIDATION_WRONG))
+
+    if module == "states":
+        right = vr.contact
+        monkeypatch.setattr(
+            states, "contact", lambda scene, *a, **o: right(scene if "method" in o else other(scene), *a, **o)
+        )
+        assert not all(check.passed for check in random_state_checks(100, 0))
+    else:
+        monkeypatch.setattr(motions, "roll", lambda scene, *a, **o: vr.roll(other(scene), *a, **o))
+        assert not any(check.passed for check in motion_checks(10))
+
+
+def test_along_motions_covers_both_regimes():
+    assert all(check.passed for check in along_motion_checks(50))
+
+
+@pytest.mark.parametrize("start", vr.PAPER_STARTS)
+def test_direct_motion_against_the_tightest_roll(start):
+    scene, speeds = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_STARTS[start]
+    end = vr.roll(scene, *speeds, np.array([1.0]), rest=1e-6).rest_time
+    best = vr.roll(scene, *speeds, np.linspace(0.0, end, 50), rtol=1e-12)
+    direct = roll_direct(scene, *speeds, best.t)
+    size = np.maximum(np.abs(best.V), np.abs(best.omega))
+    assert np.max(np.abs(direct.V - best.V) / size) < tol.DIRECT_MOTION
+    assert np.max(np.abs(direct.omega - best.omega) / size) < tol.DIRECT_MOTION
+    assert direct.onset_time == pytest.approx(best.onset_time, rel=tol.DIRECT_ONSET)
+
+
+def test_direct_motion_where_slip_returns():
+    direct = roll_direct(RETURNS, 1.0, 1.0, np.array([2.33325e-3, 3e-3]))
+    assert direct.onset_time == pytest.approx(2.43862380e-3, rel=tol.RETURN_TIME)
+    assert direct.V[0] == pytest.approx(0.0089, abs=5e-5)
+    assert direct.omega[0] == pytest.approx(-0.0248, abs=5e-5)
+
+
+def test_direct_motion_that_starts_in_partial_slip():
+    t = np.array([0.0, 1e-4])
+    direct = roll_direct(vr.PAPER_SECTION_5_ROUNDED, -1.0, -1.001, t)
+    rolled = vr.roll(vr.PAPER_SECTION_5_ROUNDED, -1.0, -1.001, t, rtol=1e-12)
+    assert np.isnan(direct.onset_time)
+    assert np.allclose(direct.V, rolled.V, rtol=tol.DIRECT_MOTION, atol=0.0)
+    assert np.allclose(direct.omega, rolled.omega, rtol=tol.DIRECT_MOTION, atol=0.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [({"states": 0}, "states = 0"), ({"times": 1}, "times = 1"), ({"seed": -1}, "seed = -1")],
+)
+def test_refused(options, words):
+    with pytest.raises(ParameterError, match=words):
+        validate(**options)
+
+
+# --- pipeline/validate.py ---
+
+
+def stage(*arguments: str) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [sys.executable, str(ROOT / "pipeline/validate.py"), *arguments], capture_output=True, text=True, check=False
+    )
+
+
+def config(path: Path, table: Path, **changes) -> Path:
+    values = SMALL | {"seed": 0} | changes
+    lines = ["[validate]", f'tables = ["{table}"]', *(f"{name} = {value}" for name, value in values.items())]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+def test_stage_passes_then_fails(tmp_path, atlas):
+    out = tmp_path / "out"
+    vr.tables.save(atlas, tmp_path / "atlas.nc")
+    settings = config(tmp_path / "small.toml", tmp_path / "atlas.nc")
+    result = stage("--config", str(settings), "-o", str(out))
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "every difference is within what is allowed" in (out / "validation.txt").read_text(encoding="utf-8")
+    with xr.open_dataset(out / "validation.nc", engine="h5netcdf") as saved:
+        assert saved.attrs["ok"] == 1
+        assert "stress: Q" in saved["check"].values
+    assert (out / "stages/validate.json").exists()
+    wrong = atlas.copy(deep=True)
+    wrong["beta"].values += tol.CLI_WRONG
+    vr.tables.save(wrong, tmp_path / "atlas.nc")
+    result = stage("--config", str(settings), "-o", str(out))
+    assert result.returncode == 1
+    assert "EXCEEDED" in result.stdout
+    with xr.open_dataset(out / "validation.nc", engine="h5netcdf") as saved:
+        assert saved.attrs["ok"] == 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"stats": 3}, "stats"),
+        ({"states": '"many"'}, "Expected `int`"),
+        ({"seed": -1}, "seed = -1"),
+        ({}, "does not exist"),
+    ],
+)
+def test_stage_refuses_in_one_line(tmp_path, changes, words):
+    settings = config(tmp_path / "bad.toml", tmp_path / "missing.nc", **changes)
+    if changes == {"seed": -1}:
+        settings.write_text(settings.read_text(encoding="utf-8").replace(f'"{tmp_path / "missing.nc"}"', ""))
+    result = stage("--config", str(settings), "-o", str(tmp_path / "out"))
+    assert result.returncode == 2
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert not (tmp_path / "out/validation.nc").exists()
