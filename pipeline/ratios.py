@@ -65,9 +65,7 @@ def chebyshev_fit(values: list[mp.mpf], half_width: mp.mpf) -> list[mp.mpf]:
 def fit_segment(segment: layout.Segment, progress: tqdm) -> list[float]:
     """Coefficients of every bin of one segment, in table order."""
     half_width = mp.mpf(1) / (2 * layout.BINS)
-    points = [
-        half_width * mp.cos(mp.pi * (2 * i + 1) / (2 * NODES)) for i in range(NODES)
-    ]
+    points = [half_width * mp.cos(mp.pi * (2 * i + 1) / (2 * NODES)) for i in range(NODES)]
     coefficients: list[float] = []
     for octave in range(segment.low, segment.high):
         for index in range(layout.BINS):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import time
 import tomllib
@@ -90,6 +91,22 @@ def parser(doc: str | None) -> argparse.ArgumentParser:
     return result
 
 
+def finish(name: str, seconds: float, outcome: Outcome, out: Path) -> None:
+    """Leave <out>/stages/<name>.json and print it; raises OutputError."""
+    record = {
+        "stage": name,
+        "seconds": round(seconds, 2),
+        "failed": outcome.failed,
+        "files": [os.path.relpath(path, out) for path in outcome.files],
+        "headline": outcome.headline,
+    }
+    text = json.dumps(record, indent=1, ensure_ascii=False)
+    write_text(make_folder(out / "stages") / f"{name}.json", f"{text}\n")
+    print(f"{name}: {seconds:.1f} s; " + ", ".join(shown(path) for path in outcome.files))
+    for line, value in outcome.headline.items():
+        print(f"  {line}: {readable(value)}")
+
+
 def run(name: str, kind: type[T], work: Callable[[T, Path], Outcome], doc: str | None) -> int:
     """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line."""
     arguments = parser(doc).parse_args()
@@ -98,22 +115,10 @@ def run(name: str, kind: type[T], work: Callable[[T, Path], Outcome], doc: str |
         out = make_folder(arguments.output)
         start = time.perf_counter()
         outcome = work(settings, out)
-        seconds = time.perf_counter() - start
-        record = {
-            "stage": name,
-            "seconds": round(seconds, 2),
-            "failed": outcome.failed,
-            "files": [str(path.relative_to(out)) for path in outcome.files],
-            "headline": outcome.headline,
-        }
-        text = json.dumps(record, indent=1, ensure_ascii=False)
-        write_text(make_folder(out / "stages") / f"{name}.json", f"{text}\n")
+        finish(name, time.perf_counter() - start, outcome, out)
     except ViscorollError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 2
-    print(f"{name}: {seconds:.1f} s; " + ", ".join(shown(path) for path in outcome.files))
-    for text, value in outcome.headline.items():
-        print(f"  {text}: {readable(value)}")
     return 1 if outcome.failed else 0
 
 

@@ -24,6 +24,7 @@ from viscoroll.files import write_text
 from viscoroll.tables import schema
 
 STAGES = {
+    "tabulate": "Building the tables",
     "validate": "Against direct solves of the printed equations",
     "motions": "The paper's motions IC1-IC3",
     "ensemble": "Random starts",

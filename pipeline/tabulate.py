@@ -1,56 +1,60 @@
 """Stage 1: build the tables -> data/tables/atlas.nc, data/tables/paper.nc.
 
-    python pipeline/tabulate.py [--config FILE] [-o FOLDER]
+python pipeline/tabulate.py [--config FILE] [--tables FOLDER] [-o FOLDER]
 
 Exit code 1 where a measured interpolation error exceeds the one that the configuration allows.
 """
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
+import stage
+
 from viscoroll import ViscorollError, tables
 from viscoroll.config import read_grids
 
-ROOT = Path(__file__).parents[1]
 
-
-def exceeded(table: Any) -> list[str]:
-    """Fields whose measured interpolation error is above the allowed one."""
-    return [
-        f"{name}: {field.attrs['interpolation_error']:.3g} > {field.attrs['interpolation_error_allowed']:.3g}"
+def errors(table: Any) -> dict[str, tuple[float, float]]:
+    """Measured and allowed interpolation error of every field that names an allowed one."""
+    return {
+        str(name): (field.attrs["interpolation_error"], field.attrs["interpolation_error_allowed"])
         for name, field in table.data_vars.items()
-        if field.attrs.get("interpolation_error", 0.0) > field.attrs.get("interpolation_error_allowed", float("inf"))
-    ]
+        if "interpolation_error_allowed" in field.attrs
+    }
+
+
+def build_all(config: Path, folder: Path) -> stage.Outcome:
+    """Build, save and report every table of the configuration."""
+    outcome = stage.Outcome([])
+    for name, grid in read_grids(config).items():
+        start, path = time.perf_counter(), stage.make_folder(folder) / f"{name}.nc"
+        table = tables.build(grid, progress=True)
+        tables.save(table, path)
+        outcome.files.append(path)
+        outcome.headline[f"{name}: build and save, s"] = time.perf_counter() - start
+        outcome.headline[f"{name}: size, MB"] = path.stat().st_size / 1e6
+        for field, (measured, allowed) in errors(table).items():
+            outcome.headline[f"{name}: interpolation error of {field} (allowed {allowed:g})"] = measured
+            outcome.failed |= measured > allowed
+    return outcome
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--config", type=Path, default=ROOT / "pipeline/config/production.toml")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/tables", help="folder")
+    parser = stage.parser(__doc__)
+    parser.add_argument("--tables", type=Path, default=stage.ROOT / "data/tables", help="folder (default data/tables)")
     arguments = parser.parse_args()
-    failures = []
+    start = time.perf_counter()
     try:
-        grids = read_grids(arguments.config)
-        for name, grid in grids.items():
-            path, start = arguments.output / f"{name}.nc", time.perf_counter()
-            table = tables.build(grid, progress=True)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            tables.save(table, path)
-            seconds = time.perf_counter() - start
-            print(f"{path}: {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s")
-            print(f"  {table.attrs['tolerances']}")
-            failures += [f"{name}: {failure}" for failure in exceeded(table)]
-    except (ViscorollError, OSError) as error:
+        outcome = build_all(arguments.config, arguments.tables)
+        stage.finish("tabulate", time.perf_counter() - start, outcome, arguments.output)
+    except ViscorollError as error:
         print(f"tabulate: {error}", file=sys.stderr)
-        return 1
-    for failure in failures:
-        print(f"tabulate: interpolation error above the allowed one: {failure}", file=sys.stderr)
-    return 1 if failures else 0
+        return 2
+    return 1 if outcome.failed else 0
 
 
 if __name__ == "__main__":

@@ -457,7 +457,7 @@ def test_tables_validate_finds_wrong_numbers(capsys, tables, name, field):
     assert main(["tables", "validate", name, "-n", "500"]) == 1
     out, err = capsys.readouterr()
     assert err == ""
-    assert {line.split()[0] for line in out.splitlines() if "EXCEEDED" in line} == {field}
+    assert {line.split()[2] for line in out.splitlines() if "EXCEEDED" in line} == {field}
 
 
 def test_tables_validate_finds_too_coarse_a_table(capsys, tables):

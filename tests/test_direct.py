@@ -55,24 +55,24 @@ def exact_k(x: float) -> mp.mpf:
     return hankel_ratio(x, +1) if x > 1e5 else mp.besselk(0, x) / mp.besselk(1, x)
 
 
-@pytest.mark.parametrize("ratio, exact", [(ratio_i, exact_i), (ratio_k0k1, exact_k)])
+@pytest.mark.parametrize(("ratio", "exact"), [(ratio_i, exact_i), (ratio_k0k1, exact_k)])
 def test_bessel_ratios_against_40_digits(ratio, exact):
     with mp.workdps(40):
-        for x in samples():
-            x = float(x)
+        for x in map(float, samples()):
             value = exact(x)
             ulps = abs(mp.mpf(ratio(x)) - value) / mp.mpf(float(np.spacing(float(value))))
             assert ulps <= tol.BESSEL_ULP, (x, float(ulps))
 
 
 def test_bessel_ratios_at_the_ends():
-    assert ratio_i(0.0) == 0.0 and ratio_k0k1(0.0) == 0.0
-    assert ratio_i(np.inf) == 1.0 and ratio_k0k1(np.inf) == 1.0
+    assert ratio_i(0.0) == 0.0
+    assert ratio_k0k1(0.0) == 0.0
+    assert ratio_i(np.inf) == 1.0
+    assert ratio_k0k1(np.inf) == 1.0
 
 
 def test_textbook_and_tabulated_ratios_agree():
-    for x in samples():
-        x = float(x)
+    for x in map(float, samples()):
         assert abs(ratio_i(x) - ratio_r(x)[0]) <= 6 * np.spacing(ratio_r(x)[0])
         assert abs(ratio_k0k1(x) - ratio_k(x)[0]) <= 6 * np.spacing(ratio_k(x)[0])
 
@@ -139,7 +139,8 @@ def test_no_creep_sticks_throughout_and_no_stick_gives_mu():
     for alpha in ALPHAS:
         lam, zeta, epsilon, _ = direct.direct_contact_length(0.5, alpha)
         beta, status = direct.direct_stick(0.0, KAPPA, MU, lam, epsilon, zeta, alpha)
-        assert status == direct.OK and 1.0 - tol.DIRECT_STICK <= beta <= 1.0
+        assert status == direct.OK
+        assert 1.0 - tol.DIRECT_STICK <= beta <= 1.0
         assert direct.direct_traction(0.0, 1e-3, KAPPA, MU, lam, epsilon, zeta) == MU
 
 

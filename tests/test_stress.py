@@ -78,7 +78,7 @@ def panels(low: float, high: float, number: int = 26, nodes: int = 12):
     return x, weight * half * np.sin(angle)
 
 
-@pytest.mark.parametrize("alpha, kappa_V, s", STATES)
+@pytest.mark.parametrize(("alpha", "kappa_V", "s"), STATES)
 def test_closures(alpha, kappa_V, s):
     here = state(alpha, kappa_V, s)
     rear, front = 0.5 * here.lam * (here.epsilon - 1.0), 0.5 * here.lam * (here.epsilon + 1.0)
@@ -96,12 +96,13 @@ def test_closures(alpha, kappa_V, s):
     assert abs(shear - here.Q * load) <= tol.STRESS_CLOSURE * load
 
 
-@pytest.mark.parametrize("alpha, kappa_V, s", STATES)
+@pytest.mark.parametrize(("alpha", "kappa_V", "s"), STATES)
 def test_signs_and_friction_bound(alpha, kappa_V, s):
     here = state(alpha, kappa_V, s)
     rows = np.vstack([here.across(0.0, 2.0), here.across(0.0, 1e-6), here.across(2.0 - 1e-6, 2.0)])
     p, tau = rows[:, 1], rows[:, 2]
-    assert np.all(p >= -tol.STRESS_SIGN) and np.all(tau >= -tol.STRESS_SIGN)
+    assert np.all(p >= -tol.STRESS_SIGN)
+    assert np.all(tau >= -tol.STRESS_SIGN)
     assert np.all(tau <= MU * p + tol.STRESS_SIGN)
     if here.beta == 0.0:
         assert np.array_equal(tau, MU * p)
@@ -109,7 +110,7 @@ def test_signs_and_friction_bound(alpha, kappa_V, s):
         assert here.at(0.5 * here.lam * (outside - 1.0 + here.epsilon)) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("alpha, kappa_V, s", [t for t in STATES if t[2] < 1.0])
+@pytest.mark.parametrize(("alpha", "kappa_V", "s"), [t for t in STATES if t[2] < 1.0])
 def test_shear_is_continuous_at_the_stick_edge(alpha, kappa_V, s):
     here = state(alpha, kappa_V, s)
     edge = 0.5 * here.lam * (here.epsilon + 1.0) - here.lam * here.beta
@@ -127,7 +128,7 @@ def printed_stress(alpha: float, kappa_V: float, s: float, places: list[float]):
     alpha, kappa, mu = mp.mpf(alpha), mp.mpf(KAPPA), mp.mpf(MU)
     V = mp.mpf(kappa_V) / kappa
 
-    def I(order, x):
+    def I(order, x):  # noqa: E743 (the Bessel function's name)
         return mp.besseli(order, x)
 
     def K(order, x):
@@ -155,7 +156,10 @@ def printed_stress(alpha: float, kappa_V: float, s: float, places: list[float]):
     c = b - lam * beta
     ratio = K(1, zeta * beta) / K(0, zeta * beta)
     C_2 = (
-        mu * beta * lam / (16 * kappa)
+        mu
+        * beta
+        * lam
+        / (16 * kappa)
         * (b + c - 2 * kappa * V - 2 * kappa * delta / mu + (b + c - 2 * kappa * delta / mu) * ratio)
     )
 
@@ -176,17 +180,25 @@ def printed_stress(alpha: float, kappa_V: float, s: float, places: list[float]):
     for place in places:
         x = mp.mpf(float(-a + lam * mp.mpf(place)))
         # dx'/sqrt((x' + a)(b - x')) is d angle
-        p = -alpha / (2 * mp.pi * kappa**2 * V) * memory(
-            x, -a, lambda at, _: (lam**2 + 4 * (at - kappa * V) * (lam * epsilon - 2 * at) + 1) / 16
+        p = (
+            -alpha
+            / (2 * mp.pi * kappa**2 * V)
+            * memory(x, -a, lambda at, _: (lam**2 + 4 * (at - kappa * V) * (lam * epsilon - 2 * at) + 1) / 16)
         )
         tau = mu * p
         if x > c:
             # sqrt((x' - c)/(b - x')) dx' is (b - c)/2 (1 - cos angle) d angle
-            tau += mu * alpha / (8 * mp.pi * kappa**2 * V) * memory(
-                x,
-                c,
-                lambda at, angle: (2 * kappa * V + b - c - 2 * at + 2 * kappa * delta / mu)
-                * (b - c) / 2 * (1 - mp.cos(angle)),
+            tau += (
+                mu
+                * alpha
+                / (8 * mp.pi * kappa**2 * V)
+                * memory(
+                    x,
+                    c,
+                    lambda at, angle: (
+                        (2 * kappa * V + b - c - 2 * at + 2 * kappa * delta / mu) * (b - c) / 2 * (1 - mp.cos(angle))
+                    ),
+                )
             )
             tau += alpha * C_2 / (mp.pi * kappa * V) * memory(x, c, lambda at, angle: mp.mpf(1))
         rows.append((float(x), float(p), float(tau)))
@@ -194,7 +206,7 @@ def printed_stress(alpha: float, kappa_V: float, s: float, places: list[float]):
 
 
 @pytest.mark.parametrize(
-    "alpha, kappa_V, s", [(11.0, 2.91 * 0.02, 0.5), (11.0, 0.7, 0.2), (100.0, 5.0, 0.8), (1.5, 0.1, 0.9)]
+    ("alpha", "kappa_V", "s"), [(11.0, 2.91 * 0.02, 0.5), (11.0, 0.7, 0.2), (100.0, 5.0, 0.8), (1.5, 0.1, 0.9)]
 )
 def test_against_the_printed_integrals(alpha, kappa_V, s):
     with mp.workdps(160):
@@ -233,7 +245,7 @@ def carter(x: float, beta: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(
-    "alpha, zeta", [(1.0, 1e-3), (1.0, 1.0), (1.0, 1e5), (1.0, np.inf), (11.0, np.inf), (1e4, np.inf)]
+    ("alpha", "zeta"), [(1.0, 1e-3), (1.0, 1.0), (1.0, 1e5), (1.0, np.inf), (11.0, np.inf), (1e4, np.inf)]
 )
 @pytest.mark.parametrize("beta", [0.0, 0.3, 0.9])
 def test_elastic_cylinder_and_rest_are_carter(alpha, zeta, beta):

@@ -25,7 +25,8 @@ from viscoroll.kernels.direct import (
 )
 from viscoroll.kernels.stepper import GAMMA, STAGES, A, C, dense, dense_terms
 
-from .splines import at_2, at_3, basis, compiled, scratch, spline
+from .jit import compiled
+from .splines import at_2, at_3, basis, scratch, spline
 
 DIRECT, ATLAS = 0, 1
 _SHARE, _CREEP_SHARE = 0.15, 0.05

@@ -13,7 +13,7 @@ from viscoroll.kernels.partial_slip import slip_differences
 from viscoroll.kernels.ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.reference import contact_precise
 
-from .splines import compiled
+from .jit import compiled
 from .timing import alternating
 
 FIELDS = ("Q", "M")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from viscoroll.tables.interpolate import spline_coefficients
 
-compiled = numba.njit(nogil=True, error_model="numpy", fastmath={"contract"})
+from .jit import compiled
 
 
 def spline(values: NDArray, axes: list[NDArray]) -> tuple[tuple[NDArray, ...], NDArray]:

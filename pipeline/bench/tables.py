@@ -11,8 +11,9 @@ import viscoroll as vr
 from viscoroll.kernels.ratios import TABLE, ratio_i2, ratio_k, ratio_r
 
 from .baseline import Atlas, atlas_law, atlas_splines
+from .jit import compiled
 from .law import explicit_batch
-from .splines import at_1, basis, compiled, scratch, spline
+from .splines import at_1, basis, scratch, spline
 from .timing import alternating
 
 #: ends of ln x of the ratio splines

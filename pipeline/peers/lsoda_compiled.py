@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
+from bench.jit import compiled
 from numpy.typing import NDArray
 
 import viscoroll as vr
@@ -73,15 +74,21 @@ def _state_at(scene: vr.Scene, V0: float, omega0: float, t: float) -> tuple[floa
 def run(stuck: Stuck, t: NDArray, rtol: float) -> tuple[NDArray, NDArray]:
     """Continue all motions to the end of ``t``: V, omega of shape (n, times); NaN where LSODA gave up."""
     V, omega = stuck.V.copy(), stuck.omega.copy()
-    _engine()(*stuck[:6], t, rtol, ATOL_SHARE * rtol, V, omega)
+    unknowns = np.full((*V.shape, 2), np.nan)
+    _engine()(stuck.first, stuck.tau, stuck.u, stuck.par, stuck.gamma, t, rtol, ATOL_SHARE * rtol, unknowns)
+    _put(unknowns, stuck.first, stuck.direction, stuck.par, V, omega)
     return V, omega
 
 
-@numba.njit(nogil=True)
-def _put(solution, first, direction, par, V, omega):
-    for m in range(solution.shape[0] - 1):
-        speed, delta = partial_speeds(solution[m + 1, 0], solution[m + 1, 1], par)
-        V[first + m], omega[first + m] = direction * speed, direction * speed * (1.0 + delta)
+@compiled
+def _put(unknowns, first, direction, par, V, omega):
+    """Speeds from the unknowns, from the first output in partial slip on."""
+    for i in range(first.size):
+        own = (par[i, 0], par[i, 1], par[i, 2], par[i, 3], par[i, 4])
+        for m in range(first[i], V.shape[1]):
+            if not np.isnan(unknowns[i, m, 0]):
+                speed, delta = partial_speeds(unknowns[i, m, 0], unknowns[i, m, 1], own)
+                V[i, m], omega[i, m] = direction[i] * speed, direction[i] * speed * (1.0 + delta)
 
 
 def _engine():
@@ -96,17 +103,15 @@ _cached: list = []
 def _by_numbalsoda():
     from numbalsoda import lsoda, lsoda_sig
 
-    @numba.cfunc(lsoda_sig)
+    @numba.cfunc(lsoda_sig, cache=True)
     def rates(_, u, du, p):
         y = numba.carray(u, 2)
         par = numba.carray(p, 5)
         dy, dD, _, _ = partial_rhs(y[0], y[1], (par[0], par[1], par[2], par[3], par[4]))
         du[0], du[1] = dy, dD
 
-    address = rates.address
-
     @numba.njit(nogil=True)
-    def loop(first, direction, tau, u, par, gamma, t, rtol, atol, V, omega):
+    def loop(address, first, tau, u, par, gamma, t, rtol, atol, unknowns):
         for i in range(first.size):
             if first[i] == t.size:
                 continue
@@ -115,14 +120,12 @@ def _by_numbalsoda():
             times[1:] = t[first[i] :] * gamma[i]
             solution, good = lsoda(address, u[i].copy(), times, par[i].copy(), rtol, atol, _MOST_STEPS)
             if good:
-                own = (par[i, 0], par[i, 1], par[i, 2], par[i, 3], par[i, 4])
-                _put(solution, first[i], direction[i], own, V[i], omega[i])
+                unknowns[i, first[i] :] = solution[1:]
 
-    loop.keep_alive = rates
-    return loop
+    return lambda *given: loop(rates.address, *given)
 
 
-def _by_scipy(first, direction, tau, u, par, gamma, t, rtol, atol, V, omega):
+def _by_scipy(first, tau, u, par, gamma, t, rtol, atol, unknowns):
     from scipy.integrate import solve_ivp
 
     for i in np.flatnonzero(first < t.size):
@@ -133,4 +136,4 @@ def _by_scipy(first, direction, tau, u, par, gamma, t, rtol, atol, V, omega):
             (times[0], times[-1]), u[i], "LSODA", t_eval=times, rtol=rtol, atol=atol,
         )  # fmt: skip
         if solution.success:
-            _put(np.ascontiguousarray(solution.y.T), first[i], direction[i], own, V[i], omega[i])
+            unknowns[i, first[i] :] = solution.y.T[1:]

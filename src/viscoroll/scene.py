@@ -23,11 +23,11 @@ def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool
     allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
     try:
         given = np.asarray(value)
-        if given.dtype.kind not in "iuf":
-            raise TypeError
-        array = given.astype(np.float64, copy=False)
-    except (TypeError, ValueError):
-        raise ParameterError(name, f"{value!r:.60}", allowed) from None
+    except ValueError:  # ragged
+        given = np.asarray(None)
+    if given.dtype.kind not in "iuf":
+        raise ParameterError(name, f"{value!r:.60}", allowed)
+    array = given.astype(np.float64, copy=False)
     bad = ~np.isfinite(array) | (array <= low if strict else array < low)
     if bad.any():
         raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)

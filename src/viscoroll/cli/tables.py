@@ -113,12 +113,10 @@ def _info(arguments: Namespace) -> int:
 
 def _validate(arguments: Namespace) -> int:
     from .. import tables
-    from .table_check import check_table
+    from ..validation import Report
+    from ..validation.table_check import check_table
 
     checks = check_table(tables.load(arguments.file), arguments.n, arguments.seed)
-    print(f"{arguments.file}: {arguments.n} nodes and {arguments.n} points between, against direct solves")
-    print(f"{'field':<25} {'where':<14} {'error':>9} {'allowed':>9}")
-    for check in checks:
-        verdict = "ok" if check.passed else "EXCEEDED"
-        print(f"{check.field:<25} {check.where:<14} {check.error:9.2e} {check.allowed:9.2e}  {verdict}")
-    return 0 if all(check.passed for check in checks) else 1
+    report = Report(tuple(checks), {"file": arguments.file, "points": arguments.n, "seed": arguments.seed})
+    print(report)
+    return 0 if report.ok else 1

@@ -115,9 +115,7 @@ def kernel(function: Callable | None = None, *, parallel: bool = False) -> Calla
     """Compile ``function`` with numba, lazily, cached on disk (see the module docstring)."""
     if function is None:
         return lambda f: kernel(f, parallel=parallel)
-    compiled = numba.njit(
-        function, parallel=parallel, fastmath=CONTRACT, error_model="numpy", nogil=True
-    )
+    compiled = numba.njit(function, parallel=parallel, fastmath=CONTRACT, error_model="numpy", nogil=True)
     if not numba.config.DISABLE_JIT:
         compiled._cache = _Cache(function)
     return compiled

@@ -42,7 +42,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
             if s[n] >= 1.0:
                 volume[0, i, n], volume[1, i, n] = 0.0, 1.0
                 continue
-            _, beta, share, status = stick(w, s[n] * delta_star, 1.0, zeta, lam, epsilon, delta_star, a, c)
+            _, _, beta, share, status = stick(w, s[n] * delta_star, 1.0, zeta, lam, epsilon, delta_star, a, c)
             worst = max(worst, status)
             volume[0, i, n], volume[1, i, n] = beta, share
     return worst

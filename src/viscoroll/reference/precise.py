@@ -77,7 +77,7 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
     mp = _mpmath()
     with mp.workdps(digits + _GUARD):
         given = (mp.mpf(float(value)) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep)))
-        state = _state(mp, *given)
+        state = printed_state(mp, *given)
         if creep == 0.0:
             state["Q"] = mp.mpf(0)
         # Eqs. (17), (18): omega - V = delta V
@@ -86,8 +86,8 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
     return state
 
 
-def _state(mp: Any, alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any]:
-    """The law for V > 0 and delta >= 0."""
+def printed_state(mp: Any, alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any]:
+    """The law for V > 0 and delta >= 0, from mpf and at mpmath's working precision."""
 
     def eq_6(lam: Any) -> Any:
         """Left side over I0 K1."""
