@@ -16,7 +16,7 @@ import matplotlib as mpl
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
-from bench.report import paper_rows, read
+from bench.report import finished, paper_rows, read
 
 ROOT = Path(__file__).parents[1]
 #: line and marker by method: told apart without colour
@@ -31,13 +31,14 @@ _OTHER = ("#999999", "p", ":")
 def _lines(axes: Any, rows: list[dict[str, Any]], key: str, methods: dict[str, Any]) -> None:
     """One line for each method: error over time."""
     for name in methods:
-        points = sorted((r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and not r["failed"])
+        points = sorted((r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r))
         if points:
             colour, marker, dashes = _STYLES.get(name, _OTHER)
             us, error = zip(*points)
             axes.loglog(us, error, color=colour, marker=marker, ls=dashes, ms=5, lw=1.2, label=methods[name]["label"])
     axes.grid(True, which="major", color="0.9")
     axes.set_xlabel("time of a motion, µs, one core")
+    axes.set_ylim(1e-12, 10.0)
 
 
 def work_precision(result: dict[str, Any]) -> Any:

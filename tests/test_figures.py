@@ -148,6 +148,15 @@ def test_import_is_light_and_pyplot_is_left_alone():
 # --- pipeline: motions, ensemble, figures, summary ---
 
 _SMALL = """
+[tables.atlas]
+alpha = [1.0, 20.0]
+kappa_V = [0.1, 10.0]
+nodes = [8, 12, 12]
+allowed = [1e-2, 1e-2]
+[tables.paper]
+V = {{ low = 0.1, high = 2.0, count = 5, spacing = "log" }}
+delta = {{ low = -0.04, high = 0.04, count = 5, spacing = "linear" }}
+alpha = [1.0, 11.0]
 [validate]
 tables = ["{atlas}"]
 states = 500
@@ -202,21 +211,21 @@ def stage(name: str, *arguments: str) -> subprocess.CompletedProcess:
 
 
 @pytest.fixture(scope="module")
-def demo(tmp_path_factory, atlas) -> tuple[Path, Path]:
+def demo(tmp_path_factory) -> tuple[Path, Path]:
     """Configuration and output folder of a small run of every stage."""
     folder = tmp_path_factory.mktemp("demo")
-    vr.tables.save(atlas, folder / "atlas.nc")
     config, out = folder / "small.toml", folder / "out"
     config.write_text(_SMALL.format(atlas=folder / "atlas.nc"), encoding="utf-8")
-    for name in ("validate", "motions", "ensemble", "figures", "summary"):
-        result = stage(name, "--config", str(config), "-o", str(out))
+    for name in ("tabulate", "validate", "motions", "ensemble", "figures", "summary"):
+        tables = ["--tables", str(folder)] if name == "tabulate" else []
+        result = stage(name, "--config", str(config), "-o", str(out), *tables)
         assert result.returncode == 0, result.stdout + result.stderr
     return config, out
 
 
 def test_stages_leave_records(demo):
     _, out = demo
-    for name in ("validate", "motions", "ensemble", "figures"):
+    for name in ("tabulate", "validate", "motions", "ensemble", "figures"):
         record = json.loads((out / f"stages/{name}.json").read_text(encoding="utf-8"))
         assert record["stage"] == name
         assert record["seconds"] >= 0.0
@@ -279,7 +288,7 @@ def test_stage_refuses_in_one_line(demo, tmp_path, name, old, new, words):
     assert result.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize(("name", "words"), [("figures", "ensemble.nc"), ("summary", "run pipeline/validate.py first")])
+@pytest.mark.parametrize(("name", "words"), [("figures", "ensemble.nc"), ("summary", "run pipeline/tabulate.py first")])
 def test_stage_says_what_has_to_run_first(demo, tmp_path, name, words):
     result = stage(name, "--config", str(demo[0]), "-o", str(tmp_path))
     assert result.returncode == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import runpy
 import sys
@@ -314,7 +315,7 @@ def test_variables_are_those_of_the_schema(table: xr.Dataset) -> None:
 def test_history_records_the_command(literal: xr.Dataset) -> None:
     told = vr.tables.build(LITERAL_GRID, command="viscoroll tables export --kappa 2.91")
     assert told.attrs["history"].endswith("Z viscoroll tables export --kappa 2.91")
-    assert "pytest" in literal.attrs["history"]
+    assert sys.orig_argv[0] in literal.attrs["history"]
 
 
 def test_save_load_identity(table: xr.Dataset, tmp_path: Path) -> None:
@@ -492,8 +493,9 @@ alpha = [1.0, 11.0]
 
 def tabulate(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, config: str) -> int:
     (tmp_path / "run.toml").write_text(config)
-    arguments = [str(TABULATE), "--config", str(tmp_path / "run.toml"), "-o", str(tmp_path / "out")]
-    monkeypatch.setattr(sys, "argv", arguments)
+    folders = ["--tables", str(tmp_path / "out"), "-o", str(tmp_path / "run")]
+    monkeypatch.setattr(sys, "argv", [str(TABULATE), "--config", str(tmp_path / "run.toml"), *folders])
+    monkeypatch.syspath_prepend(str(TABULATE.parent))
     with pytest.raises(SystemExit) as exit_:
         runpy.run_path(str(TABULATE), run_name="__main__")
     return int(exit_.value.code or 0)
@@ -503,13 +505,16 @@ def test_tabulate_writes_both_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     assert tabulate(monkeypatch, tmp_path, CONFIG.format(allowed=1.0)) == 0
     assert vr.tables.load(tmp_path / "out/atlas.nc").sizes["alpha"] == 8
     assert vr.tables.load(tmp_path / "out/paper.nc").sizes["delta"] == 5
+    record = json.loads((tmp_path / "run/stages/tabulate.json").read_text(encoding="utf-8"))
+    assert not record["failed"]
+    assert "atlas: size, MB" in record["headline"]
 
 
 def test_tabulate_fails_where_an_error_is_too_large(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture
 ) -> None:
     assert tabulate(monkeypatch, tmp_path, CONFIG.format(allowed=1e-9)) == 1
-    assert "Q_over_mu" in capsys.readouterr().err
+    assert "Q_over_mu (allowed 1e-09)" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -518,6 +523,6 @@ def test_tabulate_fails_where_an_error_is_too_large(
 def test_tabulate_refuses_bad_configurations(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture, old: str, new: str
 ) -> None:
-    assert tabulate(monkeypatch, tmp_path, CONFIG.format(allowed=1.0).replace(old, new)) == 1
+    assert tabulate(monkeypatch, tmp_path, CONFIG.format(allowed=1.0).replace(old, new)) == 2
     assert "run.toml" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 PAPER_GROUPS = ("IC1", "IC2", "IC3")
+#: share of the motions that a peer may give up and still be compared, on those that it finished
+MOST_FAILED = 0.05
 #: what the ratios are about, best first: the first that a result holds stands for this package
 OWN = ("flow", "table")
 
@@ -29,11 +31,16 @@ def paper_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
         {
             "method": method, "rtol": rtol, "us": float(np.mean([row["us"] for row in three])),
             "max": max((row.get("max_moving") or np.inf for row in three), default=np.inf),
-            "failed": sum(row["failed"] for row in three),
+            "failed": sum(row["failed"] for row in three), "motions": sum(row["motions"] for row in three),
         }
         for (method, rtol), three in together.items()
         if len(three) == len(PAPER_GROUPS)
     ]  # fmt: skip
+
+
+def finished(row: dict[str, Any]) -> bool:
+    """Whether nearly all motions of a row were rolled to the end."""
+    return row["failed"] <= MOST_FAILED * row["motions"]
 
 
 def ratios(rows: list[dict[str, Any]], own: str, key: str = "max") -> list[dict[str, Any]]:
@@ -41,7 +48,7 @@ def ratios(rows: list[dict[str, Any]], own: str, key: str = "max") -> list[dict[
     result = []
     mine = [row for row in rows if row["method"] == own and not row["failed"] and row.get(key) is not None]
     for row in rows:
-        if row["method"] == own or row["failed"] or row.get(key) is None:
+        if row["method"] == own or not finished(row) or row.get(key) is None:
             continue
         fit = [candidate for candidate in mine if candidate[key] <= row[key]]
         if fit:
@@ -69,6 +76,7 @@ def comparison(folder: Path) -> list[tuple[str, str, str, str]]:
         own = next((name for name in OWN if name in {row["method"] for row in rows}), None)
         for row in ratios(rows, own) if own else []:
             name = f"{methods[row['method']]['label']}, rtol {row['rtol']:.0e}, {where}"
+            name += f" ({row['failed']} of {row['motions']} given up)" if row["failed"] else ""
             theirs, ours = (
                 f"{row['us']:.3g} µs at {row['max']:.1e}",
                 f"{row['own_us']:.3g} µs at {row['own_error']:.1e}",

@@ -67,7 +67,8 @@ def prepare(scene: vr.Scene, V0: NDArray, omega0: NDArray, t: NDArray) -> Stuck:
 
 
 def _state_at(scene: vr.Scene, V0: float, omega0: float, t: float) -> tuple[float, float]:
-    motion = vr.roll(scene, V0, omega0, np.array([t]), rtol=1e-12)
+    """Speeds at ``t``; rolled a little further, so that the motion does not end on a switch."""
+    motion = vr.roll(scene, V0, omega0, np.array([t, 1.01 * t]), rtol=1e-12)
     return motion.V[0], motion.omega[0]
 
 
