@@ -8,7 +8,7 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := data/tables/atlas.nc data/tables/paper.nc
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures test check clean
+.PHONY: help setup demo tables validate figures bench numbers test check clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -43,6 +43,15 @@ out/figures/figure-5.png: pipeline/figures.py $(TABLES) out/ensemble.nc $(SOURCE
 
 out/index.html: pipeline/summary.py out/validation.nc out/motions.nc out/ensemble.nc out/figures/figure-5.png
 	$(RUN) $< --config $(CONFIG)
+
+bench: setup $(TABLES) ## run time against error beside the peers (about 10 minutes; LSODA wants gfortran, GSL libgsl-dev)
+	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	$(RUN) pipeline/benchmark.py --config $(CONFIG)
+
+numbers: setup $(TABLES) ## measure again what README and docs state, and put it there (about 3 minutes)
+	$(RUN) pipeline/measure.py --config $(CONFIG)
+	$(RUN) pipeline/document.py
+	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
 
 test: setup ## the whole test suite
 	$(BIN)/pytest -n 2

@@ -31,7 +31,7 @@ _OTHER = ("#999999", "p", ":")
 def _lines(axes: Any, rows: list[dict[str, Any]], key: str, methods: dict[str, Any]) -> None:
     """One line for each method: error over time."""
     for name in methods:
-        points = sorted((r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r))
+        points = [(r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r)]
         if points:
             colour, marker, dashes = _STYLES.get(name, _OTHER)
             us, error = zip(*points)
@@ -52,7 +52,7 @@ def work_precision(result: dict[str, Any]) -> Any:
     random = [row for row in rows if row["group"] == "random"]
     for panel, key, text in ((panels[1], "max", "max"), (panels[2], "p99", "99th percentile")):
         _lines(panel, random, key, methods)
-        panel.set_title(f"{motions} random starts (peers: fewer), any speed: {text}", fontsize=9)
+        panel.set_title(f"{motions} random starts (peers: fewer): {text}", fontsize=9)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure

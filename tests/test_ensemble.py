@@ -100,6 +100,7 @@ def test_a_failing_block_is_not_swallowed():
 
 def test_progress_bar_only_when_it_takes_long(capsys):
     V0, omega0 = starts(10)
+    vr.ensemble(SCENE, V0, omega0, T)  # compiles
     vr.ensemble(SCENE, V0, omega0, T, progress=True)
     assert "motions" not in capsys.readouterr().err
 

@@ -232,6 +232,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         just_stuck = event == STICK and length == 0.0
         if event != NO_EVENT:
             regime, direction, sigma = switch(event, regime, direction, sigma, u, par, offset)
+            new[:] = u
         J = jacobian(regime, u[0], u[1], par)
         if event == REVERSAL:
             h = min(h, first_length(regime, u, J, rtol, par))
