@@ -79,8 +79,11 @@ def locate(event, regime, u, h, J, sigma, par, rest, K, new):
 
 
 @kernel
-def first_event(regime, u, h, J, sigma, par, rest, K, new):
-    """(event, length): the first event within the step, if any, with ``new`` on it."""
+def first_event(regime, u, h, J, sigma, par, rest, stick_end, K, new):
+    """(event, length): the first event within the step, if any, with ``new`` on it.
+
+    ``stick_end`` is |D|/zeta at the end of the step; the stick zone has gone where it exceeds 1.
+    """
     event = NO_EVENT
     if regime == FULL:
         if new[0] < 0.0:
@@ -92,7 +95,7 @@ def first_event(regime, u, h, J, sigma, par, rest, K, new):
             event = STICK
         elif event == NO_EVENT and dips(u, new, h, sigma, par):
             return STICK, -1.0
-    elif event_value(SLIP, regime, new, sigma, par, rest) < -_ROUNDING:
+    elif stick_end > 1.0 + _ROUNDING:
         h = locate(SLIP, regime, u, h, J, sigma, par, rest, K, new)
         event = SLIP
     if rest > 0.0 and event_value(AT_REST, regime, new, sigma, par, rest) < 0.0:

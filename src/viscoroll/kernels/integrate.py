@@ -63,8 +63,8 @@ def start(V, omega, par, u):
 
 
 @kernel
-def error_norm(regime, u, new, K, travelled, rtol, par):
-    """Largest local error over its weight; <= 1 is acceptable."""
+def error_norm(regime, u, new, stick_end, K, travelled, rtol, par):
+    """Largest local error over its weight; <= 1 is acceptable.  ``stick_end``: |D|/zeta at ``new``."""
     D_error = abs(K[7, 1])
     if regime == FULL:
         worst = abs(K[7, 0]) / sliding_scale(new[0], new[1], par)
@@ -72,9 +72,8 @@ def error_norm(regime, u, new, K, travelled, rtol, par):
         # D matters through omega - V = mu V^2 d, a small part of omega, and through V',
         # whose error y carries: it is held more loosely, relative to itself and, near its
         # zero, to a small part of the contact; but not where it decides on the end of stick
-        zeta = np.exp(new[0])
-        D = abs(signed_D(new[0], new[1], par))
-        worst = max(abs(K[7, 0]), max(_D_SHARE, (D / zeta) ** 2) * D_error / (D + 1e-4 * zeta))
+        weight = max(_D_SHARE, stick_end * stick_end) / (stick_end + 1e-4)
+        worst = max(abs(K[7, 0]), weight * D_error * np.exp(-new[0]))
     for m in range(2):
         span = travelled[m] + abs(new[2 + m] - u[2 + m])
         error = abs(K[7, 2 + m])
@@ -200,7 +199,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             new[:] = u
         elif length > 0.0:
             step(regime, u, length, J, sigma, par, K, new)
-            error = error_norm(regime, u, new, K, travelled, rtol, par)
+            stick_end = abs(signed_D(new[0], new[1], par)) * np.exp(-new[0]) if regime == PARTIAL else 0.0
+            error = error_norm(regime, u, new, stick_end, K, travelled, rtol, par)
             steps += 1
             if not error <= 1.0:
                 rejected += 1
@@ -210,14 +210,15 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             if kept < 1.0:
                 h = kept * length
                 continue
-            event, reached = first_event(regime, u, length, J, sigma, par, rest, K, new)
+            event, reached = first_event(regime, u, length, J, sigma, par, rest, stick_end, K, new)
             if reached < 0.0:
                 h = 0.5 * length
                 continue
             rejected = 0
             h = next_length(length, error)
             length, last = reached, last and event == NO_EVENT
-            dense_terms(K, terms)
+            if last or tau_out[at] < tau + length:
+                dense_terms(K, terms)
         at = write_outputs(tau_out, at, tau, length, last, regime, direction, u, new, terms, par, gamma, offset, out)
         for m in range(2):
             travelled[m] += abs(new[2 + m] - u[2 + m])
