@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import numba
@@ -293,3 +294,24 @@ def test_cache_folder_follows_the_environment(monkeypatch):
     assert jit.cache_root() == Path("/xdg/viscoroll")
     monkeypatch.delenv("XDG_CACHE_HOME")
     assert jit.cache_root() == Path.home() / ".cache" / "viscoroll"
+
+
+def test_a_wheel_alone_answers(tmp_path):
+    """Small, with its coefficient table inside; contact() needs nothing built."""
+    root = Path(__file__).parents[1]
+    source = tmp_path / "source"
+    shutil.copytree(root / "src", source / "src", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(root / name, source / name)
+    build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "-o", str(tmp_path), str(source)]
+    subprocess.run(build, check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    assert wheel.stat().st_size < 300_000
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    code = "import viscoroll as vr; print(vr.__file__); print(vr.contact(vr.PAPER_SECTION_5, 0.5, delta=1e-3).Q)"
+    answer = run(code, PYTHONPATH=str(tmp_path / "site"))
+    assert answer.returncode == 0, answer.stderr
+    where, Q = answer.stdout.split()
+    assert where.startswith(str(tmp_path))
+    assert float(Q) == vr.contact(vr.PAPER_SECTION_5, 0.5, delta=1e-3).Q
