@@ -87,7 +87,7 @@ SLOPE = 1e-14
 SLOPE_SLIGHT = 1e-10
 #: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
 SLOPE_DIFFERENCE = 2e-5
-#: half_space_code.csv: deviations stated by data/reference/README.md (one cell of 150 in lam); beta is not stated
+#: half_space_code.csv: deviations stated by data/README.md (one cell of 150 in lam); beta is not stated
 #: there, measured 1.14e-2: under two cells of the contact.
 HALF_SPACE_Q = 2.4e-3
 HALF_SPACE_LENGTH = 8.01e-3
