@@ -44,7 +44,7 @@ out/figures/figure-5.png: pipeline/figures.py $(TABLES) out/ensemble.nc $(SOURCE
 out/index.html: pipeline/summary.py out/validation.nc out/motions.nc out/ensemble.nc out/figures/figure-5.png
 	$(RUN) $< --config $(CONFIG)
 
-bench: setup $(TABLES) ## run time against error beside the peers (about 10 minutes; LSODA wants gfortran, GSL libgsl-dev)
+bench: setup $(TABLES) ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(RUN) pipeline/benchmark.py --config $(CONFIG)
 
