@@ -118,7 +118,7 @@ def roll(
     rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
         speed magnifies any earlier error: mostly below rtol, at most 30 rtol on the scenes
-        of ``tests/test_motion.py``, 32 rtol the worst of 8000 random motions.
+        of ``tests/test_motion.py``; rare motions elsewhere may exceed that a little.
     rest : end the motion where max(|V|, |omega|) falls below this.  Nothing stops in
         finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
