@@ -31,6 +31,8 @@ import viscoroll as vr
 from viscoroll.errors import ConfigError
 from viscoroll.files import write_text
 from viscoroll.reference import contact_precise
+from viscoroll.validation.states import differences
+from viscoroll.validation.stresses import closures
 
 ROOT = Path(__file__).parents[1]
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
@@ -122,48 +124,18 @@ def table_against_direct(sizes: dict[str, Any]) -> dict[str, float]:
     """Worst difference between the methods; lam, delta_star relative, the others absolute in the units named."""
     scene, V, delta = random_states(sizes["direct_states"], sizes["seed"] + 1, (1e-3, 1e3), (1e-6, 1e-6))
     table, direct = (vr.contact(scene, V, delta=delta, fields=FIELDS, method=method) for method in ("table", "direct"))
-    units = {
-        "lam": table.lam, "delta_star": table.delta_star, "epsilon": np.maximum(table.epsilon, 1.0), "beta": 1.0,
-        "Q": scene.mu, "M": 1.0 / scene.kappa,
-    }  # fmt: skip
-    return {
-        name: float(np.max(np.abs(getattr(table, name) - getattr(direct, name)) / unit)) for name, unit in units.items()
-    }
-
-
-def panels(low: float, high: float, count: int = 26, nodes: int = 12) -> tuple[NDArray, NDArray]:
-    """Nodes and weights for square roots at both ends: the angle, in panels that halve toward the ends."""
-    halving = 0.5 * np.pi * 0.5 ** np.arange(count // 2)
-    edges = np.concatenate([[0.0], halving[::-1], np.pi - halving[1:], [np.pi]])
-    node, weight = np.polynomial.legendre.leggauss(nodes)
-    width = np.diff(edges)[:, None]
-    angle = (edges[:-1, None] + 0.5 * width * (1.0 + node)).ravel()
-    half = 0.5 * (high - low)
-    return low + 2.0 * half * np.sin(0.5 * angle) ** 2, (0.5 * width * weight).ravel() * half * np.sin(angle)
+    return differences(table, direct, scene)
 
 
 def stress_closures(sizes: dict[str, Any]) -> dict[str, float]:
     """Int p dx, Int tau dx and Int x p dx against load, Q and M; relative to the load."""
     scene, V, delta = random_states(sizes["stress_states"], sizes["seed"] + 2, (1e-3, 1e3), (1e-6, 1e-6))
-    worst = {"load": 0.0, "traction": 0.0, "moment": 0.0}
-    for i in range(V.size):
-        one = vr.Scene(scene.alpha[i], scene.kappa[i], scene.mu[i])
-        c = vr.contact(one, V[i], delta=delta[i])
-        rear, front = 0.5 * c.lam * (c.epsilon - 1.0), 0.5 * c.lam * (c.epsilon + 1.0)
-        load = 1.0 / (32.0 * one.kappa)
-        (x, w), stick = panels(rear, front), front - c.lam * c.beta
-        p = vr.stress(one, x, V[i], delta=delta[i]).p
-        shear = 0.0
-        for low, high in ((rear, stick), (stick, front)):
-            at, weight = panels(low, high)
-            shear += weight @ vr.stress(one, at, V[i], delta=delta[i]).tau
-        closures = {
-            "load": w @ p / load - 1,
-            "traction": shear / load - c.Q,
-            "moment": w @ (x * p) / load - one.kappa * c.M,
-        }
-        worst = {name: max(value, abs(float(closures[name]))) for name, value in worst.items()}
-    return worst
+    found = [
+        closures(vr.Scene(scene.alpha[i], scene.kappa[i], scene.mu[i]), float(V[i]), float(delta[i]))
+        for i in range(V.size)
+    ]
+    names = {"load": "load", "traction": "Q", "moment": "M"}
+    return {name: max(abs(one[key]) for one in found) for name, key in names.items()}
 
 
 def motions(sizes: dict[str, Any]) -> dict[str, list[tuple[vr.Scene, float, float]]]:

@@ -407,7 +407,8 @@ def test_memory_layouts_and_number_types():
 
 def test_numpy_set_to_raise():
     with np.errstate(all="raise"):
-        vr.contact(SCENE, [0.0, 1e-300, 1e150], omega=[0.0, 1.0, 1e150], slopes=True)
+        state = vr.contact(SCENE, [0.0, 1e-300, 1e150], omega=[0.0, 1.0, 1e150], slopes=True)
+    assert np.isfinite([state.lam, state.beta, state.Q, state.M, state.dM_dV]).all()
 
 
 BAD_CALLS = {
