@@ -23,7 +23,8 @@ HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "ms
 #: from the bottom to the top; a module imports from its own layer or from below
 LAYERS = (
     {"kernels", "errors"},
-    {"scene", "blocks", "files", "sampling", "symbols"},
+    {"validity"},
+    {"scene", "alpha_slice", "blocks", "files", "sampling", "symbols"},
     {"rolling_contact", "reference"},
     {"tables", "motion"},
     {"validation"},

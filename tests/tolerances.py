@@ -102,6 +102,13 @@ WANG_KNOTHE_PEAK = 2e-4
 #: its width and stick width in cells: "one cell" by the README, 1.09 measured (whole cells are counted at two edges).
 WANG_KNOTHE_CELLS = 1.1
 
+# --- alpha_slice.py (test_alpha_slice.py) ---
+#: Many states at one alpha against 50 digits, relative, beta times 1/(1 - s): Q loses a digit where 1 - H(eta)/H(zeta)
+#: is just not yet an integral, at a tenth of delta_star; measured 8.8e-15; the documentation states 1e-13.
+SLICE = 2e-14
+#: delta_star of a slice against that of one state, in units in the last place; measured 10 (alpha = 1e4).
+SLICE_STAR_ULP = 16
+
 # --- scene.py (test_scene.py) ---
 #: Conversions: a few roundings of products and one square root.
 SCENE = 1e-15
@@ -176,3 +183,11 @@ BENCH_REFERENCE = 1e-9
 BENCH_LAW = 1e-9
 #: Splines of an atlas with 8 x 16 x 16 nodes; measured 5e-3.
 BENCH_COARSE_ATLAS = 0.05
+
+# --- flow map (test_flow.py) ---
+#: V and omega of the paper's scene, over the larger of the two: four times the worst of 100 motions; measured 5.2e-10.
+FLOW_SPEED = 1e-9
+#: distance and angle likewise (5.7e-10 measured), and what depends on the late V, whose error t |V'|/|V| magnifies.
+FLOW_PATH = 2e-9
+#: onset times, relative: inverse of an integral over 52 octaves in pieces of degree 7; measured 6e-12.
+FLOW_ONSET = 5e-11

@@ -8,11 +8,10 @@ from .jit import kernel
 from .law import (
     CLOSE,
     OK,
-    contact_length,
-    differences,
-    generators,
-    moment_factor,
-    stick_length,
+    contact_solution,
+    moment_of,
+    near_length,
+    stick_solution,
 )
 from .slopes import at_contact, slope_ratio, slope_ratio_rise
 
@@ -25,6 +24,8 @@ LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, 
 
 #: above this zeta, g <= 1/2 is below rounding beside zeta and the law is Carter's
 FAR = 1e17
+#: states whose lengths are guessed together
+_TOGETHER = 128
 
 
 @kernel
@@ -50,13 +51,12 @@ def creep_ratio(V, creep, slip, creep_is_omega):
 
 
 @kernel
-def stick(speed, delta, mu, zeta, lam, epsilon, delta_star, alpha, c):
+def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, alpha, c):
     """(eta, zeta - eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
     if c == 0.0 or zeta > FAR:
         s = delta / delta_star
         return zeta * (1.0 - s), zeta * s, 1.0 - s, s * (2.0 - s), OK
-    eta, D, status = stick_length(zeta, zeta * (1.0 + epsilon), delta / (mu * speed), alpha, c)
-    _, dH = differences(zeta, eta, D, alpha, c)
+    eta, D, dH, status = stick_solution(zeta, g, h, dg, delta / (mu * speed), alpha, c)
     return eta, D, eta / zeta, min(dH * (lam / zeta) * lam, 1.0), status
 
 
@@ -78,18 +78,24 @@ def traction_slopes(speed, delta, kappa, mu, zeta, eta, D, beta, share, lam, alp
 @kernel
 def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
     """All rows of one state into ``out``; ``need`` = (shift, stick, moment, slopes)."""
+    c = (alpha - 1.0) / alpha
+    kappa_V = kappa * abs(V)
+    return contact_state_from(near_length(kappa_V, alpha, c), alpha, kappa, mu, V, creep, creep_is_omega, need, out)
+
+
+@kernel(inline=True)
+def contact_state_from(guess, alpha, kappa, mu, V, creep, creep_is_omega, need, out):
+    """``contact_state`` from a guess of lam."""
     need_shift, need_stick, need_moment, need_slopes = need
     c = (alpha - 1.0) / alpha
     speed = abs(V)
     kappa_V = kappa * speed
-    lam, status = contact_length(kappa_V, alpha, c)
-    zeta = lam / (2.0 * kappa_V)
+    lam, zeta, g, h, dg, status = contact_solution(guess, kappa_V, alpha, c)
     out[LAM], out[ZETA] = lam, zeta
     if need_moment:
-        _moment(V, zeta, lam, alpha, c, need_slopes, out)
+        _moment(V, zeta, lam, g, h, alpha, c, need_slopes, out)
     if not need_shift:
         return status
-    g, _ = generators(zeta, alpha, c)
     epsilon = g / zeta
     delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa
     slip, sign, direction = signed_slip(V, creep, creep_is_omega)
@@ -105,7 +111,7 @@ def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
         out[BETA], out[Q] = 0.0, mu * sign
         out[DQ_DV] = out[DQ_DDELTA] = out[DQ_DOMEGA] = 0.0
         return status
-    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, epsilon, delta_star, alpha, c)
+    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, g, h, dg, delta_star, alpha, c)
     out[BETA] = beta
     out[Q] = sign * mu * share
     if need_slopes:
@@ -118,14 +124,14 @@ def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
     return max(status, stick_status)
 
 
-@kernel
-def _moment(V, zeta, lam, alpha, c, need_slopes, out):
+@kernel(inline=True)
+def _moment(V, zeta, lam, g, h, alpha, c, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
     if zeta > FAR:
         out[M], out[DM_DV] = c * V, c
         return
     if not need_slopes:
-        out[M] = V * moment_factor(zeta, lam, alpha, c)
+        out[M] = V * moment_of(zeta, lam, g, h, alpha, c)
     else:
         _, h, _, dh, _, _, m, dm = at_contact(zeta, alpha, c)
         out[M] = V * m
@@ -135,21 +141,33 @@ def _moment(V, zeta, lam, alpha, c, need_slopes, out):
 
 @kernel
 def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
-    """States start..stop; inputs hold one value or one a state; ``rows`` picks the output."""
+    """States start..stop; inputs hold one value or one a state; ``rows`` picks the output.
+
+    The guesses of many states come first, in a loop so short that the processor works on
+    several at once.
+    """
     state = np.empty(len(ROWS))
+    guess = np.empty(_TOGETHER)
     worst = OK
-    for i in range(start, stop):
-        status = contact_state(
-            alpha[min(i, alpha.size - 1)],
-            kappa[min(i, kappa.size - 1)],
-            mu[min(i, mu.size - 1)],
-            V[min(i, V.size - 1)],
-            creep[min(i, creep.size - 1)],
-            creep_is_omega,
-            need,
-            state,
-        )
-        worst = max(worst, status)
-        for n in range(rows.size):
-            out[n, i] = state[rows[n]]
+    for first in range(start, stop, _TOGETHER):
+        last = min(first + _TOGETHER, stop)
+        for i in range(first, last):
+            a = alpha[min(i, alpha.size - 1)]
+            speed = abs(V[min(i, V.size - 1)])
+            guess[i - first] = near_length(kappa[min(i, kappa.size - 1)] * speed, a, (a - 1.0) / a)
+        for i in range(first, last):
+            status = contact_state_from(
+                guess[i - first],
+                alpha[min(i, alpha.size - 1)],
+                kappa[min(i, kappa.size - 1)],
+                mu[min(i, mu.size - 1)],
+                V[min(i, V.size - 1)],
+                creep[min(i, creep.size - 1)],
+                creep_is_omega,
+                need,
+                state,
+            )
+            worst = max(worst, status)
+            for m in range(rows.size):
+                out[m, i] = state[rows[m]]
     return worst

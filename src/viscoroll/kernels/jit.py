@@ -111,11 +111,17 @@ class _Cache(caching.FunctionCache):
             super().save_overload(sig, data)
 
 
-def kernel(function: Callable | None = None, *, parallel: bool = False) -> Callable:
-    """Compile ``function`` with numba, lazily, cached on disk (see the module docstring)."""
+def kernel(function: Callable | None = None, *, parallel: bool = False, inline: bool = False) -> Callable:
+    """Compile ``function`` with numba, lazily, cached on disk (see the module docstring).
+
+    ``inline`` is for the few short functions at the bottom of every loop: a call of a numba
+    function costs as much as a polynomial, and LLVM by itself does not always spare it.
+    """
     if function is None:
-        return lambda f: kernel(f, parallel=parallel)
-    compiled = numba.njit(function, parallel=parallel, fastmath=CONTRACT, error_model="numpy", nogil=True)
+        return lambda f: kernel(f, parallel=parallel, inline=inline)
+    compiled = numba.njit(
+        function, parallel=parallel, fastmath=CONTRACT, error_model="numpy", nogil=True, forceinline=inline
+    )
     if not numba.config.DISABLE_JIT:
         compiled._cache = _Cache(function)
     return compiled

@@ -22,7 +22,11 @@ from .jit import kernel
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 OK, NOT_CONVERGED = 0, 1
-_MAX_NEWTON = 60
+_MAX_STEPS = 60
+#: below this 2 c kappa V the length is that at rest, below this alpha zeta that at high speed, to rounding
+_SLOW, _FAST = 1e-17, 1e-9
+#: a step of Halley's iteration of this relative size leaves an error of its cube
+_CUBED = 3e-6
 #: 5-point Gauss-Legendre rule on [0, 1]
 GAUSS_X = np.array([0.046910077030668004, 0.23076534494715845, 0.5, 0.7692346550528415, 0.953089922969332])
 GAUSS_W = np.array(
@@ -30,9 +34,11 @@ GAUSS_W = np.array(
 )
 #: below this (zeta - eta)/zeta differences of g and h are integrals of their slopes
 CLOSE = 0.1
+#: below this d/F(zeta) zeta - eta starts from the slopes at zeta
+_SLIGHT = 1e-4
 
 
-@kernel
+@kernel(inline=True)
 def generators(z, alpha, c):
     """(g, h) at z: epsilon zeta = g, H = z^2 + 2 z h; 0 for z <= 0 (no stick zone)."""
     if c == 0.0 or z <= 0.0:
@@ -44,7 +50,7 @@ def generators(z, alpha, c):
     return share * p, share * r
 
 
-@kernel
+@kernel(inline=True)
 def generator_slopes(z, alpha, c):
     """(g, h, g', h') at z, all 0 for z <= 0."""
     if c == 0.0 or z <= 0.0:
@@ -61,39 +67,99 @@ def generator_slopes(z, alpha, c):
     return share * p, share * r, share * whole * dp, share * whole * (dr - r * r * dk)
 
 
-@kernel
-def contact_length(kappa_V, alpha, c):
-    """Eq. (6): lam at kappa |V| >= 0, and a status.
+@kernel(inline=True)
+def second_slopes(z, alpha, c):
+    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
+    if c == 0.0 or z <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    x = alpha * z
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(z)
+    return assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
 
-    Root of H(zeta) (2 kappa V)^2 = 1 in lam = 2 kappa V zeta, by Newton on the square root
-    of the left side, which is nearly linear in lam, kept inside [alpha^(-1/2), 1].
-    """
-    if c == 0.0 or kappa_V == 0.0:
-        return 1.0, OK
+
+@kernel(inline=True)
+def assemble(z, x, r, k, s, dk, alpha, c):
+    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
+    dr = alpha * s
+    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
+    ddk = 2.0 * k * dk + (dk - k / z) / z
+    p = r * k
+    dp = dr * k + r * dk
+    ddp = ddr * k + 2.0 * dr * dk + r * ddk
+    whole = 1.0 / (1.0 + p)
+    share = c * whole
+    dg = share * whole * dp
+    dh_top = dr - r * r * dk
+    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
+    ddg = whole * (share * ddp - 2.0 * dg * dp)
+    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
+    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
+
+
+@kernel
+def near_length(kappa_V, alpha, c):
+    """lam to some per cent: a step of Newton's iteration with r(x) near x/(rho + x) and k(z) near z/(z + 0.35)."""
+    if c == 0.0:
+        return 1.0
     w = 2.0 * kappa_V
-    low, high = 1.0 / np.sqrt(alpha), 1.0
+    low = 1.0 / np.sqrt(alpha)
     # lam^2 + 2 w lam h = 1 with h between its limits c alpha zeta/2 and c/2
     start = c * 0.5 * w
-    lam = 1.0 / (np.sqrt(1.0 + start * start) + start)
-    lam = max(lam, low)
-    for _ in range(_MAX_NEWTON):
+    lam = max(1.0 / (np.sqrt(1.0 + start * start) + start), low)
+    z = lam / w
+    x = alpha * z
+    rho = 0.5 + np.sqrt(x * x + 2.25) - x
+    rise = x + x * z / (z + 0.35)
+    total = rise + rho
+    square = 1.0 + 2.0 * c * alpha / total
+    bend = 1.0 - c * alpha * rise / (square * total * total)
+    return min(max(lam + (1.0 / np.sqrt(square) - lam) / bend, low), 1.0)
+
+
+@kernel(inline=True)
+def contact_solution(guess, kappa_V, alpha, c):
+    """Eq. (6): (lam, zeta, g, h, g', status) at kappa |V| >= 0, from a guess of lam; g' to about 1e-10.
+
+    Halley's iteration on the square root of lam^2 + 2 w lam h(lam/w) = 1, w = 2 kappa V, which is
+    nearly linear in lam, kept inside [alpha^(-1/2), 1].  Its last step carries g and h along.
+    """
+    w = 2.0 * kappa_V
+    low, high = 1.0 / np.sqrt(alpha), 1.0
+    if c * w < _SLOW or alpha * low < _FAST * w:
+        lam = high if c * w < _SLOW else low
+        g, h, dg, _ = generator_slopes(lam / w, alpha, c)
+        return lam, lam / w, g, h, dg, OK
+    lam = guess
+    for _ in range(_MAX_STEPS):
         z = lam / w
-        _, h, _, dh = generator_slopes(z, alpha, c)
-        square = lam * (lam + 2.0 * w * h)
-        root = np.sqrt(square)
-        if square > 1.0:
+        g, h, dg, dh, ddg, ddh = second_slopes(z, alpha, c)
+        root = np.sqrt(lam * (lam + 2.0 * w * h))
+        excess = root - 1.0
+        if excess > 0.0:
             high = lam
         else:
             low = lam
-        step = (root - 1.0) * root / (lam + w * h + lam * dh)
-        new = lam - step
+        # slope and second derivative of the square of the root, halved; 1/root to first order in the excess
+        slope = lam + w * h + lam * dh
+        bend = (1.0 + 2.0 * dh + z * ddh) * root - slope * slope * (1.0 - excess)
+        new = lam - 2.0 * excess * slope * root / (2.0 * slope * slope - excess * bend)
         if not (low <= new <= high):
             new = 0.5 * (low + high)
-        if abs(new - lam) <= 4e-9 * lam:
-            # quadratic convergence: the step just taken leaves an error near 1e-17
-            return new, OK
+        if abs(new - lam) <= _CUBED * lam:
+            zeta = new / w
+            dz = zeta - z
+            g, h = g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh)
+            return new, zeta, g, h, dg + dz * ddg, OK
         lam = new
-    return lam, NOT_CONVERGED
+    return lam, lam / w, g, h, dg, NOT_CONVERGED
+
+
+@kernel
+def contact_length(kappa_V, alpha, c):
+    """Eq. (6): lam at kappa |V| >= 0, and a status."""
+    lam, _, _, _, _, status = contact_solution(near_length(kappa_V, alpha, c), kappa_V, alpha, c)
+    return lam, status
 
 
 @kernel
@@ -121,68 +187,94 @@ def differences(zeta, eta, D, alpha, c):
 
 @kernel
 def stick_length(zeta, F_zeta, d, alpha, c):
-    """Eq. (10): (eta, D = zeta - eta, status) with F(zeta) - F(eta) = d, 0 <= d < F(zeta).
-
-    Solved for D where slip is slight (eta/zeta near 1 keeps its digits in D) and for eta
-    where stick is slight.
-    """
-    if c == 0.0:
-        return zeta - d, d, OK
-    if d > 0.5 * F_zeta:
-        return _eta_of_F(F_zeta - d, zeta, alpha, c)
-    return _D_of_d(d, zeta, alpha, c)
+    """Eq. (10): (eta, D = zeta - eta, status) with F(zeta) - F(eta) = d, 0 <= d < F(zeta)."""
+    g, h, dg, _ = generator_slopes(zeta, alpha, c)
+    eta, D, _, status = stick_solution(zeta, g, h, dg, d, alpha, c)
+    return eta, D, status
 
 
 @kernel
-def _eta_of_F(y, zeta, alpha, c):
-    """F(eta) = y by Newton: y - c/2 <= eta <= y."""
+def stick_solution(zeta, g, h, dg, d, alpha, c):
+    """Eq. (10): (eta, D, (H(zeta) - H(eta))/zeta, status); D = zeta - eta, F(zeta) - F(eta) = d.
+
+    Given are g, h and g' at zeta.  Solved for eta; where slip is slight, so that differences
+    cancel, D comes from that, or from the slopes at zeta, by a step of Newton's iteration.
+    """
+    if c == 0.0:
+        return zeta - d, d, (2.0 - d / zeta) * d, OK
+    F = zeta + g
+    if d <= _SLIGHT * F:
+        _, _, dg, _, ddg, _ = second_slopes(zeta, alpha, c)
+        D = d / (1.0 + dg)
+        return _sharper(zeta, D * (1.0 + 0.5 * D * ddg / (1.0 + dg)), d, alpha, c)
+    y = F - d
+    eta, g_eta, h_eta, status = root_of_F(y, _near_eta(y, zeta, g, dg), alpha, c)
+    D = d - (g - g_eta)
+    if d <= CLOSE * F:
+        eta, D, rise_H, _ = _sharper(zeta, D, d, alpha, c)
+        return eta, D, rise_H, status
+    ratio = eta / zeta
+    return eta, D, (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta), status
+
+
+@kernel
+def _sharper(zeta, D, d, alpha, c):
+    """``stick_solution`` from D with an error of 1e-7 of D at most."""
+    eta = zeta - D
+    rise, rise_H = differences(zeta, eta, D, alpha, c)
+    _, h, dg, dh = generator_slopes(eta, alpha, c)
+    more = (d - rise) / (1.0 + dg)
+    return eta - more, D + more, rise_H + 2.0 * more * (eta + h + eta * dh) / zeta, OK
+
+
+@kernel
+def _near_eta(y, zeta, g, dg):
+    """F^-1(y) with g(z) near A z/(B + z), which has the given value and slope at zeta."""
+    curve = g - zeta * dg
+    if curve <= 0.0:
+        return zeta * (y / (zeta + g))
+    B = zeta * zeta * dg / curve
+    half = 0.5 * (y - B - g * (zeta + B) / zeta)
+    root = np.sqrt(half * half + y * B)
+    return half + root if half > 0.0 else y * B / (root - half)
+
+
+@kernel
+def root_of_F(y, guess, alpha, c):
+    """F(eta) = y > 0 by Halley's iteration: (eta, g, h, status); y - c/2 <= eta <= y."""
     low, high = max(y - 0.5 * c, 0.0), y
-    eta = y
-    for _ in range(_MAX_NEWTON):
-        g, _, dg, _ = generator_slopes(eta, alpha, c)
+    eta = guess
+    g, h = 0.0, 0.0
+    for _ in range(_MAX_STEPS):
+        g, h, dg, dh, ddg, ddh = second_slopes(eta, alpha, c)
         excess = (eta - y) + g
         if excess > 0.0:
             high = eta
         else:
             low = eta
-        new = eta - excess / (1.0 + dg)
+        slope = 1.0 + dg
+        step = 2.0 * excess * slope / (2.0 * slope * slope - excess * ddg)
+        new = eta - step
         if not (low <= new <= high):
             new = 0.5 * (low + high)
-        if abs(new - eta) <= 4e-9 * new or high <= low:
-            return new, zeta - new, OK
+        dz = new - eta
+        if abs(dz) <= _CUBED * eta or high <= low:
+            return new, g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh), OK
         eta = new
-    return eta, zeta - eta, NOT_CONVERGED
-
-
-@kernel
-def _D_of_d(d, zeta, alpha, c):
-    """D + g(zeta) - g(zeta - D) = d by Newton: d - c/2 <= D <= d."""
-    low, high = max(d - 0.5 * c, 0.0), d
-    _, _, dg, _ = generator_slopes(zeta, alpha, c)
-    D = d / (1.0 + dg)
-    for _ in range(_MAX_NEWTON):
-        rise, _ = differences(zeta, zeta - D, D, alpha, c)
-        if rise > d:
-            high = D
-        else:
-            low = D
-        _, _, dg, _ = generator_slopes(zeta - D, alpha, c)
-        new = D - (rise - d) / (1.0 + dg)
-        if not (low <= new <= high):
-            new = 0.5 * (low + high)
-        if abs(new - D) <= 4e-9 * new or high <= low:
-            return zeta - new, new, OK
-        D = new
-    return zeta - D, D, NOT_CONVERGED
+    return eta, g, h, NOT_CONVERGED
 
 
 @kernel
 def moment_factor(zeta, lam, alpha, c):
-    """M/V of Eq. (16); c as V -> 0.  Every term is positive: nothing cancels."""
+    """M/V of Eq. (16); c as V -> 0."""
+    g, h = generators(zeta, alpha, c)
+    return moment_of(zeta, lam, g, h, alpha, c)
+
+
+@kernel
+def moment_of(zeta, lam, g, h, alpha, c):
+    """``moment_factor`` from g and h at zeta: p = g/(c - g), r = h/(c - g).  Every term is positive."""
     if c == 0.0:
         return 0.0
-    x = alpha * zeta
-    r, _ = ratio_r(x)
-    k, _ = ratio_k(zeta)
-    p = r * k
-    return c * (lam * lam * ratio_i2(x, r) + p) / (1.0 + p)
+    rest = c - g  # c/(1 + p) >= c/2
+    return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g

@@ -29,12 +29,12 @@ _MANTISSA = (1 << 52) - 1
 _BIN_MASK = ((1 << _BIN_BITS) - 1) << _SHIFT
 _ONE = 1023 << 52
 _HALF_BIN = 1 << (_SHIFT - 1)
-_STRIDE = layout.COEFFICIENTS
+_ROWS = TABLE.reshape(-1, layout.COEFFICIENTS)
 
 
 def _origin(index: int) -> int:
-    """Table position of a segment minus that of its first bin's (exponent, bin) bits."""
-    return layout.segment_start(index) - ((1023 + layout.SEGMENTS[index].low) << _BIN_BITS) * _STRIDE
+    """Row of a segment's first bin minus the number of that bin."""
+    return layout.segment_start(index) // layout.COEFFICIENTS - ((1023 + layout.SEGMENTS[index].low) << _BIN_BITS)
 
 
 _R_SMALL, _R_LARGE, _K_SMALL, _K_LARGE, _I2 = (_origin(i) for i in range(len(layout.SEGMENTS)))
@@ -66,16 +66,32 @@ _LN2 = 0.69314718055994530942
 
 
 @kernel
+def bin_number(x):
+    """Exponent and leading mantissa bits of x > 0: rises by one from bin to bin."""
+    return np.float64(x).view(np.int64) >> _SHIFT
+
+
+@kernel
+def bin_offset(x):
+    """Mantissa of x less that of the centre of its bin."""
+    bits = np.float64(x).view(np.int64)
+    centre = np.int64((bits & _BIN_MASK) | (_ONE + _HALF_BIN)).view(np.float64)
+    return np.int64((bits & _MANTISSA) | _ONE).view(np.float64) - centre
+
+
+@kernel
+def polynomial(row, t):
+    """Polynomial of degree 8 with the coefficients ``row``."""
+    t2 = t * t
+    low = (row[1] + t * row[2]) + t2 * (row[3] + t * row[4])
+    high = (row[5] + t * row[6]) + t2 * (row[7] + t * row[8])
+    return row[0] + t * (low + (t2 * t2) * high)
+
+
+@kernel
 def _piece(x, origin):
     """Polynomial of the bin that holds x in the segment with this origin."""
-    bits = np.float64(x).view(np.int64)
-    at = origin + (bits >> _SHIFT) * _STRIDE
-    centre = np.int64((bits & _BIN_MASK) | (_ONE + _HALF_BIN)).view(np.float64)
-    t = np.int64((bits & _MANTISSA) | _ONE).view(np.float64) - centre
-    t2 = t * t
-    low = (TABLE[at + 1] + t * TABLE[at + 2]) + t2 * (TABLE[at + 3] + t * TABLE[at + 4])
-    high = (TABLE[at + 5] + t * TABLE[at + 6]) + t2 * (TABLE[at + 7] + t * TABLE[at + 8])
-    return TABLE[at] + t * (low + (t2 * t2) * high)
+    return polynomial(_ROWS[origin + bin_number(x)], bin_offset(x))
 
 
 @kernel
@@ -88,7 +104,7 @@ def _tail(x, coefficients):
     return total
 
 
-@kernel
+@kernel(inline=True)
 def ratio_r(x):
     """r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy."""
     if x < 0.0625:
@@ -98,29 +114,32 @@ def ratio_r(x):
             total = _SERIES[n] + x2 * total
         r = x * total
         return r, 1.0 - r
-    if x < 2.0:
-        r = x * _piece(x, _R_SMALL)
-        return r, 1.0 - r
-    complement = (_piece(x, _R_LARGE) if x < 64.0 else _tail(x, _R_TAIL)) / x
-    return 1.0 - complement, complement
+    if x >= 64.0:
+        complement = _tail(x, _R_TAIL) / x
+        return 1.0 - complement, complement
+    # both forms and a choice: a branch here would be mispredicted on scattered arguments
+    small = x < 2.0
+    piece = _piece(x, _R_SMALL if small else _R_LARGE)
+    r, complement = x * piece, piece / x
+    return r if small else 1.0 - complement, 1.0 - r if small else complement
 
 
-@kernel
+@kernel(inline=True)
 def ratio_k(z):
     """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
-    if z < 1.0:
-        if z >= 2.0**-30:
-            k = z * _piece(z, _K_SMALL)
-        elif z > 0.0:
-            k = z * (_LN2 - _EULER_GAMMA - np.log(z))
-        else:
-            k = 0.0
+    if z >= 64.0:
+        complement = _tail(z, _K_TAIL) / z
+        return 1.0 - complement, complement
+    if z < 2.0**-30:
+        k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
         return k, 1.0 - k
-    complement = (_piece(z, _K_LARGE) if z < 64.0 else _tail(z, _K_TAIL)) / z
-    return 1.0 - complement, complement
+    small = z < 1.0
+    piece = _piece(z, _K_SMALL if small else _K_LARGE)
+    k, complement = z * piece, piece / z
+    return k if small else 1.0 - complement, 1.0 - k if small else complement
 
 
-@kernel
+@kernel(inline=True)
 def ratio_i2(x, r):
     """i2 = I2/I0 at x >= 0, given r(x)."""
     if x < 0.0625:
@@ -134,7 +153,7 @@ def ratio_i2(x, r):
     return 1.0 - 2.0 * r / x
 
 
-@kernel
+@kernel(inline=True)
 def slope_r(x, r, complement):
     """r'(x) = (1 - r)(1 + r) - r/x."""
     if x < 1e-8:
@@ -142,7 +161,7 @@ def slope_r(x, r, complement):
     return complement * (1.0 + r) - r / x
 
 
-@kernel
+@kernel(inline=True)
 def slope_k(z, k, complement):
     """k'(z) = k/z - (1 - k)(1 + k)."""
     return k / z - complement * (1.0 + k)

@@ -1,40 +1,10 @@
-"""Second derivatives of the generators and the slope of M, by the Riccati equations alone."""
+"""Slopes of M and of Q, by the Riccati equations alone."""
 
 from __future__ import annotations
 
 from .jit import kernel
-from .law import GAUSS_W, GAUSS_X, generator_slopes
+from .law import GAUSS_W, GAUSS_X, assemble, generator_slopes, second_slopes
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
-
-
-@kernel
-def second_slopes(z, alpha, c):
-    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
-    if c == 0.0 or z <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    return _assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
-
-
-@kernel
-def _assemble(z, x, r, k, s, dk, alpha, c):
-    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
-    dr = alpha * s
-    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
-    ddk = 2.0 * k * dk + (dk - k / z) / z
-    p = r * k
-    dp = dr * k + r * dk
-    ddp = ddr * k + 2.0 * dr * dk + r * ddk
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    dg = share * whole * dp
-    dh_top = dr - r * r * dk
-    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
-    ddg = whole * (share * ddp - 2.0 * dg * dp)
-    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
-    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
 
 
 @kernel
@@ -47,7 +17,7 @@ def at_contact(z, alpha, c):
     k, kc = ratio_k(z)
     s = slope_r(x, r, rc)
     dk = slope_k(z, k, kc)
-    g, h, dg, dh, ddg, ddh = _assemble(z, x, r, k, s, dk, alpha, c)
+    g, h, dg, dh, ddg, ddh = assemble(z, x, r, k, s, dk, alpha, c)
     i2 = ratio_i2(x, r)
     lam2 = 1.0 / (1.0 + 2.0 * h / z)
     whole = 1.0 / (1.0 + r * k)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, ROWS, M, Q, contact_state, stick
 from .jit import kernel
-from .law import OK, contact_length, generators, moment_factor
+from .law import OK, contact_solution, moment_of, near_length
 
 #: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.
 ATLAS_PLANE = ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
@@ -27,22 +27,20 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     for i in range(start, stop):
         a, w = alpha[i // kappa_V.size], kappa_V[i % kappa_V.size]
         c = (a - 1.0) / a
-        lam, status = contact_length(w, a, c)
+        lam, zeta, g, h, dg, status = contact_solution(near_length(w, a, c), w, a, c)
         worst = max(worst, status)
-        zeta = lam / (2.0 * w)
-        g, _ = generators(zeta, a, c)
         epsilon = g / zeta
         # mu = kappa = 1 turns V into kappa V, Q into Q/mu, delta_star into kappa delta_star/mu
         delta_star = 0.5 * lam * (1.0 + epsilon)
         plane[0, i] = lam
         plane[1, i] = epsilon
-        plane[2, i] = w * moment_factor(zeta, lam, a, c)
+        plane[2, i] = w * moment_of(zeta, lam, g, h, a, c)
         plane[3, i] = delta_star
         for n in range(s.size):
             if s[n] >= 1.0:
                 volume[0, i, n], volume[1, i, n] = 0.0, 1.0
                 continue
-            _, _, beta, share, status = stick(w, s[n] * delta_star, 1.0, zeta, lam, epsilon, delta_star, a, c)
+            _, _, beta, share, status = stick(w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, a, c)
             worst = max(worst, status)
             volume[0, i, n], volume[1, i, n] = beta, share
     return worst

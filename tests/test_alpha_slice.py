@@ -1,0 +1,162 @@
+"""Many states at one alpha: the slice against 50 digits, against the law state by state, and what it must not do."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import mpmath as mp
+import numpy as np
+import precise
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll import alpha_slice, rolling_contact
+from viscoroll.rolling_contact import FIELDS
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+KAPPA, MU = SCENE.kappa, SCENE.mu
+ALPHAS = (1.0001, 1.5, 11.0, 100.0, 1e4)
+MANY = alpha_slice.WORTHWHILE
+
+
+def states(scene: vr.Scene, count: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """V, delta and s over the whole stated domain, s graded to both ends."""
+    rng = np.random.default_rng(seed)
+    V = 10.0 ** rng.uniform(-7, 5, count) / scene.kappa
+    s = np.where(rng.random(count) < 0.5, 10.0 ** rng.uniform(-12, 0, count), 1.0 - 10.0 ** rng.uniform(-9, 0, count))
+    return V, s * one_by_one(scene, V, np.zeros(count)).delta_star, s
+
+
+def one_by_one(scene: vr.Scene, V: np.ndarray, delta: np.ndarray) -> vr.Values:
+    """The same without a slice, by calls with too few states for it."""
+    parts = np.array_split(np.arange(V.size), V.size // (MANY - 1) + 1)
+    found = [vr.contact(scene, V[part], delta=delta[part]).as_dict() for part in parts]
+    return rolling_contact.Values({name: np.concatenate([part[name] for part in found]) for name in FIELDS})
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_against_50_digits(alpha):
+    scene = vr.Scene(alpha, KAPPA, MU)
+    V, delta, _ = states(scene, MANY, seed=11)
+    state = vr.contact(scene, V, delta=delta)
+    for i in range(14):
+        with mp.workdps(precise.DIGITS):
+            exact = precise.state(alpha, KAPPA, MU, V[i], delta[i])
+            for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M"):
+                error = abs(mp.mpf(float(getattr(state, name)[i])) / getattr(exact, name) - 1)
+                assert error <= tol.SLICE, (name, V[i], delta[i])
+            conditioned = tol.SLICE / (1 - mp.mpf(float(delta[i])) / exact.delta_star)
+            assert abs(mp.mpf(float(state.beta[i])) / exact.beta - 1) <= conditioned, (V[i], delta[i])
+
+
+@pytest.mark.parametrize("alpha", [*ALPHAS, 1.0 + 1e-12, 3.7, 1e6])
+def test_against_the_law_state_by_state(alpha):
+    scene = vr.Scene(alpha, KAPPA, MU)
+    V, delta, s = states(scene, 3 * MANY, seed=12)
+    many, single = vr.contact(scene, V, delta=delta), one_by_one(scene, V, delta)
+    assert np.array_equal(many.full_slip, single.full_slip)
+    for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M", "beta"):
+        error = abs(getattr(many, name) / getattr(single, name) - 1.0)
+        assert (error * ((1.0 - s) if name == "beta" else 1.0)).max() <= tol.SLICE, name
+
+
+def test_a_slice_is_made_once():
+    """A second call, and one with other kappa, mu and signs, fits nothing: it solves no equation."""
+    scene = vr.Scene(7.25, KAPPA, MU)
+    V, delta, _ = states(scene, MANY, seed=13)
+    before = alpha_slice.octave_of.cache_info().misses
+    first = vr.contact(scene, V, delta=delta)
+    fitted = alpha_slice.octave_of.cache_info().misses
+    assert fitted > before
+    again = vr.contact(scene, V, delta=delta)
+    vr.contact(vr.Scene(7.25, 0.9 * KAPPA, 3.0 * MU), -V / 0.9, omega=V)
+    assert alpha_slice.octave_of.cache_info().misses == fitted
+    assert all(np.array_equal(getattr(first, name), getattr(again, name)) for name in FIELDS)
+
+
+def test_only_the_octaves_that_are_asked_for():
+    scene = vr.Scene(8.5, KAPPA, MU)
+    before = alpha_slice.octave_of.cache_info().misses
+    vr.contact(scene, np.linspace(1.1, 1.9, MANY) / KAPPA, delta=0.0, fields="M")
+    assert alpha_slice.octave_of.cache_info().misses == before + 1
+    vr.contact(SCENE.replace(alpha=1.0), np.linspace(1.1, 1.9, MANY), delta=0.0)
+    vr.contact(SCENE, np.full(MANY, 1e-12), delta=0.0)
+    assert alpha_slice.octave_of.cache_info().misses == before + 1
+
+
+def test_beyond_its_reach_as_one_by_one():
+    """Extreme speeds, V = 0 and the last millionth before delta_star: the same bits as a single state."""
+    V = np.resize([0.0, 1e-12, -1e-11, 1e9, 0.5], MANY)
+    star = one_by_one(SCENE, V, np.zeros(MANY)).delta_star
+    delta = np.where(V == 0.5, star * (1.0 - 1e-7), 0.4 * star)
+    many, single = vr.contact(SCENE, V, delta=delta), one_by_one(SCENE, V, delta)
+    assert all(np.array_equal(getattr(many, name), getattr(single, name)) for name in FIELDS)
+
+
+def test_a_state_does_not_depend_on_the_others(monkeypatch):
+    """Nor on threads, nor on blocks: bit for bit in any order and any company."""
+    V, delta, _ = states(SCENE, 4 * MANY, seed=14)
+    whole = vr.contact(SCENE, V, delta=delta).as_dict()
+    order = np.random.default_rng(15).permutation(V.size)
+    mixed = vr.contact(SCENE, V[order], delta=delta[order]).as_dict()
+    part = slice(MANY, 2 * MANY)
+    alone = vr.contact(SCENE, V[part], delta=delta[part]).as_dict()
+    monkeypatch.setenv("VISCOROLL_THREADS", "1")
+    monkeypatch.setattr(rolling_contact, "_BLOCK", 1000)
+    blocks = vr.contact(SCENE, V, delta=delta).as_dict()
+    for name in FIELDS:
+        assert np.array_equal(mixed[name], whole[name][order])
+        assert np.array_equal(alone[name], whole[name][part])
+        assert np.array_equal(blocks[name], whole[name])
+
+
+def test_from_several_threads():
+    scene = vr.Scene(23.5, KAPPA, MU)
+    V, delta, _ = states(scene, MANY, seed=16)
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda _: vr.contact(scene, V, delta=delta).Q, range(4)))
+    assert all(np.array_equal(Q, found[0]) for Q in found)
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_full_slip_begins_at_delta_star(alpha):
+    """At the delta_star that the call itself reports, and at no other's beyond a few units in the last place."""
+    scene = vr.Scene(alpha, KAPPA, MU)
+    V = 10.0 ** np.random.default_rng(17).uniform(-7, 5, MANY) / KAPPA
+    star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    at = vr.contact(scene, V, delta=-star)
+    assert at.full_slip.all()
+    assert np.all(at.Q == -MU)
+    assert np.all(at.beta == 0.0)
+    single = one_by_one(scene, V, np.zeros(MANY)).delta_star
+    for ulps in (-tol.SLICE_STAR_ULP, tol.SLICE_STAR_ULP):
+        near = vr.contact(scene, V, delta=single + ulps * np.spacing(single))
+        assert np.all(near.full_slip == (ulps > 0))
+        assert np.array_equal(near.full_slip, abs(near.delta) >= near.delta_star)
+        assert np.all(abs(near.Q) <= MU)
+
+
+def test_signs_rest_and_omega():
+    V, delta, _ = states(SCENE, MANY, seed=18)
+    base = vr.contact(SCENE, V, delta=delta)
+    turned = vr.contact(SCENE, -V, delta=-delta)
+    assert np.array_equal(turned.Q, base.Q)
+    assert np.array_equal(turned.M, -base.M)
+    assert np.array_equal(turned.beta, base.beta)
+    still = vr.contact(SCENE, V, delta=0.0)
+    assert np.all(still.Q == 0.0)
+    np.testing.assert_allclose(still.beta, 1.0, rtol=tol.SLICE)
+    assert still.beta.max() <= 1.0
+    omega = V * (1.0 + delta)
+    by_omega = vr.contact(SCENE, V, omega=omega)
+    as_delta = vr.contact(SCENE, V, delta=(omega - V) / V)
+    assert all(np.array_equal(getattr(by_omega, name), getattr(as_delta, name)) for name in FIELDS)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_one_field_alone_is_the_same_bit_for_bit(name):
+    V, delta, _ = states(SCENE, MANY, seed=19)
+    # from EDGE on a state asks for the stick zone, and goes the exact way only for that
+    whole = vr.contact(SCENE, V, delta=0.9 * delta)
+    assert np.array_equal(getattr(vr.contact(SCENE, V, delta=0.9 * delta, fields=name), name), getattr(whole, name))
