@@ -400,7 +400,7 @@ def test_reversal_of_the_smallest_normal_speed(alpha):
     assert np.all(np.isfinite(motion.omega))
 
 
-@pytest.mark.parametrize("start", [(5e-324, 1e-320), (1e-200, -3e-200)])
+@pytest.mark.parametrize("start", [(1e-300, 5e-324), (1e-200, -3e-200)])
 def test_speeds_whose_squares_underflow(start):
     """They can only fall."""
     motion = vr.roll(ELASTIC, *start, [1e-3])
@@ -532,7 +532,8 @@ BAD_CALLS = {
     "V0 nan": (math.nan, 0.5, 1e-3, {}, "V0 = nan: must be a finite number"),
     "omega0 inf": (1.0, math.inf, 1e-3, {}, "omega0 = inf: must be a finite number"),
     "V0 text": ("fast", 0.5, 1e-3, {}, "V0 = 'fast': must be"),
-    "V0 huge": (1e200, 0.5, 1e-3, {}, "V0 = 1e+200: must be at most 1e150"),
+    "V0 huge": (1e200, 0.5, 1e-3, {}, "V0 = 1e+200: must be at most 1e+100"),
+    "both subnormal": (5e-324, 0.0, 1e-3, {}, "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
     "V0 array": ([1.0, 2.0], 0.5, 1e-3, {}, "for many use ensemble"),
     "t negative": (1.0, 0.5, -1e-3, {}, "t = -0.001: must be finite and >= 0"),
     "t nan": (1.0, 0.5, [0.0, math.nan], {}, "t = nan"),

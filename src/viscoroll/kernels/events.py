@@ -1,20 +1,27 @@
 """Events of a motion: their functions, and their location to rounding.
 
-An event is located by repeating the step with other lengths until its own end lies on the
-event, so that the located state is as accurate as any other step and not an interpolation.
+An event is located on the dense output first, then by repeating the step with that length,
+corrected once or twice, until its own end lies on the event: the located state is as accurate
+as any other step and not an interpolation.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from .full_slip import onset, onset_slope
+from .explicit import explicit_dense_terms, explicit_step, slope_at
+from .full_slip import onset, onset_slope, sliding_speed
 from .jit import kernel
 from .partial_slip import partial_speeds, signed_D
-from .stepper import FULL, PARTIAL, REST, step
+from .stepper import FULL, PARTIAL, REST, dense, dense_terms, stiff_step
 
+EXPLICIT, STIFF = range(2)
 NO_EVENT, STICK, SLIP, REVERSAL, AT_REST = range(5)
 _LOCATE_CAP = 80
+#: how close to the event the dense output is searched, and the share of a step its slope there is taken over
+_NEAR, _DIFFERENCE = 1e-9, 1e-4
+#: steps repeated at most: each gains the error of that slope, 1e-4 or less
+_CORRECTIONS = 4
 #: a stick zone that starts at eta = 0 may round to below it before it grows
 _ROUNDING = 1e-15
 
@@ -27,43 +34,69 @@ def speeds(regime, u0, u1, par):
         return V, V * (1.0 + delta), delta
     if regime == REST:
         return 0.0, 0.0, 0.0
-    omega = (u0 - u1) / par[4]
-    slip = omega - u0
-    if u0 == 0.0:
-        return u0, omega, np.copysign(np.inf, slip)
-    return u0, omega, slip / u0
+    V = sliding_speed(u0, par)
+    omega = (V - u1) / par[4]
+    slip = omega - V
+    return V, omega, np.copysign(np.inf, slip) if V == 0.0 else slip / V
 
 
 @kernel
-def event_value(event, regime, u, sigma, par, rest):
+def event_value(event, regime, u0, u1, sigma, par, rest):
     """Positive before the event, negative after it."""
     if event == REVERSAL:
-        return u[0]
+        return u0
     if event == STICK:
-        return onset(u[0], u[1], sigma, par)
+        return onset(u0, u1, sigma, par)
     if event == SLIP:
-        return 1.0 - abs(signed_D(u[0], u[1], par)) * np.exp(-u[0])
-    V, omega, _ = speeds(regime, u[0], u[1], par)
+        return 1.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)
+    V, omega, _ = speeds(regime, u0, u1, par)
     return max(abs(V), abs(omega)) - rest
 
 
 @kernel
-def locate(event, regime, u, h, J, sigma, par, rest, K, new):
-    """Length of the step whose end lies on the event, by the Illinois method; fills ``new``."""
-    low, high = 0.0, h
-    at_low = event_value(event, regime, u, sigma, par, rest)
-    at_high = event_value(event, regime, new, sigma, par, rest)
+def advance(method, regime, u, slope, h, sigma, par, K, new, error):
+    """One step by the method, with the slope at its end in K[12]; the rate at which the offset relaxes there."""
+    if method == EXPLICIT:
+        K[0] = slope
+        explicit_step(regime, u, h, sigma, par, K, new, error)
+    else:
+        stiff_step(u, h, par, K, new, error)
+    return slope_at(regime, new, sigma, par, K[12])
+
+
+@kernel
+def interpolant(method, regime, u, new, h, sigma, par, K, terms):
+    """Coefficients of the dense output of the step just taken."""
+    if method == EXPLICIT:
+        explicit_dense_terms(regime, u, new, h, sigma, par, K, terms)
+    else:
+        dense_terms(K, terms)
+
+
+@kernel
+def _value_within(theta, event, regime, u, new, terms, sigma, par, rest):
+    """Event value at the fraction theta of the step, by its dense output."""
+    u0, u1 = dense(theta, u, new, terms, 0), dense(theta, u, new, terms, 1)
+    return event_value(event, regime, u0, u1, sigma, par, rest)
+
+
+@kernel
+def _root(event, regime, u, new, terms, sigma, par, rest):
+    """(theta, d value/d theta) where the dense output meets the event, by the Illinois method."""
+    low, high = 0.0, 1.0
+    at_low = event_value(event, regime, u[0], u[1], sigma, par, rest)
+    at_high = event_value(event, regime, new[0], new[1], sigma, par, rest)
     side = 0
     for _ in range(_LOCATE_CAP):
-        if high - low <= 4e-16 * high or at_high == 0.0:
+        if high - low <= _NEAR * high or at_high == 0.0:
             break
         middle = (at_low * high - at_high * low) / (at_low - at_high)
         if not (low < middle < high):
             middle = 0.5 * (low + high)
-            if not (low < middle < high):
-                break
-        step(regime, u, middle, J, sigma, par, K, new)
-        value = event_value(event, regime, new, sigma, par, rest)
+        value = _value_within(middle, event, regime, u, new, terms, sigma, par, rest)
+        if abs(value) <= _NEAR * abs(at_low - at_high):
+            high, at_high = middle, value
+            break
         if value > 0.0:
             low, at_low = middle, value
             if side == 1:
@@ -74,42 +107,62 @@ def locate(event, regime, u, h, J, sigma, par, rest, K, new):
             if side == -1:
                 at_low *= 0.5
             side = -1
-    step(regime, u, high, J, sigma, par, K, new)
-    return high
+    near, far = max(high - _DIFFERENCE, 0.0), min(high + _DIFFERENCE, 1.0)
+    before = _value_within(near, event, regime, u, new, terms, sigma, par, rest)
+    after = _value_within(far, event, regime, u, new, terms, sigma, par, rest)
+    return high, (after - before) / (far - near)
 
 
 @kernel
-def first_event(regime, u, h, J, sigma, par, rest, stick_end, K, new):
+def locate(event, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms):
+    """Length of the step whose end lies on the event; fills ``new``."""
+    interpolant(method, regime, u, new, h, sigma, par, K, terms)
+    theta, fall = _root(event, regime, u, new, terms, sigma, par, rest)
+    length = theta * h
+    for _ in range(_CORRECTIONS):
+        advance(method, regime, u, slope, length, sigma, par, K, new, error)
+        change = event_value(event, regime, new[0], new[1], sigma, par, rest) * h / fall
+        if not abs(change) > _ROUNDING * length:
+            return length
+        length = min(max(length - change, 0.0), h)
+    advance(method, regime, u, slope, length, sigma, par, K, new, error)
+    return length
+
+
+@kernel
+def first_event(method, regime, u, slope, h, sigma, par, rest, share, K, new, error, terms):
     """(event, length): the first event within the step, if any, with ``new`` on it.
 
-    ``stick_end`` is |D|/zeta at the end of the step; the stick zone has gone where it exceeds 1.
+    ``share`` is D/zeta at the end of the step; the stick zone has gone where it exceeds 1.
     """
     event = NO_EVENT
     if regime == FULL:
-        if new[0] < 0.0:
-            h = locate(REVERSAL, regime, u, h, J, sigma, par, rest, K, new)
+        if new[0] <= 0.0:
+            h = locate(REVERSAL, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
             event = REVERSAL
             new[0] = 0.0
         if onset(new[0], new[1], sigma, par) < 0.0:
-            h = locate(STICK, regime, u, h, J, sigma, par, rest, K, new)
+            h = locate(STICK, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
             event = STICK
-        elif event == NO_EVENT and dips(u, new, h, sigma, par):
+        elif event == NO_EVENT and dips(u, new, h, slope[0], K[12, 0], sigma, par):
             return STICK, -1.0
-    elif stick_end > 1.0 + _ROUNDING:
-        h = locate(SLIP, regime, u, h, J, sigma, par, rest, K, new)
+    elif abs(share) > 1.0 + _ROUNDING:
+        h = locate(SLIP, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
         event = SLIP
-    if rest > 0.0 and event_value(AT_REST, regime, new, sigma, par, rest) < 0.0:
-        h = locate(AT_REST, regime, u, h, J, sigma, par, rest, K, new)
+    if rest > 0.0 and event_value(AT_REST, regime, new[0], new[1], sigma, par, rest) < 0.0:
+        h = locate(AT_REST, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
         event = AT_REST
     return event, h
 
 
 @kernel
-def dips(u, new, h, sigma, par):
+def dips(u, new, h, ds, ds_new, sigma, par):
     """Whether the onset function may have gone below zero and back within the step."""
-    before = onset_slope(u[0], u[1], sigma, par)
-    after = onset_slope(new[0], new[1], sigma, par)
-    if not (before < 0.0 < after):
+    after = onset_slope(new[0], ds_new, sigma, par)
+    if after <= 0.0:
+        return False
+    before = onset_slope(u[0], ds, sigma, par)
+    if before >= 0.0:
         return False
     lowest = onset(u[0], u[1], sigma, par) + 0.5 * before * h * before / (before - after)
     return lowest < 0.0

@@ -1,16 +1,19 @@
-"""Right-hand side, Jacobian and onset function of Eq. (22) in full slip.
+"""Right-hand side and onset function of Eq. (22) in full slip.
 
 With sigma = sign(omega - V) fixed, Q = sigma mu, so w = V - j omega is exactly linear in
-tau = gamma t and V' = sigma mu - M(V)/2 stands alone.  The onset function is the signed
-sigma (omega - V) - delta_star |V|: positive in full slip, through zero where stick begins;
-|omega - V| alone could step over the narrow stick band without a change of sign.
+tau = gamma t and V' = sigma mu - M(V)/2 stands alone.  The unknown in place of V is
+s = 1/zeta with the sign of V, in which the law is explicit: V = s lam/(2 kappa).  The onset
+function is the signed sigma (omega - V) - delta_star |V|: positive in full slip, through zero
+where stick begins; |omega - V| alone could step over the narrow stick band without a change of sign.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from .jit import kernel
-from .law import contact_length, generator_slopes, moment_factor
-from .slopes import at_contact
+from .law import contact_length, generator_slopes, generators, moment_factor
+from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 
 @kernel
@@ -34,17 +37,37 @@ def full_rhs(V, w, sigma, par):
 
 
 @kernel
-def full_jacobian(V, w, par):
-    """d(V', w', V, omega)/d(V, w), row by row."""
-    alpha, c, kappa, _, j = par
-    slope = c
-    kappa_V = kappa * abs(V)
-    if c > 0.0 and kappa_V >= 1e-17:
-        lam, _ = contact_length(kappa_V, alpha, c)
-        zeta = lam / (2.0 * kappa_V)
-        _, h, _, dh, _, _, m, dm = at_contact(zeta, alpha, c)
-        slope = m - zeta * dm / (lam * lam * (1.0 + h / zeta + dh))
-    return -0.5 * slope, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0 / j, -1.0 / j
+def sliding_rhs(s, w, sigma, par):
+    """(s', w', V, omega) with w = V - j omega."""
+    alpha, c, kappa, mu, j = par
+    if c == 0.0:
+        V = s / (2.0 * kappa)
+        return 2.0 * kappa * sigma * mu, 2.0 * sigma * mu, V, (V - w) / j
+    size = abs(s)
+    zeta = 1.0 / size
+    x = alpha * zeta
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(zeta)
+    dk = slope_k(zeta, k, kc)
+    p = r * k
+    whole = 1.0 / (1.0 + p)
+    h = c * whole * r
+    dh = c * whole * whole * (alpha * slope_r(x, r, rc) - r * r * dk)
+    lam2 = 1.0 / (1.0 + 2.0 * h * size)
+    lam = np.sqrt(lam2)
+    V = 0.5 * s * lam / kappa
+    rate = sigma * mu - 0.5 * V * c * whole * (lam2 * ratio_i2(x, r) + p)
+    # dV/ds = lam^3 U/(2 kappa), U = H'/(2 zeta)
+    return 2.0 * kappa * rate / (lam2 * lam * (1.0 + h * size + dh)), 2.0 * sigma * mu, V, (V - w) / j
+
+
+@kernel
+def sliding_speed(s, par):
+    """V at s."""
+    alpha, c, kappa, _, _ = par
+    size = abs(s)
+    _, h = generators(1.0 / size, alpha, c)
+    return 0.5 * s / (kappa * np.sqrt(1.0 + 2.0 * h * size))
 
 
 @kernel
@@ -60,26 +83,28 @@ def stick_limit(V, par):
 
 
 @kernel
-def onset(V, w, sigma, par):
+def onset(s, w, sigma, par):
     """sigma (omega - V) - delta_star |V|."""
-    limit, _ = stick_limit(V, par)
-    return sigma * ((V - w) / par[4] - V) - limit
+    alpha, c, kappa, mu, j = par
+    size = abs(s)
+    g, h = generators(1.0 / size, alpha, c)
+    lam = 1.0 / np.sqrt(1.0 + 2.0 * h * size)
+    V = 0.5 * s * lam / kappa
+    return sigma * ((V - w) / j - V) - 0.5 * mu * lam * (1.0 + g * size) / kappa * abs(V)
 
 
 @kernel
-def onset_slope(V, w, sigma, par):
-    """Rate of change of the onset function in time tau, for V > 0."""
+def onset_slope(s, ds, sigma, par):
+    """Rate of change of the onset function in time tau, for V > 0, given s'."""
     alpha, c, kappa, mu, j = par
-    dV, dw, _, _ = full_rhs(V, w, sigma, par)
-    kappa_V = kappa * V
-    lam, _ = contact_length(kappa_V, alpha, c)
-    slope = 0.5 * mu / kappa
-    if c > 0.0 and kappa_V >= 1e-17:
-        zeta = lam / (2.0 * kappa_V)
-        g, h, dg, dh = generator_slopes(zeta, alpha, c)
-        # d(mu V^2 F)/dV = 2 mu V (F - H F'/H')
-        slope = 2.0 * mu * V * (zeta + g - 0.5 * zeta * (1.0 + dg) / (lam * lam * (1.0 + h / zeta + dh)))
-    return sigma * ((dV - dw) / j - dV) - slope * dV
+    g, h, dg, dh = generator_slopes(1.0 / s, alpha, c)
+    lam2 = 1.0 / (1.0 + 2.0 * h * s)
+    lam = np.sqrt(lam2)
+    U = 1.0 + h * s + dh
+    dV = 0.5 * lam2 * lam * U * ds / kappa
+    # d(mu V^2 F)/dV = 2 mu V (F - H F'/H')
+    limit_slope = mu * lam * (1.0 + g * s - 0.5 * (1.0 + dg) / (lam2 * U)) / kappa
+    return sigma * ((dV - 2.0 * sigma * mu) / j - dV) - limit_slope * dV
 
 
 @kernel

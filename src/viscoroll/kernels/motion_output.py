@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .events import speeds
+from .events import EXPLICIT, interpolant, speeds
+from .explicit import explicit_step
 from .jit import kernel
 from .stepper import PARTIAL, REST, dense
 
@@ -21,14 +22,32 @@ def put(out, column, direction, regime, V, omega, delta, X, angle, gamma):
 
 
 @kernel
-def write_outputs(tau_out, at, tau, h, last, regime, direction, old, new, terms, par, gamma, offset, out):
-    """Outputs that fall within the step (or, if ``last``, on its end); returns the next column."""
+def write_outputs(
+    tau_out, at, tau, h, last, method, regime, direction, sigma, old, new, slope, K, terms, par, gamma, offset, out
+):
+    """Outputs that fall within the step (or, if ``last``, on its end); returns the next column.
+
+    In the boundary layer steps are long beside its time: there each output is a step of its own.
+    """
+    if at >= tau_out.size or not (last or tau_out[at] < tau + h):
+        return at
+    stepped = method == EXPLICIT and regime == PARTIAL
+    point, error = new.copy(), np.empty(4)
+    if h > 0.0 and not stepped:
+        interpolant(method, regime, old, new, h, sigma, par, K, terms)
     while at < tau_out.size and (last or tau_out[at] < tau + h):
         theta = min((tau_out[at] - tau) / h, 1.0) if h > 0.0 else 1.0
-        V, omega, delta = speeds(regime, dense(theta, old, new, terms, 0), dense(theta, old, new, terms, 1), par)
-        X = offset[0] + direction * dense(theta, old, new, terms, 2)
-        angle = offset[1] + direction * dense(theta, old, new, terms, 3)
-        put(out, at, direction, regime, V, omega, delta, X, angle, gamma)
+        if theta == 1.0:
+            point[:] = new
+        elif stepped:
+            K[0] = slope
+            explicit_step(regime, old, theta * h, sigma, par, K, point, error)
+        else:
+            for m in range(4):
+                point[m] = dense(theta, old, new, terms, m)
+        V, omega, delta = speeds(regime, point[0], point[1], par)
+        put(out, at, direction, regime, V, omega, delta,
+            offset[0] + direction * point[2], offset[1] + direction * point[3], gamma)  # fmt: skip
         at += 1
     return at
 

@@ -72,13 +72,20 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
 @kernel
 def partial_rhs(y, offset, par):
     """(y', offset', V, omega) at y = ln zeta and offset = D - D0(y)."""
+    dy, d_offset, V, delta, _, _, _, _ = partial_rates(y, offset, par)
+    return dy, d_offset, V, V * (1.0 + delta)
+
+
+@kernel
+def partial_rates(y, offset, par):
+    """(y', offset', V, delta, V'/V, and d(y', offset', delta)/d offset; of offset' to leading order in V)."""
     alpha, c, kappa, mu, j = par
     zeta = np.exp(y)
     g, h, dg, dh, _, ddh, m, dm = at_contact(zeta, alpha, c)
     D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
     D = D0 + offset
     size = abs(D)
-    g_eta, h_eta, dg_eta, _ = generator_slopes(zeta - size, alpha, c)
+    g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, alpha, c)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
     lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
     V = np.sqrt(lam2) / (2.0 * kappa * zeta)
@@ -89,7 +96,12 @@ def partial_rhs(y, offset, par):
     d = sign * rise_F
     dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) / (mu * V) - 2.0 * d * rate
     dD = (dd - sign * (dg - dg_eta) * zeta * dy) / (1.0 + dg_eta)
-    return dy, dD - D0_y * dy, V, V * (1.0 + mu * V * d)
+    # dQ/dD = mu H'(eta)/H(zeta)
+    eta = max(zeta - size, 0.0)
+    stiffness = mu * 2.0 * lam2 * (eta + h_eta + eta * dh_eta) / (zeta * zeta * V)
+    dy_D = -stiffness / (lam2 * (1.0 + h / zeta + dh))
+    d_offset_D = -(1.0 + 1.0 / j) * stiffness / (mu * V * (1.0 + dg_eta)) - D0_y * dy_D
+    return dy, dD - D0_y * dy, V, mu * V * d, rate, dy_D, d_offset_D, mu * V * (1.0 + dg_eta)
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""One step of the Rosenbrock method RODAS5P on the four unknowns of a motion.
+"""One step of the Rosenbrock method RODAS5P in partial slip.
 
 RODAS5P: 8 stages, order 5, embedded order 4, stiffly accurate and L-stable, no order
 reduction on the problem of Prothero and Robinson, dense output of order 4.  Coefficients:
@@ -6,20 +6,18 @@ G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical be
 within the Julia Differential Equations package, BIT Numer. Math. 63:27 (2023),
 doi:10.1007/s10543-023-00967-x.
 
-The unknowns are two that couple (V and w, or y and D) and two quadratures (distance, angle).
+The unknowns are two that couple (y and the offset) and two quadratures (distance, angle).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from .full_slip import full_jacobian, full_rhs
 from .jit import kernel
 from .partial_slip import partial_jacobian, partial_rhs
 
 FULL, PARTIAL, REST = 0, 1, 2
 STAGES = 8
-ORDER = 5
 
 GAMMA = 0.21193756319429014
 _A6 = (-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946)
@@ -63,28 +61,9 @@ A, C = _square(_A), _square(_C)
 
 
 @kernel
-def rhs(regime, u0, u1, sigma, par):
-    """Right-hand side of the regime."""
-    if regime == FULL:
-        return full_rhs(u0, u1, sigma, par)
-    return partial_rhs(u0, u1, par)
-
-
-@kernel
-def jacobian(regime, u0, u1, par):
-    """Jacobian of the regime, as (f0_0, f0_1, f1_0, ..., f3_1)."""
-    if regime == FULL:
-        return full_jacobian(u0, u1, par)
-    return partial_jacobian(u0, u1, par)
-
-
-@kernel
-def step(regime, u, h, J, sigma, par, K, new):
-    """Advance u by h into ``new``; stages stay in K for :func:`dense_terms`.
-
-    The last stage K[7] is the difference to the embedded solution of order 4.
-    """
-    J00, J01, J10, J11, J20, J21, J30, J31 = J
+def stiff_step(u, h, par, K, new, error):
+    """Advance u by h into ``new``, local errors into ``error``; stages stay in K for the dense output."""
+    J00, J01, J10, J11, J20, J21, J30, J31 = partial_jacobian(u[0], u[1], par)
     # (I - h gamma J) k = h gamma (...): scaled so that no step length overflows
     scale, per_h = h * GAMMA, 1.0 / h
     a, d = 1.0 - scale * J00, 1.0 - scale * J11
@@ -102,7 +81,7 @@ def step(regime, u, h, J, sigma, par, K, new):
             r1 += weight * K[n, 1]
             r2 += weight * K[n, 2]
             r3 += weight * K[n, 3]
-        f0, f1, f2, f3 = rhs(regime, s0, s1, sigma, par)
+        f0, f1, f2, f3 = partial_rhs(s0, s1, par)
         r0 += f0
         r1 += f1
         k0 = (d * r0 + b * r1) * whole
@@ -115,22 +94,28 @@ def step(regime, u, h, J, sigma, par, K, new):
         for n in range(STAGES - 1):
             total += A[STAGES - 1, n] * K[n, m]
         new[m] = total
+        # the last stage is the difference to the embedded solution of order 4
+        error[m] = abs(K[STAGES - 1, m])
 
 
 @kernel
 def dense_terms(K, terms):
     """Coefficients of the dense output of the step whose stages are in K."""
-    for row in range(3):
-        for m in range(4):
-            total = 0.0
-            for n in range(STAGES):
-                total += _H[row, n] * K[n, m]
-            terms[row, m] = total
+    for m in range(4):
+        first = second = third = 0.0
+        for n in range(STAGES):
+            first += _H[0, n] * K[n, m]
+            second += _H[1, n] * K[n, m]
+            third += _H[2, n] * K[n, m]
+        # first + theta (second + theta third), in theta and 1 - theta
+        terms[:, m] = 0.0
+        terms[0, m], terms[1, m], terms[2, m] = first, second + third, -third
 
 
 @kernel
 def dense(theta, old, new, terms, m):
-    """Unknown m at the fraction theta of the step."""
+    """Unknown m at the fraction theta of the step, from the nested form that all methods fill."""
     rest = 1.0 - theta
-    inner = terms[0, m] + theta * (terms[1, m] + theta * terms[2, m])
-    return rest * old[m] + theta * (new[m] + rest * inner)
+    inner = terms[3, m] + rest * (terms[4, m] + theta * terms[5, m])
+    inner = terms[0, m] + theta * (terms[1, m] + rest * (terms[2, m] + theta * inner))
+    return old[m] + theta * (new[m] - old[m] + rest * inner)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import Values, contact
 from ..scene import Scene
-from .checks import controls, output_times, start_speed
+from .checks import controls, output_times, start_speeds
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,7 +78,7 @@ class Motion:
         return contact(self.scene, self.V, delta=delta, fields=fields, **options)
 
     def at(self, t: ArrayLike) -> Motion:
-        """The same motion at other times within [0, end]; dense output of order 4.
+        """The same motion at other times within [0, end]; by the continuous output of the methods.
 
         Raises
         ------
@@ -113,7 +113,7 @@ def roll(
     Parameters
     ----------
     scene : one scene (no arrays).
-    V0, omega0 : start speeds, any sign, zero included.
+    V0, omega0 : start speeds, any sign; the larger of the two 0, or in [1e-300, 1e100] in size.
     t : output times, ascending, or one end time: then output falls on the steps taken.
     rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
@@ -136,7 +136,7 @@ def roll(
         NaN, infinite or oversized input, unsorted times, an array where one number belongs.
     """
     times = output_times(t)
-    inputs = (start_speed("V0", V0), start_speed("omega0", omega0))
+    inputs = start_speeds(V0, omega0)
     for name, value in (("scene", scene), ("V0", inputs[0]), ("omega0", inputs[1])):
         if value.shape != ():
             raise ParameterError(name, f"array of shape {value.shape}", "one motion's; for many use ensemble")
@@ -153,7 +153,7 @@ def roll(
 def _step_times(
     scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int
 ) -> NDArray:
-    """0, the ends of the accepted steps, and the end time."""
+    """0, the ends of the steps and the nodes between them, and the end time."""
     from ..kernels.integrate import integrate
     from ..kernels.motion_output import OUTPUTS
 
@@ -162,7 +162,7 @@ def _step_times(
         scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, end, rtol, rest, max_steps,
         np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
     )  # fmt: skip
-    return np.unique(np.concatenate(([0.0], ends[np.isfinite(ends)], end)))
+    return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
 
 def _integrate(

@@ -1,0 +1,126 @@
+"""Step control: weights of errors, lengths of steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .events import EXPLICIT, STIFF
+from .full_slip import sliding_scale, sliding_speed
+from .jit import kernel
+from .partial_slip import partial_rates, signed_D
+from .stepper import FULL, PARTIAL
+
+#: local error per step is kept at this share of rtol
+SHARE = 0.4
+_D_SHARE = 0.04
+#: growth and shrinkage of steps
+_GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
+_TREND = (0.5, 1.5)
+#: kappa V below which M(V) is smooth on the scale of V
+_BEND = 0.05
+#: errors of V in full slip weigh more: what is left of V + j omega at onset may be small
+_SLIDING = 150.0
+
+
+@kernel
+def slip_share(u, par):
+    """D/zeta: 1 less the stick share, with the sign of delta."""
+    return signed_D(u[0], u[1], par) * np.exp(-u[0])
+
+
+@kernel
+def creep_weight(share):
+    """Weight of an error of D over zeta, at this D over zeta.
+
+    D matters through omega - V = mu V^2 d, a small part of omega, and through V', whose error
+    y carries, and its errors decay: it is held relative to the contact, as an error of Q/mu, and
+    more loosely relative to itself; but not where it decides on the end of stick.
+    """
+    return max(_D_SHARE, share * share) / (abs(share) + _D_SHARE)
+
+
+@kernel
+def crossing(u, slope, share, new, slope_new, share_new):
+    """Fraction of a step in partial slip at which delta passes through 0, where Q is C1 only; 1 if it does not.
+
+    By the cubic through values and slopes at both ends; a crossing within 3 % of either end is let pass.
+    """
+    rise = share_new - share
+    if not share * share_new < 0.0 or min(abs(share), abs(share_new)) < 0.03 * abs(rise):
+        return 1.0
+    # slopes of D/zeta over those of the offset: as the rises
+    change = new[1] - u[1]
+    first, last = slope / change, slope_new / change
+    theta = -share / rise
+    for _ in range(4):
+        rest = 1.0 - theta
+        value = theta * theta * (3.0 - 2.0 * theta) + theta * rest * (rest * first - theta * last)
+        grade = 6.0 * theta * rest + rest * (1.0 - 3.0 * theta) * first + theta * (3.0 * theta - 2.0) * last
+        theta -= (value + share / rise) / grade
+    return theta if 0.0 < theta < 1.0 else -share / rise
+
+
+@kernel
+def error_norm(regime, u, new, share, error, K, travelled, rtol, par):
+    """Largest local error over its weight; <= 1 is acceptable.  ``share``: D/zeta at ``new``."""
+    if regime == FULL:
+        # V rises less than in proportion to s
+        per_s = K[12, 2] / new[0] if new[0] != 0.0 else 0.5 / par[2]
+        worst = _SLIDING * abs(error[0]) * per_s / sliding_scale(K[12, 2], new[1], par)
+    else:
+        worst = max(abs(error[0]), creep_weight(share) * abs(error[1]) * np.exp(-new[0]))
+    for m in range(2, 4):
+        if error[m] != 0.0:
+            worst = max(worst, abs(error[m]) / (travelled[m - 2] + abs(new[m] - u[m])))
+    return worst / (SHARE * rtol)
+
+
+@kernel
+def first_length(regime, u, rtol, par):
+    """Length of the first step in a regime."""
+    if regime == FULL:
+        _, _, kappa, mu, j = par
+        V = sliding_speed(u[0], par)
+        length = 0.5 * abs((V - u[1]) / j - V) / (mu * (1.0 + 1.0 / j)) + 1e-300
+        # M(V) bends at kappa V of order 1: from rest, step first to where that begins
+        return length if kappa * V > _BEND else min(length, _BEND / (kappa * mu))
+    # where the stick zone is small the law bends on the scale eta ~ 1/alpha, however large zeta
+    _, drift, _, _, _, _, relaxation, _ = partial_rates(u[0], u[1], par)
+    eta = np.exp(u[0]) - abs(signed_D(u[0], u[1], par))
+    scale = max(eta, 0.0) + max(1.0 / par[0], 1e-9 * np.exp(u[0]))
+    bend = abs(drift) / scale if par[1] > 0.0 else 0.0
+    return rtol ** (1.0 / 3.0) / (abs(relaxation) + bend + 1e-300)
+
+
+@kernel
+def shorter(length, error, method, regime):
+    """Step length after one that was rejected with this error."""
+    if not error < 1e300:
+        return length * _SHRINK
+    if error <= 1.0:
+        return length
+    order = 5.0 if method == STIFF else 8.0
+    if method == EXPLICIT and regime == PARTIAL:
+        order = 3.0  # most often a step into the bend of the law at eta = 0
+    return length * max(_SHRINK, _SAFETY * error ** (-1.0 / order))
+
+
+@kernel
+def next_length(length, error, length_before, error_before, method):
+    """Step length after one that was accepted, with the trend of the last two (Gustafsson's predictive control)."""
+    order = 5.0 if method == STIFF else 8.0
+    error = max(error, 1e-20)
+    factor = _SAFETY * error ** (-1.0 / order)
+    if method == EXPLICIT and length_before > 0.0:
+        trend = length / length_before * (error_before / error) ** (1.0 / order)
+        factor *= min(max(trend, _TREND[0]), _TREND[1])
+    return length * max(_SHRINK, min(_GROW, factor))
+
+
+@kernel
+def reach(u, slope):
+    """Longest step in full slip: V may not fall below the bend of M(V) in one step, which the error
+    estimate would not see, nor through 0, where M(V) has a kink, but by rounding."""
+    if slope[0] >= 0.0:
+        return np.inf
+    return (0.7 if u[0] > 2.0 * _BEND else 1.0 + 1e-9) * u[0] / -slope[0]
