@@ -393,9 +393,17 @@ def test_ensemble_summary(run, here):
     assert re.search(r"^ +V  0\.001 ", out, re.MULTILINE)
 
 
+def test_ensemble_says_where_motions_are_from(run):
+    argv = ["ensemble", *DRAWN, "--t-end", "1e-3"]
+    assert "8 motions from the flow map, stated error" in run(*argv, "--method", "flow")
+    assert "flow map" not in run(*argv)
+    assert "no flow map: an elastic cylinder" in run(*argv, "--method", "flow", "--alpha", "1")
+
+
 @pytest.mark.parametrize(
     ("argv", "words"),
     [
+        ("--method table", "method = 'table'"),
         ("-n 0", "'0' must be a whole number in [1,"),
         ("-n 1.5", "'1.5' must be a whole number"),
         ("--seed -1", "seed = -1"),

@@ -65,6 +65,9 @@ def add_commands(commands: Any) -> None:
         "--seed", type=whole, default=0, help="seed of the random numbers, kept in the file (default 0)"
     )
     parser.add_argument("--design", default="random", help="random (default), latin or sobol")
+    parser.add_argument(
+        "--method", default="auto", help="auto (default): many motions of one scene from its flow map; flow; integrate"
+    )
     for name in ("--V0", "--omega0"):
         parser.add_argument(name, type=distribution, required=True, help=DISTRIBUTIONS)
     add_time_options(parser, "the final state alone")
@@ -143,7 +146,7 @@ def _ensemble(arguments: Namespace) -> int:
     scene = Scene(**{name: columns.columns.get(name, value) for name, value in parameters.items()})
     result = ensemble(
         scene, columns["V0"], columns["omega0"], arguments.t,
-        rtol=arguments.rtol, rest=arguments.rest, progress=sys.stderr.isatty(),
+        method=arguments.method, rtol=arguments.rtol, rest=arguments.rest, progress=sys.stderr.isatty(),
     )  # fmt: skip
     record = {"seed": arguments.seed, "design": arguments.design}
     record |= {f"drawn_{name}": _formula(value) for name, value in drawn.items()}
@@ -179,6 +182,10 @@ def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
         summary = result.summary()
     heading = [f"Ensemble of {len(result)} motions: " + ", ".join(f"{name} {value}" for name, value in record.items())]
     heading += [f"{n} motions {text}" for text, n in result.messages().items()]
+    if result.flow.any():
+        heading.append(f"{result.flow.sum()} motions from the flow map, stated error {result.flow_error:.1e}")
+    elif result.flow_problem:
+        heading.append(f"no flow map: {result.flow_problem}")
     names = [name for name in ("V", "omega", "x") if f"{name}_mean" in summary]
     levels = {f"{level:.0%}": n for n, level in enumerate(summary["quantile"].values)}
     columns = {"quantity": np.repeat(names, result.t.size), "t": np.tile(result.t, len(names))}

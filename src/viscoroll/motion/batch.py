@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,8 @@ from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import flattened
 from ..scene import Scene, broadcast_shape
-from .checks import controls, output_times, start_speed
+from .checks import controls, output_times, start_speeds
+from .flow import Answer, FlowMap, ask, flow_map
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 FIELDS = ("V", "omega", "x", "angle", "delta", "regime")
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 _BLOCK = 64
+#: motions from which on method "auto" takes the flow map: building one takes as long as integrating a thousand
+_FLOW_PAYS = 2000
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,10 @@ class Ensemble:
     rest_time : (n,), when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
     status : (n,), a :class:`MotionStatus` each; outputs a motion did not reach are NaN.
     switches, steps : (n,), changes of regime, and integration steps taken.
+    flow : (n,), whether the flow map gave this motion; the others were integrated.
+    flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
+        ``angle`` among the fields, that relative to the path if larger; NaN without a map.
+    flow_problem : why a map that was tried could not be used, or "".
     """
 
     scene: Scene
@@ -52,6 +59,9 @@ class Ensemble:
     status: NDArray[np.int8]
     switches: NDArray[np.int64]
     steps: NDArray[np.int64]
+    flow: NDArray[np.bool_]
+    flow_error: float
+    flow_problem: str
 
     def __len__(self) -> int:
         return self.status.size
@@ -80,6 +90,7 @@ def ensemble(
     omega0: ArrayLike,
     t: ArrayLike,
     *,
+    method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,
     fields: Iterable[str] = ("V", "omega", "x"),
@@ -87,13 +98,18 @@ def ensemble(
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
-    """Roll n motions; each as :func:`roll` would, bit for bit, for any number of threads.
+    """Roll n motions; the result is the same bits for any number of threads.
 
     Parameters
     ----------
     scene : its fields may be arrays of n too: every motion can have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,).
     t : output times, ascending, common to all; one number: the final state only.
+    method : "integrate": each motion as :func:`roll` would, bit for bit.  "flow": look the
+        motions up in the flow map of their one scene, which is built if it is not on disk
+        yet.  "auto": "flow" for 2000 motions or more of one scene.  The map stands in only
+        where its stated error is at most ``rtol``, and only for the motions that it holds;
+        all others are integrated.  The result says which, and the map's error.
     rtol, rest, max_steps : as for :func:`roll`.
     fields : out of ``V omega x angle delta regime``; only these are kept in memory.
     threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
@@ -107,34 +123,78 @@ def ensemble(
     ------
     ParameterError
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
-        unknown fields.
+        unknown fields or method; method "flow" with parameters that differ between motions.
+
+    Notes
+    -----
+    The flow map has no entry for scenes in which full slip returns or rolling resistance can
+    hold the sliding cylinder (mu below about M/2), for alpha = 1, and for motions that stick
+    at speeds 10^6 times below the highest (``tests/test_flow.py``).
     """
     times = output_times(t)
     names = (fields,) if isinstance(fields, str) else tuple(fields)
     for name in names:
         if name not in FIELDS:
             raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS))
+    if method not in ("auto", "flow", "integrate"):
+        raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
+    if method == "flow" and scene.shape:
+        raise ParameterError("method", "'flow'", "'auto' or 'integrate' where motions have scenes of their own")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in _PARAMETERS}
-    arrays |= {"V0": start_speed("V0", V0), "omega0": start_speed("omega0", omega0)}
+    arrays |= dict(zip(("V0", "omega0"), start_speeds(V0, omega0), strict=True))
     shape = broadcast_shape(**arrays)
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
     count = shape[0] if shape else 1
     flat = [flattened(array, (count,)) for array in arrays.values()]
-    rows = np.array([FIELDS.index(name) for name in names], dtype=np.int64)
-    out = np.empty((len(names), count, times.size))
-    info = np.empty((count, 5))
+    rows = tuple(FIELDS.index(name) for name in names)
+    bar = "motions" if progress else None
+    use_map = method == "flow" or (method == "auto" and not scene.shape and count >= _FLOW_PAYS)
+    chosen = _map_of(scene, flat[5], flat[6], threads) if use_map else None
+    error = np.nan if chosen is None else chosen.stated_error(not {2, 3}.isdisjoint(rows))
+    if chosen is not None and error <= rtol:
+        answer = ask(chosen, scene.gamma, threshold, flat[5], flat[6], times, rows, threads=threads, progress=bar)
+    else:
+        answer = Answer.empty(len(rows), count, times.size)
+    flow = answer.status >= 0
+    steps = _integrate_others(answer, flat, times, rtol, threshold, max_steps, rows, threads, bar)
+    kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
+    return Ensemble(
+        scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
+        onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
+        steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
+    )  # fmt: skip
+
+
+def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, threads: int | None) -> FlowMap | None:
+    """The flow map for these starts; None where all are at rest."""
+    fastest = max(np.abs(V0).max(initial=0.0), np.abs(omega0).max(initial=0.0))
+    return flow_map(scene, float(fastest), threads=threads) if fastest > 0.0 else None
+
+
+def _integrate_others(
+    answer: Answer, flat: list[NDArray], times: NDArray, rtol: float, rest: float, max_steps: int,
+    rows: tuple[int, ...], threads: int | None, bar: str | None,
+) -> NDArray[np.int64]:  # fmt: skip
+    """Integrate the motions without an answer, into it; returns the steps of each."""
+    steps = np.zeros(answer.status.size, dtype=np.int64)
+    left = np.flatnonzero(answer.status < 0)
+    if not left.size:
+        return steps
+    some = left.size < answer.status.size
+    inputs = [array[left] if some and array.size > 1 else array for array in flat]
+    out = np.empty((len(rows), left.size, times.size)) if some else answer.out
+    info = np.empty((left.size, 5))
 
     def work(start: int, stop: int) -> None:
         from ..kernels.motion_loop import motion_loop
 
-        motion_loop(*flat, times, rtol, threshold, max_steps, rows, out, info, start, stop)
+        motion_loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, start, stop)
 
-    run_blocks(work, count, _BLOCK, threads=threads, progress="motions" if progress else None)
-    kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, out, strict=True))
-    return Ensemble(
-        scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
-        onset_time=info[:, 3].copy(), rest_time=info[:, 4].copy(), status=info[:, 0].astype(np.int8),
-        switches=info[:, 2].astype(np.int64), steps=info[:, 1].astype(np.int64),
-    )  # fmt: skip
+    run_blocks(work, left.size, _BLOCK, threads=threads, progress=bar)
+    if some:
+        answer.out[:, left] = out
+    answer.status[left], steps[left], answer.switches[left] = info[:, 0], info[:, 1], info[:, 2]
+    answer.onset[left], answer.rest[left] = info[:, 3], info[:, 4]
+    return steps

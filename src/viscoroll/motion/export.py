@@ -85,7 +85,10 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
             "flag_meanings": " ".join(s.name.lower() for s in MOTION_STATUS),
         },
     )
-    return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=_globals("Ensemble of motions"))
+    flags = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "integrated flow_map"}
+    data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), {"long_name": "source of the motion"} | flags)
+    attrs = _globals("Ensemble of motions") | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
+    return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
 
 
 def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:

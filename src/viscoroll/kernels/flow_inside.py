@@ -1,0 +1,67 @@
+"""Flow map, starts inside the stick zone: each is a point of a motion that entered it earlier."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import flow_layout as layout
+from .flow import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, layer_state, slow_creep
+from .jit import kernel
+
+#: creep ratios nearer to the slow manifold than this are on it: an error of that size in omega
+_ON_MANIFOLD = 1e-10
+_SOLVER_CAP = 60
+
+
+@kernel
+def earlier_entry(V, delta, first, table, par):
+    """(family, kappa V at entry, E since then, served) of a state inside the stick zone.
+
+    On the slow manifold E is infinite and the speed its own.  Illinois on the logarithm of
+    the distance to it, which falls nearly linearly in E, with the speed at entry corrected
+    alongside.
+    """
+    v = par[2] * V
+    if not LOWEST <= v < 2.0 ** (first + layout.ENTRY_OCTAVES):
+        return PLUS, v, 0.0, False
+    slow = slow_creep(v, table)
+    if abs(delta - slow) < _ON_MANIFOLD:
+        return PLUS, v, np.inf, True
+    lowest, highest = 2.0 ** (first + LAYER_SKIP), 2.0 ** (first + layout.ENTRY_OCTAVES)
+    if not 2.0 * lowest <= v <= 0.5 * highest:
+        return PLUS, v, 0.0, False
+    if delta * slow > 0.0 and abs(delta) < abs(slow):
+        family = CROSS
+    else:
+        family = PLUS if delta > slow else MINUS
+    size = np.log(abs(delta - slow))
+    low, high, v0, side = 0.0, layout.LAYER_END, v, 0
+    E, at_low, at_high = low, 0.0, 0.0
+    for n in range(_SOLVER_CAP):
+        reached = slow
+        for _ in range(3):
+            a, reached, _, _ = layer_state(family, v0, E, first, False, table)
+            v0 = max(lowest, min(v * np.exp(-a), 0.99 * highest))
+        gap = reached - slow
+        excess = np.log(abs(gap)) - size if gap * (delta - slow) > 0.0 else -1.0
+        if n == 0:
+            if excess <= 0.0:
+                return family, v0, 0.0, True
+            at_low, E = excess, high
+            continue
+        if n == 1:
+            if excess > 0.0:
+                return PLUS, v, np.inf, True
+            at_high = excess
+        elif excess > 0.0:
+            low, at_low = E, excess
+            at_high *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            high, at_high = E, excess
+            at_low *= 0.5 if side == -1 else 1.0
+            side = -1
+        if abs(excess) < 1e-12 or high - low < 1e-13 * high:
+            break
+        E = low + (high - low) * at_low / (at_low - at_high)
+    return family, v0, E, True

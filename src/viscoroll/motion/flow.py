@@ -1,0 +1,288 @@
+"""Flow map of one scene: built once, kept on disk, and asked for any number of motions.
+
+The tables are those of :mod:`viscoroll.kernels.flow_layout`.  They depend on alpha, kappa,
+mu and j; gamma only scales time.  A map covers stick onsets at up to 2**20 times below a
+highest speed, which is the next power of 16 (times a constant) above the speeds at hand.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import run_blocks
+from ..errors import OutputError
+from ..files import replacing
+from ..scene import Scene
+
+#: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
+#: speeds, of the path), below which the integrator's own error shows
+_MARGIN, _FLOOR = 4.0, np.array([1e-10, 5e-10])
+_SAMPLED, _SAMPLE_TIMES, _SAMPLE_RTOL = 100, 40, 1e-11
+#: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
+#: far and to this share of the whole
+_PATH_SHARE = 1e-5
+#: maps kept on disk; the one that was used longest ago goes first
+_KEPT = 64
+#: maps kept in memory, the one used last at the end
+_IN_MEMORY = 4
+_recent: dict[tuple, FlowMap] = {}
+_BLOCK = 1 << 14
+#: octaves that the highest speed is rounded up to
+_OCTAVES = 4
+
+
+@dataclass(frozen=True)
+class FlowMap:
+    """Tables that roll the motions of one scene.
+
+    Attributes
+    ----------
+    parameters : alpha, c, kappa, mu, j.
+    first : kappa V of the slowest stick onset in it is 2**first.
+    table : all tables, see ``kernels/flow_layout.py``.
+    error : stated error of V and omega relative to the larger of the two: four times the worst
+        of 100 motions that the integrator rolled at rtol 1e-11 when the map was built.
+    path_error : the same of distance and angle, relative to the larger of the two so far (and
+        to 1e-5 of that at rest: they are differences of what is left to it).
+    problem : why the scene has no map, or "".
+    """
+
+    parameters: tuple[float, ...]
+    first: int
+    table: NDArray[np.float64]
+    error: float
+    path_error: float
+    problem: str
+
+    def stated_error(self, path: bool) -> float:
+        """The error of the speeds, or the larger of that and the error of the path."""
+        return max(self.error, self.path_error) if path else self.error
+
+
+def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowMap:
+    """The map of a scene for speeds up to ``speed``: from memory, from disk, or built.
+
+    A map on disk that is damaged is built again; where the disk cannot be written the map
+    is kept in memory only.
+    """
+    parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
+    octave = math.ceil(math.log2(max(scene.kappa * speed, 1e-300)) / _OCTAVES) * _OCTAVES
+    key = (*parameters, octave)
+    found = _recent.pop(key, None)
+    if found is None:
+        path = _path(parameters, octave)
+        found = _load(path, parameters)
+        if found is None:
+            found = build(parameters, octave, threads)
+            _save(found, path)
+    _recent[key] = found
+    with suppress(StopIteration, RuntimeError, KeyError):  # another thread may be here too: it only costs a map
+        while len(_recent) > _IN_MEMORY:
+            del _recent[next(iter(_recent))]
+    return found
+
+
+def _folder() -> Path:
+    """Where maps are kept: they are worth no more than the kernels that fill and read them."""
+    from ..kernels.jit import cache_root, sources_digest
+
+    return cache_root() / f"flow-{sources_digest()}"
+
+
+def _path(parameters: tuple[float, ...], octave: int) -> Path:
+    name = hashlib.sha256(np.array([*parameters, octave]).tobytes()).hexdigest()[:20]
+    return _folder() / f"{name}.npz"
+
+
+def _load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
+    from ..kernels.flow_layout import SIZE
+
+    try:
+        with path.open("rb") as file, np.load(file) as data:  # every member has a CRC, which reading checks
+            found = FlowMap(
+                tuple(data["parameters"].tolist()), int(data["first"]), data["table"],
+                float(data["error"]), float(data["path_error"]), str(data["problem"]),
+            )  # fmt: skip
+        path.touch()
+    except Exception:
+        return None
+    return found if found.parameters == parameters and found.table.shape == (SIZE,) else None
+
+
+def _save(made: FlowMap, path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(path) as temporary:
+            np.savez(
+                temporary, parameters=made.parameters, first=made.first, table=made.table,
+                error=made.error, path_error=made.path_error, problem=made.problem,
+            )  # fmt: skip
+        oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
+        for file in oldest[:-_KEPT]:
+            file.unlink()
+    except (OSError, OutputError):
+        pass
+
+
+def build(parameters: tuple[float, ...], octave: int, threads: int | None = None) -> FlowMap:
+    """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
+    from ..kernels.flow_layout import ENTRY_OCTAVES, SIZE
+
+    table = np.zeros(SIZE)
+    problem = _fill(parameters, octave, table, threads)
+    made = FlowMap(parameters, octave - ENTRY_OCTAVES, table, math.inf, math.inf, problem)
+    if problem:
+        return made
+    error, path_error = _measure(made, octave, threads)
+    return replace(made, error=error, path_error=path_error)
+
+
+def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
+    """Fill the tables; returns what stands against it, or nothing."""
+    from ..kernels import flow_layer, flow_slide, flow_slow
+    from ..kernels.flow_layout import CROSS_MARGIN, views
+
+    _, c, kappa, _, j = parameters
+    parts = views(table)
+    if c == 0.0:
+        return "an elastic cylinder never slows down"
+    if not (
+        flow_slide.slide_table(1.0, parameters, parts.slide_up)
+        and flow_slide.slide_table(-1.0, parameters, parts.slide_down)
+    ):
+        return "rolling resistance can hold the sliding cylinder at a speed"
+    if not flow_slow.slow_table(parameters, parts.slow):
+        return "full slip returns"
+    flow_slide.time_table(parts.slide_up, parameters, parts.time_up)
+    flow_slide.time_table(parts.slide_down, parameters, parts.time_down)
+    flow_slide.onset_table(parts.slide_up, parameters, parts.onset_up)
+    flow_slide.onset_table(parts.slide_down, parameters, parts.onset_down)
+    flow_slow.late_table(parts.slow, kappa, parts.late)
+    flow_slow.early_table(parts.slow, kappa, parts.early)
+    far = float(np.sign(1.0 - j))  # the sign of the creep that turns on its way to the slow manifold
+    failed: list[int] = []
+
+    def layer(top: int, entering: bool, sign: float, which: str):
+        layers, entry = getattr(parts, f"layer_{which}"), getattr(parts, f"entry_{which}")
+
+        def work(start: int, stop: int) -> None:
+            for n in range(start, stop):
+                if not flow_layer.layer_octave(
+                    top, n, entering, sign, entering and sign == far, parts.entry_cross, parameters, table,
+                    layers, entry,
+                ):  # fmt: skip
+                    failed.append(n)
+
+        run_blocks(work, entry.shape[0] // flow_layer.BINS, 1, threads=threads)
+
+    if far:
+        layer(octave + CROSS_MARGIN, False, -far, "cross")
+    layer(octave, True, 1.0, "plus")
+    layer(octave, True, -1.0, "minus")
+    return "the stick zone does not always last" if failed else ""
+
+
+def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, float]:
+    """Largest errors against the integrator, times the margin, on motions spread over the map."""
+    kappa, mu = made.parameters[2:4]
+    rng = np.random.default_rng(20)
+    size = 2.0 ** (octave - rng.uniform(0.0, 10.0, _SAMPLED)) / kappa
+    angle = rng.uniform(0.0, 2.0 * math.pi, _SAMPLED)
+    starts = size[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    near = starts[: _SAMPLED // 5]  # inside the stick zone, or close to it
+    near[:, 1] = near[:, 0] * (1.0 + mu / kappa * rng.uniform(-0.5, 0.5, near.shape[0]))
+    errors = np.zeros((_SAMPLED, 2))
+
+    def work(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            errors[n] = _error_of(made, *starts[n])
+
+    run_blocks(work, _SAMPLED, 1, threads=threads)
+    worst = np.maximum(_MARGIN * errors.max(axis=0), _FLOOR)
+    return float(worst[0]), float(worst[1])
+
+
+def _error_of(made: FlowMap, V0: float, omega0: float) -> tuple[float, float]:
+    """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle."""
+    from ..kernels.flow_layer import stiff_rate
+    from ..kernels.integrate import integrate
+    from ..kernels.motion_output import OUTPUTS
+
+    alpha, c, kappa, mu, j = made.parameters
+    start = np.array([V0]), np.array([omega0])
+
+    def flow(times: NDArray) -> Answer:
+        return ask(made, 1.0, 0.0, *start, times, (0, 1, 2, 3))
+
+    at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
+    onset = float(np.fmax(at_rest.onset[0], 0.0))
+    stiff_time = 1.0 / stiff_rate(max(abs(V0), abs(omega0)), made.parameters)
+    layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
+    late = np.linspace(0.1, 4.0, 6) * (1.0 + j) / c
+    times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
+    found = flow(times)
+    if at_rest.status[0] < 0 or found.status[0] < 0:
+        return 0.0, 0.0
+    out = np.full((OUTPUTS, times.size), np.nan)
+    nothing = np.empty((0, 2)), np.empty(0)
+    _, _, _, true_onset, _ = integrate(
+        alpha, kappa, mu, 1.0, j, V0, omega0, times, _SAMPLE_RTOL, 0.0, 1_000_000, out, *nothing
+    )
+    difference = np.abs(found.out[:, 0] - out[:4])
+    speed = np.maximum(np.abs(out[0]), np.abs(out[1]))
+    path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
+    speeds, paths = float((difference[:2] / speed).max()), float((difference[2:] / path).max())
+    if onset > 0.0:
+        speeds = max(speeds, abs(onset - true_onset) / (onset + stiff_time))
+    return (speeds if math.isfinite(speeds) else math.inf), (paths if math.isfinite(paths) else math.inf)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Motions as arrays: outputs (rows, motions, times), and one entry a motion of the rest.
+
+    ``status`` < 0 stands for a motion that is not in the map, whose other entries mean nothing.
+    """
+
+    out: NDArray[np.float64]
+    status: NDArray[np.int8]
+    onset: NDArray[np.float64]
+    rest: NDArray[np.float64]
+    switches: NDArray[np.int64]
+
+    @classmethod
+    def empty(cls, rows: int, count: int, times: int) -> Answer:
+        """No motion answered yet."""
+        return cls(
+            np.empty((rows, count, times)), np.full(count, -1, np.int8), np.empty(count), np.empty(count),
+            np.zeros(count, np.int64),
+        )  # fmt: skip
+
+
+def ask(
+    chosen: FlowMap, gamma: float, rest: float, V0: NDArray, omega0: NDArray, times: NDArray, rows: tuple[int, ...],
+    *, threads: int | None = 1, progress: str | None = None,
+) -> Answer:  # fmt: skip
+    """Roll motions by a map; ``rows`` as in ``kernels/motion_output.py``, ``rest`` = 0 for none."""
+    from ..kernels.flow import lambda_at_rest
+    from ..kernels.flow_loop import flow_loop
+
+    answer = Answer.empty(len(rows), max(V0.size, omega0.size), times.size)
+    rest_lambda = lambda_at_rest(rest, chosen.table, chosen.parameters) if rest > 0.0 else 0.0
+
+    def work(start: int, stop: int) -> None:
+        flow_loop(
+            chosen.parameters, gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
+            np.array(rows, np.int64), answer.out, answer.status, answer.onset, answer.rest, answer.switches,
+            start, stop,
+        )  # fmt: skip
+
+    run_blocks(work, answer.status.size, _BLOCK, threads=threads, progress=progress)
+    return answer

@@ -1,0 +1,282 @@
+"""The flow map against the integrator, to the error that it states; what it leaves to the integrator; its files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll.errors import MotionStatus
+from viscoroll.kernels.flow import slide
+from viscoroll.motion import flow
+from viscoroll.motion.batch import FIELDS
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+T = np.linspace(0.0, 3e-3, 16)
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    """Maps of a test are its own; compiled kernels stay where they are."""
+    monkeypatch.setattr(flow, "_folder", lambda: tmp_path / "maps")
+    flow._recent.clear()
+    yield
+    flow._recent.clear()
+
+
+def random_scenes(count: int, seed: int) -> list[vr.Scene]:
+    rng = np.random.default_rng(seed)
+
+    def log_uniform(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    return [
+        vr.Scene(log_uniform(1.001, 1e4), log_uniform(0.5, 200), log_uniform(0.05, 3), 1.0, rng.uniform(0.1, 2.0))
+        for _ in range(count)
+    ]
+
+
+def decay_time(scene: vr.Scene) -> float:
+    return (1.0 + scene.j) * scene.alpha / (scene.alpha - 1.0) / scene.gamma
+
+
+def starts(count: int, seed: int, scene: vr.Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Any speeds, a fifth of them inside the stick band or near it, some on the axes."""
+    rng = np.random.default_rng(seed)
+    V0, omega0 = rng.uniform(-2.0, 2.0, (2, count))
+    inside = slice(0, count // 5)
+    omega0[inside] = V0[inside] * (1.0 + scene.mu / scene.kappa * rng.uniform(-0.6, 0.6, count)[inside])
+    V0[-3], omega0[-2] = 0.0, 0.0
+    return V0, omega0
+
+
+def compare(scene: vr.Scene, count: int, seed: int, t: np.ndarray) -> tuple[vr.Ensemble, float, float]:
+    """(flow's result, largest difference of the speeds and of the path to the integrator's at rtol 1e-11)."""
+    V0, omega0 = starts(count, seed, scene)
+    mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
+    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-11, fields=FIELDS)
+    speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
+    moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
+    speeds = np.maximum(np.abs(mapped.V - rolled.V), np.abs(mapped.omega - rolled.omega)) / speed
+    # what is left to rest is at most V times the decay time
+    whole = 1e-5 * decay_time(scene) * speed[:, :1]
+    paths = np.maximum(np.abs(mapped.x - rolled.x), np.abs(mapped.angle - rolled.angle)) / (moved + whole)
+    assert np.array_equal(mapped.regime[mapped.flow], rolled.regime[mapped.flow])
+    assert np.array_equal(mapped.switches, rolled.switches)
+    assert np.array_equal(np.isnan(mapped.onset_time), np.isnan(rolled.onset_time))
+    return mapped, speeds[mapped.flow].max(initial=0.0), paths[mapped.flow].max(initial=0.0)
+
+
+def test_paper_scene_to_its_stated_error():
+    mapped, speeds, paths = compare(SCENE, 500, 1, T)
+    built = flow.flow_map(SCENE, 2.0)
+    assert mapped.flow.mean() > 0.99
+    assert built.error < tol.FLOW_SPEED
+    assert speeds < built.error
+    assert paths < built.path_error
+
+
+@pytest.mark.parametrize("scene", random_scenes(12, 5), ids=str)
+def test_random_scenes_to_their_stated_error(scene):
+    """Every start of every scene is served, by the map or by the integrator."""
+    mapped, speeds, paths = compare(scene, 60, 2, np.geomspace(1e-3, 5.0, 12) * decay_time(scene))
+    assert (mapped.status == MotionStatus.DONE).all()
+    if mapped.flow.any():
+        built = flow.flow_map(scene, 2.0)
+        assert speeds < built.error
+        assert paths < built.path_error
+
+
+def test_onset_times():
+    V0, omega0 = starts(200, 3, SCENE)
+    mapped = vr.ensemble(SCENE, V0, omega0, T, method="flow")
+    rolled = vr.ensemble(SCENE, V0, omega0, T, method="integrate", rtol=1e-11)
+    np.testing.assert_allclose(mapped.onset_time, rolled.onset_time, rtol=tol.FLOW_ONSET, atol=tol.FLOW_ONSET * 1e-6)
+
+
+def test_within_the_boundary_layer():
+    """Outputs a few stiff times behind an onset with omega > V, where creep falls from its limit through zero."""
+    V0, omega0 = 0.2, 2.0
+    onset = vr.roll(SCENE, V0, omega0, [T[-1]], 1e-11).onset_time
+    t = onset + np.geomspace(1e-12, 1e-4, 200)
+    mapped = vr.ensemble(SCENE, [V0], [omega0], t, method="flow", fields=FIELDS)
+    rolled = vr.ensemble(SCENE, [V0], [omega0], t, method="integrate", rtol=1e-11, fields=FIELDS)
+    assert mapped.flow.all()
+    assert rolled.delta.max() > 0.0 > rolled.delta.min()
+    np.testing.assert_allclose(mapped.delta, rolled.delta, rtol=0.0, atol=tol.FLOW_SPEED)
+    np.testing.assert_allclose(mapped.V, rolled.V, rtol=tol.FLOW_SPEED)
+    np.testing.assert_allclose(mapped.omega, rolled.omega, rtol=tol.FLOW_SPEED)
+
+
+def test_start_inside_the_stick_zone_is_a_point_of_an_earlier_motion():
+    """Going on from a state in the boundary layer is the same as not having stopped there."""
+    V0, omega0 = vr.PAPER_STARTS["IC1"]
+    onset = vr.roll(SCENE, V0, omega0, [T[-1]], 1e-11).onset_time
+    between, end = onset + np.array([3e-7, 1e-6, 3e-6, 1e-5]), 2e-4
+    whole = vr.ensemble(SCENE, [V0], [omega0], np.append(between, end), method="flow")
+    for i, t in enumerate(between):
+        rest = vr.ensemble(SCENE, whole.V[:, i], whole.omega[:, i], end - t, method="flow")
+        assert rest.flow.all()
+        assert np.isnan(rest.onset_time).all()
+        np.testing.assert_allclose(rest.V, whole.V[:, -1:], rtol=tol.FLOW_SPEED)
+        np.testing.assert_allclose(rest.omega, whole.omega[:, -1:], rtol=tol.FLOW_SPEED)
+        np.testing.assert_allclose(rest.x, whole.x[:, -1:] - whole.x[:, i : i + 1], rtol=tol.FLOW_PATH)
+
+
+def test_mirror_and_gamma():
+    V0, omega0 = starts(300, 4, SCENE)
+    there = vr.ensemble(SCENE, V0, omega0, T, method="flow", fields=FIELDS)
+    back = vr.ensemble(SCENE, -V0, -omega0, T, method="flow", fields=FIELDS)
+    for name in ("V", "omega", "x", "angle"):
+        assert np.array_equal(getattr(there, name), -getattr(back, name)), name
+    slow = vr.ensemble(SCENE.replace(gamma=SCENE.gamma / 1024), V0, omega0, T * 1024, method="flow")
+    assert np.array_equal(slow.V, there.V)
+    assert np.array_equal(slow.x, there.x * 1024)
+
+
+def test_same_bits_for_any_number_of_threads():
+    V0, omega0 = starts(40_000, 6, SCENE)
+    one, two = (vr.ensemble(SCENE, V0, omega0, T[1:3], threads=n) for n in (1, 2))
+    assert one.flow.mean() > 0.999
+    assert np.array_equal(one.V, two.V)
+    assert np.array_equal(one.x, two.x)
+
+
+def test_rest():
+    V0, omega0 = starts(100, 7, SCENE)
+    V0[:2], omega0[:2] = 1e-4, -1e-4
+    t = np.linspace(0.0, 2e-2, 9)
+    mapped, rolled = (
+        vr.ensemble(SCENE, V0, omega0, t, rest=1e-3, method=method, fields=FIELDS, rtol=rtol)
+        for method, rtol in (("flow", 1e-8), ("integrate", 1e-11))
+    )
+    assert mapped.flow.any()
+    assert np.array_equal(mapped.status, rolled.status)
+    assert np.array_equal(mapped.regime, rolled.regime)
+    np.testing.assert_allclose(mapped.rest_time, rolled.rest_time, rtol=tol.FLOW_PATH)
+    np.testing.assert_allclose(mapped.x, rolled.x, rtol=tol.FLOW_PATH, atol=1e-16)
+    np.testing.assert_allclose(mapped.angle, rolled.angle, rtol=tol.FLOW_PATH, atol=1e-16)
+
+
+def test_long_life():
+    """V falls like exp(-t c/(1 + j)) through the subnormals to 0, and the distance stays."""
+    t = np.array([1.0, 100.0, 700.0, 800.0, 1e6, 1e12]) * decay_time(SCENE)
+    mapped = vr.ensemble(SCENE, [1.0], [1.0], t, method="flow")
+    assert mapped.flow.all()
+    np.testing.assert_allclose(mapped.V[0, 2] / mapped.V[0, 1], np.exp(-600.0), rtol=tol.FLOW_PATH)
+    assert mapped.V[0, 3] == mapped.V[0, -1] == 0.0
+    assert mapped.x[0, 2] == mapped.x[0, 3] == mapped.x[0, -1]
+
+
+@pytest.mark.parametrize(
+    ("scene", "why"),
+    [
+        (SCENE.replace(alpha=1.0), "elastic"),
+        (SCENE.replace(mu=0.01), "resistance"),
+        (vr.Scene(11.0, 0.4, 0.09, 1.0, 0.01), ""),
+    ],
+)
+def test_scenes_without_a_map_are_integrated(scene, why):
+    V0, omega0 = starts(20, 8, scene)
+    t = np.linspace(0.1, 3.0, 4) / scene.gamma
+    mapped = vr.ensemble(scene, V0, omega0, t, method="flow")
+    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate")
+    if why:
+        assert why in mapped.flow_problem
+        assert not mapped.flow.any()
+        assert np.array_equal(mapped.V, rolled.V)
+    np.testing.assert_allclose(mapped.V, rolled.V, rtol=tol.FLOW_PATH * 10)
+
+
+def test_motions_beyond_the_map_are_integrated():
+    """The second and third slide until V and omega vanish nearly together: their onset lies below every table."""
+    built = flow.flow_map(SCENE, 2.0)
+    T, _ = slide(-1.0, False, built.table, built.parameters)
+    omega = (-1.0 - 2.0 * SCENE.mu * T) / SCENE.j
+    V0, omega0 = np.array([1.0, -1.0, -1.0, 0.0]), np.array([1.0, omega, omega * (1.0 + 1e-7), 0.0])
+    mapped = vr.ensemble(SCENE, V0, omega0, T_OUT := np.array([1e-3, 3e-3]), method="flow")
+    rolled = vr.ensemble(SCENE, V0, omega0, T_OUT, method="integrate")
+    assert mapped.flow.tolist() == [True, False, False, False]
+    assert np.array_equal(mapped.V[1:], rolled.V[1:])
+    assert (mapped.status == rolled.status).all()
+
+
+def test_the_map_gives_way_to_a_tighter_tolerance():
+    V0, omega0 = starts(10, 9, SCENE)
+    tight = vr.ensemble(SCENE, V0, omega0, T, method="flow", rtol=1e-12)
+    assert not tight.flow.any()
+    assert tight.flow_error > 1e-12
+
+
+def test_auto():
+    V0, omega0 = starts(2500, 10, SCENE)
+    assert not vr.ensemble(SCENE, V0[:100], omega0[:100], 1e-3).flow.any()
+    assert vr.ensemble(SCENE, V0, omega0, 1e-3).flow.mean() > 0.99
+    own = SCENE.replace(mu=np.linspace(0.2, 0.3, V0.size))
+    assert not vr.ensemble(own, V0, omega0, 1e-3, rtol=1e-3).flow.any()
+
+
+def test_bad_requests():
+    with pytest.raises(vr.ParameterError, match="method"):
+        vr.ensemble(SCENE, [1.0], [1.0], 1.0, method="spline")
+    with pytest.raises(vr.ParameterError, match="scenes of their own"):
+        vr.ensemble(SCENE.replace(mu=[0.2, 0.3]), 1.0, 1.0, 1.0, method="flow")
+
+
+def test_kept_on_disk_and_built_once(monkeypatch):
+    calls = []
+    build = flow.build
+    monkeypatch.setattr(flow, "build", lambda *a: calls.append(a) or build(*a))
+    first = flow.flow_map(SCENE, 2.0)
+    assert flow.flow_map(SCENE, 1.9) is first  # the same power of 16
+    assert flow.flow_map(SCENE.replace(gamma=1.0), 2.0) is first
+    flow._recent.clear()
+    again = flow.flow_map(SCENE, 2.0)
+    assert len(calls) == 1
+    assert np.array_equal(again.table, first.table)
+    assert again.error == first.error
+    (path,) = flow._folder().iterdir()
+    assert path.stat().st_size < 3_000_000
+
+
+@pytest.mark.parametrize("damage", ["bit", "truncated", "empty", "other"])
+def test_damaged_file_is_built_again(damage):
+    first = flow.flow_map(SCENE, 2.0)
+    (path,) = flow._folder().iterdir()
+    content = bytearray(path.read_bytes())
+    if damage == "bit":
+        content[len(content) // 2] ^= 4
+    elif damage == "truncated":
+        content = content[: len(content) // 2]
+    elif damage == "empty":
+        content = bytearray()
+    else:
+        flow._recent.clear()
+        flow.flow_map(SCENE.replace(mu=0.21), 2.0)
+        content = bytearray(next(p for p in flow._folder().iterdir() if p != path).read_bytes())
+    path.write_bytes(content)
+    flow._recent.clear()
+    again = flow.flow_map(SCENE, 2.0)
+    assert np.array_equal(again.table, first.table)
+    flow._recent.clear()
+    assert flow._load(path, first.parameters) is not None
+
+
+def test_a_disk_that_cannot_be_written_is_no_obstacle(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(flow, "_folder", lambda: tmp_path / "file" / "maps")
+    assert flow.flow_map(SCENE, 2.0).error < tol.FLOW_SPEED
+
+
+def test_old_maps_are_removed(monkeypatch):
+    monkeypatch.setattr(flow, "_KEPT", 2)
+    for mu in (0.2, 0.3, 0.4):
+        flow.flow_map(SCENE.replace(mu=mu), 2.0)
+    assert len(list(flow._folder().iterdir())) == 2
+
+
+def test_distance_is_not_looked_up_unless_asked_for(monkeypatch):
+    """Fields that are not asked for do not enter the decision either: the speeds' error alone counts."""
+    built = flow.flow_map(SCENE, 2.0)
+    assert built.stated_error(False) == built.error <= built.stated_error(True)
