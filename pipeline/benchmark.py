@@ -2,10 +2,10 @@
 
     python pipeline/benchmark.py [PART ...] [--config FILE] [--smoke] [-o FOLDER] [--figures FOLDER]
 
-Parts: work-precision, own-parameters, law, tables, scaling, cold-start, skips; default: all.  Sizes are in
-[bench] of the configuration, those of --smoke in [bench.smoke].  Times are of this machine at this moment,
-medians of alternating runs on one core: run it with nothing else running.  A peer that is not installed is
-skipped with a printed reason (pipeline/peers/README.md).
+Parts: work-precision, own-parameters, fixed-scene, agreement, law, tables, scaling, cold-start, skips;
+default: all.  Sizes are in [bench] of the configuration, those of --smoke in [bench.smoke].  Times are of
+this machine at this moment, medians of alternating runs on one core: run it with nothing else running.  A
+peer that is not installed is skipped with a printed reason (pipeline/peers/README.md).
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ ROOT = Path(__file__).parents[1]
 PARTS = {
     "work-precision": ("work_precision", "work_precision"),
     "own-parameters": ("work_precision", "own_parameters"),
+    "fixed-scene": ("fixed_scene", "fixed_scene"),
+    "agreement": ("fixed_scene", "agreement"),
     "law": ("law", "law"),
     "tables": ("tables", "tables"),
     "scaling": ("scaling", "scaling"),

@@ -61,7 +61,8 @@ def headline(m: dict[str, Any]) -> str:
         ("`contact()`, Q and M in arrays, a state", f"{number(time['contact_an_alpha_each_ns'])} ns"),
         ("the same by root solves of the printed equations", f"{number(time['contact_direct_ns'])} ns"),
         ("`roll()`, one motion (rtol 1e-6; 1e-8)", _pair(time, "roll")),
-        ("`ensemble()`, a motion (rtol 1e-6; 1e-8)", _pair(time, "ensemble")),
+        ("`ensemble()`, a motion, integrated (rtol 1e-6; 1e-8)", _pair(time, "ensemble")),
+        ("`ensemble()` of one scene, a motion, from the flow map", f"{number(time['flow_us'])} µs"),
         ("`import viscoroll`, over a bare Python", f"{number(1e3 * time['import_s'])} ms"),
     ]
     return table(("what", "measured"), rows) + "\n" + machine(m)
@@ -123,8 +124,12 @@ def times(m: dict[str, Any]) -> str:
         ("`contact()`, one state, all nine fields", f"{number(time['contact_single_us'])} µs"),
         ("`roll()`, IC1 to t = 3e-3, final state (rtol 1e-6; 1e-8)", _pair(time, "roll")),
         (
-            f"`ensemble()`, {sizes['timed_motions']} starts in [-2, 2]², final state (rtol 1e-6; 1e-8)",
+            f"`ensemble()`, {sizes['timed_motions']} starts in [-2, 2]², final state, integrated (rtol 1e-6; 1e-8)",
             _pair(time, "ensemble") + " a motion",
+        ),
+        (
+            f"the same of {50 * sizes['timed_motions']} starts, from the flow map",
+            f"{number(time['flow_us'])} µs a motion",
         ),
         ("`import viscoroll`, over a bare Python", f"{number(1e3 * time['import_s'])} ms"),
         ("`viscoroll roll`, the whole process, kernels cached", f"{number(time['cli_roll_s'])} s"),

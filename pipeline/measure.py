@@ -232,9 +232,14 @@ def motion_times(sizes: dict[str, Any]) -> dict[str, float]:
     V0, omega0 = rng.uniform(-2.0, 2.0, (2, sizes["timed_motions"]))
     for rtol in (1e-6, 1e-8):
         one = median_seconds(lambda rtol=rtol: vr.roll(scene, 1.5, 0.5, end, rtol), 20 * sizes["repeats"])
-        many = median_seconds(lambda rtol=rtol: vr.ensemble(scene, V0, omega0, end, rtol=rtol), sizes["repeats"])
+        many = median_seconds(
+            lambda rtol=rtol: vr.ensemble(scene, V0, omega0, end, rtol=rtol, method="integrate"), sizes["repeats"]
+        )
         times |= {f"roll_{rtol:.0e}_us": 1e6 * one, f"ensemble_{rtol:.0e}_us": 1e6 * many / V0.size}
-    return times
+    V0, omega0 = rng.uniform(-2.0, 2.0, (2, 50 * sizes["timed_motions"]))
+    vr.ensemble(scene, 1.0, 1.0, end, method="flow")  # builds the map
+    mapped = median_seconds(lambda: vr.ensemble(scene, V0, omega0, end, method="flow"), sizes["repeats"])
+    return times | {"flow_us": 1e6 * mapped / V0.size}
 
 
 def process_times(sizes: dict[str, Any]) -> dict[str, float]:

@@ -36,7 +36,7 @@ def check_rows(result: dict) -> None:
     for row in result["results"]:
         assert row["us"] > 0.0
         assert row["failed"] == 0, row
-        own = row["method"] == "table"
+        own = row["method"] in ("table", "flow")
         for name in OWN_ERRORS:
             assert 0.0 <= row[name] < (tol.BENCH_OWN if own else tol.BENCH_PEER), row
     for group in result["reference"].values():
@@ -57,6 +57,11 @@ def test_motions(folder):
 
 def test_law_tables_and_the_rest(folder):
     law, tables, skips, scaling, cold = measured(folder, "law", "tables", "skips", "scaling", "cold-start")
+    fixed, agreement = measured(folder, "fixed-scene", "agreement")
+    assert all(row["ns"] > 0.0 for row in fixed["rows"].values())
+    assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED
+    assert fixed["bytes"] < 3_000_000
+    assert agreement["within_stated"] == agreement["scenes_with_map"]
     for row in law.values():
         assert row["ns"] > 0.0
         assert max(row["error"].values()) < tol.BENCH_LAW

@@ -209,7 +209,7 @@ def first_length(sticking, u, J, rtol, par):
 @compiled
 def roll(which, par, V0, omega0, t, rtol, atlas, w, V, omega):
     """One motion into V, omega (times,), which keep what they held where the step limit came first."""
-    K, new, u, terms = np.zeros((STAGES, 4)), np.empty(4), np.empty(4), np.zeros((3, 4))
+    K, new, u, terms = np.zeros((STAGES, 4)), np.empty(4), np.empty(4), np.zeros((6, 4))
     new[:], u[:] = 0.0, 0.0
     sigma = 1.0 if omega0 >= V0 else -1.0
     direction = 1.0 if V0 >= 0.0 else -1.0

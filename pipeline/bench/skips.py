@@ -28,8 +28,8 @@ def skips(sizes: dict[str, Any]) -> dict[str, Any]:
     def contact(which, creep, fields=("Q", "M")):
         return lambda: vr.contact(which, V, delta=creep, fields=fields)
 
-    def ensemble(which=scene, V0=V0, omega0=omega0, t=t, fields=("V", "omega"), **options):
-        return lambda: vr.ensemble(which, V0, omega0, t, fields=fields, threads=1, **options)
+    def ensemble(which=scene, V0=V0, omega0=omega0, t=t, fields=("V", "omega"), method="integrate", **options):
+        return lambda: vr.ensemble(which, V0, omega0, t, fields=fields, threads=1, method=method, **options)
 
     pairs = {
         "alpha = 1: no Bessel ratio (contact)": (contact(scene, delta), contact(elastic, delta_elastic)),
@@ -40,6 +40,11 @@ def skips(sizes: dict[str, Any]) -> dict[str, Any]:
         "only M asked for (contact)": (contact(scene, delta, None), contact(scene, delta, ("M",))),
         "final state only (motion)": (ensemble(), ensemble(t=t[-1:])),
         "rest: outputs filled behind it": (ensemble(), ensemble(rest=1e-1)),
+        "one scene: looked up, not integrated": (ensemble(), ensemble(method="flow")),
+        "distance not asked for (flow map)": (
+            ensemble(method="flow", fields=("V", "omega", "x")),
+            ensemble(method="flow"),
+        ),
         "all at rest": (ensemble(), ensemble(V0=0.0 * V0, omega0=0.0 * omega0)),
         "all below the rest threshold": (ensemble(V0=slow, omega0=slow), ensemble(V0=slow, omega0=slow, rest=1e-6)),
     }
