@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
-from ..scene import checked
+from ..scene import broadcast_shape, checked
 
 RTOL_RANGE = (1e-12, 1e-2)
+SPEED_RANGE = (1e-300, 1e100)
 
 
 def output_times(t: ArrayLike) -> NDArray[np.float64]:
@@ -47,16 +48,27 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     return float(rtol), 0.0 if rest is None else float(rest), int(max_steps)
 
 
-def start_speed(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """A start velocity: finite, and of a size whose square is too.
+def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Start velocities: finite, no more than 1e100, and the larger of the two 0 or no less than 1e-300.
+
+    Beyond, intermediate results leave the range of doubles.
 
     Raises
     ------
     ParameterError
         Otherwise.
     """
-    array = checked(name, value)
-    too_large = np.abs(array) > 1e150
-    if too_large.any():
-        raise ParameterError(name, array[too_large].flat[0] if array.ndim else array[()], "at most 1e150 in size")
-    return array
+    V, omega = checked("V0", V0), checked("omega0", omega0)
+    broadcast_shape(V0=V, omega0=omega)
+    for name, array in (("V0", V), ("omega0", omega)):
+        if (np.abs(array) > SPEED_RANGE[1]).any():
+            raise ParameterError(name, _largest(array), f"at most {SPEED_RANGE[1]:g} in size")
+    larger = np.maximum(np.abs(V), np.abs(omega))
+    tiny = larger[(larger > 0.0) & (larger < SPEED_RANGE[0])]
+    if tiny.size:
+        raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {SPEED_RANGE[0]:g}")
+    return V, omega
+
+
+def _largest(array: NDArray[np.float64]) -> float:
+    return array.flat[np.abs(array).argmax()]
