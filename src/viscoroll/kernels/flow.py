@@ -42,7 +42,7 @@ LAYER_SKIP = layout.ENTRY_OCTAVES - layout.LAYER_OCTAVES
 _BLOCK = layout.SPEED_COEFFICIENTS * layout.FAST_COEFFICIENTS
 
 
-@kernel
+@kernel(inline=True)
 def _bin(x):
     """(bits of octave and bin, t) of x > 0."""
     bits = np.float64(x).view(np.int64)
@@ -50,7 +50,7 @@ def _bin(x):
     return bits >> SHIFT, np.int64((bits & MANTISSA) | ONE).view(np.float64) - centre
 
 
-@kernel
+@kernel(inline=True)
 def _value(table, at, t):
     """Polynomial whose coefficients start at ``at``."""
     t2 = t * t
@@ -59,7 +59,7 @@ def _value(table, at, t):
     return low + (t2 * t2) * high
 
 
-@kernel
+@kernel(inline=True)
 def slide(V, need_path, table, par):
     """(T, X) of sliding from rest to V in the mirrored frame, T with the sign of V."""
     _, _, kappa, mu, _ = par
@@ -73,7 +73,7 @@ def slide(V, need_path, table, par):
     return T if V > 0.0 else -T, X
 
 
-@kernel
+@kernel(inline=True)
 def slides(V, slip, table, par):
     """Whether |slip| = |omega - V| is that of full slip at V."""
     _, _, kappa, mu, _ = par
@@ -87,7 +87,7 @@ def slides(V, slip, table, par):
     return slip >= _value(table, b * _SLIDE + _SLIDE_UP + layout.L * _N, t)
 
 
-@kernel
+@kernel(inline=True)
 def speed_after(T, table, par):
     """V at T in full slip, in the mirrored frame."""
     _, _, kappa, mu, _ = par
@@ -100,7 +100,7 @@ def speed_after(T, table, par):
     return -_value(table, b * _N + _TIME_DOWN, t)
 
 
-@kernel
+@kernel(inline=True)
 def onset_of(I, need_path, table, par):
     """(V, T, X) at stick onset in the mirrored frame; V = 0 where the tables do not reach."""
     x = par[2] * abs(I) / (1.0 + par[4])
@@ -114,7 +114,7 @@ def onset_of(I, need_path, table, par):
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
-@kernel
+@kernel(inline=True)
 def _slow(lam):
     """(place in the table, t, factor) of lambda on the slow manifold; below the table all falls like exp(lambda)."""
     if lam >= layout.LATE_HIGH:
@@ -129,7 +129,7 @@ def _slow(lam):
     return b * _SLOW + _LATE, (place - b - 0.5) / layout.BINS, share
 
 
-@kernel
+@kernel(inline=True)
 def slow_state(lam, table):
     """(V, delta) on the slow manifold at lambda."""
     at, t, share = _slow(lam)
@@ -172,7 +172,7 @@ def slow_entry(v, table):
     return _value(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0
 
 
-@kernel
+@kernel(inline=True)
 def _entry(family, v, first):
     """(place in the table, t) of the entry of a family at v = kappa V0."""
     b, t = _bin(v)
@@ -180,7 +180,7 @@ def _entry(family, v, first):
     return b * _ENTRY + (_ENTRY_PLUS if family == PLUS else _ENTRY_MINUS if family == MINUS else _ENTRY_CROSS), t
 
 
-@kernel
+@kernel(inline=True)
 def entry_state(family, v, first, need_path, table):
     """(lambda, k0, distance and angle gained on the slow manifold) of the entry of a family into partial slip."""
     at, t = _entry(family, v, first)

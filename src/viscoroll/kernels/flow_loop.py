@@ -30,13 +30,13 @@ NOT_SERVED = -1
 _X, _ANGLE = 2, 3  # rows of the output
 
 
-@kernel
+@kernel(inline=True)
 def _put(out, column, V, omega, x, angle, delta, regime):
     out[0, column], out[1, column], out[_X, column] = V, omega, x
     out[_ANGLE, column], out[4, column], out[5, column] = angle, delta, regime
 
 
-@kernel
+@kernel(inline=True)
 def _stick_onset(T, X, w, frame, first, need_path, table, par):
     """(frame, family, kappa V, tau, X so far, served) of the stick onset of a motion that slides.
 
@@ -50,7 +50,7 @@ def _stick_onset(T, X, w, frame, first, need_path, table, par):
     return -frame, MINUS, v, max(T_on - T, 0.0), X_on - X, served
 
 
-@kernel
+@kernel(inline=True)
 def _slide_outputs(at, tau_out, onset, T0, X0, w, frame, need_path, table, par, out):
     """Outputs before stick onset; returns the next column."""
     mu, per_j = par[3], 1.0 / par[4]
@@ -68,7 +68,7 @@ def _slide_outputs(at, tau_out, onset, T0, X0, w, frame, need_path, table, par, 
     return at
 
 
-@kernel
+@kernel(inline=True)
 def _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, need_path, table, par, out):
     """Outputs in partial slip up to ``until``; returns the next column.
 
@@ -104,7 +104,7 @@ def _rest_outputs(at, tau_out, entry, origin, rest_lambda, table, par, out):
         _put(out, column, 0.0, 0.0, x0 + frame * (x + x_gained), angle0 + frame * (angle + angle_gained), 0.0, REST)
 
 
-@kernel
+@kernel(inline=True)
 def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need_path, table, par, out):
     """One motion in tau = gamma t: (status, onset, rest time); a time is NaN where there is none.
 

@@ -141,12 +141,15 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     work = np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2))
     steps = turns = at = rejected = ends = 0
     onset_time = rest_time = np.nan
+    if max(abs(V0), abs(omega0)) < rest:
+        fill(out, 0, 0.0, 0.0, gamma)
+        return RESTED, steps, turns, onset_time, 0.0
     regime, direction, sigma, start_status = start(V0, omega0, par, u)
     if start_status != OK:
         return NOT_CONVERGED, steps, turns, onset_time, rest_time
-    if regime == REST or max(abs(V0), abs(omega0)) < rest:
+    if regime == REST:
         fill(out, 0, 0.0, 0.0, gamma)
-        return (RESTED if rest > 0.0 else DONE), steps, turns, onset_time, 0.0
+        return DONE, steps, turns, onset_time, 0.0
     while at < tau_out.size and tau_out[at] == 0.0:
         _, _, delta = speeds(regime, u[0], u[1], par)
         put(out, at, 1.0, regime, V0, omega0, delta, 0.0, 0.0, gamma)

@@ -1,0 +1,159 @@
+"""What a scene does not need is not done: kernels run as plain Python, and what must not be called raises.
+
+That a slice is made once and for the octaves in use only is in test_alpha_slice.py, that a flow map is built once in
+test_flow.py, that fields not asked for are not there in test_contact.py.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+
+import viscoroll as vr
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+
+_FORBID = """
+import sys
+from importlib import import_module
+def forbid(*names):
+    '''Whatever kernel module has imported a function of these names calls this instead.'''
+    def forbidden(*arguments):
+        raise AssertionError("called")
+    for module in [m for name, m in sys.modules.items() if name.startswith("viscoroll.kernels.")]:
+        for name in names:
+            if hasattr(module, name):
+                setattr(module, name, forbidden)
+for name in ("contact_loop", "motion_loop", "flow_loop"):
+    import_module("viscoroll.kernels." + name)
+import numpy as np
+import viscoroll as vr
+"""
+RATIOS = "'ratio_r', 'ratio_k', 'ratio_i2'"
+
+
+def run(code: str, **environment: str) -> None:
+    result = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)], check=False, capture_output=True, text=True,
+        env=os.environ | environment,
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+
+
+def plain(code: str) -> None:
+    """Run with kernels as plain Python functions."""
+    run(_FORBID + textwrap.dedent(code), NUMBA_DISABLE_JIT="1")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "vr.contact(scene, np.linspace(0.1, 2.0, 9), delta=0.001)",
+        "vr.contact(scene, 0.5, omega=0.501, slopes=True)",
+        "vr.roll(scene, 1.5, 0.5, [1e-4, 3e-4], 1e-4)",
+    ],
+)
+def test_alpha_1_touches_no_bessel_ratio(call):
+    plain(f"forbid({RATIOS})\nscene = vr.PAPER_SECTION_5.replace(alpha=1.0)\n{call}")
+
+
+def test_the_ratios_are_what_is_forbidden():
+    """The check above can fail."""
+    with pytest.raises(AssertionError, match="called"):
+        plain(f"forbid({RATIOS})\nvr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.001)")
+
+
+def test_full_slip_solves_for_no_stick_zone():
+    plain("forbid('stick', 'stick_length', 'differences')\nvr.contact(vr.PAPER_SECTION_5, [0.5, -1.0], delta=1.0)")
+
+
+def test_fields_not_asked_for_are_not_computed():
+    plain(
+        """
+        forbid('stick', 'stick_length', 'moment_factor')
+        vr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.001, fields=("lam", "epsilon", "delta_star"))
+        """
+    )
+
+
+def test_a_motion_that_only_slides_knows_no_partial_slip():
+    plain("forbid('partial_rhs', 'partial_jacobian')\nvr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-6, 2e-6], 1e-4)")
+
+
+def test_at_rest_nothing_is_integrated():
+    plain(
+        """
+        forbid('step', 'contact_length', 'partial_rhs', 'full_rhs')
+        still = vr.ensemble(vr.PAPER_SECTION_5, np.zeros(5), 0.0, [1.0, 2.0], method="integrate")
+        below = vr.ensemble(vr.PAPER_SECTION_5, np.full(5, 1e-9), 0.0, [1.0], rest=1e-6, method="integrate")
+        assert (still.V == 0.0).all() and (below.regime is None) and (below.steps == 0).all()
+        """
+    )
+
+
+def test_outputs_after_rest_are_filled_not_integrated():
+    steps = [
+        vr.ensemble(SCENE, [1.5], [0.5], np.linspace(0.0, end, 11), rest=1e-3, method="integrate").steps[0]
+        for end in (1e-2, 1e3)
+    ]
+    assert steps[0] == steps[1]
+
+
+def test_the_flow_map_looks_up_no_path_unless_asked():
+    plain(
+        """
+        from viscoroll.kernels import flow_layout, flow_loop
+        flow_loop.flow_motion = lambda *a: (needed.append(a[6]), (0, 0.0, 0.0))[1]
+        table, out, needed = np.zeros(flow_layout.SIZE), np.empty((1, 1, 1)), []
+        one, status, zero = np.ones(1), np.zeros(1, np.int8), np.zeros(1)
+        for row in (0, 2):
+            flow_loop.flow_loop((11.0, 0.9, 2.9, 0.2, 0.5), 1.0, -16, 0.0, 0.0, table, one, one, one, np.array([row]),
+                                out, status, zero, zero, np.zeros(1, int), 0, 1)
+        assert needed == [False, True]
+        """
+    )
+
+
+def test_no_table_file_is_read_at_run_time():
+    """Neither the atlas nor any other netCDF file: the coefficients of the ratios are all that is read."""
+    run(
+        """
+        import sys
+        opened = []
+        sys.addaudithook(lambda event, given: opened.append(str(given[0])) if event == "open" else None)
+        import viscoroll as vr
+        scene = vr.PAPER_SECTION_5
+        vr.contact(scene, 0.5, delta=0.001)
+        vr.stress(scene, [0.0, 0.1], 0.5, delta=0.001)
+        vr.ensemble(scene, [1.0], [1.0], 1e-3, method="flow")
+        assert any(name.endswith("ratios.npy") for name in opened)
+        assert not any(name.endswith((".nc", ".h5")) for name in opened)
+        """
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "absent"),
+    [
+        ("contact(scene, 0.5, delta=0.001)", "kernels.integrate kernels.flow kernels.stress kernels.direct"),
+        ("stress(scene, 0.0, 0.5, delta=0.001)", "tables kernels.integrate kernels.flow kernels.direct"),
+        ("roll(scene, 1.5, 0.5, 1e-4)", "tables kernels.flow kernels.stress kernels.slice_loop"),
+    ],
+)
+def test_what_is_not_used_is_not_imported_and_so_not_compiled(call, absent):
+    run(
+        f"""
+        import sys
+        import viscoroll as vr
+        scene = vr.PAPER_SECTION_5
+        vr.{call}
+        loaded = [name for name in {absent.split()!r} if "viscoroll." + name in sys.modules]
+        loaded += [name for name in ("matplotlib", "xarray", "h5py") if name in sys.modules]
+        assert not loaded, loaded
+        """
+    )
