@@ -202,6 +202,18 @@ def test_motions_beyond_the_map_are_integrated():
     assert (mapped.status == rolled.status).all()
 
 
+@pytest.mark.parametrize(("kappa", "speed"), [(1e250, 1.0), (1e-250, 1.0), (2.91, 1e90), (2.91, 1e-200)])
+def test_speeds_beyond_all_tables_are_integrated(kappa, speed):
+    scene = SCENE.replace(kappa=kappa)
+    mapped, rolled = (
+        vr.ensemble(scene, [speed, -speed], [0.5 * speed, speed], [1e-9], method=method)
+        for method in ("flow", "integrate")
+    )
+    assert not mapped.flow.any()
+    assert np.array_equal(mapped.V, rolled.V, equal_nan=True)
+    assert np.array_equal(mapped.status, rolled.status)
+
+
 def test_the_map_gives_way_to_a_tighter_tolerance():
     V0, omega0 = starts(10, 9, SCENE)
     tight = vr.ensemble(SCENE, V0, omega0, T, method="flow", rtol=1e-12)

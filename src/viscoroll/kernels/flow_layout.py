@@ -95,6 +95,8 @@ def _layer(octaves: int, low: int) -> tuple[int, ...]:
 
 #: one octave more at either end, for motions that pass delta = 0 faster or slower than they entered
 CROSS_MARGIN = 1
+#: highest octave of kappa V at onset that the tables of full slip and of the slow manifold allow for
+OCTAVE_RANGE = LOW + ENTRY_OCTAVES + CROSS_MARGIN, HIGH - 2
 SHAPES = FlowTables(
     slide_up=_fine(HIGH - LOW, 4), slide_down=_fine(HIGH - LOW, 4),
     time_up=_fine(HIGH - LOW, 1), time_down=_fine(HIGH - LOW, 1),

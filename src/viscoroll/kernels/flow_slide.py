@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import flow_layout as layout
-from .flow_fit import HALF, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
+from .flow_fit import BINS, HALF, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
 from .full_slip import full_rhs, stick_limit
 from .jit import kernel
 
@@ -23,6 +23,8 @@ def slide_table(sign, par, table):
     T, X, last_I = V_low / mu, 0.5 * V_low * V_low / mu, 0.0
     pace, rows = np.empty((2, N)), np.empty((4, N))
     for b in range(table.shape[0]):
+        if b == (layout.HIGH - 2 - layout.LOW) * BINS and not kappa * mu * T < 2.0 ** (layout.HIGH - 1):
+            return False  # nearly held: ``time_up`` would end before the speeds that are served
         half = 0.5 * width(b, _LOW) / kappa
         for n in range(N):
             V = node(b, n, _LOW) / kappa

@@ -43,6 +43,8 @@ def _collocate(v, y, half, offset_end, offset, par):
             pace = half / (v[n] * _relative_rate(y[n], dy, par))
             f[n] = doffset * pace
             slope[n] = (J[3] - doffset * J[1] / dy) * pace
+            if not abs(f[n]) + abs(slope[n]) < 1e300:
+                return False
         for n in range(N):
             # divided by the size of the stiff term: the rows are then of order 1 in offset
             scale = 1.0 / (abs(slope[n]) + 1.0)

@@ -67,13 +67,16 @@ class FlowMap:
 
 
 def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowMap:
-    """The map of a scene for speeds up to ``speed``: from memory, from disk, or built.
+    """The map of a scene for speeds up to ``speed`` > 0: from memory, from disk, or built.
 
     A map on disk that is damaged is built again; where the disk cannot be written the map
     is kept in memory only.
     """
+    from ..kernels.flow_layout import OCTAVE_RANGE
+
     parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
-    octave = math.ceil(math.log2(max(scene.kappa * speed, 1e-300)) / _OCTAVES) * _OCTAVES
+    octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
+    octave = min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
     key = (*parameters, octave)
     found = _recent.pop(key, None)
     if found is None:
@@ -158,7 +161,11 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
         and flow_slide.slide_table(-1.0, parameters, parts.slide_down)
     ):
         return "rolling resistance can hold the sliding cylinder at a speed"
-    if not flow_slow.slow_table(parameters, parts.slow):
+    try:
+        lasting = flow_slow.slow_table(parameters, parts.slow)
+    except np.linalg.LinAlgError:  # a singular matrix: no such motion either
+        lasting = False
+    if not lasting:
         return "full slip returns"
     flow_slide.time_table(parts.slide_up, parameters, parts.time_up)
     flow_slide.time_table(parts.slide_down, parameters, parts.time_down)
@@ -169,7 +176,7 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
     far = float(np.sign(1.0 - j))  # the sign of the creep that turns on its way to the slow manifold
     failed: list[int] = []
 
-    def layer(top: int, entering: bool, sign: float, which: str):
+    def layer(top: int, entering: bool, sign: float, which: str) -> None:
         layers, entry = getattr(parts, f"layer_{which}"), getattr(parts, f"entry_{which}")
 
         def work(start: int, stop: int) -> None:
