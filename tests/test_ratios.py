@@ -194,3 +194,9 @@ def test_a_planted_error_of_1e_9_is_noticed():
         assert precise.ulps(table_value(planted, number, octave, index, -HALF_BIN), exact) > tol.RATIO_BIN_ULP
         noticed += 1
     assert noticed > 50
+
+
+def test_a_nan_stays_one():
+    """It must not be taken for the number of a bin: that reads beyond the table."""
+    nan = float("nan")
+    assert np.isnan([*ratio_r(nan), *ratio_k(nan), ratio_i2(nan, nan)]).all()

@@ -22,6 +22,8 @@ _LOCATE_CAP = 80
 _NEAR, _DIFFERENCE = 1e-9, 1e-4
 #: steps repeated at most: each gains the error of that slope, 1e-4 or less
 _CORRECTIONS = 4
+#: a correction of this share of the step leaves no more than rounding, so that the next is not needed
+_LAST = 1e-11
 #: a stick zone that starts at eta = 0 may round to below it before it grows
 _ROUNDING = 1e-15
 
@@ -125,6 +127,8 @@ def locate(event, method, regime, u, slope, h, sigma, par, rest, K, new, error, 
         if not abs(change) > _ROUNDING * length:
             return length
         length = min(max(length - change, 0.0), h)
+        if abs(change) <= _LAST * length:
+            break
     advance(method, regime, u, slope, length, sigma, par, K, new, error)
     return length
 

@@ -53,12 +53,12 @@ def sliding_rhs(s, w, sigma, par):
     whole = 1.0 / (1.0 + p)
     h = c * whole * r
     dh = c * whole * whole * (alpha * slope_r(x, r, rc) - r * r * dk)
-    lam2 = 1.0 / (1.0 + 2.0 * h * size)
-    lam = np.sqrt(lam2)
-    V = 0.5 * s * lam / kappa
-    rate = sigma * mu - 0.5 * V * c * whole * (lam2 * ratio_i2(x, r) + p)
+    square = 1.0 + 2.0 * h * size  # 1/lam^2
+    root = np.sqrt(square)
+    V = 0.5 * s / (kappa * root)
+    rate = sigma * mu - 0.5 * V * c * whole * (ratio_i2(x, r) / square + p)
     # dV/ds = lam^3 U/(2 kappa), U = H'/(2 zeta)
-    return 2.0 * kappa * rate / (lam2 * lam * (1.0 + h * size + dh)), 2.0 * sigma * mu, V, (V - w) / j
+    return rate * (2.0 * kappa * square * root / (1.0 + h * size + dh)), 2.0 * sigma * mu, V, (V - w) / j
 
 
 @kernel

@@ -34,19 +34,21 @@ _NEAR = 1e-3
 _STEP = 1e-6
 
 
-@kernel
+@kernel(inline=True)
 def leading_order(zeta, h, dh, ddh, m, dm, par):
     """(D0, dD0/d ln zeta): the slow manifold to leading order, linear in D.
 
     Q = -M (1 - j)/(2 (1 + j)) with Q = mu D H'/H.
     """
     _, _, kappa, mu, j = par
-    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
-    U = 1.0 + h / zeta + dh  # H'/(2 zeta)
-    dU = (dh - h / zeta) / zeta + ddh
-    d_ln_lam = -lam2 * (dh - h / zeta) / zeta
-    factor = -(1.0 - j) / (8.0 * (1.0 + j) * kappa * mu * np.sqrt(lam2) * U)
-    return factor * m, factor * zeta * (dm - m * (d_ln_lam + dU / U))
+    per = 1.0 / zeta
+    share = h * per
+    square = 1.0 + 2.0 * share  # 1/lam^2
+    U = 1.0 + share + dh  # H'/(2 zeta)
+    per_U = 1.0 / U
+    bend = (dh - share) * per
+    factor = -(1.0 - j) / (8.0 * (1.0 + j) * kappa * mu) * np.sqrt(square) * per_U
+    return factor * m, factor * zeta * (dm - m * ((bend + ddh) * per_U - bend / square))
 
 
 @kernel
@@ -57,7 +59,7 @@ def slow_D(y, par):
     return leading_order(zeta, h, dh, ddh, m, dm, par)
 
 
-@kernel
+@kernel(inline=True)
 def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
     """(F(zeta) - F(eta), (H(zeta) - H(eta))/zeta) from the generators already at hand."""
     eta = zeta - D
@@ -69,14 +71,14 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
     return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
 
 
-@kernel
+@kernel(inline=True)
 def partial_rhs(y, offset, par):
     """(y', offset', V, omega) at y = ln zeta and offset = D - D0(y)."""
     dy, d_offset, V, delta, _, _, _, _ = partial_rates(y, offset, par)
     return dy, d_offset, V, V * (1.0 + delta)
 
 
-@kernel
+@kernel(inline=True)
 def partial_rates(y, offset, par):
     """(y', offset', V, delta, V'/V, and d(y', offset', delta)/d offset; of offset' to leading order in V)."""
     alpha, c, kappa, mu, j = par
@@ -87,21 +89,28 @@ def partial_rates(y, offset, par):
     size = abs(D)
     g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, alpha, c)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
-    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
-    V = np.sqrt(lam2) / (2.0 * kappa * zeta)
+    per = 1.0 / zeta
+    square = 1.0 + 2.0 * h * per  # 1/lam^2
+    U = 1.0 + h * per + dh  # H'/(2 zeta)
+    lam2, per_V = 1.0 / square, 2.0 * kappa * zeta * np.sqrt(square)
+    V = 1.0 / per_V
     sign = np.sign(D)
-    q_over_V = sign * mu * rise_H * lam2 / zeta / V
+    scale = mu * lam2 * per * per_V
+    q_over_V = sign * rise_H * scale
     rate = q_over_V - 0.5 * m
-    dy = -rate / (lam2 * (1.0 + h / zeta + dh))
+    per_rise = -square / U
+    dy = rate * per_rise
     d = sign * rise_F
-    dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) / (mu * V) - 2.0 * d * rate
-    dD = (dd - sign * (dg - dg_eta) * zeta * dy) / (1.0 + dg_eta)
+    dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) * (per_V / mu) - 2.0 * d * rate
+    slope_F = 1.0 + dg_eta
+    per_F = 1.0 / slope_F
+    dD = (dd - sign * (dg - dg_eta) * zeta * dy) * per_F
     # dQ/dD = mu H'(eta)/H(zeta)
     eta = max(zeta - size, 0.0)
-    stiffness = mu * 2.0 * lam2 * (eta + h_eta + eta * dh_eta) / (zeta * zeta * V)
-    dy_D = -stiffness / (lam2 * (1.0 + h / zeta + dh))
-    d_offset_D = -(1.0 + 1.0 / j) * stiffness / (mu * V * (1.0 + dg_eta)) - D0_y * dy_D
-    return dy, dD - D0_y * dy, V, mu * V * d, rate, dy_D, d_offset_D, mu * V * (1.0 + dg_eta)
+    stiffness = 2.0 * scale * per * (eta + h_eta + eta * dh_eta)
+    dy_D = stiffness * per_rise
+    d_offset_D = -(1.0 + 1.0 / j) * stiffness * (per_V / mu) * per_F - D0_y * dy_D
+    return dy, dD - D0_y * dy, V, mu * V * d, rate, dy_D, d_offset_D, mu * V * slope_F
 
 
 @kernel

@@ -114,7 +114,7 @@ def ratio_r(x):
             total = _SERIES[n] + x2 * total
         r = x * total
         return r, 1.0 - r
-    if x >= 64.0:
+    if not x < 64.0:  # a NaN too: it must not become the number of a bin
         complement = _tail(x, _R_TAIL) / x
         return 1.0 - complement, complement
     # both forms and a choice: a branch here would be mispredicted on scattered arguments
@@ -127,7 +127,7 @@ def ratio_r(x):
 @kernel(inline=True)
 def ratio_k(z):
     """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
-    if z >= 64.0:
+    if not z < 64.0:
         complement = _tail(z, _K_TAIL) / z
         return 1.0 - complement, complement
     if z < 2.0**-30:

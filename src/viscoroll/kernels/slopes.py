@@ -7,7 +7,7 @@ from .law import GAUSS_W, GAUSS_X, assemble, generator_slopes, second_slopes
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 
-@kernel
+@kernel(inline=True)
 def at_contact(z, alpha, c):
     """(g, h, g', h', g'', h'', m, m') at z = zeta from one pair of ratios; M = V m."""
     if c == 0.0:
