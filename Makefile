@@ -8,7 +8,7 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := data/tables/atlas.nc data/tables/paper.nc
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers test check clean
+.PHONY: help setup demo tables validate figures bench numbers prove test fuzz mutate check clean
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -53,8 +53,22 @@ numbers: setup $(TABLES) ## measure again what README and docs state, and put it
 	$(RUN) pipeline/document.py
 	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
 
+prove: setup ## the contact law against certified enclosures: data/results/proofs.json (about 10 minutes)
+	$(RUN) pipeline/prove.py --config $(CONFIG)
+	$(RUN) pipeline/document.py
+
 test: setup ## the whole test suite
 	$(BIN)/pytest -n 2
+
+FUZZ_SECONDS ?= 600
+fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS) and the loaders (a minute each)
+	FUZZ_SECONDS=$(FUZZ_SECONDS) $(BIN)/pytest tests/test_properties.py
+	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fuzz]'
+	$(RUN) pipeline/fuzz_loaders.py toml
+	$(RUN) pipeline/fuzz_loaders.py table
+
+mutate: setup ## plant defects in the kernels and see which the tests notice (about an hour)
+	$(RUN) pipeline/mutate.py
 
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports

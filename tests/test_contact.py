@@ -418,6 +418,7 @@ BAD_CALLS = {
     "V complex": ({"V": 1j, "delta": 0.1}, "V", "1j", "finite"),
     "delta nan": ({"V": 1.0, "delta": math.nan}, "delta", "nan", "finite"),
     "omega inf": ({"V": 1.0, "omega": -math.inf}, "omega", "-inf", "finite"),
+    "too fast": ({"V": [1.0, -1e300], "delta": 0.1}, "kappa |V|", "2.91e+300", "at most 1e+300"),
     "both": ({"V": 1.0, "delta": 0.1, "omega": 1.1}, "delta, omega given", "both", "exactly one of"),
     "neither": ({"V": 1.0}, "delta, omega given", "neither", "exactly one of"),
     "shapes": ({"V": [1.0, 2.0], "delta": [0.1, 0.2, 0.3]}, "shapes", "V (2,), delta (3,)", "broadcast"),

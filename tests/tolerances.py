@@ -191,3 +191,22 @@ FLOW_SPEED = 1e-9
 FLOW_PATH = 2e-9
 #: onset times, relative: inverse of an integral over 52 octaves in pieces of degree 7; measured 6e-12.
 FLOW_ONSET = 5e-11
+
+# --- a hostile host (test_hostile.py) ---
+#: Numbers below it, and inverses of them, may become 0 or infinite where subnormals are flushed: products of a few.
+SUBNORMAL = 1e-290
+#: Directed rounding against round-to-nearest, over the largest of a field: sums that all err to one side;
+#: measured 1.3e-13.
+ROUNDING_MODE = 1e-12
+#: Motions likewise, at rtol 1e-6: steps that differ by a rounding may be accepted or not; measured 7e-11.
+ROUNDING_MODE_MOTION = 1e-8
+#: Bytes that a call may take whatever its size: blocks, threads, the allocator.
+MEMORY_SLACK = 8_000_000
+
+# --- proofs and check values (test_prove.py) ---
+#: The accuracy asked of every field where its condition number is at most 225; measured 8.8e-15 (Q by a slice).
+PROVEN = 1e-13
+#: Elsewhere: four roundings of 2^-53 times the condition number; measured 0.75 of them in place of four.
+PROVEN_ROUNDINGS = 4.0 * 2.0**-53
+#: What the last subnormals cannot hold: a few of their spacings.
+SUBNORMAL = 4e-323

@@ -22,6 +22,7 @@ SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 _BLOCK = 1 << 15
+_FASTEST = 1e300
 
 
 class Values:
@@ -90,8 +91,8 @@ def contact(
     Raises
     ------
     ParameterError
-        NaN or infinite input, both or neither of delta and omega, unknown field or method,
-        shapes that do not broadcast.
+        NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega,
+        unknown field or method, shapes that do not broadcast.
     ConvergenceError
         If a solve hits its iteration cap.
 
@@ -118,9 +119,20 @@ def contact(
     }  # fmt: skip
     arrays = {name: checked(name, value) for name, value in inputs.items()}
     shape = broadcast_shape(**arrays)
+    _refuse_overflow(arrays["kappa"], arrays["V"])
     flat = [flattened(array, shape) for array in arrays.values()]
     rows = _compute(flat, creep_name == "omega", names, int(np.prod(shape)), method)
     return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
+
+
+def _refuse_overflow(kappa: NDArray, V: NDArray) -> None:
+    """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly: zeta would be 0."""
+    fastest = max(float(V.max(initial=0.0)), -float(V.min(initial=0.0)))
+    if float(kappa.max(initial=0.0)) * fastest > _FASTEST:
+        with np.errstate(over="ignore"):
+            largest = (kappa * np.abs(V)).max(initial=0.0)
+        if largest > _FASTEST:
+            raise ParameterError("kappa |V|", f"{largest:g}", f"at most {_FASTEST:g}")
 
 
 def _field_names(fields: Iterable[str] | None, slopes: bool, method: str) -> tuple[str, ...]:
@@ -138,10 +150,14 @@ def _field_names(fields: Iterable[str] | None, slopes: bool, method: str) -> tup
 
 
 def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
-    """One value, or one for each element of ``shape``, as a contiguous vector."""
-    if array.size == 1:
-        return array.reshape(1)
-    return np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+    """One value, or one for each element of ``shape``, as a contiguous vector.
+
+    Read-only whatever was given: a kernel is compiled anew for every kind of array that it sees.
+    """
+    whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
+    vector = whole.reshape(-1).view()
+    vector.flags.writeable = False
+    return vector
 
 
 def _compute(flat: list[NDArray], creep_is_omega: bool, names: tuple[str, ...], count: int, method: str) -> NDArray:

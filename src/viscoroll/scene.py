@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
+from .validity import Validity, contact_reach, judge
 
 
 def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> NDArray[np.float64]:
@@ -32,6 +33,20 @@ def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool
     if bad.any():
         raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
     return array
+
+
+def number(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> float:
+    """As :func:`checked`, and a single number.
+
+    Raises
+    ------
+    ParameterError
+        As there, or for an array.
+    """
+    array = checked(name, value, low=low, strict=strict)
+    if array.ndim:
+        raise ParameterError(name, f"{value!r:.60}", "a single number")
+    return float(array)
 
 
 def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -86,6 +101,26 @@ class Scene:
     def replace(self, **changes: ArrayLike) -> Scene:
         """A copy with some parameters changed."""
         return replace(self, **changes)
+
+    def validity(self, V: ArrayLike) -> Validity:
+        """Which assumptions of the model the contact at speed V strains.
+
+        Returns
+        -------
+        Validity
+            For each assumption a number, whether it holds, and a sentence; ``print`` shows them.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite V, shapes that do not broadcast.
+        """
+        return self._validity(V, None, "the cylinder is long or held between walls (plane strain), or a thin disc")
+
+    def _validity(self, V: ArrayLike, wave_ratio: Any, plane: str) -> Validity:
+        speed = checked("V", V)
+        broadcast_shape(alpha=np.asarray(self.alpha), kappa=np.asarray(self.kappa), V=speed)
+        return judge(*contact_reach(self.alpha, self.kappa, speed), wave_ratio, plane)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
@@ -145,9 +180,8 @@ class Cylinder:
 
     def __post_init__(self) -> None:
         for name in ("R", "m", "E", "T_epsilon", "T_sigma", "mu", "j", "g"):
-            if checked(name, getattr(self, name), low=0.0, strict=True).ndim:
-                raise ParameterError(name, getattr(self, name), "a single number")
-        if not -1.0 < float(checked("nu", self.nu)) <= 0.5:
+            number(name, getattr(self, name), low=0.0, strict=True)
+        if not -1.0 < number("nu", self.nu) <= 0.5:
             raise ParameterError("nu", self.nu, "in (-1, 0.5]")
         if self.T_epsilon < self.T_sigma:
             raise ParameterError("T_epsilon", self.T_epsilon, f">= T_sigma = {self.T_sigma}")
@@ -178,6 +212,33 @@ class Cylinder:
             gamma=self.load * self.T_epsilon**2 / (self.m * self.R),
             j=self.j,
         )
+
+    def validity(self, V: ArrayLike, density: float | None = None) -> Validity:
+        """Which assumptions of the model the contact at (dimensionless) speed V strains.
+
+        Parameters
+        ----------
+        V : speed of the axis, T_epsilon V_si/R.
+        density : of the material, kg/m^3; without it the speed of shear waves is not known.
+
+        Returns
+        -------
+        Validity
+            As :meth:`Scene.validity`; ``quasistatic`` compares the speed of the axis with the
+            slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times.  Compare
+            omega R too where the cylinder spins faster than it moves.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite V, a density that is not one positive number.
+        """
+        ratio = None
+        if density is not None:
+            wave = math.sqrt(self.E / (2.0 * (1.0 + self.nu) * number("density", density, low=0.0, strict=True)))
+            ratio = np.abs(self.V_to_si(checked("V", V))) / wave
+        long = "a long cylinder, or one held between walls (plane strain)"
+        return self.scene()._validity(V, ratio, long if self.plane == "strain" else "a thin disc (plane stress)")
 
     def V_from_si(self, V_si: ArrayLike) -> Any:
         """Dimensionless V = T_epsilon V_si/R from m/s."""

@@ -183,7 +183,7 @@ def _integrate_others(
     if not left.size:
         return steps
     some = left.size < answer.status.size
-    inputs = [array[left] if some and array.size > 1 else array for array in flat]
+    inputs = [flattened(array[left], left.shape) if some and array.size > 1 else array for array in flat]
     out = np.empty((len(rows), left.size, times.size)) if some else answer.out
     info = np.empty((left.size, 5))
 

@@ -20,7 +20,7 @@ def output_times(t: ArrayLike) -> NDArray[np.float64]:
     ParameterError
         Otherwise.
     """
-    times = np.atleast_1d(checked("t", t, low=0.0))
+    times = np.atleast_1d(checked("t", t, low=0.0)).copy()  # contiguous, and the result's own
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
     backward = np.flatnonzero(np.diff(times) < 0.0)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ..blocks import run_blocks
 from ..errors import OutputError
 from ..files import replacing
+from ..rolling_contact import flattened
 from ..scene import Scene
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
@@ -281,6 +282,7 @@ def ask(
     from ..kernels.flow import lambda_at_rest
     from ..kernels.flow_loop import flow_loop
 
+    V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     answer = Answer.empty(len(rows), max(V0.size, omega0.size), times.size)
     rest_lambda = lambda_at_rest(rest, chosen.table, chosen.parameters) if rest > 0.0 else 0.0
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
-from ..scene import checked
+from ..scene import checked, number
 
 #: A not-a-knot cubic needs four nodes.
 _MIN_NODES = 4
@@ -69,8 +70,8 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     """
     if spacing not in ("linear", "log"):
         raise ParameterError("spacing", repr(spacing), "'linear' or 'log'")
-    low = float(checked("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True))
-    if not float(checked("high", high)) > low:
+    low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
+    if not number("high", high) > low:
         raise ParameterError("high", high, f"> low = {low:g}")
     if not isinstance(count, int) or not 2 <= count <= _MAX_NODES:
         raise ParameterError("count", count, f"an integer in [2, {_MAX_NODES}]")
@@ -105,8 +106,8 @@ class AtlasGrid:
     def __post_init__(self) -> None:
         for name, length in (("alpha", 2), ("kappa_V", 2), ("nodes", 3), ("block", 3), ("allowed", 2)):
             value = getattr(self, name)
-            if len(tuple(value)) != length:
-                raise ParameterError(name, value, f"{length} numbers")
+            if not isinstance(value, Iterable) or len(tuple(value)) != length:
+                raise ParameterError(name, f"{value!r:.60}", f"{length} numbers")
             object.__setattr__(self, name, tuple(value))
         checked("alpha", self.alpha, low=1.0)
         checked("allowed", self.allowed, low=0.0, strict=True)

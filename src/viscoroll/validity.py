@@ -1,0 +1,95 @@
+"""Which assumptions of the model a state strains: the result of ``Scene.validity`` and ``Cylinder.validity``."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
+REACH_LIMIT = 0.2
+#: the paper's ref. [31], Table 1: below this share of the wave speeds the load is within 10 % of the static one
+WAVE_LIMIT = 0.2
+
+
+class Assumption(NamedTuple):
+    """One assumption: whether it holds, the number that decides, and a sentence.
+
+    ``holds`` is None where no number here can tell; it and ``value`` have the shape of V.
+    """
+
+    holds: Any
+    value: Any
+    sentence: str
+
+
+class Validity(NamedTuple):
+    """What the model assumes, and how far a state is from it.
+
+    Attributes
+    ----------
+    small_contact : value: distance from the axis to the far end of the contact over R,
+        lam (1 + epsilon)/(2 kappa).
+    under_axis : value: epsilon; where it exceeds 1 the contact lies wholly ahead of the
+        axis, which is no fault of the model but worth knowing.
+    quasistatic : value: speed over that of shear waves; needs a density.
+    same_material, plane : not to be seen from V.
+    """
+
+    small_contact: Assumption
+    under_axis: Assumption
+    quasistatic: Assumption
+    same_material: Assumption
+    plane: Assumption
+
+    def __str__(self) -> str:
+        return "\n".join(f"{name}: {assumption.sentence}" for name, assumption in self._asdict().items())
+
+
+def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
+    """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments."""
+    from .kernels.law import contact_length, generators
+
+    def state(alpha: float, kappa: float, V: float) -> tuple[float, float]:
+        c, u = (alpha - 1.0) / alpha, kappa * abs(V)
+        lam, epsilon = 1.0, 0.0
+        if u > 0.0:
+            lam, _ = contact_length(u, alpha, c)
+            zeta = 0.5 * lam / u
+            # it underflows beyond all speeds, where the contact is that of the instantaneous modulus
+            epsilon = generators(zeta, alpha, c)[0] / zeta if zeta > 0.0 else 0.0
+        return lam * (1.0 + epsilon) / (2.0 * kappa), epsilon
+
+    points = np.broadcast(alpha, kappa, V)
+    values = np.array([state(*map(float, point)) for point in points]).reshape(*points.shape, 2)
+    return values[..., 0], values[..., 1]
+
+
+def judge(reach: Any, epsilon: Any, wave_ratio: Any, plane: str) -> Validity:
+    """Numbers put into words; ``wave_ratio`` None where it is not known."""
+    far, ahead = np.max(reach, initial=0.0), np.max(epsilon, initial=0.0)
+    small = Assumption(
+        reach <= REACH_LIMIT, reach,
+        f"the contact reaches {far:.2g} R from the axis, where the parabola that stands for the circle is off by "
+        f"{25.0 * far**2:.2g} %; up to {REACH_LIMIT} R (1 %) counts as small",
+    )  # fmt: skip
+    under = Assumption(
+        epsilon <= 1.0, epsilon,
+        f"epsilon = {ahead:.2g}: the contact "
+        + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
+    )  # fmt: skip
+    if wave_ratio is None:
+        slow = Assumption(
+            None, None, "inertia of the deformed bodies is neglected; give a density to see whether it may"
+        )
+    else:
+        slow = Assumption(
+            wave_ratio <= WAVE_LIMIT, wave_ratio,
+            f"the speed is {100.0 * np.max(wave_ratio, initial=0.0):.2g} % of that of shear waves; up to "
+            f"{100.0 * WAVE_LIMIT:g} % the load is within 10 % of the static one",
+        )  # fmt: skip
+    same = Assumption(
+        None, None, "cylinder and half-space are of the same material; for others the law is not this one"
+    )
+    return Validity(small, under, slow, same, Assumption(None, None, plane))

@@ -1,0 +1,337 @@
+"""A hostile host: other rounding modes, flushed subnormals, many threads, forks, odd arrays, little memory."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Barrier
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll import alpha_slice
+from viscoroll.motion import flow
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
+GRIDS = (
+    vr.tables.AtlasGrid(nodes=(6, 8, 8), block=(2, 2, 2)),
+    vr.tables.LiteralGrid(kappa=2.91, mu=0.2, V=[0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], alpha=[1.0, 11.0]),
+)
+#: control and status register of SSE: rounding in bits 13-14, denormals are zero in 6, flush to zero in 15
+MODES = {
+    "denormals are zero": 0x0040,
+    "flush to zero": 0x8000,
+    "down": 0x2000,
+    "up": 0x4000,
+    "toward zero, subnormals flushed": 0xE040,
+}
+FLUSHING = ("denormals are zero", "flush to zero")
+REGISTER = """
+#include <xmmintrin.h>
+unsigned get(void) { return _mm_getcsr(); }
+void set(unsigned value) { _mm_setcsr(value); }
+"""
+
+
+@pytest.fixture
+def cold(tmp_path, monkeypatch):
+    """Neither a slice nor a flow map at hand; compiled kernels stay where they are."""
+    monkeypatch.setattr(flow, "_folder", lambda: tmp_path / "maps")
+    forget()
+    yield
+    forget()
+
+
+def forget() -> None:
+    flow._recent.clear()
+    alpha_slice.octave_of.cache_clear()
+
+
+def states() -> tuple[np.ndarray, np.ndarray]:
+    """(V, delta) from the least to the largest speeds, a third of them in full slip."""
+    rng = np.random.default_rng(1)
+    V = np.concatenate(
+        [rng.uniform(-2.0, 2.0, 2500), rng.choice([-1.0, 1.0], 2000) * 10.0 ** rng.uniform(-300, 50, 2000)]
+    )
+    delta = rng.uniform(-0.04, 0.04, V.size)
+    return np.append(V, 0.0), np.append(delta, 0.01)
+
+
+def starts() -> tuple[np.ndarray, np.ndarray]:
+    V0, omega0 = np.random.default_rng(2).uniform(-2.0, 2.0, (2, 60))
+    V0[:4], omega0[:4] = (0.0, 1.0, 0.0, 5e-324), (0.0, 0.0, 1.0, 1.0)
+    return V0, omega0
+
+
+def everything() -> dict[str, np.ndarray]:
+    """Every public function once, as named arrays."""
+    V, delta = states()
+    few = slice(None, None, 30)
+    found = {f"slice {k}": v for k, v in vr.contact(SCENE, V, delta=delta).as_dict().items()}
+    found |= {f"contact {k}": v for k, v in vr.contact(SCENE, V[few], delta=delta[few], slopes=True).as_dict().items()}
+    x = np.linspace(-0.5, 1.0, 61)[:, None]
+    found |= {f"stress {k}": v for k, v in vr.stress(SCENE, x, V[:2500:100], delta=delta[:2500:100]).as_dict().items()}
+    for method in ("integrate", "flow"):
+        many = vr.ensemble(SCENE, *starts(), T, method=method, rtol=1e-6, fields=("V", "omega", "x", "angle"))
+        names = ("V", "omega", "x", "angle", "onset_time", "status", "switches", "flow")
+        found |= {f"{method} {name}": getattr(many, name) for name in names}
+    motion = vr.roll(SCENE, 1.5, 0.5, T)
+    found |= {f"roll {name}": getattr(motion, name) for name in ("V", "omega", "x")}
+    for grid in GRIDS:
+        table = vr.tables.build(grid)
+        found |= {f"table {name}": values.values for name, values in table.data_vars.items()}
+        middle = {str(name): axis.values.mean() for name, axis in table.coords.items() if name in grid.axes()}
+        found |= {f"between {k}": v for k, v in vr.tables.interpolate(table, **middle).as_dict().items()}
+    found["validity"] = SCENE.validity(V[few]).small_contact.value
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def assert_same(found: dict[str, np.ndarray], expected: dict[str, np.ndarray]) -> None:
+    assert found.keys() == expected.keys()
+    for name, values in expected.items():
+        assert np.array_equal(found[name], values, equal_nan=values.dtype.kind == "f"), name
+
+
+# --- floating-point environment ---
+
+
+@pytest.fixture(scope="module")
+def modes(tmp_path_factory) -> dict[str, dict[str, np.ndarray]]:
+    """``everything`` in each mode, from one process that a host library has set so."""
+    if platform.machine() not in ("x86_64", "AMD64"):
+        pytest.skip("the register is that of x86")
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("no C compiler to reach the register with")
+    folder = tmp_path_factory.mktemp("modes")
+    (folder / "register.c").write_text(REGISTER)
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"], check=True)
+    code = f"""
+import ctypes, sys
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+import numpy as np
+import test_hostile as test
+register = ctypes.CDLL({str(folder / "register.so")!r})
+usual = register.get()
+test.everything()
+for n, bits in enumerate((0, *test.MODES.values())):
+    test.forget()
+    test.flow._folder = lambda: test.Path({str(folder)!r}) / f"maps{{n}}"
+    register.set(usual | bits)
+    try:
+        found = test.everything()
+        register_after = register.get() & 0xE040
+    finally:
+        register.set(usual)
+    np.savez({str(folder)!r} + f"/{{n}}.npz", register_after=register_after, **found)
+"""
+    process(code)
+    names = ("usual", *MODES)
+    return {name: dict(np.load(folder / f"{n}.npz")) for n, name in enumerate(names)}
+
+
+def process(code: str, **environment: str) -> str:
+    command = [sys.executable, "-W", "error", "-c", code]
+    done = subprocess.run(
+        command, env=os.environ | environment, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("mode", FLUSHING)
+def test_flushed_subnormals_change_nothing_else(modes, mode):
+    """What is a normal number in the usual mode has the same bits in this one."""
+    assert modes[mode]["register_after"] == MODES[mode]
+    for name, usual in modes["usual"].items():
+        found = modes[mode][name]
+        normal = np.isfinite(usual) & (np.abs(usual) > tol.SUBNORMAL) & (np.abs(usual) < 1.0 / tol.SUBNORMAL)
+        if name != "register_after":
+            assert np.array_equal(found[normal], usual[normal]), name
+            assert np.array_equal(np.isnan(found), np.isnan(usual)), name
+
+
+@pytest.mark.parametrize("mode", [mode for mode in MODES if mode not in FLUSHING])
+def test_rounding_mode(modes, mode):
+    """The same numbers to some roundings more, over the largest of each field; the same regimes; no new NaN."""
+    assert modes[mode]["register_after"] == MODES[mode] & 0xE040
+    for name, usual in modes["usual"].items():
+        found = modes[mode][name]
+        assert np.array_equal(np.isnan(found), np.isnan(usual)), name
+        if name in ("register_after", "contact dQ_dV"):  # dQ_dV at fixed delta cancels as delta -> 0
+            continue
+        finite = np.isfinite(usual) & (np.abs(usual) < 1.0 / tol.SUBNORMAL)
+        deviation = np.abs(found[finite].astype(float) - usual[finite]).max(initial=0.0)
+        rolled = name.startswith(("integrate", "flow", "roll"))
+        bound = tol.ROUNDING_MODE_MOTION if rolled else tol.ROUNDING_MODE
+        assert deviation <= bound * np.abs(usual[finite]).max(initial=0.0), name
+
+
+# --- threads and forks ---
+
+
+def test_called_from_several_threads_at_once(cold):
+    """The same bits as one call alone, with nothing at hand when they start."""
+    expected = everything()
+    forget()
+    shutil.rmtree(flow._folder())
+    together = Barrier(4)
+
+    def work(_: int) -> dict[str, np.ndarray]:
+        together.wait()
+        return everything()
+
+    with ThreadPoolExecutor(4) as pool:
+        for found in pool.map(work, range(4)):
+            assert_same(found, expected)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_forked_processes():
+    """Children of a process that has used threads and kernels compute the same bits, and end."""
+    code = f"""
+import multiprocessing, sys
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+import test_hostile as test
+
+def work(_):
+    test.forget()
+    return test.everything()
+
+expected = test.everything()
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    for found in pool.map_async(work, range(2)).get(timeout=200):
+        test.assert_same(found, expected)
+print("same")
+"""
+    assert process(code, VISCOROLL_THREADS="2") == "same\n"
+
+
+# --- numpy ---
+
+
+def test_numpy_set_to_raise(cold):
+    expected = everything()
+    forget()
+    with np.errstate(all="raise"):
+        found = everything()
+    assert_same(found, expected)
+
+
+KINDS = {
+    "big-endian": lambda a: a.astype(">f8"),
+    "every other": lambda a: np.repeat(a, 2)[::2],
+    "backward": lambda a: a[::-1].copy()[::-1],
+    "column of a matrix": lambda a: np.column_stack([a, a])[:, 1],
+    "float32": lambda a: a.astype(np.float32),
+    "read-only": lambda a: np.broadcast_to(a, a.shape),
+    "int16": lambda a: a.astype(">i2"),
+    "list": lambda a: a.tolist(),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_arrays_of_any_kind(kind):
+    """The bits of the plain float64 array of the same values; whole numbers, so that every kind holds them."""
+    make = KINDS[kind]
+    V0, omega0, t, x = (
+        np.array([2.0, 0.0, -1.0]),
+        np.array([1.0, 1.0, 3.0]),
+        np.array([0.0, 1.0, 2.0]),
+        np.array([0.0, 1.0]),
+    )
+    scenes = [vr.Scene(f(np.array([11.0, 2.0, 1.0])), 3, f(np.array([1.0, 2.0, 1.0])), 2, 1) for f in (np.array, make)]
+    calls = (
+        lambda scene, f: vr.ensemble(scene, f(V0), f(omega0), f(t)).V,
+        lambda scene, f: vr.ensemble(SCENE, f(V0), f(omega0), f(t), method="flow").x,
+        lambda scene, f: vr.roll(SCENE, f(V0)[0], f(omega0)[0], f(t)).V,
+        lambda scene, f: vr.stress(SCENE, f(x), 1, omega=f(omega0[:2])).tau,
+        lambda scene, f: vr.contact(scene, f(V0), omega=f(omega0)).Q,
+        lambda scene, f: scene.validity(f(V0)).small_contact.value,
+    )
+    for call in calls:
+        assert np.array_equal(call(scenes[0], np.array), call(scenes[1], make))
+    table = vr.tables.build(GRIDS[1])
+    plain, made = (
+        vr.tables.interpolate(table, V=f(np.array([1.0, 2.0])), delta=0, alpha=f(np.array([1.0, 11.0])))
+        for f in (np.array, make)
+    )
+    assert np.array_equal(plain.lam, made.lam)
+
+
+def test_no_kernel_is_compiled_again_for_another_kind_of_array():
+    from viscoroll.kernels.contact_loop import contact_loop
+    from viscoroll.kernels.flow_loop import flow_loop
+    from viscoroll.kernels.motion_loop import motion_loop
+    from viscoroll.kernels.stress_loop import stress_loop
+
+    kernels = (contact_loop, stress_loop, motion_loop, flow_loop)
+    speeds = np.array([0.5, 1.0, 1.5])
+
+    def call(V0, omega0, t) -> list[int]:
+        vr.stress(SCENE, V0, omega0, delta=0.0)
+        for method in ("integrate", "flow"):
+            vr.ensemble(SCENE, V0, omega0, t, method=method)
+        return [len(kernel.signatures) for kernel in kernels]
+
+    once = call(speeds, speeds, speeds)
+    for make in KINDS.values():
+        assert call(make(speeds), 1.0, make(speeds)) == call(0.5, make(speeds), 1.0) == once
+
+
+def test_empty():
+    nothing = np.empty((0,))
+    assert vr.stress(SCENE, nothing, 1.0, delta=0.0).p.shape == (0,)
+    assert vr.stress(SCENE, np.empty((3, 1)) * 0.0, nothing, delta=0.0).tau.shape == (3, 0)
+    for method in ("integrate", "flow", "auto"):
+        many = vr.ensemble(SCENE, nothing, nothing, 1.0, method=method)
+        assert many.V.shape == (0, 1)
+        assert many.messages() == {}
+    assert SCENE.validity(nothing).under_axis.holds.shape == (0,)
+    table = vr.tables.build(GRIDS[1])
+    assert vr.tables.interpolate(table, V=nothing, delta=0.0, alpha=11.0).Q.shape == (0,)
+    with pytest.raises(vr.ParameterError):
+        vr.ensemble(SCENE, 1.0, 1.0, nothing)
+    with pytest.raises(vr.ParameterError):
+        vr.tables.LiteralGrid(2.91, 0.2, nothing, [0.0], [1.0])
+
+
+#: call on inputs of n elements -> (n; bytes an element of what it returns, and of what it may need beside that)
+LARGE = {
+    "vr.contact(scene, x, delta=y, fields='Q')": (4_000_000, 8, 8),
+    "vr.contact(scene, x, omega=y, fields=('Q', 'M', 'full_slip'), method='table')": (2_000_000, 17, 16),
+    "vr.contact(scene, x, delta=0.01, slopes=True)": (1_000_000, 89, 24),
+    "vr.stress(scene, x, 1.0, delta=0.01)": (2_000_000, 16, 24),
+    "vr.ensemble(scene, x, y, [1e-4, 1e-3], method='flow')": (400_000, 74, 64),
+    "vr.ensemble(scene, x, y, 1e-9, fields='V', method='integrate')": (100_000, 42, 80),
+}
+
+
+@pytest.mark.parametrize("call", LARGE)
+def test_large_arrays_in_bounded_memory(call):
+    """No copy of the whole input for each parameter: measured by the peak of a process of its own."""
+    pytest.importorskip("resource")
+    count, result, extra = LARGE[call]
+    code = f"""
+import resource
+import numpy as np
+import viscoroll as vr
+scene = vr.PAPER_SECTION_5
+def run(n):
+    x, y = np.linspace(0.1, 2.0, n), np.linspace(-0.01, 0.5, n)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    result = {call}
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+run(5000)
+print(1024 * run({count}))
+"""
+    unit = 1024 if sys.platform != "darwin" else 1
+    assert int(process(code)) / 1024 * unit <= count * (result + extra) + tol.MEMORY_SLACK

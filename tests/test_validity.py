@@ -1,0 +1,72 @@
+"""Scene.validity and Cylinder.validity: which assumptions a state strains."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll.validity import REACH_LIMIT, WAVE_LIMIT
+
+SCENE = vr.PAPER_SECTION_5
+V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
+
+
+@pytest.mark.parametrize("alpha", [1.0, 11.0, 81.5])
+def test_numbers_are_those_of_the_contact(alpha):
+    """The far end of the contact is delta_star/mu from the axis, by Eqs. (8), (9)."""
+    scene = SCENE.replace(alpha=alpha)
+    state = vr.contact(scene, V, delta=0.0)
+    found = scene.validity(V)
+    np.testing.assert_allclose(found.small_contact.value, state.delta_star / scene.mu, rtol=tol.CONTACT)
+    np.testing.assert_allclose(found.under_axis.value, state.epsilon, rtol=tol.CONTACT, atol=1e-300)
+    assert np.array_equal(found.under_axis.holds, state.epsilon <= 1.0)
+
+
+def test_small_contact():
+    """A parabola is 1 % off the circle where the contact is said to be no longer small."""
+    circle = 1.0 - math.sqrt(1.0 - REACH_LIMIT**2)
+    assert circle / (0.5 * REACH_LIMIT**2) - 1.0 == pytest.approx(0.01, rel=0.05)
+    assert SCENE.validity(0.0).small_contact.holds
+    assert not SCENE.replace(kappa=2.0).validity(0.0).small_contact.holds
+    assert SCENE.replace(kappa=2.0).validity(30.0).small_contact.holds
+
+
+def test_arrays_of_scenes_and_speeds():
+    found = vr.Scene([2.0, 81.5], [[1.0], [2.91], [29.1]], 0.2).validity(0.3)
+    assert found.small_contact.holds.tolist() == [[False, False], [True, True], [True, True]]
+    assert found.under_axis.holds.tolist() == [[True, True], [True, False], [True, False]]
+    assert SCENE.validity([]).small_contact.value.shape == (0,)
+    assert "wholly ahead" in vr.Scene([2.0, 81.5], 2.91, 0.2).validity(0.3).under_axis.sentence
+
+
+def test_wave_speed():
+    """Fifth of sqrt(G/density), in SI; unknown without a density."""
+    cylinder, density = vr.PAPER_CYLINDER, 1130.0
+    assert cylinder.validity(1.0).quasistatic.holds is None
+    wave = math.sqrt(cylinder.E / (2.0 * (1.0 + cylinder.nu)) / density)
+    share = np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT
+    found = cylinder.validity(cylinder.V_from_si(share * wave), density).quasistatic
+    np.testing.assert_allclose(found.value, abs(share), rtol=tol.SCENE)
+    assert found.holds.tolist() == [True, False, False]
+    assert found.sentence.startswith("the speed is 20 % of that of shear waves")
+
+
+def test_a_sentence_each():
+    lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
+    assert [line.split(":")[0] for line in lines] == list(SCENE.validity(1.0)._fields)
+    assert "plane strain" in lines[-1]
+    assert SCENE.validity(1.0).same_material.holds is None
+
+
+@pytest.mark.parametrize("density", [0.0, -1.0, math.nan, [1.0, 2.0], "heavy"])
+def test_bad_input(density):
+    with pytest.raises(vr.ParameterError, match="density"):
+        vr.PAPER_CYLINDER.validity(1.0, density)
+    with pytest.raises(vr.ParameterError, match="V = nan"):
+        SCENE.validity(math.nan)
+    with pytest.raises(vr.ParameterError, match="broadcast"):
+        SCENE.replace(alpha=[1.0, 2.0]).validity([1.0, 2.0, 3.0])
