@@ -1,4 +1,4 @@
-"""Put measured numbers into the text: data/results/measured.json -> marked blocks of README.md and docs/.
+"""Put measured numbers into the text: data/results/ -> marked blocks of README.md and docs/.
 
     python pipeline/document.py [--check] [--results FILE] [FILE ...]
 
@@ -17,12 +17,15 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
+from bench import report
+
 from viscoroll import ViscorollError
 from viscoroll.files import write_text
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "data/results/measured.json"
-DOCUMENTS = (ROOT / "README.md", ROOT / "docs/accuracy.md")
+PROOFS = ROOT / "data/results/proofs.json"
+DOCUMENTS = (ROOT / "README.md", ROOT / "docs/accuracy.md", ROOT / "docs/benchmark.md")
 _BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")
 _NAMES = {
@@ -145,13 +148,29 @@ def machine(m: dict[str, Any]) -> str:
     )
 
 
+def proofs(m: dict[str, Any]) -> str:
+    """One table a proof, from proofs.json."""
+    titles = {
+        "ratios": "Bessel ratios", "contact": "Contact states", "shape": "Shape", "slopes": "Slopes and stress",
+    }  # fmt: skip
+    parts = []
+    for name, title in titles.items():
+        rows = (
+            (row["claim"], row["domain"], f"{row['points']:,}", number(row["bound"]), number(row["worst"]))
+            for row in m["proofs"][name]
+        )
+        parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst'), rows)}")
+    return "\n".join(parts)
+
+
 BLOCKS: dict[str, Callable[[dict[str, Any]], str]] = {
     "headline": headline, "contact": contact, "direct": direct, "stress": stress, "motion": motion, "times": times,
+    "proofs": proofs,
 }  # fmt: skip
 
 
-def filled(text: str, measured: dict[str, Any], name: str) -> str:
-    """``text`` with every block filled.
+def filled(text: str, measured: dict[str, Any], folder: Path, name: str) -> str:
+    """``text`` with every block filled, those of the benchmark from its files in ``folder``.
 
     Raises
     ------
@@ -160,12 +179,16 @@ def filled(text: str, measured: dict[str, Any], name: str) -> str:
     """
 
     def fill(match: re.Match[str]) -> str:
-        if match[2] not in BLOCKS:
-            raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}")
         try:
+            if match[2] in report.BLOCKS:
+                return f"{match[1]}{report.BLOCKS[match[2]](folder)}{match[3]}"
             return f"{match[1]}{BLOCKS[match[2]](measured)}{match[3]}"
         except (KeyError, TypeError) as error:
-            raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline/measure.py") from error
+            if match[2] not in BLOCKS | report.BLOCKS:
+                names = ", ".join([*BLOCKS, *report.BLOCKS])
+                raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {names}") from error
+            script = "measure" if match[2] in BLOCKS else "benchmark"
+            raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline/{script}.py") from error
 
     result, count = _BLOCK.subn(fill, text)
     if len(_MARK.findall(text)) != 2 * count:
@@ -182,9 +205,10 @@ def main() -> int:
     stale = []
     try:
         measured = json.loads(arguments.results.read_text(encoding="utf-8"))
+        measured |= {"proofs": json.loads(PROOFS.read_text(encoding="utf-8"))["proofs"]}
         for path in arguments.files:
             old = path.read_text(encoding="utf-8")
-            new = filled(old, measured, path.name)
+            new = filled(old, measured, arguments.results.parent, path.name)
             if new != old:
                 stale.append(path.name)
                 if not arguments.check:

@@ -85,8 +85,101 @@ def comparison(folder: Path) -> list[tuple[str, str, str, str]]:
     return lines
 
 
+def markdown(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    """A Markdown table."""
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ("---",) * len(head), *rows]) + "\n"
+
+
 def headline(folder: Path) -> str:
-    """The comparison as a Markdown table, ratios first."""
-    head = ("times faster", "than", "its time and max error", "viscoroll")
-    lines = [head, ("---",) * 4, *comparison(folder)]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    """The comparison with every row of every peer, ratios first."""
+    return markdown(("times faster", "than", "its time and max error", "viscoroll"), comparison(folder))
+
+
+def peers(folder: Path) -> str:
+    """The comparison at the peers' rtol 1e-6."""
+    rows = [row for row in comparison(folder) if "rtol 1e-06" in row[1]]
+    return markdown(("times faster", "than", "its time and max error", "viscoroll"), rows)
+
+
+def fixed_scene(folder: Path) -> str:
+    """Motions of one scene by its flow map."""
+    m = _measured(folder, "fixed-scene")
+    rows = [(name, f"{_three(row['ns'])} ns a motion") for name, row in m["rows"].items()]
+    rows += [
+        ("largest error, final state; all 30 times", f"{m['error']['final']:.1e}; {m['error']['all_times']:.1e}"),
+        ("error that the map states", f"{m['stated_error']:.1e} (path {m['stated_path_error']:.1e})"),
+        ("build, with its error measured; load", f"{_three(m['build_s'])} s; {_three(1e3 * m['load_s'])} ms"),
+        ("size", f"{m['bytes'] / 1e6:.2f} MB"),
+    ]
+    return markdown(("one scene, flow map, one core", "measured"), rows)
+
+
+def agreement(folder: Path) -> str:
+    """Random scenes, flow against integration."""
+    m, sizes = _measured(folder, "agreement"), read(folder, "agreement")["sizes"]
+    rows = [
+        ("random scenes; with a map", f"{len(m['rows'])}; {m['scenes_with_map']}"),
+        ("starts in all", f"{m['starts']}"),
+        (f"scenes within the error stated (and the integrator's rtol {sizes['rtol']:.0e})", f"{m['within_stated']}"),
+        ("worst difference, as a share of that", f"{m['worst_share']:.2g}"),
+        ("motions that failed", f"{sum(row['failed'] for row in m['rows'])}"),
+    ]
+    return markdown(("flow map against integrator", "found"), rows)
+
+
+def law(folder: Path) -> str:
+    """Time and error of the contact law."""
+    rows = [
+        (name.replace("_", " "), f"{_three(row['ns'])} ns", f"{max(row['error'].values()):.1e}")
+        for name, row in _measured(folder, "law").items()
+    ]
+    return markdown(("Q and M of a state", "time", "max error against 50 digits"), rows)
+
+
+def scaling(folder: Path) -> str:
+    """Time and memory by number of motions."""
+    rows = [
+        (
+            row["method"],
+            f"{row['threads']}",
+            f"{row['motions']:.0e}",
+            f"{_three(row['us'])} µs",
+            f"{row['peak_mb']:.0f} MB",
+        )
+        for row in _measured(folder, "scaling")["rows"]
+    ]
+    return markdown(("method", "threads", "motions", "a motion", "peak memory"), rows)
+
+
+def skips(folder: Path) -> str:
+    """What leaving out saves."""
+    rows = [(name, f"{row['ratio']:.3g}") for name, row in _measured(folder, "skips").items()]
+    return markdown(("left out", "times faster"), rows)
+
+
+def cold_start(folder: Path) -> str:
+    """Whole processes."""
+    rows = [
+        (name.replace("_", " "), f"{_three(1e3 * row['over_bare_s'])} ms")
+        for name, row in _measured(folder, "cold-start").items() if name != "bare_python"
+    ]  # fmt: skip
+    return markdown(("process, kernels cached", "over a bare Python"), rows)
+
+
+def _measured(folder: Path, part: str) -> dict[str, Any]:
+    """Results of a part; a KeyError that names it where it was not run."""
+    result = read(folder, part)
+    if result is None:
+        raise KeyError(f"bench-{part}.json")
+    return result["measured"]
+
+
+def _three(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}"
+
+
+#: tables of this module by the name of their block in the documents
+BLOCKS = {
+    "bench_peers": peers, "bench_all": headline, "bench_fixed_scene": fixed_scene, "bench_agreement": agreement,
+    "bench_law": law, "bench_scaling": scaling, "bench_skips": skips, "bench_cold_start": cold_start,
+}  # fmt: skip
