@@ -156,7 +156,13 @@ def proofs(m: dict[str, Any]) -> str:
     parts = []
     for name, title in titles.items():
         rows = (
-            (row["claim"], row["domain"], f"{row['points']:,}", number(row["bound"]), number(row["worst"]))
+            (
+                row["claim"].replace("|", "\\|"),
+                row["domain"],
+                f"{row['points']:,}",
+                number(row["bound"]),
+                number(row["worst"]),
+            )
             for row in m["proofs"][name]
         )
         parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst'), rows)}")

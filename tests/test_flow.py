@@ -124,6 +124,31 @@ def test_start_inside_the_stick_zone_is_a_point_of_an_earlier_motion():
         np.testing.assert_allclose(rest.x, whole.x[:, -1:] - whole.x[:, i : i + 1], rtol=tol.FLOW_PATH)
 
 
+#: scenes in which the stiff rate at onset is not far above the slow one
+NEAR_RATES = (
+    vr.Scene(22.822343517896204, 0.8333393570053901, 2.219273908549868, 1.0, 0.2688387197363067),
+    vr.Scene(1432.3597795448325, 0.8023587553693244, 0.5276418850483104, 1.0, 0.7653652644478643),
+)
+
+
+@pytest.mark.parametrize(
+    ("scene", "kappa_V", "kappa_omega"),
+    [(NEAR_RATES[0], 1.4596, 1.41747), (NEAR_RATES[0], 1.20256, 1.1686), (NEAR_RATES[1], 1.00276, 0.996196)],
+)
+def test_start_near_the_slow_manifold_where_rates_are_near(scene, kappa_V, kappa_omega):
+    """V changes much within the boundary layer, and the search for an earlier entry may fail: it must notice."""
+    spread = 1.0 + np.linspace(-1e-3, 1e-3, 41)
+    V0, omega0 = np.full(41, kappa_V / scene.kappa), kappa_omega / scene.kappa * spread
+    t = np.geomspace(1e-3, 5.0, 8) * decay_time(scene)
+    mapped, rolled = (
+        vr.ensemble(scene, V0, omega0, t, method=method, rtol=rtol)
+        for method, rtol in (("flow", 1e-4), ("integrate", 1e-11))
+    )
+    speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
+    off = np.maximum(np.abs(mapped.V - rolled.V), np.abs(mapped.omega - rolled.omega)) / speed
+    assert off[mapped.flow].max(initial=0.0) < mapped.flow_error
+
+
 def test_mirror_and_gamma():
     V0, omega0 = starts(300, 4, SCENE)
     there = vr.ensemble(SCENE, V0, omega0, T, method="flow", fields=FIELDS)

@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 
+#: calls quicker than this, s, are repeated for as long
+_QUICK = 0.1
+
 
 def seconds_of(call: Callable[[], Any]) -> tuple[float, Any]:
     """Wall time of one call, and its result."""
@@ -18,10 +21,24 @@ def seconds_of(call: Callable[[], Any]) -> tuple[float, Any]:
     return time.perf_counter() - start, result
 
 
+def _repeat(call: Callable[[], Any], number: int) -> None:
+    for _ in range(number):
+        call()
+
+
+def steady_seconds(call: Callable[[], Any]) -> tuple[float, Any]:
+    """As :func:`seconds_of`; a quick call is repeated, so that cold caches and new memory do not count."""
+    seconds, result = seconds_of(call)
+    if seconds < _QUICK:
+        number = int(_QUICK / seconds) + 1
+        seconds = seconds_of(lambda: _repeat(call, number))[0] / number
+    return seconds, result
+
+
 def alternating(calls: dict[Any, Callable[[], Any]], repeats: int) -> dict[Any, float]:
     """Median seconds of each call: rounds of all of them, so that a slow minute hits all alike."""
     seconds: dict[Any, list[float]] = {name: [] for name in calls}
     for _ in range(repeats):
         for name, call in calls.items():
-            seconds[name].append(seconds_of(call)[0])
+            seconds[name].append(steady_seconds(call)[0])
     return {name: float(np.median(values)) for name, values in seconds.items()}

@@ -20,7 +20,7 @@ from .problem import (
     reference,
     reference_difference,
 )
-from .timing import seconds_of
+from .timing import seconds_of, steady_seconds
 
 
 def work_precision(sizes: dict[str, Any]) -> dict[str, Any]:
@@ -87,7 +87,7 @@ def _run(calls: list[dict[str, Any]], repeats: int) -> None:
                 if turn >= (entry["repeats"] or repeats):
                     continue
                 bar.set_postfix_str(f"{entry['method']} {entry['rtol']:.0e} {entry['group']}")
-                seconds, outcome = seconds_of(entry["call"])
+                seconds, outcome = steady_seconds(entry["call"])
                 entry.setdefault("outcome", outcome)
                 entry["seconds"].append(outcome.seconds if outcome.seconds is not None else seconds)
                 bar.update()

@@ -10,6 +10,11 @@ from .jit import kernel
 
 #: creep ratios nearer to the slow manifold than this are on it: an error of that size in omega
 _ON_MANIFOLD = 1e-10
+#: the same for creep that the table cannot tell from the manifold's
+_NEARLY = 1e-9
+#: where the search has not come so near, relative in V, the motion is left to the integrator: with little between the
+#: two rates V changes much within the boundary layer
+_RESIDUAL = 1e-10
 _SOLVER_CAP = 60
 
 
@@ -50,8 +55,8 @@ def earlier_entry(V, delta, first, table, par):
             at_low, E = excess, high
             continue
         if n == 1:
-            if excess > 0.0:
-                return PLUS, v, np.inf, True
+            if excess > 0.0:  # nearer to the manifold than any motion of the table
+                return PLUS, v, np.inf, abs(delta - slow) < _NEARLY
             at_high = excess
         elif excess > 0.0:
             low, at_low = E, excess
@@ -64,4 +69,6 @@ def earlier_entry(V, delta, first, table, par):
         if abs(excess) < 1e-12 or high - low < 1e-13 * high:
             break
         E = low + (high - low) * at_low / (at_low - at_high)
-    return family, v0, E, True
+    a, reached, _, _ = layer_state(family, v0, E, first, False, table)
+    found = abs(v0 * np.exp(a) - v) <= _RESIDUAL * v and abs(reached - delta) <= _RESIDUAL
+    return family, v0, E, found
