@@ -50,7 +50,7 @@ def main() -> int:
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/measured.json")
     arguments = parser.parse_args()
     try:
-        sizes = read_sizes(arguments.config, arguments.quick)
+        sizes = read_sizes(arguments.config, "measure", arguments.quick)
         os.environ["VISCOROLL_THREADS"] = "1"  # every time is that of one core
         measured = {
             "contact_error": contact_errors(sizes),
@@ -70,8 +70,8 @@ def main() -> int:
     return 0
 
 
-def read_sizes(path: Path, quick: bool) -> dict[str, Any]:
-    """[measure] of the configuration, with [measure.quick] over it if asked.
+def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
+    """Section [name] of the configuration, with [name.quick] over it if asked.
 
     Raises
     ------
@@ -79,15 +79,15 @@ def read_sizes(path: Path, quick: bool) -> dict[str, Any]:
         A file that cannot be read, is not TOML, or lacks the section.
     """
     try:
-        section = tomllib.loads(path.read_text(encoding="utf-8"))["measure"]
+        section = tomllib.loads(path.read_text(encoding="utf-8"))[name]
         sizes = section | section["quick"] if quick else section
-        return {name: value for name, value in sizes.items() if name != "quick"}
+        return {key: value for key, value in sizes.items() if key != "quick"}
     except OSError as error:
         raise ConfigError(path, f"cannot be read ({error.strerror})") from error
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ConfigError(path, f"is not TOML ({error})") from error
     except KeyError as error:
-        raise ConfigError(path, f"section [measure] or its key {error} is missing") from error
+        raise ConfigError(path, f"section [{name}] or its key {error} is missing") from error
 
 
 def random_states(

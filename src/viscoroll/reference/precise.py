@@ -7,6 +7,7 @@ trapezoidal rule (mpmath's own K is slow at integer order), roots by bracketing.
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from typing import Any
 
@@ -24,14 +25,20 @@ class MissingDependencyError(ViscorollError):
     """A package that only the reference values need is not installed."""
 
 
-def _mpmath() -> Any:
+def imported(module: str, package: str) -> Any:
+    """A module that only the reference values need.
+
+    Raises
+    ------
+    MissingDependencyError
+        If it is not installed.
+    """
     try:
-        import mpmath
+        return importlib.import_module(module)
     except ModuleNotFoundError:
         raise MissingDependencyError(
-            "viscoroll.reference needs mpmath, which is not installed: pip install 'viscoroll[dev]'"
+            f"viscoroll.reference needs {package}, which is not installed: pip install 'viscoroll[dev]'"
         ) from None
-    return mpmath
 
 
 def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: float, digits: int = 50) -> dict[str, Any]:
@@ -74,7 +81,7 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
         raise ParameterError("V", 0.0, "different from 0")
     if digits < _LEAST_DIGITS:
         raise ParameterError("digits", digits, f">= {_LEAST_DIGITS}")
-    mp = _mpmath()
+    mp = imported("mpmath", "mpmath")
     with mp.workdps(digits + _GUARD):
         given = (mp.mpf(float(value)) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep)))
         state = printed_state(mp, *given)
