@@ -69,7 +69,7 @@ MOTION = [
     ("full_slip.py", "return sigma * ((V - w) / j - V) - 0.5 * mu", "return sigma * ((V - w) / j - V) - 0.49 * mu", _MOTION),
     ("partial_slip.py", "factor = -(1.0 - j) / (8.0", "factor = (1.0 - j) / (8.0", _MOTION),
     ("partial_slip.py", "rate = q_over_V - 0.5 * m\n", "rate = q_over_V - 0.5 * m * (1.0 + 1e-6)\n", _MOTION),
-    ("partial_slip.py", "(1.0 / j - 1.0) * 0.5 * m) / (mu * V) - 2.0 * d * rate", "(1.0 / j - 1.0) * 0.5 * m) / (mu * V)", _MOTION),
+    ("partial_slip.py", "0.5 * m) * (per_V / mu) - 2.0 * d * rate", "0.5 * m) * (per_V / mu)", _MOTION),
     ("events.py", "return 1.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)", "return 2.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)", _MOTION),
     ("integrate.py", "return FULL, -direction, -sigma\n", "return FULL, -direction, sigma\n", _MOTION),
     ("integrate.py", "u[1] = sigma * D - slow_D(u[0], par)[0]", "u[1] = D - slow_D(u[0], par)[0]", _MOTION),
