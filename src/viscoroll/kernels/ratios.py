@@ -4,8 +4,8 @@
 
 Piecewise polynomials indexed by the bits of the argument (:mod:`ratio_layout`, no
 logarithm), a power series below them and the asymptotic series above, so that every
-positive double is served.  Relative error at most 2 ULP against 60 digits
-(``tests/test_ratios.py``).  Slopes come from the Riccati equations
+positive double is served.  Relative error at most 2.4 ULP (``pipeline/prove.py``; on the
+points of ``tests/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati equations
 
     r' = 1 - r/x - r^2      k' = k^2 + k/z - 1
 
