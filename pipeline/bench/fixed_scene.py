@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -20,11 +19,10 @@ _INTEGRATOR = 30
 def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     """Rows of fields and output times -> ns a motion; the map's own figures."""
     scene = vr.PAPER_SECTION_5_ROUNDED
-    parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
+    request = flow.asked(scene, 2.0)
     V0, omega0 = np.random.default_rng(sizes["seed"]).uniform(-2.0, 2.0, (2, sizes["motions"]))
-    octave = math.ceil(math.log2(2.0 * scene.kappa) / 4) * 4
-    flow.build(parameters, octave, 1)  # compiles
-    builds = [seconds_of(lambda: flow.build(parameters, octave, 1))[0] for _ in range(sizes["repeats"])]
+    flow.build(*request, 1)  # compiles
+    builds = [seconds_of(lambda: flow.build(*request, 1))[0] for _ in range(sizes["repeats"])]
     made = flow.flow_map(scene, 2.0)
 
     def load() -> None:

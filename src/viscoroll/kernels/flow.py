@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import flow_layout as layout
-from .flow_fit import BIN_MASK, HALF_BIN, MANTISSA, ONE, SHIFT
+from .flow_fit import MANTISSA, ONE, bits_and_offset, polynomial
 from .jit import kernel
 from .law import GAUSS_W, GAUSS_X
 
@@ -43,33 +43,16 @@ _BLOCK = layout.SPEED_COEFFICIENTS * layout.FAST_COEFFICIENTS
 
 
 @kernel(inline=True)
-def _bin(x):
-    """(bits of octave and bin, t) of x > 0."""
-    bits = np.float64(x).view(np.int64)
-    centre = np.int64((bits & BIN_MASK) | (ONE + HALF_BIN)).view(np.float64)
-    return bits >> SHIFT, np.int64((bits & MANTISSA) | ONE).view(np.float64) - centre
-
-
-@kernel(inline=True)
-def _value(table, at, t):
-    """Polynomial whose coefficients start at ``at``."""
-    t2 = t * t
-    low = (table[at] + t * table[at + 1]) + t2 * (table[at + 2] + t * table[at + 3])
-    high = (table[at + 4] + t * table[at + 5]) + t2 * (table[at + 6] + t * table[at + 7])
-    return low + (t2 * t2) * high
-
-
-@kernel(inline=True)
 def slide(V, need_path, table, par):
     """(T, X) of sliding from rest to V in the mirrored frame, T with the sign of V."""
     _, _, kappa, mu, _ = par
     speed = abs(V)
     if kappa * speed < LOWEST:
         return V / mu, 0.5 * V * V / mu
-    b, t = _bin(kappa * speed)
+    b, t = bits_and_offset(kappa * speed)
     at = b * _SLIDE + (_SLIDE_UP if V > 0.0 else _SLIDE_DOWN)
-    T = _value(table, at + layout.T * _N, t)
-    X = _value(table, at + layout.X * _N, t) if need_path else 0.0
+    T = polynomial(table, at + layout.T * _N, t)
+    X = polynomial(table, at + layout.X * _N, t) if need_path else 0.0
     return T if V > 0.0 else -T, X
 
 
@@ -83,8 +66,8 @@ def slides(V, slip, table, par):
         return True
     if kappa * speed < LOWEST:
         return slip >= largest
-    b, t = _bin(kappa * speed)
-    return slip >= _value(table, b * _SLIDE + _SLIDE_UP + layout.L * _N, t)
+    b, t = bits_and_offset(kappa * speed)
+    return slip >= polynomial(table, b * _SLIDE + _SLIDE_UP + layout.L * _N, t)
 
 
 @kernel(inline=True)
@@ -94,10 +77,10 @@ def speed_after(T, table, par):
     x = kappa * mu * abs(T)
     if x < LOWEST:
         return mu * T
-    b, t = _bin(x)
+    b, t = bits_and_offset(x)
     if T > 0.0:
-        return _value(table, b * _N + _TIME_UP, t)
-    return -_value(table, b * _N + _TIME_DOWN, t)
+        return polynomial(table, b * _N + _TIME_UP, t)
+    return -polynomial(table, b * _N + _TIME_DOWN, t)
 
 
 @kernel(inline=True)
@@ -106,11 +89,11 @@ def onset_of(I, need_path, table, par):
     x = par[2] * abs(I) / (1.0 + par[4])
     if not LOWEST <= x < HIGHEST:
         return 0.0, 0.0, 0.0
-    b, t = _bin(x)
+    b, t = bits_and_offset(x)
     at = b * _ONSET + (_ONSET_UP if I < 0.0 else _ONSET_DOWN)
-    V = _value(table, at + layout.ONSET_V * _N, t)
-    T = _value(table, at + layout.ONSET_T * _N, t)
-    X = _value(table, at + layout.ONSET_X * _N, t) if need_path else 0.0
+    V = polynomial(table, at + layout.ONSET_V * _N, t)
+    T = polynomial(table, at + layout.ONSET_T * _N, t)
+    X = polynomial(table, at + layout.ONSET_X * _N, t) if need_path else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
@@ -118,7 +101,7 @@ def onset_of(I, need_path, table, par):
 def _slow(lam):
     """(place in the table, t, factor) of lambda on the slow manifold; below the table all falls like exp(lambda)."""
     if lam >= layout.LATE_HIGH:
-        b, t = _bin(1.0 + lam)
+        b, t = bits_and_offset(1.0 + lam)
         return b * _SLOW + _EARLY, t, 1.0
     share = 1.0
     if lam < layout.LATE_LOW:
@@ -133,7 +116,7 @@ def _slow(lam):
 def slow_state(lam, table):
     """(V, delta) on the slow manifold at lambda."""
     at, t, share = _slow(lam)
-    return share * _value(table, at + layout.SPEED * _N, t), share * _value(table, at + layout.DELTA * _N, t)
+    return share * polynomial(table, at + layout.SPEED * _N, t), share * polynomial(table, at + layout.DELTA * _N, t)
 
 
 @kernel
@@ -145,11 +128,11 @@ def slow_path(start, end, rate, table):
     span = start - end
     if span > 0.25 * max(1.0 + end, 1.0):
         at, t, share = _slow(start)
-        x, angle = _value(table, at + layout.X_TO_GO * _N, t), _value(table, at + layout.ANGLE_TO_GO * _N, t)
+        x, angle = polynomial(table, at + layout.X_TO_GO * _N, t), polynomial(table, at + layout.ANGLE_TO_GO * _N, t)
         x, angle = share * x, share * angle
         at, t, share = _slow(end)
-        x -= share * _value(table, at + layout.X_TO_GO * _N, t)
-        return x, angle - share * _value(table, at + layout.ANGLE_TO_GO * _N, t)
+        x -= share * polynomial(table, at + layout.X_TO_GO * _N, t)
+        return x, angle - share * polynomial(table, at + layout.ANGLE_TO_GO * _N, t)
     x = angle = 0.0
     for n in range(GAUSS_X.size):
         V, delta = slow_state(end + span * GAUSS_X[n], table)
@@ -161,21 +144,21 @@ def slow_path(start, end, rate, table):
 @kernel
 def slow_creep(v, table):
     """Delta on the slow manifold at v = kappa V."""
-    b, t = _bin(v)
-    return _value(table, b * _SLOW + _SLOW_BY_V + layout.DELTA * _N, t)
+    b, t = bits_and_offset(v)
+    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.DELTA * _N, t)
 
 
 @kernel
 def slow_entry(v, table):
     """:func:`entry_state` of a motion on the slow manifold at v = kappa V: no layer is left."""
-    b, t = _bin(v)
-    return _value(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0
+    b, t = bits_and_offset(v)
+    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0
 
 
 @kernel(inline=True)
 def _entry(family, v, first):
     """(place in the table, t) of the entry of a family at v = kappa V0."""
-    b, t = _bin(v)
+    b, t = bits_and_offset(v)
     b -= first * layout.BINS
     return b * _ENTRY + (_ENTRY_PLUS if family == PLUS else _ENTRY_MINUS if family == MINUS else _ENTRY_CROSS), t
 
@@ -186,8 +169,8 @@ def entry_state(family, v, first, need_path, table):
     at, t = _entry(family, v, first)
     x = angle = 0.0
     if need_path:
-        x, angle = _value(table, at + layout.ENTRY_X * _N, t), _value(table, at + layout.ENTRY_ANGLE * _N, t)
-    return _value(table, at + layout.ENTRY_LAMBDA * _N, t), _value(table, at + layout.RATE * _N, t), x, angle
+        x, angle = polynomial(table, at + layout.ENTRY_X * _N, t), polynomial(table, at + layout.ENTRY_ANGLE * _N, t)
+    return polynomial(table, at + layout.ENTRY_LAMBDA * _N, t), polynomial(table, at + layout.RATE * _N, t), x, angle
 
 
 @kernel
@@ -209,7 +192,7 @@ def _layer_value(table, at, t, s):
     """Polynomial in t (speed at onset) and s (stiff time)."""
     total = 0.0
     for k in range(layout.SPEED_COEFFICIENTS - 1, -1, -1):
-        total = _value(table, at + k * layout.FAST_COEFFICIENTS, s) + t * total
+        total = polynomial(table, at + k * layout.FAST_COEFFICIENTS, s) + t * total
     return total
 
 
@@ -239,14 +222,17 @@ def layer_speeds(family, v, rate, elapsed, first, need_path, table, kappa):
     E = elapsed * rate
     x = angle = 0.0
     at, t = _entry(family, v, first)
-    crossing = _value(table, at + layout.CROSSING * _N, t)
+    crossing = polynomial(table, at + layout.CROSSING * _N, t)
     if E > crossing:
         if need_path:
-            x, angle = _value(table, at + layout.CROSSING_X * _N, t), _value(table, at + layout.CROSSING_ANGLE * _N, t)
-        v *= np.exp(_value(table, at + layout.CROSSING_SPEED * _N, t))
+            x, angle = (
+                polynomial(table, at + layout.CROSSING_X * _N, t),
+                polynomial(table, at + layout.CROSSING_ANGLE * _N, t),
+            )
+        v *= np.exp(polynomial(table, at + layout.CROSSING_SPEED * _N, t))
         family = CROSS
         at, t = _entry(family, v, first)
-        cross_rate = _value(table, at + layout.RATE * _N, t)
+        cross_rate = polynomial(table, at + layout.RATE * _N, t)
         E, rate = (E - crossing) / rate * cross_rate, cross_rate
     a, delta, x_excess, angle_excess = layer_state(family, v, E, first, need_path, table)
     V0 = v / kappa

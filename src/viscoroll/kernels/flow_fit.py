@@ -15,11 +15,11 @@ from .jit import kernel
 N = layout.COEFFICIENTS
 BINS = layout.BINS
 HALF = 0.5 / BINS
-SHIFT = 52 - layout.BIN_BITS
+_SHIFT = 52 - layout.BIN_BITS
 MANTISSA = (1 << 52) - 1
-BIN_MASK = (BINS - 1) << SHIFT
+_BIN_MASK = (BINS - 1) << _SHIFT
 ONE = 1023 << 52
-HALF_BIN = 1 << (SHIFT - 1)
+_HALF_BIN = 1 << (_SHIFT - 1)
 
 
 def _radau(n: int) -> np.ndarray:
@@ -60,13 +60,19 @@ TO_NODES, TO_END = _integrals(NODES)
 DERIVATIVE = _derivative(NODES)
 
 
+@kernel(inline=True)
+def bits_and_offset(x):
+    """(bits of octave and bin, t) of x > 0."""
+    bits = np.float64(x).view(np.int64)
+    centre = np.int64((bits & _BIN_MASK) | (ONE + _HALF_BIN)).view(np.float64)
+    return bits >> _SHIFT, np.int64((bits & MANTISSA) | ONE).view(np.float64) - centre
+
+
 @kernel
 def bin_of(x, low):
     """(bin, t) of x > 0 in a table whose first octave is [2**low, 2**(low + 1))."""
-    bits = np.float64(x).view(np.int64)
-    centre = np.int64((bits & BIN_MASK) | (ONE + HALF_BIN)).view(np.float64)
-    t = np.int64((bits & MANTISSA) | ONE).view(np.float64) - centre
-    return (bits >> SHIFT) - (1023 + low) * BINS, t
+    b, t = bits_and_offset(x)
+    return b - (1023 + low) * BINS, t
 
 
 @kernel
@@ -82,14 +88,19 @@ def width(b, low):
     return 2.0 ** (b // BINS + low) / BINS
 
 
+@kernel(inline=True)
+def polynomial(coefficients, at, t):
+    """Polynomial whose coefficients start at ``at``."""
+    t2 = t * t
+    low = (coefficients[at] + t * coefficients[at + 1]) + t2 * (coefficients[at + 2] + t * coefficients[at + 3])
+    high = (coefficients[at + 4] + t * coefficients[at + 5]) + t2 * (coefficients[at + 6] + t * coefficients[at + 7])
+    return low + (t2 * t2) * high
+
+
 @kernel
 def value(table, b, column, t):
     """Column of bin b at t."""
-    p = table[b, column]
-    t2 = t * t
-    low = (p[0] + t * p[1]) + t2 * (p[2] + t * p[3])
-    high = (p[4] + t * p[5]) + t2 * (p[6] + t * p[7])
-    return low + (t2 * t2) * high
+    return polynomial(table[b, column], 0, t)
 
 
 @kernel

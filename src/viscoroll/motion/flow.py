@@ -67,17 +67,22 @@ class FlowMap:
         return max(self.error, self.path_error) if path else self.error
 
 
+def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
+    """(parameters, octave) of the map for a scene and speeds up to ``speed`` > 0."""
+    from ..kernels.flow_layout import OCTAVE_RANGE
+
+    parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
+    octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
+    return parameters, min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
+
+
 def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowMap:
     """The map of a scene for speeds up to ``speed`` > 0: from memory, from disk, or built.
 
     A map on disk that is damaged is built again; where the disk cannot be written the map
     is kept in memory only.
     """
-    from ..kernels.flow_layout import OCTAVE_RANGE
-
-    parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
-    octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
-    octave = min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
+    parameters, octave = asked(scene, speed)
     key = (*parameters, octave)
     found = _recent.pop(key, None)
     if found is None:
