@@ -9,10 +9,12 @@ from .law import (
     CLOSE,
     OK,
     contact_solution,
+    generator_slopes,
     moment_of,
     near_length,
     stick_solution,
 )
+from .ratios import small_k_over_z
 from .slopes import at_contact, slope_ratio, slope_ratio_rise
 
 #: Order of the rows of the kernel's output.
@@ -24,6 +26,10 @@ LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, 
 
 #: above this zeta, g <= 1/2 is below rounding beside zeta and the law is Carter's
 FAR = 1e17
+#: below this zeta, products of r and k underflow, and the law is its limit at high speed to rounding
+NEAR = 1e-140
+#: below this s = |delta|/delta_star, Q is linear in s to rounding, while zeta - eta may underflow
+_LINEAR = 1e-17
 #: states whose lengths are guessed together
 _TOGETHER = 128
 
@@ -53,9 +59,13 @@ def creep_ratio(V, creep, slip, creep_is_omega):
 @kernel
 def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, alpha, c):
     """(eta, zeta - eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
-    if c == 0.0 or zeta > FAR:
-        s = delta / delta_star
+    s = delta / delta_star
+    if c == 0.0 or not NEAR <= zeta <= FAR:
         return zeta * (1.0 - s), zeta * s, 1.0 - s, s * (2.0 - s), OK
+    if s < _LINEAR:
+        _, _, dg, dh = generator_slopes(zeta, alpha, c)
+        share = s * (1.0 + g / zeta) / (1.0 + dg)  # (zeta - eta)/zeta
+        return zeta, share * zeta, 1.0, share * 2.0 * lam * lam * (1.0 + (h + zeta * dh) / zeta), OK
     eta, D, dH, status = stick_solution(zeta, g, h, dg, delta / (mu * speed), alpha, c)
     return eta, D, eta / zeta, min(dH * (lam / zeta) * lam, 1.0), status
 
@@ -63,8 +73,8 @@ def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, alpha, c):
 @kernel
 def traction_slopes(speed, delta, kappa, mu, zeta, eta, D, beta, share, lam, alpha, c):
     """(d|Q|/d|V| at fixed delta, d|Q|/d|delta|) in partial slip; share = |Q|/mu."""
-    if c == 0.0 or zeta > FAR:
-        return 0.0, 4.0 * kappa * lam * beta
+    if c == 0.0 or not NEAR <= zeta <= FAR:
+        return 0.0, 4.0 * kappa * beta / lam
     # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
     A, A_eta = slope_ratio(zeta, alpha, c) / zeta, slope_ratio(eta, alpha, c) / zeta
     H = 1.0 / (lam * lam)
@@ -93,10 +103,10 @@ def contact_state_from(guess, alpha, kappa, mu, V, creep, creep_is_omega, need, 
     lam, zeta, g, h, dg, status = contact_solution(guess, kappa_V, alpha, c)
     out[LAM], out[ZETA] = lam, zeta
     if need_moment:
-        _moment(V, zeta, lam, g, h, alpha, c, need_slopes, out)
+        _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out)
     if not need_shift:
         return status
-    epsilon = g / zeta
+    epsilon = g / zeta if zeta >= NEAR else h * small_k_over_z(zeta)
     delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa
     slip, sign, direction = signed_slip(V, creep, creep_is_omega)
     delta = creep_ratio(V, creep, slip, creep_is_omega)
@@ -125,12 +135,15 @@ def contact_state_from(guess, alpha, kappa, mu, V, creep, creep_is_omega, need, 
 
 
 @kernel(inline=True)
-def _moment(V, zeta, lam, g, h, alpha, c, need_slopes, out):
+def _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
     if zeta > FAR:
         out[M], out[DM_DV] = c * V, c
         return
-    if not need_slopes:
+    if zeta < NEAR:  # V zeta = lam/(2 kappa), lam^2 = 1/alpha, i2 = (alpha zeta)^2/8
+        out[M] = np.copysign(0.5 * lam / kappa, V) * (0.125 * c * alpha * zeta + h * small_k_over_z(zeta))
+        out[DM_DV] = 0.0
+    elif not need_slopes:
         out[M] = V * moment_of(zeta, lam, g, h, alpha, c)
     else:
         _, h, _, dh, _, _, m, dm = at_contact(zeta, alpha, c)

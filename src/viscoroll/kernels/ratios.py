@@ -125,13 +125,19 @@ def ratio_r(x):
 
 
 @kernel(inline=True)
+def small_k_over_z(z):
+    """k/z for 0 < z < 2^-30."""
+    return _LN2 - _EULER_GAMMA - np.log(z)
+
+
+@kernel(inline=True)
 def ratio_k(z):
     """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
     if not z < 64.0:
         complement = _tail(z, _K_TAIL) / z
         return 1.0 - complement, complement
     if z < 2.0**-30:
-        k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
+        k = z * small_k_over_z(z) if z > 0.0 else 0.0
         return k, 1.0 - k
     small = z < 1.0
     piece = _piece(z, _K_SMALL if small else _K_LARGE)
