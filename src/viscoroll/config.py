@@ -1,27 +1,22 @@
 """TOML files: a scene, or the grids of the tables.
 
-A section is read by :func:`_section`: misspelt keys are refused with the nearest allowed one,
-types are checked by msgspec, ranges by what the section describes.
+Misspelt keys and wrong types are refused by :mod:`sections`, ranges by what a section describes.
 """
 
 from __future__ import annotations
 
-import difflib
-import tomllib
-from collections.abc import Iterable
 from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
 from .errors import ConfigError, ParameterError
 from .scene import PRESETS, Cylinder, Scene
+from .sections import as_struct, fault, hint, read, refuse_unknown
 
 if TYPE_CHECKING:
     from .tables import AtlasGrid, LiteralGrid
 
-T = TypeVar("T")
 _SCENES = ("preset", "scene", "cylinder")
 
 
@@ -93,8 +88,8 @@ def read_scene(path: str | PathLike[str]) -> Scene:
         A file that cannot be read, is not TOML, holds none or several of the three, a
         misspelt or missing key, a value of the wrong type or out of its range.
     """
-    content = _read(path)
-    _refuse_unknown(path, "", content, _SCENES)
+    content = read(path)
+    refuse_unknown(path, "", content, _SCENES)
     given = [name for name in _SCENES if name in content]
     if len(given) != 1:
         found = " and ".join(given) or "none"
@@ -103,10 +98,11 @@ def read_scene(path: str | PathLike[str]) -> Scene:
         if "preset" in content:
             return preset(content["preset"])
         if "cylinder" in content:
-            return _section(path, "cylinder", content["cylinder"], Cylinder).scene()
-        return Scene(**msgspec.structs.asdict(_section(path, "scene", content["scene"], SceneSection)))
+            return as_struct(path, "cylinder", content["cylinder"], Cylinder).scene()
+        return Scene(**msgspec.structs.asdict(as_struct(path, "scene", content["scene"], SceneSection)))
     except ParameterError as error:
-        raise ConfigError(path, str(error)) from error
+        section = "" if "preset" in content else given[0]
+        raise fault(path, section, error.name, str(error)) from error
 
 
 def read_grids(path: str | PathLike[str] | None = None) -> dict[str, AtlasGrid | LiteralGrid]:
@@ -122,55 +118,20 @@ def read_grids(path: str | PathLike[str] | None = None) -> dict[str, AtlasGrid |
     """
     from .tables import AtlasGrid, LiteralGrid, spread
 
-    content = {"tables": {}} if path is None else _read(path)
+    content = {"tables": {}} if path is None else read(path)
     if "tables" not in content:
-        raise ConfigError(path, "section [tables] is missing" + _hint("tables", content))
+        raise ConfigError(path, "section [tables] is missing" + hint("tables", content))
     sections = content["tables"]
-    _refuse_unknown(path, "tables", sections, ("atlas", "paper"))
-    atlas = _section(path, "tables.atlas", sections.get("atlas", {}), AtlasGrid)
+    refuse_unknown(path, "tables", sections, ("atlas", "paper"))
+    atlas = as_struct(path, "tables.atlas", sections.get("atlas", {}), AtlasGrid)
     given = sections.get("paper", {})
-    _refuse_unknown(path, "tables.paper", given, _PAPER_DEFAULT)
-    paper = msgspec.structs.asdict(_section(path, "tables.paper", _PAPER_DEFAULT | given, PaperSection))
+    refuse_unknown(path, "tables.paper", given, _PAPER_DEFAULT)
+    paper = msgspec.structs.asdict(as_struct(path, "tables.paper", _PAPER_DEFAULT | given, PaperSection))
     try:
         for name, value in paper.items():
             if isinstance(value, dict):
-                axis = _section(path, f"tables.paper.{name}", value, Spread)
+                axis = as_struct(path, f"tables.paper.{name}", value, Spread)
                 paper[name] = spread(**msgspec.structs.asdict(axis))
         return {"atlas": atlas, "paper": LiteralGrid(**paper)}
     except ParameterError as error:
         raise ConfigError(path, f"[tables.paper] {error}") from error
-
-
-def _read(path: str | PathLike[str]) -> dict[str, Any]:
-    try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
-    except (ValueError, RecursionError) as error:  # tomllib's own error is a ValueError; so is a number of 5000 digits
-        raise ConfigError(path, f"is not TOML ({error})") from error
-
-
-def _section(path: Any, name: str, content: Any, kind: type[T]) -> T:
-    """``content`` of section ``name`` as a ``kind``."""
-    known = list(get_type_hints(kind))
-    _refuse_unknown(path, name, content, known)
-    try:
-        return msgspec.convert(content, kind)
-    except msgspec.ValidationError as error:
-        raise ConfigError(path, f"[{name}] {error}") from error
-
-
-def _refuse_unknown(path: Any, section: str, content: Any, allowed: Iterable[str]) -> None:
-    if not isinstance(content, dict):
-        raise ConfigError(path, f"{section} = {content!r:.40}: must be a section [{section}]")
-    for key in content:
-        if key not in allowed:
-            where, known = f"[{section}] " if section else "", ", ".join(allowed)
-            raise ConfigError(path, f"{where}unknown key {key!r}: must be one of {known}{_hint(key, allowed)}")
-
-
-def _hint(name: str, candidates: Iterable[str]) -> str:
-    near = difflib.get_close_matches(name, candidates, n=1)
-    return f"; did you mean {near[0]!r}?" if near else ""

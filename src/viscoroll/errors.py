@@ -23,6 +23,14 @@ from typing import Any
 class ViscorollError(Exception):
     """Base of every exception that this package raises on purpose."""
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Travels between processes, though its arguments are not those of Exception."""
+        return _again, (type(self), self.args), self.__dict__
+
+
+def _again(kind: type[ViscorollError], arguments: tuple[Any, ...]) -> ViscorollError:
+    return kind.__new__(kind, *arguments)
+
 
 class ParameterError(ViscorollError, ValueError):
     """``name`` has a ``value`` outside what is ``allowed``."""
@@ -44,7 +52,7 @@ class FileProblem(ViscorollError):
     """Something is wrong with the file at ``path``."""
 
     def __init__(self, path: Any, problem: str) -> None:
-        self.path = path
+        self.path, self.problem = path, problem
         super().__init__(f"{path}: {problem}")
 
 

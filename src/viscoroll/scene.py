@@ -29,10 +29,21 @@ def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool
     if given.dtype.kind not in "iuf":
         raise ParameterError(name, f"{value!r:.60}", allowed)
     array = given.astype(np.float64, copy=False)
-    bad = ~np.isfinite(array) | (array <= low if strict else array < low)
-    if bad.any():
+    if not array.size:
+        return array
+    smallest, largest = extent(array)
+    # a NaN compares false; without one, no mask of the size of the array is needed
+    if not ((smallest > low if strict else smallest >= low) and -math.inf < smallest and largest < math.inf):
+        bad = ~(np.isfinite(array) & (array > low if strict else array >= low))
         raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
     return array
+
+
+def extent(array: NDArray[np.float64]) -> tuple[float, float]:
+    """Least and largest element, both NaN if there is one."""
+    if array.ndim == 0:
+        return float(array), float(array)
+    return float(array.min()), float(array.max())
 
 
 def number(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> float:
@@ -145,6 +156,28 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
         raise ParameterError("shapes", shapes, "broadcastable against each other") from None
 
 
+def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
+    """E' of Sect. 3.1, Pa."""
+    return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
+
+
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+    """l0 of Sect. 3.1, m."""
+    return np.sqrt(32.0 * R * load / E_prime)
+
+
+def scene_from_si(
+    R: Any, m: Any, E: Any, nu: Any, T_epsilon: Any, T_sigma: Any, mu: Any, j: Any, g: Any, plane: str
+) -> Scene:
+    """The scene of a :class:`Cylinder`, or of many: its fields, unchecked, numbers or arrays."""
+    R, m, T_epsilon, T_sigma = (np.asarray(value, np.float64)[()] for value in (R, m, T_epsilon, T_sigma))
+    # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
+    with np.errstate(all="ignore"):
+        l0 = contact_length(R, m * g, effective_modulus(E, nu, plane))
+        alpha, kappa, gamma = T_epsilon / T_sigma, R / l0, m * g * T_epsilon**2 / (m * R)
+    return Scene(alpha, kappa, mu, gamma, j)
+
+
 @dataclass(frozen=True)
 class Cylinder:
     """A viscoelastic cylinder on a half-space of the same material, in SI units.
@@ -196,22 +229,16 @@ class Cylinder:
     @property
     def E_prime(self) -> float:
         """E' = pi E/(1 - nu^2) in plane strain, pi E in plane stress, Pa (Sect. 3.1)."""
-        return math.pi * self.E / (1.0 - self.nu**2 if self.plane == "strain" else 1.0)
+        return effective_modulus(self.E, self.nu, self.plane)
 
     @property
     def l0(self) -> float:
         """Contact length at rest, sqrt(32 R P/E'), m."""
-        return math.sqrt(32.0 * self.R * self.load / self.E_prime)
+        return float(contact_length(self.R, self.load, self.E_prime))
 
     def scene(self) -> Scene:
         """The dimensionless scene: alpha, kappa, gamma of Sect. 3.1 and Eq. (4)."""
-        return Scene(
-            alpha=self.T_epsilon / self.T_sigma,
-            kappa=self.R / self.l0,
-            mu=self.mu,
-            gamma=self.load * self.T_epsilon**2 / (self.m * self.R),
-            j=self.j,
-        )
+        return scene_from_si(**{f.name: getattr(self, f.name) for f in fields(self)})
 
     def validity(self, V: ArrayLike, density: float | None = None) -> Validity:
         """Which assumptions of the model the contact at (dimensionless) speed V strains.
@@ -235,8 +262,10 @@ class Cylinder:
         """
         ratio = None
         if density is not None:
-            wave = math.sqrt(self.E / (2.0 * (1.0 + self.nu) * number("density", density, low=0.0, strict=True)))
-            ratio = np.abs(self.V_to_si(checked("V", V))) / wave
+            # in this order V = 0 gives 0 at any density; a ratio beyond the doubles is infinite
+            softness, weight = 2.0 * (1.0 + self.nu) / self.E, number("density", density, low=0.0, strict=True)
+            with np.errstate(over="ignore"):
+                ratio = np.abs(self.V_to_si(checked("V", V))) * math.sqrt(softness) * math.sqrt(weight)
         long = "a long cylinder, or one held between walls (plane strain)"
         return self.scene()._validity(V, ratio, long if self.plane == "strain" else "a thin disc (plane stress)")
 

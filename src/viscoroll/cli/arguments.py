@@ -139,28 +139,34 @@ def add_creep_options(parser: ArgumentParser, value: Callable[[str], Any]) -> No
     parser.add_argument("--omega", type=value, help="angular velocity; this or --delta")
 
 
-def add_time_options(parser: ArgumentParser, end: str) -> None:
+def add_time_options(parser: ArgumentParser, end: str, required: bool = True) -> None:
     """One of --t-end and --times, and the controls of a motion."""
-    times = parser.add_mutually_exclusive_group(required=True)
+    times = parser.add_mutually_exclusive_group(required=required)
     times.add_argument("--t-end", type=number, dest="t", metavar="T", help=f"end time; {end}")
     times.add_argument("--times", type=numbers, dest="t", metavar="TIMES", help=f"output times: {NUMBERS}")
     parser.add_argument("--rtol", type=number, default=1e-8, help="relative tolerance in [1e-12, 1e-2] (default 1e-8)")
     parser.add_argument("--rest", type=number, help="end a motion where max(|V|, |omega|) falls below this")
 
 
-def add_output_option(parser: ArgumentParser, *suffixes: str, required: bool = False) -> None:
-    """-o FILE with one of ``suffixes``; what cannot be written is refused before any work."""
+def output_path(*suffixes: str) -> Callable[[str], Path]:
+    """A file with one of ``suffixes``; what cannot be written is refused before any work."""
 
     def path(text: str) -> Path:
         if Path(text).suffix not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
         if not Path(text).parent.is_dir():
             raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
-        if Path(text).is_dir():
+        if Path(text).is_dir() and Path(text).suffix != ".zarr":
             raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
         return Path(text)
 
+    return path
+
+
+def add_output_option(parser: ArgumentParser, *suffixes: str, required: bool = False) -> None:
+    """-o FILE with one of ``suffixes``."""
     where = "" if required else "; without it: text to standard output"
     parser.add_argument(
-        "-o", dest="output", metavar="FILE", type=path, required=required, help=f"{' or '.join(suffixes)}{where}"
-    )
+        "-o", dest="output", metavar="FILE", type=output_path(*suffixes), required=required,
+        help=f"{' or '.join(suffixes)}{where}",
+    )  # fmt: skip

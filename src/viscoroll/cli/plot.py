@@ -15,11 +15,12 @@ def add_commands(commands: Any) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "plot",
-        help="one of the figures",
-        description="Draw one of the figures of viscoroll.figures; a wrong name gets the list of names.",
+        help="one of the figures, or the results of a run",
+        description="Draw one of the figures of viscoroll.figures (a wrong name gets the list of names), or the\n"
+        "summaries of a results store: quantile bands and histograms.",
         epilog="example:\n  viscoroll plot figure-5 -o figure-5.png",
     )
-    parser.add_argument("what", metavar="WHAT", help="name of the figure")
+    parser.add_argument("what", metavar="WHAT", help="name of the figure, or STORE.zarr")
     add_output_option(parser, *FORMATS, required=True)
     parser.set_defaults(run=_plot)
 
@@ -27,7 +28,13 @@ def add_commands(commands: Any) -> None:
 def _plot(arguments: Namespace) -> int:
     from ..figures import FIGURES, save
 
+    if arguments.what.endswith(".zarr"):
+        from ..figures import run_distributions
+        from ..runs import open_summaries
+
+        save(run_distributions(open_summaries(arguments.what)), arguments.output)
+        return 0
     if arguments.what not in FIGURES:
-        raise ParameterError("plot", repr(arguments.what), "out of " + ", ".join(FIGURES))
+        raise ParameterError("plot", repr(arguments.what), f"out of {', '.join(FIGURES)}, or a store STORE.zarr")
     save(FIGURES[arguments.what](), arguments.output)
     return 0

@@ -41,16 +41,24 @@ def _add_build(group: Any) -> None:
 def _add_export(group: Any) -> None:
     parser = group.add_parser(
         "export",
-        help="a table over (V, delta, alpha) at any kappa and mu",
-        description=f"Build a table over (V, delta, alpha) at one kappa and mu; an axis is\n{NUMBERS}.",
-        epilog="example:\n  viscoroll tables export --kappa 29.1 --mu 0.3 --V 1e-3:2:40:log --delta -0.01:0.01:41"
-        " --alpha 1,11 -o steel.nc",
+        help="a table in the format of another program",
+        description="Write a table file, or one made now over (V, delta, alpha) at one kappa and mu, in the format of\n"
+        f"another program.  An axis is {NUMBERS}.",
+        epilog="example:\n  viscoroll tables export data/tables/paper.nc --format modelica --alpha 11 -o q.txt",
+    )
+    parser.add_argument("file", metavar="FILE", nargs="?", help="table file; without it: give all of the options below")
+    parser.add_argument(
+        "--format", default="netcdf4", help="netcdf4 (default), netcdf3, csv, modelica (.txt) or matlab (.mat)"
     )
     for name in ("--kappa", "--mu"):
-        parser.add_argument(name, type=number, required=True)
-    for name, meaning in (("--V", "speeds of the axis, > 0"), ("--delta", "creep ratios"), ("--alpha", "alphas, >= 1")):
-        parser.add_argument(name, type=numbers, required=True, help=f"{meaning}, increasing")
-    add_output_option(parser, ".nc", required=True)
+        parser.add_argument(name, type=number)
+    for name, meaning in (
+        ("--V", "speeds of the axis, > 0"),
+        ("--delta", "creep ratios"),
+        ("--alpha", "alphas, >= 1; of a FILE: those to keep (default all)"),
+    ):
+        parser.add_argument(name, type=numbers, help=meaning)
+    add_output_option(parser, ".nc", ".csv", ".txt", ".mat", required=True)
     parser.set_defaults(run=_export)
 
 
@@ -98,9 +106,20 @@ def _build(arguments: Namespace) -> int:
 
 def _export(arguments: Namespace) -> int:
     from .. import tables
+    from ..errors import ParameterError
 
+    tables.check_format(arguments.format, arguments.output)
     axes = {name: getattr(arguments, name) for name in ("kappa", "mu", "V", "delta", "alpha")}
-    tables.save(tables.build(tables.LiteralGrid(**axes), progress=sys.stderr.isatty()), arguments.output)
+    given = {name for name, value in axes.items() if value is not None}
+    if arguments.file is None and given == axes.keys():
+        table = tables.build(tables.LiteralGrid(**axes), progress=sys.stderr.isatty())
+        tables.export(table, arguments.output, arguments.format)
+    elif arguments.file is not None and given <= {"alpha"}:
+        tables.export(tables.load(arguments.file), arguments.output, arguments.format, alpha=arguments.alpha)
+    else:
+        found = ["FILE"] * (arguments.file is not None) + [f"--{name}" for name in axes if name in given]
+        allowed = "FILE, with or without --alpha, or all of --kappa, --mu, --V, --delta and --alpha"
+        raise ParameterError("table", ", ".join(found) or "nothing", allowed)
     return 0
 
 

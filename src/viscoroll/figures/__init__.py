@@ -19,13 +19,15 @@ from .distribution import ensemble_distribution
 from .law import figure_2, figure_3
 from .maps import atlas_errors
 from .portrait import phase_portrait
+from .run_distributions import run_distributions
+from .sensitivity import sobol_bars
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
     "FIGURES", "atlas_errors", "ensemble_distribution", "figure_2", "figure_3", "figure_5", "figure_6", "figure_7",
-    "phase_portrait", "save",
+    "phase_portrait", "run_distributions", "save", "sobol_bars",
 ]  # fmt: skip
 
 FIGURES: dict[str, Callable[..., Figure]] = {

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import flattened
-from ..scene import Scene, broadcast_shape
-from .checks import controls, output_times, start_speeds
+from ..scene import Scene, broadcast_shape, extent, number
+from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .flow import Answer, FlowMap, ask, flow_map
 
 if TYPE_CHECKING:
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 FIELDS = ("V", "omega", "x", "angle", "delta", "regime")
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
-_BLOCK = 64
+#: motions a block: where all are integrated, and where most come from a map
+_BLOCK, _MAPPED_BLOCK = 64, 1 << 14
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating a thousand
 _FLOW_PAYS = 2000
 
@@ -95,6 +96,7 @@ def ensemble(
     rest: float | None = None,
     fields: Iterable[str] = ("V", "omega", "x"),
     max_steps: int = 100_000,
+    speed: float | None = None,
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
@@ -112,6 +114,9 @@ def ensemble(
         all others are integrated.  The result says which, and the map's error.
     rtol, rest, max_steps : as for :func:`roll`.
     fields : out of ``V omega x angle delta regime``; only these are kept in memory.
+    speed : highest speed that the flow map is made for; default the largest of the starts.
+        Where a large ensemble is rolled in several calls, one number for all makes the
+        bits independent of how it is cut.
     threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
     progress : draw a progress bar if it takes longer than a second.
 
@@ -130,6 +135,9 @@ def ensemble(
     The flow map has no entry for scenes in which full slip returns or rolling resistance can
     hold the sliding cylinder (mu below about M/2), for alpha = 1, and for motions that stick
     at speeds 10^6 times below the highest (``tests/test_flow.py``).
+
+    Beside float64 input and its result a call takes a few megabytes, whatever the number of
+    motions (``tests/test_hostile.py``).
     """
     times = output_times(t)
     names = (fields,) if isinstance(fields, str) else tuple(fields)
@@ -151,14 +159,14 @@ def ensemble(
     rows = tuple(FIELDS.index(name) for name in names)
     bar = "motions" if progress else None
     use_map = method == "flow" or (method == "auto" and not scene.shape and count >= _FLOW_PAYS)
-    chosen = _map_of(scene, flat[5], flat[6], threads) if use_map else None
+    chosen = _map_of(scene, flat[5], flat[6], speed, threads) if use_map else None
     error = np.nan if chosen is None else chosen.stated_error(not {2, 3}.isdisjoint(rows))
     if chosen is not None and error <= rtol:
         answer = ask(chosen, scene.gamma, threshold, flat[5], flat[6], times, rows, threads=threads, progress=bar)
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    steps = _integrate_others(answer, flat, times, rtol, threshold, max_steps, rows, threads, bar)
+    steps = _integrate_others(answer, flat, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar)
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
@@ -167,34 +175,33 @@ def ensemble(
     )  # fmt: skip
 
 
-def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, threads: int | None) -> FlowMap | None:
+def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, threads: int | None) -> FlowMap | None:
     """The flow map for these starts; None where all are at rest."""
-    fastest = max(np.abs(V0).max(initial=0.0), np.abs(omega0).max(initial=0.0))
-    return flow_map(scene, float(fastest), threads=threads) if fastest > 0.0 else None
+    if speed is None:
+        speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
+    elif not 0.0 < number("speed", speed) <= SPEED_RANGE[1]:
+        raise ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]")
+    return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
 def _integrate_others(
     answer: Answer, flat: list[NDArray], times: NDArray, rtol: float, rest: float, max_steps: int,
-    rows: tuple[int, ...], threads: int | None, bar: str | None,
+    rows: tuple[int, ...], mapped: bool, threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
-    """Integrate the motions without an answer, into it; returns the steps of each."""
+    """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each."""
     steps = np.zeros(answer.status.size, dtype=np.int64)
-    left = np.flatnonzero(answer.status < 0)
-    if not left.size:
-        return steps
-    some = left.size < answer.status.size
-    inputs = [flattened(array[left], left.shape) if some and array.size > 1 else array for array in flat]
-    out = np.empty((len(rows), left.size, times.size)) if some else answer.out
-    info = np.empty((left.size, 5))
 
     def work(start: int, stop: int) -> None:
-        from ..kernels.motion_loop import motion_loop
+        from ..kernels.motion_loop import INFO, motion_loop
 
-        motion_loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, start, stop)
-
-    run_blocks(work, left.size, _BLOCK, threads=threads, progress=bar)
-    if some:
+        left = start + np.flatnonzero(answer.status[start:stop] < 0)
+        if not left.size:
+            return
+        inputs = [flattened(array[left], left.shape) if array.size > 1 else array for array in flat]
+        out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
+        motion_loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
         answer.out[:, left] = out
-    answer.status[left], steps[left], answer.switches[left] = info[:, 0], info[:, 1], info[:, 2]
-    answer.onset[left], answer.rest[left] = info[:, 3], info[:, 4]
+        answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
+
+    run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
     return steps

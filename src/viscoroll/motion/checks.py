@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import ParameterError
-from ..scene import broadcast_shape, checked
+from ..scene import broadcast_shape, checked, extent
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)
@@ -61,14 +61,13 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[NDArray[np.float64],
     V, omega = checked("V0", V0), checked("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):
-        if (np.abs(array) > SPEED_RANGE[1]).any():
-            raise ParameterError(name, _largest(array), f"at most {SPEED_RANGE[1]:g} in size")
-    larger = np.maximum(np.abs(V), np.abs(omega))
-    tiny = larger[(larger > 0.0) & (larger < SPEED_RANGE[0])]
-    if tiny.size:
-        raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {SPEED_RANGE[0]:g}")
+        fastest = max(extent(array), key=abs) if array.size else 0.0
+        if abs(fastest) > SPEED_RANGE[1]:
+            raise ParameterError(name, fastest, f"at most {SPEED_RANGE[1]:g} in size")
+    # by parts, whose size does not depend on that of the arrays
+    for V_part, omega_part in np.nditer((V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16):
+        larger = np.maximum(np.abs(V_part), np.abs(omega_part))
+        tiny = larger[(larger > 0.0) & (larger < SPEED_RANGE[0])]
+        if tiny.size:
+            raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {SPEED_RANGE[0]:g}")
     return V, omega
-
-
-def _largest(array: NDArray[np.float64]) -> float:
-    return array.flat[np.abs(array).argmax()]

@@ -21,9 +21,34 @@ _REGIME = {
     "flag_values": np.array([0, 1, 2], dtype=np.int8),
     "flag_meanings": "full_slip partial_slip rest",
 }
+_OWN: dict[str, dict[str, Any]] = {
+    "regime": _REGIME,
+    "rest_time": {"long_name": "time at which the rest threshold was crossed", "units": "1"},
+    "status": {
+        "long_name": "how the motion ended",
+        "flag_values": np.array([int(s) for s in MOTION_STATUS], dtype=np.int8),
+        "flag_meanings": " ".join(s.name.lower() for s in MOTION_STATUS),
+    },
+    "flow": {
+        "long_name": "source of the motion",
+        "flag_values": np.array([0, 1], dtype=np.int8),
+        "flag_meanings": "integrated flow_map",
+    },
+}
+_STARTS = {"V0": "V", "omega0": "omega"}
 
 
-def attributes(name: str) -> dict[str, str]:
+def column_attributes(name: str) -> dict[str, Any]:
+    """Attributes of a field, a start or another column of an ensemble."""
+    if name in _OWN:
+        return dict(_OWN[name])
+    if name in _STARTS:
+        found = attributes(_STARTS[name])
+        return found | {"long_name": "initial " + found["long_name"]}
+    return attributes(name)
+
+
+def attributes(name: str) -> dict[str, Any]:
     """long_name, units, symbol and equation of a quantity."""
     symbol = SYMBOLS[name]
     return {"long_name": symbol.long_name, "units": symbol.units, "symbol": symbol.latex, "equation": symbol.equation}
@@ -66,27 +91,12 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
     }
     if result.regime is not None:
         data["regime"] = xr.Variable(dims, result.regime.astype(np.int8), _REGIME)
-    for name, start in (("V0", "V"), ("omega0", "omega")):
-        data[name] = xr.Variable("motion", getattr(result, name), attributes(start))
-        data[name].attrs["long_name"] = "initial " + data[name].attrs["long_name"]
     for name in _PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
         data[name] = _variable(("motion",) if value.ndim else (), name, value)
-    data["onset_time"] = _variable(("motion",), "onset_time", result.onset_time)
-    data["rest_time"] = xr.Variable(
-        "motion", result.rest_time, {"long_name": "time at which the rest threshold was crossed", "units": "1"}
-    )
-    data["status"] = xr.Variable(
-        "motion",
-        result.status,
-        {
-            "long_name": "how the motion ended",
-            "flag_values": np.array([int(s) for s in MOTION_STATUS], dtype=np.int8),
-            "flag_meanings": " ".join(s.name.lower() for s in MOTION_STATUS),
-        },
-    )
-    flags = {"flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "integrated flow_map"}
-    data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), {"long_name": "source of the motion"} | flags)
+    for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
+        data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
+    data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
     attrs = _globals("Ensemble of motions") | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
 

@@ -8,7 +8,9 @@ highest speed, which is the next power of 16 (times a constant) above the speeds
 from __future__ import annotations
 
 import hashlib
+import io
 import math
+import warnings
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..blocks import run_blocks
 from ..errors import OutputError
-from ..files import replacing
+from ..files import seal, seal_holds, write_bytes
 from ..rolling_contact import flattened
 from ..scene import Scene
 
@@ -79,8 +81,8 @@ def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
 def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowMap:
     """The map of a scene for speeds up to ``speed`` > 0: from memory, from disk, or built.
 
-    A map on disk that is damaged is built again; where the disk cannot be written the map
-    is kept in memory only.
+    A map on disk that is damaged is built again, with a RuntimeWarning; where the disk cannot
+    be written the map is kept in memory only.
     """
     parameters, octave = asked(scene, speed)
     key = (*parameters, octave)
@@ -106,33 +108,49 @@ def _folder() -> Path:
 
 
 def _path(parameters: tuple[float, ...], octave: int) -> Path:
-    name = hashlib.sha256(np.array([*parameters, octave]).tobytes()).hexdigest()[:20]
+    name = hashlib.sha256(b"sealed" + np.array([*parameters, octave]).tobytes()).hexdigest()[:20]
     return _folder() / f"{name}.npz"
 
 
 def _load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    try:
+        found = _parsed(content, parameters)
+    except Exception as error:
+        warnings.warn(f"{path}: flow map is damaged ({error}); it is built anew", RuntimeWarning, stacklevel=2)
+        return None
+    with suppress(OSError):  # a folder that is read-only
+        path.touch()
+    return found
+
+
+def _parsed(content: bytes, parameters: tuple[float, ...]) -> FlowMap:
     from ..kernels.flow_layout import SIZE
 
-    try:
-        with path.open("rb") as file, np.load(file) as data:  # every member has a CRC, which reading checks
-            found = FlowMap(
-                tuple(data["parameters"].tolist()), int(data["first"]), data["table"],
-                float(data["error"]), float(data["path_error"]), str(data["problem"]),
-            )  # fmt: skip
-        path.touch()
-    except Exception:
-        return None
-    return found if found.parameters == parameters and found.table.shape == (SIZE,) else None
+    if not seal_holds(content):
+        raise ValueError("its bytes differ from the SHA-256 at their end")
+    with np.load(io.BytesIO(content)) as data:
+        found = FlowMap(
+            tuple(data["parameters"].tolist()), int(data["first"]), data["table"],
+            float(data["error"]), float(data["path_error"]), str(data["problem"]),
+        )  # fmt: skip
+    if found.parameters != parameters or found.table.shape != (SIZE,):
+        raise ValueError("it is that of another scene")
+    return found
 
 
 def _save(made: FlowMap, path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as temporary:
-            np.savez(
-                temporary, parameters=made.parameters, first=made.first, table=made.table,
-                error=made.error, path_error=made.path_error, problem=made.problem,
-            )  # fmt: skip
+        content = io.BytesIO()
+        np.savez(
+            content, parameters=made.parameters, first=made.first, table=made.table,
+            error=made.error, path_error=made.path_error, problem=made.problem,
+        )  # fmt: skip
+        write_bytes(path, seal(content.getvalue()))
         oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
         for file in oldest[:-_KEPT]:
             file.unlink()

@@ -1,0 +1,120 @@
+"""``viscoroll ensemble RUN.toml``, ``... verify STORE`` and ``... export STORE``."""
+
+from __future__ import annotations
+
+import sys
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from .output import Sheet
+
+#: Options of a run by a run file, with what they are if not given.
+_OPTIONS = {"cluster": None, "threads": None, "dry_run": False}
+#: What a run file says itself, with what the options are if not given.
+_OF_THE_FILE = {
+    "n": None, "seed": 0, "design": "random", "method": "auto", "V0": None, "omega0": None, "t": None, "rtol": 1e-8,
+    "rest": None, "preset": None, "scene": None, "alpha": None, "kappa": None, "mu": None, "gamma": None, "j": None,
+}  # fmt: skip
+
+
+def add_options(parser: ArgumentParser) -> None:
+    """What goes with a run file."""
+    from .arguments import count
+
+    group = parser.add_argument_group("with a run file")
+    group.add_argument("--dry-run", action="store_true", help="state size, memory and time, from a short trial")
+    group.add_argument(
+        "--cluster", metavar="WHERE", help="local (processes), or tcp://host:port of a dask scheduler; default: threads"
+    )
+    group.add_argument("--threads", type=count, help="threads, or local processes; default: as many as there are cores")
+
+
+def refuse_options(arguments: Namespace) -> None:
+    """Refuse what goes with a run file only."""
+    for key, default in _OPTIONS.items():
+        if getattr(arguments, key) != default:
+            raise ParameterError(f"--{key.replace('_', '-')}", getattr(arguments, key), "given with a run file only")
+    if arguments.output is not None and arguments.output.suffix == ".zarr":
+        raise ParameterError("-o", arguments.output, "a .txt, .csv or .nc file without a run file")
+
+
+def run(arguments: Namespace) -> int:
+    """Do what the words after ``ensemble`` say."""
+    for key, default in _OF_THE_FILE.items():
+        if getattr(arguments, key) != default:
+            raise ParameterError(key, getattr(arguments, key), "left out: the run file says it")
+    words = arguments.what
+    if words[0] in ("verify", "export"):
+        refuse_options(arguments)
+        if len(words) != 2:
+            raise ParameterError("ensemble", " ".join(words), f"{words[0]} STORE.zarr")
+        return _verify(words[1]) if words[0] == "verify" else _export(words[1], arguments.output)
+    if len(words) != 1:
+        raise ParameterError("ensemble", " ".join(words), "one run file, verify STORE.zarr or export STORE.zarr")
+    return _run(words[0], arguments)
+
+
+def _run(path: str, arguments: Namespace) -> int:
+    from ..runs import estimate, open_summaries, read_run, run_ensemble
+
+    asked = read_run(path)
+    if arguments.dry_run:
+        print(estimate(asked, arguments.threads))
+        return 0
+    if arguments.output is None or arguments.output.suffix != ".zarr":
+        raise ParameterError("-o", arguments.output, "a folder STORE.zarr for the results (or give --dry-run)")
+    made = run_ensemble(
+        asked, arguments.output, cluster=arguments.cluster, threads=arguments.threads, progress=sys.stderr.isatty()
+    )
+    if made < asked.blocks:
+        print(f"{asked.blocks - made} of {asked.blocks} blocks were there and whole")
+    print(_sheet(open_summaries(arguments.output)).text(), end="")
+    return 0
+
+
+def _verify(store: str) -> int:
+    from ..runs import verify
+
+    verdict = verify(store)
+    print(f"{store}: {verdict}")
+    return 0 if verdict.ok else 1
+
+
+def _export(store: str, output: Path | None) -> int:
+    from ..runs import export_netcdf
+
+    if output is None or output.suffix != ".nc":
+        raise ParameterError("-o", output, "a file FILE.nc")
+    export_netcdf(store, output)
+    return 0
+
+
+def _sheet(summary: xr.Dataset) -> Sheet:
+    """Quantiles of every quantity: a row a time."""
+    import numpy as np
+
+    from ..errors import MOTION_STATUS, MotionStatus
+    from .output import Sheet
+
+    heading = ["Ensemble of {motions} motions: design {design}, seed {seed}".format(**summary.attrs)]
+    counts = zip(summary["status"].values, summary["ended"].values, strict=True)
+    heading += [f"{count} motions {MOTION_STATUS[MotionStatus(code)]}" for code, count in counts if count]
+    names = [str(name).removesuffix("_mean") for name in summary if str(name).endswith("_mean")]
+    size = {name: summary[f"{name}_mean"].size for name in names}
+    shown = [f"{t:.10g}" for t in summary["t"].values]
+    times = {name: shown if summary[f"{name}_mean"].ndim else [""] for name in names}
+    columns = {
+        "quantity": np.repeat(names, [size[name] for name in names]),
+        "t": np.concatenate([times[name] for name in names]),
+    }
+    for part in ("mean", "std"):
+        columns[part] = np.concatenate([summary[f"{name}_{part}"].values.ravel() for name in names])
+    for n, level in enumerate(summary["quantile"].values):
+        columns[f"{level:.6g}"] = np.concatenate([summary[f"{name}_quantiles"].values[n].ravel() for name in names])
+    return Sheet(tuple(heading), {}, columns)

@@ -1,0 +1,90 @@
+"""The summaries of a run: quantile bands over time, and histograms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..symbols import SYMBOLS, label
+from .style import THIN, new_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_GREYS = ("0.85", "0.65", "0.45")
+_BARS = 80
+
+
+def run_distributions(summaries: xr.Dataset) -> Figure:
+    """A row a quantity: quantile bands over t if there are several times, and the histogram at the last.
+
+    Parameters
+    ----------
+    summaries : of ``viscoroll.runs.open_summaries``.
+    """
+    names = [str(name).removesuffix("_histogram") for name in summaries if str(name).endswith("_histogram")]
+    title = f"{summaries.attrs['motions']} motions, {summaries.attrs['design']}, seed {summaries.attrs['seed']}"
+    figure, rows = new_figure(title, len(names), 2, (9.6, 2.8 * len(names)), squeeze=False)
+    for name, (left, right) in zip(names, rows, strict=True):
+        if summaries[f"{name}_mean"].size > 1:
+            _bands(left, summaries, name)
+        else:
+            _levels(left, summaries, name)
+        _bars(right, summaries, name)
+    return figure
+
+
+def _label(name: str) -> str:
+    return label(name) if name in SYMBOLS else name.replace("_", " ")
+
+
+def _bands(axes: Any, summaries: xr.Dataset, name: str) -> None:
+    """Quantiles over time, pairs of them as bands, a middle one as a line."""
+    t, levels, values = summaries["t"].values, summaries["quantile"].values, summaries[f"{name}_quantiles"].values
+    for n in range(levels.size // 2):
+        text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
+        grey = _GREYS[min(n, len(_GREYS) - 1)]
+        axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
+    if levels.size % 2:
+        middle = levels.size // 2
+        axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
+    axes.axhline(0.0, **THIN)
+    axes.set(xlabel=label("t"), ylabel=_label(name), xlim=(t[0], t[-1]))
+    axes.legend(frameon=False, fontsize="small")
+
+
+def _levels(axes: Any, summaries: xr.Dataset, name: str) -> None:
+    """The quantiles of a quantity that has one value a motion."""
+    values = summaries[f"{name}_quantiles"].values.ravel()
+    axes.plot(values, summaries["quantile"].values, "o-", color="black")
+    axes.set(xlabel=_label(name), ylabel="share of motions below", ylim=(0.0, 1.0))
+
+
+def _bars(axes: Any, summaries: xr.Dataset, name: str) -> None:
+    """The counts at the last time, gathered into even bars over all but a thousandth at each end."""
+    counts = summaries[f"{name}_histogram"].values
+    counts = counts[:, -1] if counts.ndim == 2 else counts
+    low, high = summaries[f"{name}_bin_low"].values, summaries[f"{name}_bin_high"].values
+    edges, bars = even_bars(low, high, counts)
+    axes.stairs(bars, edges, fill=True, color="0.6")
+    outside = int(counts.sum() - round(bars.sum()))
+    at = "" if summaries[f"{name}_mean"].ndim == 0 else f" at t = {summaries['t'].values[-1]:g}"
+    axes.set(xlabel=_label(name) + at, ylabel=f"motions, of {counts.sum()}")
+    if outside:
+        axes.set_title(f"{outside} more beyond the ends", fontsize="small")
+
+
+def even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
+    """(edges, counts) of even bars: a bin that lies in several is shared out by its width."""
+    reached = np.cumsum(counts) / max(counts.sum(), 1)
+    first, last = np.searchsorted(reached, [1e-3, 1.0 - 1e-3])
+    last = min(last, counts.size - 1)
+    edges = np.linspace(low[first], high[last], _BARS + 1)
+    ends = np.unique(np.concatenate([low, high]))
+    below = np.zeros(ends.size)
+    below[np.searchsorted(ends, high)] = np.cumsum(counts)
+    below = np.maximum.accumulate(below)
+    return edges, np.diff(np.interp(edges, ends, below))

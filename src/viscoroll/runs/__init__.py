@@ -1,0 +1,15 @@
+"""Ensembles from a run file: uncertain inputs -> blocks -> a results store that survives any end.
+
+Read in this order: :mod:`runfile` (with :mod:`sources` and :mod:`inputs`), :mod:`draws`,
+:mod:`evaluate`, :mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and
+:mod:`zarr_files`), :mod:`engine`, then :mod:`estimate`, :mod:`verify` and :mod:`export`.
+"""
+
+from .engine import run_ensemble
+from .estimate import estimate
+from .evaluate import roll_inputs
+from .export import export_netcdf
+from .runfile import Run, read_run
+from .verify import open_summaries, verify
+
+__all__ = ["Run", "estimate", "export_netcdf", "open_summaries", "read_run", "roll_inputs", "run_ensemble", "verify"]

@@ -1,0 +1,167 @@
+"""Work on the blocks of a run: on threads of this process, or on a dask cluster.
+
+One task is one block.  As many tasks are given out as keep the workers busy, so neither this process
+nor a scheduler holds more than a few, however many blocks there are.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ..blocks import thread_count
+from ..errors import OutputError, ParameterError, ViscorollError
+from .runfile import Run
+from .store import Store, locked
+
+#: tasks given out, a worker: one to work on and one to go on with
+_AHEAD = 2
+#: how often dask gives a task to another worker when one dies
+_RETRIES = 3
+#: dask's workers give every freed array back to the system, which costs a block a third more time, and watch
+#: themselves a hundred times a second; glibc takes no larger second value
+_CALM = {
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 2**30,
+    "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": 2**25,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "500ms",
+}
+
+
+def run_ensemble(
+    run: Run, path: str | PathLike[str], *, cluster: str | None = None, threads: int | None = None,
+    progress: bool = False,
+) -> int:  # fmt: skip
+    """Work on all blocks that the store does not hold yet, then write the summaries.  Returns how many those were.
+
+    After an end of any kind (a kill, a full disk, a damaged file) the same call goes on: blocks
+    that are there are read and compared with their SHA-256, the others are made again.
+
+    Parameters
+    ----------
+    run : see :func:`read_run`.
+    path : folder of the results, made if there is none.
+    cluster : None: threads of this process.  "local": processes of this machine, or
+        "tcp://host:port": a running dask scheduler, whose workers see ``path`` on a shared disk.
+    threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the cores available.
+    progress : draw a bar with rate and time left.
+
+    Raises
+    ------
+    OutputError
+        The folder holds something else or cannot be written, another process writes to it, or
+        the cluster went away.
+    ParameterError
+        An unknown cluster, dask not installed, or inputs that a motion does not allow.
+    """
+    store = Store(Path(path).absolute(), run)
+    with locked(store.root):
+        store.begin()
+        with _executor(cluster, threads) as (pool, workers, given), _bar(run, progress) as advance:
+            made = 0
+            for motions in _results(store, pool, workers, given, advance):
+                made += 1
+                advance(motions)
+        store.end()
+    return made
+
+
+def _results(
+    store: Store, pool: Executor, workers: int, given: Callable[[Store], Any], advance: Callable[..., Any]
+) -> Iterator[int]:
+    """Give out the missing blocks, and yield the motions of each that is done."""
+    running: set[Future[int]] = set()
+    known, shared = 0, given(store)
+    try:
+        for block in store.missing():
+            start = store.run.edges(block)[0]
+            advance(start - known, old=True)
+            known = store.run.edges(block)[1]
+            running.add(pool.submit(work_block, shared, block))
+            if len(running) >= _AHEAD * workers:
+                done, running = wait(running, return_when=FIRST_COMPLETED)
+                yield from (future.result() for future in done)
+        advance(store.run.settings.n - known, old=True)
+        while running:
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            yield from (future.result() for future in done)
+    finally:
+        for future in running:
+            future.cancel()
+
+
+def work_block(store: Store, block: int) -> int:
+    """The task of a worker."""
+    return store.work(block)
+
+
+@contextmanager
+def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Callable[[Store], Any]]]:
+    """(executor, workers, how a store is handed to tasks)."""
+    if cluster is None:
+        with ThreadPoolExecutor(thread_count(threads)) as pool:
+            yield pool, thread_count(threads), lambda store: store
+        return
+    if cluster != "local" and not cluster.startswith(("tcp://", "tls://")):
+        raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
+    try:
+        import distributed
+    except ImportError:
+        raise ParameterError("cluster", repr(cluster), "left out, or: pip install 'viscoroll[cluster]'") from None
+    try:
+        with _silent("distributed", "distributed.client"), _client(distributed, cluster, threads) as client:
+            workers = sum(client.nthreads().values())
+            if not workers:
+                raise OutputError(cluster, "this cluster has no workers")
+            with client.get_executor(pure=False, retries=_RETRIES) as pool:
+                yield pool, workers, lambda store: client.scatter(store, broadcast=True)
+    except ViscorollError:
+        raise
+    except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
+        text = " ".join((str(error) or type(error).__name__).split())
+        raise OutputError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
+
+
+def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
+    if cluster != "local":
+        return distributed.Client(cluster, timeout=10)
+    import dask
+
+    with dask.config.set(_CALM):
+        return distributed.Client(
+            n_workers=thread_count(threads), threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+        )
+
+
+@contextmanager
+def _silent(*names: str) -> Iterator[None]:
+    """No log lines and tracebacks of these: what went wrong is raised."""
+    loggers = [logging.getLogger(name) for name in names]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
+
+
+@contextmanager
+def _bar(run: Run, progress: bool) -> Iterator[Callable[..., Any]]:
+    """A function to call with numbers of motions; those found done (``old``) do not count in the rate."""
+    from tqdm import tqdm
+
+    with tqdm(total=run.settings.n, unit=" motions", unit_scale=True, disable=not progress, smoothing=0.05) as bar:
+
+        def advance(motions: int, old: bool = False) -> None:
+            if old and progress:  # a bar that is not drawn has no start
+                bar.initial += motions
+            bar.update(motions)
+
+        yield advance

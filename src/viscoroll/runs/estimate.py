@@ -1,0 +1,72 @@
+"""What a run will take, from a short trial of it: nothing is written."""
+
+from __future__ import annotations
+
+import resource
+import time
+from dataclasses import dataclass, replace
+
+import msgspec
+
+from ..blocks import thread_count
+from . import zarr_files
+from .evaluate import roll_block
+from .records import Record, encoded
+from .runfile import Run
+from .store import columns_of
+from .summaries import summarise
+
+#: motions of the trial, mapped and integrated: some tenths of a second
+_TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Size, memory and time of a run; ``trial`` motions were rolled to tell."""
+
+    motions: int
+    blocks: int
+    block: int
+    method: str
+    workers: int
+    trial: int
+    seconds: float
+    memory: float
+    stored: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.motions} motions in {self.blocks} blocks of {self.block}, method {self.method}\n"
+            f"time    about {_duration(self.seconds)} on {self.workers} workers\n"
+            f"memory  about {self.memory / 1e6:.0f} MB at a time\n"
+            f"disk    about {self.stored / 1e6:.1f} MB\n"
+            f"from a trial of {self.trial} motions; nothing was written"
+        )
+
+
+def estimate(run: Run, threads: int | None = None) -> Estimate:
+    """Roll some motions of the first block and scale up."""
+    workers = min(thread_count(threads), run.blocks)
+    trial = min(run.block, _TRIAL[run.method])
+    few = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
+    roll_block(replace(run, settings=msgspec.structs.replace(run.settings, block=min(trial, 16))), 0)  # compiles
+    begun = time.perf_counter()
+    values, motions = roll_block(few, 0)
+    summary = summarise(motions, run.settings.summaries)
+    chunks = zarr_files.chunks(columns_of(run, values, motions), 0, trial, trial) if run.settings.keep == "all" else {}
+    seconds = time.perf_counter() - begun
+    record = len(encoded(Record("", {}, summary=summary)))
+    stored = sum(map(len, chunks.values())) * (run.settings.n / trial) + record * run.blocks
+    resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 - trial * run.bytes_a_motion
+    memory = resident + workers * run.block * run.bytes_a_motion
+    return Estimate(
+        run.settings.n, run.blocks, run.block, run.method, workers, trial,
+        seconds * run.settings.n / trial / workers, memory, stored,
+    )  # fmt: skip
+
+
+def _duration(seconds: float) -> str:
+    for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.1f} {unit}"
+    return f"{seconds:.2g} seconds"

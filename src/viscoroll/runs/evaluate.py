@@ -1,0 +1,56 @@
+"""One block of a run: draw its inputs, roll its motions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import ensemble
+from ..motion.batch import Ensemble
+from ..scene import Scene, scene_from_si
+from . import draws
+from .runfile import Run
+from .sources import CYLINDER, SCENE
+
+
+def block_inputs(run: Run, block: int) -> dict[str, Any]:
+    """Inputs of the motions of a block: a number, or an array, for each name."""
+    start, stop = run.edges(block)
+    return run.inputs.values(
+        draws.points(
+            run.settings.design, run.settings.seed, run.settings.n, len(run.inputs.dimensions), start, stop, block
+        )
+    )
+
+
+def scene_of(values: Mapping[str, Any]) -> Scene:
+    """The scene, or the scenes, of inputs; raises ParameterError where one is out of range."""
+    if "R" in values:
+        return scene_from_si(**{name: values[name] for name in (*CYLINDER, "plane")})
+    return Scene(**{name: values[name] for name in SCENE})
+
+
+def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) -> Ensemble:
+    """Motions from inputs: one where all are numbers."""
+    motion_count = max((np.size(value) for value in values.values()), default=1)
+    return ensemble(
+        scene_of(values), _column(values["V0"], motion_count), _column(values["omega0"], motion_count), run.t,
+        method=run.method, rtol=run.settings.rtol, rest=run.settings.rest, fields=run.fields,
+        speed=run.fastest if run.method == "flow" else None, threads=threads,
+    )  # fmt: skip
+
+
+def roll_block(run: Run, block: int) -> tuple[dict[str, Any], Ensemble]:
+    """(inputs, motions) of a block."""
+    values = block_inputs(run, block)
+    if run.inputs.dimensions:
+        return values, roll_inputs(run, values)
+    start, stop = run.edges(block)  # nothing is uncertain: the same motion stop - start times
+    return values, roll_inputs(run, values | {"V0": np.full(stop - start, values["V0"])})
+
+
+def _column(value: Any, count: int) -> NDArray[np.float64]:
+    return np.broadcast_to(np.asarray(value, np.float64), (count,))

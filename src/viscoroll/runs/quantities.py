@@ -1,0 +1,60 @@
+"""What can be summarised of motions: values over (motion, t), or one a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion.batch import Ensemble
+
+
+class Quantity(NamedTuple):
+    """``values(motions, k)`` at output time k, or for all times if not ``over_time``."""
+
+    long_name: str
+    fields: tuple[str, ...]
+    values: Callable[[Ensemble, int], NDArray]
+    over_time: bool = True
+
+
+def _field(name: str) -> Callable[[Ensemble, int], NDArray]:
+    return lambda motions, k: getattr(motions, name)[:, k]
+
+
+def _translation(motions: Ensemble, k: int) -> NDArray:
+    return motions.V[:, k] ** 2 / _start_energy(motions)  # type: ignore[index]
+
+
+def _rotation(motions: Ensemble, k: int) -> NDArray:
+    return motions.scene.j * motions.omega[:, k] ** 2 / _start_energy(motions)  # type: ignore[index]
+
+
+def _start_energy(motions: Ensemble) -> NDArray:
+    """Twice the kinetic energy at the start; NaN for those at rest, which have no shares."""
+    energy = motions.V0**2 + motions.scene.j * motions.omega0**2
+    return np.where(energy > 0.0, energy, np.nan)
+
+
+QUANTITIES = {
+    "V": Quantity("velocity of the axis times T_epsilon/R", ("V",), _field("V")),
+    "omega": Quantity("angular velocity times T_epsilon", ("omega",), _field("omega")),
+    "x": Quantity("displacement of the axis over R", ("x",), _field("x")),
+    "distance": Quantity("distance from the start over R", ("x",), lambda motions, k: np.abs(motions.x[:, k])),  # type: ignore[index]
+    "angle": Quantity("angle turned, radians", ("angle",), _field("angle")),
+    "delta": Quantity("creep ratio (omega - V)/V", ("delta",), _field("delta")),
+    "translation": Quantity("share of the initial kinetic energy in translation", ("V",), _translation),
+    "rotation": Quantity("share of the initial kinetic energy in rotation", ("omega",), _rotation),
+    "lost": Quantity(
+        "share of the initial kinetic energy lost to slip and rolling resistance", ("V", "omega"),
+        lambda motions, k: 1.0 - _translation(motions, k) - _rotation(motions, k),
+    ),
+    "onset_time": Quantity(
+        "time of the first change from full to partial slip", (), lambda motions, k: motions.onset_time, False
+    ),
+    "rest_time": Quantity(
+        "time at which the rest threshold was crossed", (), lambda motions, k: motions.rest_time, False
+    ),
+}  # fmt: skip

@@ -1,0 +1,221 @@
+"""Run files: TOML -> :class:`Run`, everything checked before anything is computed.
+
+    preset = "paper-section-5"     # or [scene] or [cylinder]; [scene] may also change a preset
+
+    [start]
+    V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
+    omega0 = 0.5
+
+    [run]
+    n = 1_000_000
+    seed = 7
+    t = [1e-3, 2e-3, 3e-3]
+
+All keys: docs/ensembles.md.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from ..config import preset
+from ..errors import ParameterError
+from ..motion.batch import FIELDS
+from ..motion.checks import controls, output_times
+from ..sections import as_struct, fault, read, refuse_unknown
+from .draws import Design
+from .inputs import Inputs
+from .quantities import QUANTITIES
+from .sources import CYLINDER, SCENE, START, read_inputs
+
+#: motions of one scene from which on the flow map is worth its making, as in ``motion/batch.py``
+_FLOW_PAYS = 2000
+#: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
+_MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
+_SECTIONS = ("preset", "scene", "cylinder", "start", "correlation", "run")
+
+Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
+Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
+
+
+class RunSection(msgspec.Struct, frozen=True):
+    """[run]."""
+
+    n: Whole
+    t: float | list[float] | dict[str, Any]
+    seed: Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)] = 0
+    design: Design = "random"
+    method: Literal["auto", "flow", "integrate"] = "auto"
+    rtol: float = 1e-8
+    rest: float | None = None
+    block: Whole | None = None
+    keep: Literal["summaries", "all"] = "summaries"
+    fields: tuple[str, ...] = ("V", "omega", "x")
+    summaries: tuple[str, ...] = ("V", "omega", "x", "onset_time")
+    quantiles: tuple[Share, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run file asks for.
+
+    Attributes
+    ----------
+    text : the file.
+    settings : its section [run].
+    inputs : what its other sections say of start, scene or cylinder.
+    t : output times.
+    digest : SHA-256 of all that the results depend on: settings, inputs, samples.
+    """
+
+    text: str
+    settings: RunSection
+    inputs: Inputs
+    t: NDArray[np.float64]
+    digest: str
+
+    @property
+    def method(self) -> Literal["flow", "integrate"]:
+        """How every block is rolled: settled by the run as a whole, so that bits do not depend on blocks."""
+        if self.settings.method != "auto":
+            return self.settings.method
+        return "flow" if self.one_scene and self.settings.n >= _FLOW_PAYS and self.fastest > 0.0 else "integrate"
+
+    @property
+    def one_scene(self) -> bool:
+        """Whether only the start is uncertain."""
+        return set(self.inputs.uncertain) <= set(START)
+
+    @property
+    def fastest(self) -> float:
+        """Speed that the flow map is made for; the few motions beyond are integrated."""
+        return self.inputs.largest(*START)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Fields of the motions that a block needs, kept or summarised."""
+        needed = {name for wanted in self.settings.summaries for name in QUANTITIES[wanted].fields}
+        kept = set(self.settings.fields) if self.settings.keep == "all" else set()
+        return tuple(name for name in FIELDS if name in needed | kept)
+
+    @property
+    def bytes_a_motion(self) -> int:
+        """Memory that a motion takes while its block is worked on."""
+        columns = len(self.fields) * self.t.size + 2 * len(self.inputs.uncertain) + 12
+        return 8 * (columns + self.t.size)  # one output at a time is copied for its summary
+
+    @property
+    def block(self) -> int:
+        """Motions a block."""
+        if self.settings.block is not None:
+            return min(self.settings.block, self.settings.n)
+        most = _MAPPED if self.method == "flow" else _INTEGRATED
+        fits = 1 << (_BYTES // self.bytes_a_motion).bit_length() - 1  # a power of two suits Sobol
+        return min(most, max(fits, 1), self.settings.n)
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks."""
+        return -(-self.settings.n // self.block)
+
+    def edges(self, block: int) -> tuple[int, int]:
+        """First motion of a block, and first of the next."""
+        return block * self.block, min((block + 1) * self.block, self.settings.n)
+
+
+def read_run(path: str | PathLike[str]) -> Run:
+    """Read and check a run file.
+
+    Raises
+    ------
+    ConfigError
+        A file that cannot be read or is not TOML, a misspelt key (with the nearest), a value of
+        the wrong type or with a unit, a range that leaves what the input allows, a sample
+        that cannot be read: each with its line.
+    """
+    content = read(path)
+    refuse_unknown(path, "", content, _SECTIONS)
+    if "run" not in content:
+        raise fault(path, "", "run", "section [run] is missing: it needs n and t")
+    settings = as_struct(path, "run", content["run"], RunSection)
+    sections, base = _parameters(path, content)
+    correlation = content.get("correlation", {})
+    inputs = read_inputs(Path(path), sections, base, correlation)
+    times = _checked(path, settings, inputs)
+    digest = _digest(settings, times, sections, base, correlation, inputs)
+    return Run(Path(path).read_text(encoding="utf-8"), settings, inputs, times, digest)
+
+
+def _parameters(path: Any, content: dict[str, Any]) -> tuple[dict[str, dict[str, Any]], dict[str, Any]]:
+    """(sections of inputs, values that a preset gives)."""
+    if "cylinder" in content and ("scene" in content or "preset" in content):
+        raise fault(path, "", "cylinder", "[cylinder] stands alone: without preset and [scene]")
+    if not content.keys() & {"preset", "scene", "cylinder"}:
+        raise fault(path, "", "scene", "one of preset, [scene] and [cylinder] is needed")
+    if "start" not in content:
+        raise fault(path, "", "start", "section [start] is missing: it needs V0 and omega0")
+    base: dict[str, Any] = {}
+    if "preset" in content:
+        try:
+            scene = preset(content["preset"])
+        except ParameterError as error:
+            raise fault(path, "", "preset", str(error)) from error
+        base = {name: getattr(scene, name) for name in SCENE}
+    kinds = {"cylinder": CYLINDER} if "cylinder" in content else {"scene": SCENE}
+    return {name: content.get(name, {}) for name in kinds} | {"start": content["start"]}, base
+
+
+def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.float64]:
+    """Output times; what msgspec cannot check of [run] is checked here."""
+    from ..tables import spread
+
+    for key, allowed in (("fields", FIELDS), ("summaries", tuple(QUANTITIES))):
+        for name in getattr(settings, key):
+            if name not in allowed:
+                problem = f"{key} = ..., {name!r}, ...: must be out of {', '.join(allowed)}"
+                raise fault(path, "run", key, problem)
+    if settings.method == "flow" and set(inputs.uncertain) - set(START):
+        raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' where scenes differ")
+    if isinstance(settings.t, dict):
+        refuse_unknown(path, "run.t", settings.t, ("low", "high", "count", "spacing"))
+    try:
+        controls(settings.rtol, settings.rest, 1)
+        return output_times(spread(**settings.t) if isinstance(settings.t, dict) else settings.t)
+    except ParameterError as error:
+        raise fault(path, "run", error.name if error.name in ("rtol", "rest") else "t", str(error)) from error
+    except TypeError:
+        problem = f"t = {settings.t!r:.60}: must be a list, or low, high, count (and spacing)"
+        raise fault(path, "run", "t", problem) from None
+
+
+def _digest(settings: RunSection, times: NDArray, *parts: Any) -> str:
+    """SHA-256 of what the results depend on; comments and the order of keys are not among it."""
+    *described, inputs = parts
+    content = [msgspec.to_builtins(settings), times.tolist(), described, _samples(inputs)]
+    return hashlib.sha256(msgspec.json.encode(_plain(content), order="deterministic")).hexdigest()
+
+
+def _samples(inputs: Inputs) -> list[list[str]]:
+    return [
+        [name, hashlib.sha256(values.tobytes()).hexdigest()]
+        for sample in inputs.joint.values()
+        for name, values in sample.columns.items()
+    ]
+
+
+def _plain(value: Any) -> Any:
+    """Infinite bounds as text: JSON has none."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

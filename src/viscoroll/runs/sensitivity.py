@@ -1,0 +1,212 @@
+"""Sobol indices of a run: which uncertain input the spread of its motions comes from.
+
+Sampling and estimators are those of SALib: A. Saltelli et al., Computer Physics Communications 181 (2010) 259-270,
+on a scrambled Sobol sequence.  A base point costs a motion for every uncertain input and two more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blocks import run_blocks
+from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from .evaluate import roll_inputs
+from .inputs import LARGEST, SMALLEST, Inputs
+from .quantities import QUANTITIES
+from .runfile import Run
+from .sources import START
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CONFIDENCE = 0.95
+_RESAMPLES = 100
+#: base points: SALib's bootstrap takes about 6 kB each
+_LEAST, _MOST = 16, 1 << 16
+#: bytes that the outcomes of all motions may take
+_BYTES = 1 << 29
+#: motions a block: about a second where they are integrated
+_BLOCK = 1 << 14
+_INDICES = {
+    "S1": "first-order Sobol index",
+    "S1_conf": f"half-width of the {CONFIDENCE:.0%} confidence interval of the first-order Sobol index",
+    "ST": "total Sobol index",
+    "ST_conf": f"half-width of the {CONFIDENCE:.0%} confidence interval of the total Sobol index",
+}
+
+
+def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progress: bool = False) -> xr.Dataset:
+    """First-order and total Sobol indices of the summarised quantities over all uncertain inputs.
+
+    Parameters
+    ----------
+    run : see :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
+    n : base points in [16, 65536], rounded up to a power of two.
+    threads : default ``$VISCOROLL_THREADS`` or the cores available; the bits do not depend on it.
+    progress : draw a progress bar if it takes longer than a second.
+
+    Returns
+    -------
+    xarray.Dataset
+        For every quantity ``NAME_S1``, ``NAME_S1_conf``, ``NAME_ST``, ``NAME_ST_conf`` over (t, input), or over
+        input where it is one number a motion: the indices, dimensionless, and the half-widths of
+        their bootstrap intervals of 95 %.  A quantity that some motions do not have, or that
+        varies by no more than rtol of its largest value at any t, has no indices: the attribute
+        ``refused`` says which, at which t and why.  There its entries are NaN, and where it has
+        none at any t it is left out.
+
+    Raises
+    ------
+    ParameterError
+        Correlated inputs or a joint sample, which Sobol indices are not defined for; no uncertain
+        input; n out of range, or so many output times that their values would take more than 0.5 GB; no
+        quantity left.
+
+    Notes
+    -----
+    Variance shares known in closed form lie inside the stated intervals (``tests/test_sensitivity.py``).
+    The bootstrap takes the points for random ones, which are less even: intervals err on the wide side.
+    """
+    names = _independent(run.inputs)
+    base = _power_of_two(n)
+    rows = base * (len(names) + 2)
+    summaries = tuple(dict.fromkeys(run.settings.summaries))
+    settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
+    whole = replace(run, settings=settings)
+    problem = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
+    outcomes, status = _outcomes(whole, _points(problem, base, run.settings.seed), threads, progress)
+    refused: list[str] = []
+    found = {name: _indices(whole, problem, name, values, refused) for name, values in outcomes.items()}
+    kept = {name: indices for name, indices in found.items() if np.isfinite(indices).any()}
+    if not kept:
+        raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
+    return _dataset(whole, names, kept).assign_attrs(
+        asked_base_points=n, base_points=base, resamples=_RESAMPLES, confidence=CONFIDENCE,
+        refused="\n".join(refused), **_ended(status),
+    )  # fmt: skip
+
+
+def _independent(inputs: Inputs) -> tuple[str, ...]:
+    """Names of the uncertain inputs, each a dimension of its own; raises ParameterError if they are not."""
+    if not inputs.uncertain:
+        raise ParameterError("run file", "no uncertain input", "one with a distribution")
+    if inputs.correlated:
+        allowed = "left out: Sobol indices are defined for independent inputs only"
+        raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
+    scene = "cylinder" if "R" in {*inputs.fixed, *inputs.uncertain} else "scene"
+    for file, sample in inputs.joint.items():
+        if len(sample.columns) > 1:
+            places = ", ".join(f"[{'start' if name in START else scene}] {name}" for name in sample.columns)
+            allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
+            raise ParameterError(places, f"rows of {file}", allowed)
+    return inputs.uncertain
+
+
+def _power_of_two(n: int) -> int:
+    """``n`` rounded up: a Sobol sequence is even only over so many points."""
+    if not _LEAST <= n <= _MOST:
+        raise ParameterError("n", n, f"a whole number in [{_LEAST}, {_MOST}]")
+    return 1 << (n - 1).bit_length()
+
+
+def _points(problem: dict[str, Any], base: int, seed: int) -> NDArray[np.float64]:
+    """Saltelli's points (motion, input) of the unit cube."""
+    from SALib.sample import sobol
+
+    drawn = sobol.sample(problem, base, calc_second_order=False, seed=seed)
+    return np.clip(drawn, SMALLEST, LARGEST)
+
+
+def _outcomes(
+    run: Run, points: NDArray[np.float64], threads: int | None, progress: bool
+) -> tuple[dict[str, NDArray[np.float64]], NDArray[np.int8]]:
+    """(values of each quantity over (t, motion), how the motions ended): block by block, no motion is kept."""
+    rows = len(points)
+    times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
+    size = 8 * rows * sum(times.values())
+    if size > _BYTES:
+        allowed = f"less, or t shorter: {sum(times.values())} quantities and times would take {size / 1e9:.1f} GB"
+        raise ParameterError("n", rows // (points.shape[1] + 2), allowed)
+    outcomes = {name: np.empty((count, rows)) for name, count in times.items()}
+    status = np.empty(rows, np.int8)
+
+    def work(start: int, stop: int) -> None:
+        motions = roll_inputs(run, run.inputs.values(points[start:stop].T), threads=threads)
+        status[start:stop] = motions.status
+        for name, values in outcomes.items():
+            for k, row in enumerate(values):
+                row[start:stop] = QUANTITIES[name].values(motions, k)
+
+    # one block at a time, its motions on all threads: a flow map is then made once
+    run_blocks(work, rows, min(_BLOCK, run.block), threads=1, progress="sensitivity" if progress else None)
+    return outcomes, status
+
+
+def _indices(
+    run: Run, problem: dict[str, Any], name: str, outcomes: NDArray[np.float64], refused: list[str]
+) -> NDArray[np.float64]:
+    """The rows of ``_INDICES`` over (t, input); NaN where there are none, and why goes into ``refused``."""
+    from SALib.analyze import sobol
+
+    found = np.full((len(_INDICES), len(outcomes), problem["num_vars"]), np.nan)
+    noise = run.settings.rtol * np.abs(outcomes, where=np.isfinite(outcomes), out=np.zeros_like(outcomes)).max()
+    for k, values in enumerate(outcomes):
+        reason = _reason_against(values, noise)
+        if reason:
+            refused.append(
+                f"{name} at t = {run.t[k]:g}: {reason}" if QUANTITIES[name].over_time else f"{name}: {reason}"
+            )
+            continue
+        # SALib takes seed 0 for none
+        result = sobol.analyze(
+            problem, values, calc_second_order=False, num_resamples=_RESAMPLES, conf_level=CONFIDENCE,
+            seed=run.settings.seed + 1,
+        )  # fmt: skip
+        found[:, k] = [result[key] for key in _INDICES]
+    return found
+
+
+def _reason_against(values: NDArray[np.float64], noise: float) -> str:
+    """Why these values have no indices, or ""; ``noise`` is what rtol leaves open of the largest at any t."""
+    missing = np.count_nonzero(~np.isfinite(values))
+    if missing:
+        return f"{missing} of {values.size} motions have no value"
+    return "" if values.std() > noise else "it varies by no more than rtol of its largest value"
+
+
+def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float64]]) -> xr.Dataset:
+    import xarray as xr
+
+    from ..motion.export import attributes
+    from .store import about
+
+    data: dict[str, xr.Variable] = {}
+    for name, indices in found.items():
+        dims = ("t", "input") if QUANTITIES[name].over_time else ("input",)
+        for (key, text), values in zip(_INDICES.items(), indices, strict=True):
+            long_name = f"{text} of: {QUANTITIES[name].long_name}"
+            shaped = values if len(dims) == 2 else values[0]
+            data[f"{name}_{key}"] = xr.Variable(dims, shaped, {"long_name": long_name, "units": "1"})
+    coordinates = {
+        "t": xr.Variable("t", run.t, attributes("t")),
+        "input": xr.Variable("input", np.array(names, object), {"long_name": "uncertain input"}),
+    }
+    provenance = about(run) | {
+        "title": "Sobol indices of motions of a viscoelastic cylinder",
+        "source": f"viscoroll {version('viscoroll')}, SALib {version('SALib')}",
+        "design": "Saltelli's, on a scrambled Sobol sequence",
+    }
+    cut = ("motions_a_block", "blocks")
+    return xr.Dataset(data, coordinates, {key: value for key, value in provenance.items() if key not in cut})
+
+
+def _ended(status: NDArray[np.int8]) -> dict[str, int]:
+    """How many motions ended in which way."""
+    codes, counts = np.unique(status, return_counts=True)
+    return {f"ended: {MOTION_STATUS[MotionStatus(code)]}": int(n) for code, n in zip(codes, counts, strict=True)}

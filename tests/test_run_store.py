@@ -1,0 +1,300 @@
+"""Results stores: the same files by any engine and after any end; damage is found, and put right."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import viscoroll as vr
+from viscoroll import files
+from viscoroll.cli import main
+from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
+from viscoroll.runs.evaluate import roll_block
+from viscoroll.runs.store import locked
+
+ROOT = Path(__file__).parents[1]
+RUN = """
+preset = "paper-section-5"
+[scene]
+mu = { distribution = "uniform", loc = 0.1, scale = 0.2 }
+[start]
+V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
+omega0 = 0.5
+[run]
+n = 1200
+seed = 3
+t = [1e-3, 3e-3]
+rtol = 1e-6
+rest = 1e-3
+block = 100
+keep = "all"
+"""
+
+
+@pytest.fixture
+def run_file(tmp_path):
+    path = tmp_path / "run.toml"
+    path.write_text(RUN, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A store that nothing happened to."""
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "run.toml").write_text(RUN, encoding="utf-8")
+    assert run_ensemble(read_run(folder / "run.toml"), folder / "whole.zarr", threads=2) == 12
+    return folder / "whole.zarr"
+
+
+def content(store: Path) -> dict[str, bytes]:
+    """Every file of a store."""
+    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
+def copied(store: Path, target: Path) -> Path:
+    for name, data in content(store).items():
+        (target / name).parent.mkdir(parents=True, exist_ok=True)
+        (target / name).write_bytes(data)
+    return target
+
+
+def test_one_thread_gives_the_same_files(run_file, tmp_path, whole):
+    run_ensemble(read_run(run_file), tmp_path / "one.zarr", threads=1)
+    assert content(tmp_path / "one.zarr") == content(whole)
+    assert verify(whole).ok
+
+
+def test_the_store_is_what_was_rolled(run_file, whole):
+    run = read_run(run_file)
+    blocks = [roll_block(run, block) for block in range(run.blocks)]
+    with xr.open_zarr(whole, group="motions", chunks=None) as motions:
+        assert motions.V.dims == ("motion", "t")
+        assert motions.status.dtype == np.int8
+        assert motions.mu.attrs["long_name"] == "coefficient of friction"
+        for name in ("V", "omega", "x", "onset_time", "rest_time", "status"):
+            rolled = np.concatenate([getattr(found, name) for _, found in blocks])
+            assert np.array_equal(motions[name].values, rolled, equal_nan=True), name
+        assert np.array_equal(motions.mu.values, np.concatenate([values["mu"] for values, _ in blocks]))
+    summaries = open_summaries(whole)
+    V = np.concatenate([found.V for _, found in blocks])
+    reached = np.isfinite(V[:, 1])
+    assert summaries.V_counted.values[1] == reached.sum()
+    assert summaries.V_max.values[0] == V[:, 0].max()
+    assert summaries.ended.values.sum() == 1200
+    assert summaries.ended.values[1] == np.concatenate([found.status for _, found in blocks]).sum()
+    assert summaries.attrs["run_file"] == RUN
+    assert summaries.attrs["seed"] == 3
+    assert "numpy" in summaries.attrs["versions"]
+
+
+def test_export(whole, tmp_path):
+    export_netcdf(whole, tmp_path / "all.nc")
+    for group in (None, "motions"):
+        with (
+            xr.open_dataset(tmp_path / "all.nc", group=group, engine="h5netcdf") as found,
+            xr.open_zarr(whole, group=group, chunks=None) as expected,
+        ):
+            xr.testing.assert_identical(found.load(), expected.load())
+
+
+@pytest.mark.parametrize("change", ["flip", "truncate", "remove"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "motions/V/7.0",
+        "records/000000007",
+        "records/start",
+        "records/end",
+        "V_mean/0",
+        ".zmetadata",
+        "motions/V/.zarray",
+    ],
+)
+def test_damage_is_found_and_put_right(run_file, tmp_path, whole, name, change):
+    store = copied(whole, tmp_path / "store.zarr")
+    data = bytearray((store / name).read_bytes())
+    data[len(data) // 2] ^= 16
+    if change == "remove":
+        (store / name).unlink()
+    else:
+        (store / name).write_bytes(data if change == "flip" else data[: len(data) // 2])
+    if name == "records/start":
+        with pytest.raises(vr.TableError, match="start"):
+            verify(store)
+    else:
+        assert not verify(store).ok
+    made = run_ensemble(read_run(run_file), store)
+    assert made == (1 if "7" in name else 0)
+    assert content(store) == content(whole)
+
+
+def test_damaged_summaries_are_not_shown(tmp_path, whole):
+    store = copied(whole, tmp_path / "store.zarr")
+    (store / "V_mean/0").write_bytes(b"")
+    with pytest.raises(vr.TableError, match="V_mean/0"):
+        open_summaries(store)
+
+
+def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
+    """At any of the writes: one line, and the same command goes on."""
+    store, sync, calls = tmp_path / "store.zarr", files._sync, iter(range(10**6))
+    for room in (1, 30, 170, 300):
+        first = next(calls)
+
+        def limited(path, last=first + room):
+            if next(calls) > last:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            sync(path)
+
+        monkeypatch.setattr(files, "_sync", limited)
+        with pytest.raises(vr.OutputError, match="No space left"):
+            run_ensemble(read_run(run_file), store, threads=2)
+    monkeypatch.undo()
+    run_ensemble(read_run(run_file), store)
+    assert content(store) == content(whole)
+
+
+def test_other_folders_are_refused(run_file, tmp_path, whole):
+    run_file.write_text(RUN.replace("seed = 3", "seed = 4"))
+    with pytest.raises(vr.OutputError, match="another run file: give another folder"):
+        run_ensemble(read_run(run_file), whole)
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "chapter.tex").write_text("dear")
+    with pytest.raises(vr.OutputError, match=r"no results store, it holds chapter\.tex"):
+        run_ensemble(read_run(run_file), tmp_path / "thesis")
+    with pytest.raises(vr.TableError, match="no results store"):
+        verify(tmp_path / "thesis")
+    assert sorted(path.name for path in (tmp_path / "thesis").iterdir()) == ["chapter.tex"]
+    with locked(tmp_path / "store.zarr"), pytest.raises(vr.OutputError, match="another process"):
+        run_ensemble(read_run(run_file), tmp_path / "store.zarr")
+
+
+def test_a_killed_run_goes_on(run_file, tmp_path, whole):
+    """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made again."""
+    store, kills = tmp_path / "store.zarr", 0
+    command = [sys.executable, "-m", "viscoroll", "ensemble", run_file, "-o", store, "--threads", "2"]
+    while kills < 2:
+        before = len(list(store.glob("records/0*")))
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
+        while process.poll() is None and len(list(store.glob("records/0*"))) < before + 3:
+            time.sleep(0.001)
+        os.killpg(process.pid, signal.SIGKILL)
+        kills += process.wait() == -signal.SIGKILL
+        assert process.returncode == -signal.SIGKILL
+    done = {path: path.stat().st_mtime_ns for path in store.glob("records/0*")}
+    assert 6 <= len(done) < 12
+    assert run_ensemble(read_run(run_file), store) == 12 - len(done)
+    assert {path: path.stat().st_mtime_ns for path in done} == done
+    assert content(store) == content(whole)
+
+
+def test_a_cluster_gives_the_same_files(run_file, tmp_path, whole):
+    """Also where a worker is killed."""
+    pytest.importorskip("distributed")
+    import psutil
+
+    store = tmp_path / "store.zarr"
+    command = [
+        sys.executable,
+        "-m",
+        "viscoroll",
+        "ensemble",
+        run_file,
+        "-o",
+        store,
+        "--cluster",
+        "local",
+        "--threads",
+        "2",
+    ]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while process.poll() is None and len(list(store.glob("records/0*"))) < 2:
+        time.sleep(0.01)
+    workers = [p for p in psutil.Process(process.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
+    workers[-1].kill()
+    assert process.wait(timeout=120) == 0
+    assert content(store) == content(whole)
+
+
+@pytest.mark.parametrize(
+    ("command", "key"), [(["ensembles.py"], "rows"), (["torture.py", "--only", "ensembles"], "parts")]
+)
+def test_stages_run(tmp_path, command, key):
+    """At the size of a test: the numbers that docs/ensembles.md states come from these."""
+    output, (script, *options) = tmp_path / "results.json", command
+    argv = [sys.executable, ROOT / "pipeline" / script, *options, "--quick", "-o", output]
+    done = subprocess.run(argv, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(output.read_text(encoding="utf-8"))[key]
+
+
+def test_committed_figures():
+    """10^8 motions of a scene, and 10^6 with seven uncertain inputs, in a minute of two free cores and 1 GB."""
+    committed = json.loads((ROOT / "data/results/ensembles.json").read_text(encoding="utf-8"))
+    section = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["ensembles"]
+    del section["quick"]
+    assert committed["sizes"] == section
+    for name in ("100000000 motions of a scene", "1000000 motions, seven uncertain inputs"):
+        assert committed["rows"][name]["cpu_s"] / committed["threads"] < 60.0
+        assert committed["rows"][name]["peak_mb"] < 1000.0
+
+
+def test_documented_run_file():
+    run = read_run(ROOT / "docs/examples/ensemble.toml")
+    assert run.inputs.uncertain == ("E", "T_epsilon", "T_sigma", "mu", "V0", "omega0")
+    assert roll_block(run, 0)[1].status.max() == 0
+
+
+def test_command(run_file, tmp_path, whole, capsys):
+    store = tmp_path / "store.zarr"
+    assert main(["ensemble", str(run_file), "--dry-run"]) == 0
+    assert "1200 motions in 12 blocks of 100" in capsys.readouterr().out
+    assert not store.exists()
+    assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
+    shown = capsys.readouterr()
+    assert "motions fell below the rest threshold" in shown.out.replace("max(|V|, |omega|) ", "")
+    assert shown.err == ""  # no bar where nobody looks
+    assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
+    assert "12 of 12 blocks were there and whole" in capsys.readouterr().out
+    assert main(["ensemble", "verify", str(store)]) == 0
+    assert "complete: 12 blocks" in capsys.readouterr().out
+    assert main(["ensemble", "export", str(store), "-o", str(tmp_path / "all.nc")]) == 0
+    assert main(["plot", str(store), "-o", str(tmp_path / "run.png")]) == 0
+    assert (tmp_path / "run.png").stat().st_size > 10_000
+    (store / "motions/x/3.0").write_bytes(b"")
+    assert main(["ensemble", "verify", str(store)]) == 1
+    assert "motions/x/3.0" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["RUN", "--seed", "4", "--dry-run"], "seed = 4: must be left out: the run file says it"),
+        (["RUN"], "a folder STORE.zarr"),
+        (["RUN", "-o", "all.nc"], "a folder STORE.zarr"),
+        (["RUN", "RUN", "-o", "s.zarr"], "one run file"),
+        (["RUN", "-o", "s.zarr", "--cluster", "far"], "'local' or 'tcp://host:port'"),
+        (["verify"], "verify STORE.zarr"),
+        (["verify", "no.zarr"], "no results store"),
+        (["--dry-run", "-n", "3"], "given with a run file only"),
+        (["-n", "3"], "the following arguments are required: RUN.toml, or --V0"),
+    ],
+)  # fmt: skip
+def test_refused_commands(run_file, tmp_path, monkeypatch, capsys, options, words):
+    monkeypatch.chdir(tmp_path)
+    assert main(["ensemble", *(str(run_file) if word == "RUN" else word for word in options)]) == 2
+    shown = capsys.readouterr().err
+    assert words in shown
+    assert shown.count("\n") == 1

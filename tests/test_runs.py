@@ -1,0 +1,307 @@
+"""Run files, uncertain inputs, designs and summaries: what they mean, and what is refused at which line."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pandas as pd
+import pytest
+import tolerances as tol
+import xarray as xr
+from scipy import stats
+from scipy.stats import qmc
+
+import viscoroll as vr
+from viscoroll.runs import draws, estimate, read_run, roll_inputs
+from viscoroll.runs.evaluate import block_inputs, roll_block, scene_of
+from viscoroll.runs.inputs import LARGEST, SMALLEST, Distribution, Inputs
+from viscoroll.runs.quantities import QUANTITIES
+from viscoroll.runs.summaries import bin_edges, bin_of, histogram, lower_edge, merged, quantiles, summarise
+
+ANY = {"distribution": "uniform", "loc": -2.0, "scale": 4.0}
+FULL = """
+preset = "paper-section-5"
+[scene]
+mu = { distribution = "lognorm", s = 0.3, scale = 0.2, truncate = [0.05, 0.6] }
+j = 0.4
+[start]
+V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
+omega0 = { distribution = "norm", scale = 0.5 }
+[correlation]
+V0.mu = 0.7
+[run]
+n = 3000
+seed = 5
+design = "DESIGN"
+t = { low = 0.0, high = 3e-3, count = 3 }
+rtol = 1e-6
+block = 512
+summaries = ["V", "omega", "x", "distance", "translation", "rotation", "lost", "onset_time"]
+"""
+CYLINDER = """
+[cylinder]
+R = 0.1
+m = { file = "sample.csv", column = "mass" }
+E = { file = "sample.csv", column = "modulus" }
+nu = 0.49
+T_epsilon = 10.7
+T_sigma = { distribution = "uniform", loc = 0.5, scale = 1.0 }
+mu = { distribution = "uniform", loc = 0.1, scale = 0.2 }
+[start]
+V0 = 1.5
+omega0 = 0.5
+[run]
+n = 100
+t = 3e-3
+"""
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(text: str):
+        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+        return read_run(tmp_path / "run.toml")
+
+    pd.DataFrame({"mass": [30.0, 40.0, 50.0], "modulus": [2e5, 3e5, 4e5], "name": ["a", "b", "c"]}).to_csv(
+        tmp_path / "sample.csv"
+    )
+    return read
+
+
+# --- designs ---
+
+
+@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
+def test_points_depend_on_seed_and_block_alone(design):
+    edges = [(0, 300), (300, 600), (600, 1000)]
+    forward = [draws.points(design, 3, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    draws._sequence.cache_clear()
+    backward = [draws.points(design, 3, 1000, 2, *edges[b], b) for b in (2, 1, 0)][::-1]
+    assert all(map(np.array_equal, forward, backward))
+    every = np.hstack(forward)
+    assert every.min() > 0.0
+    assert every.max() < 1.0
+    assert min(stats.kstest(row, "uniform").pvalue for row in every) > tol.KOLMOGOROV
+    assert not np.array_equal(every, np.hstack([draws.points(design, 4, 1000, 2, *e, b) for b, e in enumerate(edges)]))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 7, 64, 1000, 1025])
+def test_permutation(n):
+    for key in draws._keys(2, 3):
+        moved = draws.permuted(np.arange(n, dtype=np.uint64), n, key)
+        assert np.array_equal(np.sort(moved), np.arange(n))
+
+
+def test_a_latin_hypercube_fills_every_stratum():
+    n, edges = 1000, [(0, 333), (333, 1000)]
+    every = np.hstack([draws.points("latin", 1, n, 3, *edge, b) for b, edge in enumerate(edges)])
+    for row in every:
+        assert np.array_equal(np.sort((row * n).astype(int)), np.arange(n))
+    assert np.abs(np.corrcoef(every) - np.eye(3)).max() < tol.LATIN_CORRELATION
+
+
+def test_sobol_blocks_are_those_of_scipy():
+    whole = qmc.Sobol(3, bits=52, rng=np.random.default_rng(7)).random(1024).T
+    assert np.array_equal(draws.points("sobol", 7, 1024, 3, 0, 1024, 0), whole)
+    for start, stop in itertools.pairwise([0, 1, 2, 100, 777, 1024]):
+        assert np.array_equal(draws.points("sobol", 7, 1024, 3, start, stop, 0), whole[:, start:stop])
+    far = draws.points("sobol", 7, 10**12, 3, 10**12 - 4, 10**12, 1)  # at once, not after 10^12 points
+    assert far.shape == (3, 4)
+
+
+# --- inputs ---
+
+
+def test_a_cut_tail_keeps_its_digits():
+    u = np.linspace(SMALLEST, LARGEST, 101)
+    for low, high in ((30.0, 31.0), (-31.0, -30.0), (-1.0, 2.0)):
+        found = Distribution(stats.norm(), low, high).ppf(u)
+        exact = stats.truncnorm(low, high).ppf(u)
+        assert np.abs(found - exact).max() < tol.TRUNCATED
+        assert (np.diff(found) > 0.0).all()
+
+
+def test_the_copula_keeps_marginals_and_gives_the_correlation():
+    correlation = np.array([[1.0, 0.6], [0.6, 1.0]])
+    laws = {"mu": Distribution(stats.expon(), 0.0, np.inf), "V0": Distribution(stats.norm(), -np.inf, np.inf)}
+    inputs = Inputs({}, laws, {}, ("mu", "V0"), np.linalg.cholesky(correlation))
+    values = inputs.values(draws.points("sobol", 1, 1 << 14, 2, 0, 1 << 14, 0))
+    assert stats.kstest(values["mu"], "expon").pvalue > tol.KOLMOGOROV
+    assert stats.kstest(values["V0"], "norm").pvalue > tol.KOLMOGOROV
+    scores = [stats.norm.ppf(stats.expon.cdf(values["mu"])), values["V0"]]
+    assert abs(np.corrcoef(scores)[0, 1] - 0.6) < tol.COPULA
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".nc", ".parquet"])
+def test_columns_of_a_file_share_their_row(read, tmp_path, suffix):
+    frame = pd.read_csv(tmp_path / "sample.csv")[["mass", "modulus"]]
+    if suffix == ".nc":
+        xr.Dataset.from_dataframe(frame).to_netcdf(tmp_path / "sample.nc", engine="h5netcdf")
+    elif suffix == ".parquet":
+        pytest.importorskip("pyarrow")
+        frame.to_parquet(tmp_path / "sample.parquet")
+    run = read(CYLINDER.replace(".csv", suffix))
+    assert run.inputs.dimensions == ("T_sigma", "mu", f"sample{suffix}")
+    values = block_inputs(run, 0)
+    assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
+    assert set(values["m"]) == {30.0, 40.0, 50.0}
+
+
+def test_a_drawn_cylinder_is_that_cylinder(read):
+    values = block_inputs(read(CYLINDER), 0)
+    scene = scene_of(values)
+    for i in range(5):
+        own = {name: values[name][i] if np.ndim(values[name]) else values[name] for name in values}
+        one = vr.Cylinder(**{name: own[name] for name in own if name not in ("V0", "omega0")}).scene()
+        for name in ("alpha", "kappa", "mu", "gamma"):
+            assert np.broadcast_to(getattr(scene, name), 100)[i] == getattr(one, name)
+
+
+@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
+def test_blocks_are_rolled_as_an_ensemble(read, design):
+    run = read(FULL.replace("DESIGN", design))
+    values, motions = roll_block(run, 2)
+    scene = vr.PAPER_SECTION_5.replace(mu=values["mu"], j=0.4)
+    expected = vr.ensemble(scene, values["V0"], values["omega0"], [0.0, 1.5e-3, 3e-3], rtol=1e-6)
+    assert np.array_equal(motions.V, expected.V)
+    assert np.array_equal(roll_inputs(run, values).omega, expected.omega)
+    assert ((values["mu"] >= 0.05) & (values["mu"] <= 0.6)).all()
+
+
+def test_bits_do_not_depend_on_how_a_run_is_cut(read):
+    """The flow map is chosen by the run: a block of slow starts does not get a finer one."""
+    text = FULL[: FULL.index("[scene]")] + FULL[FULL.index("[start]") :].replace("[correlation]\nV0.mu = 0.7\n", "")
+    run = read(text.replace("DESIGN", "sobol"))
+    assert run.method == "flow"
+    values, motions = roll_block(run, 0)
+    few = {name: value[3:4] if np.ndim(value) else value for name, value in values.items()}
+    assert roll_inputs(run, few).V[0, 1] == motions.V[3, 1]
+
+
+def test_a_run_of_one_motion(read):
+    run = read('preset = "paper-section-5"\n[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3')
+    _, motions = roll_block(run, 0)
+    assert np.array_equal(motions.V[:, 0], [vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3)
+
+
+# --- summaries ---
+
+
+def test_bins_are_narrow_and_in_order():
+    rng = np.random.default_rng(1)
+    values = np.concatenate([rng.normal(size=1000) * 10.0 ** rng.uniform(-300, 300, 1000), [0.0, -0.0, 5e-324]])
+    below, above = bin_edges(bin_of(values))
+    assert ((below <= values) & (values < above)).all()
+    normal = np.abs(values) > 1e-300
+    assert ((above - below)[normal] <= np.abs(values[normal]) * 2.0**-8 * (1 + 1e-12)).all()
+    order = np.argsort(values)
+    assert (np.diff(bin_of(values[order])) >= 0).all()
+    assert np.array_equal(lower_edge(bin_of(below)), below)
+
+
+@pytest.mark.parametrize("size", [1, 2, 1000, 100_000])
+def test_moments_and_quantiles(size):
+    values = np.random.default_rng(2).normal(0.3, 1.0, size)
+    values[::7] = np.nan
+    kept, one = values[np.isfinite(values)], histogram(values)
+    if not kept.size:
+        assert one.count == 0
+        assert np.isnan(quantiles(one, (0.5,))).all()
+        return
+    levels = (0.0, 0.01, 0.3, 0.5, 0.99, 1.0)
+    ordered = np.sort(kept)
+    at = (np.array(levels) * (kept.size - 1)).astype(int)
+    beside = np.maximum(np.abs(ordered[at]), np.abs(ordered[np.minimum(at + 1, kept.size - 1)]))
+    assert (np.abs(quantiles(one, levels) - np.quantile(kept, levels)) <= 2.0**-8 * beside).all()
+    assert (one.low, one.high, one.count) == (kept.min(), kept.max(), kept.size)
+    assert abs(one.mean - kept.mean()) <= tol.MOMENT
+    assert abs(one.spread / one.count - kept.var()) <= tol.MOMENT
+
+
+def test_merged_summaries_are_those_of_all(read):
+    run = read(FULL.replace("DESIGN", "sobol"))
+    blocks = [roll_block(run, block) for block in range(run.blocks)]
+    total = merged(summarise(motions, run.settings.summaries) for _, motions in blocks)
+    assert sum(total.statuses.values()) == run.settings.n
+    for name in run.settings.summaries:
+        for k, one in enumerate(total.histograms[name]):
+            values = np.concatenate([QUANTITIES[name].values(motions, k) for _, motions in blocks])
+            assert one.count == np.isfinite(values).sum()
+            assert np.array_equal(one.counts, histogram(values).counts)
+            assert one.mean == pytest.approx(np.nanmean(values), rel=tol.MOMENT, abs=tol.MOMENT)
+            assert one.spread / one.count == pytest.approx(np.nanvar(values), rel=tol.MOMENT, abs=tol.MOMENT)
+
+
+def test_energy_only_falls(read):
+    run = read(FULL.replace("DESIGN", "random"))
+    _, motions = roll_block(run, 0)
+    lost = np.array([QUANTITIES["lost"].values(motions, k) for k in range(3)])
+    assert np.abs(lost[0]).max() < tol.MOMENT
+    assert (np.diff(lost, axis=0) > 0.0).all()
+    shares = [QUANTITIES[name].values(motions, 1) for name in ("translation", "rotation", "lost")]
+    assert np.abs(np.sum(shares, axis=0) - 1.0).max() < tol.MOMENT
+
+
+# --- what is refused, and at which line ---
+
+REFUSED = [
+    ('V0 = {', 'Vo = {', ["line 7", "[start]", "unknown key 'Vo'", "did you mean 'V0'?"]),
+    ("seed = 5", "sead = 5", ["line 13", "[run]", "did you mean 'seed'?"]),
+    ("[start]", "[strat]", ["line 6", "did you mean 'start'?"]),
+    ('"lognorm"', '"lognrom"', ["line 4", "scipy.stats", "did you mean 'lognorm'?"]),
+    ('"lognorm"', '"poisson"', ["line 4", "no continuous one"]),
+    ("s = 0.3", "sigma = 0.3", ["line 4", "unknown key 'sigma'"]),
+    ("s = 0.3, ", "", ["line 4", "lognorm also needs s"]),
+    ("s = 0.3", "s = -0.3", ["line 4", "does not allow"]),
+    ("s = 0.3", 's = "0.3 %"', ["line 4", "finite number without a unit"]),
+    ("[0.05, 0.6]", "[-0.05, 0.0]", ["line 4", "nothing of the distribution is left"]),
+    ('"lognorm", s = 0.3, scale = 0.2, truncate = [0.05, 0.6]', '"norm", scale = 0.2', ["line 4", "truncate", "> 0"]),
+    ("j = 0.4", "j = -0.4", ["line 5", "j = -0.4", "> 0"]),
+    ("j = 0.4", 'j = "3 mm"', ["line 5", "'3 mm'", "plain number"]),
+    ("j = 0.4", "j = true", ["line 5", "number"]),
+    ("j = 0.4", "j = { file = 'no.csv', column = 'j' }", ["line 5", "no.csv"]),
+    ("j = 0.4", "j = { file = 'sample.csv', column = 'name' }", ["line 5", "finite numbers"]),
+    ("V0.mu = 0.7", "V0.omega = 0.7", ["line 10", "did you mean 'omega0'?"]),
+    ("V0.mu = 0.7", "V0.mu = 1.7", ["line 10", "(-1, 1)"]),
+    ("V0.mu = 0.7", "V0.mu = 0.9\nmu.omega0 = 0.9\nV0.omega0 = -0.9", ["line 9", "no joint distribution"]),
+    ("n = 3000", "n = 0", ["line 12", ">= 1"]),
+    ("n = 3000", 'n = "3000"', ["line 12", "int"]),
+    ('"DESIGN"', '"grid"', ["line 14", "grid"]),
+    ("count = 3 }", "count = 3, step = 1 }", ["line 15", "unknown key 'step'"]),
+    ("t = {", "t = [2.0, 1.0] # {", ["line 15", "ascending"]),
+    ("rtol = 1e-6", "rtol = 1.0", ["line 16", "rtol"]),
+    ('"onset_time"]', '"onset"]', ["line 18", "onset"]),
+    ("block = 512", 'method = "flow"', ["line 17", "scenes differ"]),
+    ('preset = "paper-section-5"', 'preset = "paper"', ["line 2", "out of paper-section-5"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "words"), REFUSED, ids=[new for _, new, _ in REFUSED])
+def test_refused(read, old, new, words):
+    assert old in FULL
+    text = FULL.replace(old, new, 1).replace("DESIGN", "random")
+    with pytest.raises(vr.ConfigError) as caught:
+        read(text)
+    for word in words:
+        assert word in str(caught.value), caught.value
+
+
+def test_a_retardation_time_that_may_be_too_short(read):
+    with pytest.raises(vr.ConfigError, match=r"line 7.*T_epsilon may fall below T_sigma"):
+        read(CYLINDER.replace("T_epsilon = 10.7", "T_epsilon = 1.0"))
+
+
+def test_comments_do_not_make_another_run(read):
+    text = FULL.replace("DESIGN", "random")
+    assert read(text).digest == read("# a comment\n" + text).digest
+    assert read(text).digest != read(text.replace("0.3", "0.31")).digest
+    assert read(text).digest != read(text.replace("seed = 5", "seed = 6")).digest
+
+
+def test_estimate_says_what_it_takes(read):
+    run = read(FULL.replace("DESIGN", "sobol").replace("n = 3000", "n = 3_000_000_000"))
+    found = estimate(run, threads=2)
+    assert found.blocks == run.blocks == -(-3_000_000_000 // 512)
+    assert found.seconds > 60.0
+    assert "MB" in str(found)

@@ -1,0 +1,327 @@
+"""Sobol indices: closed forms of sliding motions, what has none, the command and its documentation."""
+
+from __future__ import annotations
+
+import csv
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from scipy import stats
+
+import viscoroll as vr
+from viscoroll.cli import main
+from viscoroll.errors import ParameterError
+from viscoroll.figures import sobol_bars
+from viscoroll.runs import read_run
+from viscoroll.runs.sensitivity import sobol_indices
+
+DOCS = Path(__file__).parents[1] / "docs"
+N = 1024
+GAMMA = 1e4
+#: alpha = 1: no rolling resistance, and the cylinder slides up to the last time, so V = V0 + gamma mu t exactly
+SLIDING = """
+[scene]
+alpha = 1.0
+kappa = { distribution = "uniform", loc = 2.0, scale = 2.0 }
+mu = { distribution = "norm", loc = 0.2, scale = 0.1, truncate = [0.1, 0.25] }
+gamma = 1e4
+j = { distribution = "uniform", loc = 0.4, scale = 0.4 }
+
+[start]
+V0 = { distribution = "uniform", loc = 1.0, scale = 0.2 }
+omega0 = { distribution = "uniform", loc = 5.0, scale = 1.0 }
+
+[run]
+n = 1
+t = [5e-5, 1e-4]
+summaries = ["V", "x"]
+"""
+#: the same with V0 fixed: V - V0 = gamma mu t is a product of two uncertain inputs
+PRODUCT = """
+[scene]
+alpha = 1.0
+kappa = 2.91
+mu = { distribution = "uniform", loc = 0.02, scale = 0.36 }
+gamma = { distribution = "uniform", loc = 1e3, scale = 1.8e4 }
+
+[start]
+V0 = 1.0
+omega0 = 9.0
+
+[run]
+n = 1
+t = 1e-4
+summaries = ["V"]
+"""
+FACTORS = {"mu": stats.uniform(0.02, 0.36), "gamma": stats.uniform(1e3, 1.8e4)}
+#: inputs of partial slip, quick, and with an onset that some motions do not reach
+ONSET = """
+preset = "paper-section-5"
+scene.mu = { distribution = "uniform", loc = 0.19, scale = 0.02 }
+start.V0 = 1.0
+start.omega0 = { distribution = "uniform", loc = 0.0, scale = 0.9 }
+
+[run]
+n = 1
+t = [0.0, 1.2e-4]
+summaries = ["V", "onset_time"]
+"""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Every test runs in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run_of(text: str):
+    Path("run.toml").write_text(text, encoding="utf-8")
+    return read_run("run.toml")
+
+
+@pytest.fixture(scope="module")
+def sliding(tmp_path_factory) -> xr.Dataset:
+    path = tmp_path_factory.mktemp("sliding") / "run.toml"
+    path.write_text(SLIDING, encoding="utf-8")
+    return sobol_indices(read_run(path), N)
+
+
+def inside(indices: xr.Dataset, name: str, key: str, name_of_input: str, exact: float, k: int | None = None) -> bool:
+    """Whether an exact index lies inside the stated interval, which must say something."""
+    at = {"input": name_of_input} | ({} if k is None else {"t": indices["t"].values[k]})
+    value, half = (float(indices[f"{name}_{kind}"].sel(at)) for kind in (key, f"{key}_conf"))
+    return abs(value - exact) <= half <= tol.SENSITIVITY_INTERVAL
+
+
+# --- closed forms ---
+
+
+def product_variance() -> float:
+    return np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod([law.mean() ** 2 for law in FACTORS.values()])
+
+
+@pytest.mark.parametrize("k", [0, 1])
+@pytest.mark.parametrize(("name", "share"), [("V", lambda t: (1.0, GAMMA * t)), ("x", lambda t: (t, GAMMA * t**2 / 2))])
+def test_a_linear_motion_shares_its_variance(sliding, name, share, k):
+    slopes = share(sliding["t"].values[k])
+    spread = (stats.uniform(1.0, 0.2).var(), stats.truncnorm(-1.0, 0.5, 0.2, 0.1).var())
+    parts = np.square(slopes) * spread
+    for name_of_input, exact in zip(("V0", "mu"), parts / parts.sum(), strict=True):
+        assert inside(sliding, name, "S1", name_of_input, exact, k)
+        assert inside(sliding, name, "ST", name_of_input, exact, k)
+
+
+def test_first_indices_of_a_linear_motion_add_to_one(sliding):
+    first, half = sliding["V_S1"].values, sliding["V_S1_conf"].values
+    assert (np.abs(first.sum(axis=1) - 1.0) <= half.sum(axis=1)).all()
+    both = half + sliding["V_ST_conf"].values
+    assert (np.abs(first - sliding["V_ST"].values) <= both + tol.SENSITIVITY_NONE).all()
+
+
+def test_an_input_without_influence_has_index_zero(sliding):
+    """kappa acts in partial slip alone, j and omega0 on omega alone."""
+    idle = sliding.sel(input=["kappa", "j", "omega0"])
+    for key in ("V_S1", "V_ST", "x_S1", "x_ST"):
+        assert np.abs(idle[key]).max() <= tol.SENSITIVITY_NONE
+
+
+def test_a_product_has_total_above_first():
+    """Y = a b: S1 = var(a) E(b)^2 / var(Y), ST = var(a) E(b^2) / var(Y)."""
+    indices = sobol_indices(run_of(PRODUCT), N)
+    for name, other in (("mu", "gamma"), ("gamma", "mu")):
+        share = FACTORS[name].var() / product_variance()
+        assert inside(indices, "V", "S1", name, share * FACTORS[other].mean() ** 2, 0)
+        assert inside(indices, "V", "ST", name, share * FACTORS[other].moment(2), 0)
+    assert (indices["V_ST"] > indices["V_S1"]).all()
+
+
+def test_intervals_err_on_the_wide_side():
+    """Of 20 seeds, at least the 95 % that the intervals state hold the exact index."""
+    exact = FACTORS["mu"].mean() ** 2 * FACTORS["gamma"].var() / product_variance()
+    held = 0
+    for seed in range(20):
+        indices = sobol_indices(run_of(PRODUCT.replace("n = 1\n", f"n = 1\nseed = {seed}\n")), 128)
+        value, half = (float(indices[key].sel(input="gamma")[0]) for key in ("V_S1", "V_S1_conf"))
+        held += abs(value - exact) <= half
+    assert held >= 19
+
+
+def test_intervals_narrow_like_the_root_of_n():
+    wide, narrow = (sobol_indices(run_of(PRODUCT), n)["V_ST_conf"].mean() for n in (64, N))
+    assert 0.5 < float(wide / narrow) / np.sqrt(N / 64) < 2.0
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_same_bits_for_any_threads(seed):
+    """Seed 0 too, which SALib itself takes for no seed."""
+    run = run_of(ONSET.replace("n = 1\n", f"n = 1\nseed = {seed}\n"))
+    one, two = sobol_indices(run, 64, threads=1), sobol_indices(run, 64, threads=2)
+    assert one.identical(two)
+    other = sobol_indices(run_of(ONSET.replace("n = 1\n", f"n = 1\nseed = {seed + 1}\n")), 64)
+    assert not one["V_S1"].identical(other["V_S1"])
+
+
+def test_a_column_of_a_file_is_an_input():
+    """The rows of one column are a distribution as any other: here the very values that V depends on."""
+    values = 0.2 + 0.01 * np.random.default_rng(0).random(50)
+    Path("mu.csv").write_text("friction\n" + "\n".join(map(repr, values.tolist())), encoding="utf-8")
+    text = re.sub(r"mu = \{.*\}", 'mu = { file = "mu.csv", column = "friction" }', SLIDING)
+    indices = sobol_indices(run_of(text), N)
+    parts = np.array([stats.uniform(1.0, 0.2).var(), (GAMMA * 1e-4) ** 2 * values.var()])
+    assert inside(indices, "V", "ST", "mu", parts[1] / parts.sum(), 1)
+
+
+# --- what has no indices ---
+
+
+def test_what_some_motions_lack_is_refused_and_said():
+    indices = sobol_indices(run_of(ONSET), 64)
+    assert "onset_time_S1" not in indices
+    constant, lacking = indices.attrs["refused"].splitlines()
+    assert constant == "V at t = 0: it varies by no more than rtol of its largest value"
+    count = re.fullmatch(r"onset_time: (\d+) of 256 motions have no value", lacking)
+    starts = np.linspace(0.0, 0.9, 500)
+    late = np.isnan(vr.ensemble(vr.PAPER_SECTION_5, 1.0, starts, 1.2e-4).onset_time).mean()
+    assert int(count[1]) / 256 == pytest.approx(late, rel=tol.SENSITIVITY_SHARE)
+    assert np.isnan(indices["V_S1"][0]).all()
+    assert np.isfinite(indices["V_S1"][1]).all()
+
+
+def test_rounding_is_no_variation():
+    """The energy lost at t = 0 is 1 - 1 to rounding: indices of that would be noise."""
+    text = ONSET.replace('["V", "onset_time"]', '["lost"]').replace("start.V0 = 1.0", "start.V0 = 1.1")
+    indices = sobol_indices(run_of(text), 64)
+    assert indices.attrs["refused"].startswith("lost at t = 0: it varies by no more")
+    assert np.isfinite(indices["lost_S1"][1]).all()
+
+
+@pytest.mark.parametrize("n", [0, 15, 65537])
+def test_number_of_base_points(n):
+    with pytest.raises(ParameterError, match=rf"n = {n}: must be a whole number in \[16, 65536\]"):
+        sobol_indices(run_of(SLIDING), n)
+
+
+def test_more_than_the_memory_holds_is_refused():
+    many = SLIDING.replace("t = [5e-5, 1e-4]", "t = { low = 0.0, high = 1e-4, count = 40000 }")
+    with pytest.raises(ParameterError, match="n = 1024: must be less, or t shorter: 80000 quantities and times"):
+        sobol_indices(run_of(many), N)
+
+
+def test_nothing_left_is_refused():
+    still = SLIDING.replace("t = [5e-5, 1e-4]", "t = 0.0").replace('["V", "x"]', '["x"]')
+    with pytest.raises(ParameterError, match="summaries = x at t = 0: it varies by no more than"):
+        sobol_indices(run_of(still), 16)
+
+
+def test_correlation_is_refused():
+    text = SLIDING + "\n[correlation]\nV0.mu = 0.5\n"
+    with pytest.raises(ParameterError, match=r"\[correlation\] = mu, V0: must be left out"):
+        sobol_indices(run_of(text), N)
+
+
+def test_a_joint_sample_is_refused_by_its_sections():
+    Path("rows.csv").write_text("a,b\n0.2,1.0\n0.21,1.1\n", encoding="utf-8")
+    text = re.sub(r"mu = \{.*\}", 'mu = { file = "rows.csv", column = "a" }', SLIDING)
+    text = re.sub(r"V0 = \{.*\}", 'V0 = { file = "rows.csv", column = "b" }', text)
+    with pytest.raises(ParameterError, match=r"\[scene\] mu, \[start\] V0 = rows of rows.csv: must be distributions"):
+        sobol_indices(run_of(text), N)
+
+
+def test_nothing_uncertain_is_refused():
+    text = re.sub(r"\{ distribution = .*\}", "2.0", SLIDING)
+    with pytest.raises(ParameterError, match="run file = no uncertain input"):
+        sobol_indices(run_of(text), N)
+
+
+# --- figure and command ---
+
+
+def test_bars_are_the_indices(sliding):
+    figure = sobol_bars(sliding)
+    assert len(figure.axes) == 2
+    axes = figure.axes[0]
+    first, total = ([bar.get_height() for bar in axes.containers[k]] for k in (1, 3))
+    order = np.argsort(-np.maximum(sliding["V_ST"][-1], sliding["x_ST"][-1]).values, kind="stable")
+    assert np.allclose(first, sliding["V_S1"][-1].values[order], rtol=tol.FIGURE, atol=tol.FIGURE)
+    assert np.allclose(total, sliding["V_ST"][-1].values[order], rtol=tol.FIGURE, atol=tol.FIGURE)
+    low, high = axes.containers[0].lines[2][0].get_segments()[0][:, 1]
+    assert high - low == pytest.approx(2.0 * sliding["V_S1_conf"][-1].values[order[0]], rel=tol.FIGURE)
+    labels = {"V0": "$V_0$", "mu": r"$\mu$"}
+    shown = [text.get_text() for text in axes.get_xticklabels()]
+    assert shown[:2] == [labels[name] for name in sliding["input"].values[order[:2]]]
+
+
+def test_command(here, capsys):
+    run_of(ONSET)
+    assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.nc", "--plot", "s.png"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "64 base points (50, rounded up to a power of two), 256 motions, seed 0" in out
+    assert re.search(r"no indices of onset_time: \d+ of 256 motions have no value", out)
+    assert re.search(r"V +0.00012 +omega0 +[01]\.\d{4}", out).start() < out.index(" mu ")
+    assert (here / "s.png").read_bytes().startswith(b"\x89PNG")
+    with xr.open_dataset("s.nc", engine="h5netcdf") as stored:
+        assert stored.attrs["run_file"] == ONSET
+        assert stored.attrs["seed"] == 0
+        assert "SALib" in stored.attrs["source"]
+        assert "numba" in stored.attrs["versions"]
+        expected = sobol_indices(run_of(ONSET), 50)
+        assert np.array_equal(stored["V_S1"].sel(input="mu"), expected["V_S1"].sel(input="mu"), equal_nan=True)
+    before = (here / "s.nc").read_bytes()
+    assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.nc"]) == 0
+    assert (here / "s.nc").read_bytes() == before
+
+
+def test_command_writes_csv(capsys):
+    expected = sobol_indices(run_of(ONSET), 64)
+    assert main(["sensitivity", "run.toml", "-n", "64", "-o", "s.csv"]) == 0
+    with open("s.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["input"] for row in rows] == ["omega0", "mu"]
+    for row in rows:
+        at = {"t": float(row["t"]), "input": row["input"]}
+        assert all(float(row[key]) == expected[f"V_{key}"].sel(at) for key in ("S1", "S1_conf", "ST", "ST_conf"))
+        assert (row["run_file"], row["seed"], row["base_points"]) == (ONSET, "0", "64")
+
+
+def test_example_of_the_help_runs(here, capsys):
+    run_of(ONSET)
+    assert main(["sensitivity", "--help"]) == 0
+    example = capsys.readouterr().out.partition("example:\n  viscoroll ")[2]
+    assert main(example.split()) == 0
+    assert {path.name for path in here.iterdir()} == {"run.toml", "sensitivity.nc", "sensitivity.png"}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["-n", "8"], "n = 8: must be"),
+        (["--plot", "s.xlsx"], "'s.xlsx' must end in .png or .pdf or .svg"),
+        (["-o", "missing/s.nc"], "its folder does not exist"),
+        (["run.toml"], "unrecognized arguments"),
+    ],
+)
+def test_command_refuses_in_one_line(here, capsys, options, words):
+    run_of(ONSET)
+    assert main(["sensitivity", "run.toml", *options]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert re.fullmatch(r"viscoroll: error: [^\n]+\n", err)
+    assert words in err
+    assert [path.name for path in here.iterdir()] == ["run.toml"]
+
+
+def test_the_documented_run_file(capsys):
+    """What docs/sensitivity.md shows is the file beside it, and every quantity of it has indices."""
+    example = (DOCS / "examples" / "sensitivity.toml").read_text(encoding="utf-8")
+    assert example in (DOCS / "sensitivity.md").read_text(encoding="utf-8")
+    indices = sobol_indices(run_of(example), 64)
+    assert indices.attrs["refused"] == ""
+    for name in tomllib.loads(example)["run"]["summaries"]:
+        assert np.isfinite(indices[f"{name}_ST"]).all()
