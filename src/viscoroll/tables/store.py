@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,17 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import TableError
-from ..files import write_dataset
+from ..files import seal_holds, write_dataset
 from . import schema
+from .rehearsal import rehearse
+from .survey import EXPECTED, MAX_BYTES, one_line, require_whole, survey
 
 if TYPE_CHECKING:
     import xarray as xr
 
 HASH = "content_sha256"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
-#: No table is larger, in the file or in memory; anything larger is refused before it is read.
-_MAX_BYTES = 1 << 31
-_EXPECTED = f"expected a viscoroll table of schema {schema.SCHEMA_VERSION.partition('.')[0]}.x (see `make tables`)"
 
 
 def content_hash(table: xr.Dataset) -> str:
@@ -51,7 +51,8 @@ def content_hash(table: xr.Dataset) -> str:
 def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     """Write a table as netCDF-4/HDF5: whole and synced, or not at all.
 
-    Every array carries Fletcher-32 checksums, the file a SHA-256 over its content.
+    Every array carries Fletcher-32 checksums, the file a SHA-256 over its content and, behind
+    its end, one over its bytes.
 
     Raises
     ------
@@ -65,63 +66,21 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     for variable in stamped.variables.values():
         variable.encoding = {}
     stamped.attrs[HASH] = content_hash(table)
-    write_dataset(stamped, path)
-
-
-def _require_table(path: Path) -> None:
-    """Plain checks before any array is read: a file, HDF5, of bounded size, a table, our schema.
-
-    Raises
-    ------
-    TableError
-        Naming what was found and what is expected.
-    """
-    try:
-        if not path.is_file():
-            raise TableError(path, f"{'is not a file' if path.exists() else 'does not exist'}: {_EXPECTED}")
-        with path.open("rb") as file:
-            signature = file.read(len(_SIGNATURE))
-        size = path.stat().st_size
-    except OSError as error:
-        raise TableError(path, f"cannot be read ({error.strerror}): {_EXPECTED}") from error
-    if signature != _SIGNATURE:
-        raise TableError(path, f"is not an HDF5 file: {_EXPECTED}")
-    if size > _MAX_BYTES:
-        raise TableError(path, f"is larger than {_MAX_BYTES} bytes: {_EXPECTED}")
-    try:
-        attributes, size = _survey(path)
-    except Exception as error:  # h5py raises many kinds on damaged files
-        raise TableError(path, f"is truncated or damaged ({_one_line(error)}): rebuild it") from error
-    if schema.KIND not in attributes:
-        raise TableError(path, f"is not a viscoroll table: attribute {schema.KIND} is missing; {_EXPECTED}")
-    schema.check_version(attributes.get("schema_version"), path)
-    if size > _MAX_BYTES:
-        raise TableError(path, f"its arrays claim {size} bytes, more than {_MAX_BYTES}: {_EXPECTED}")
-
-
-def _survey(path: Path) -> tuple[dict[str, Any], int]:
-    """Global attributes of an HDF5 file, and the bytes that its arrays will take in memory."""
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        attributes = {name: file.attrs[name] for name in (schema.KIND, "schema_version") if name in file.attrs}
-        # sizes as Python integers: a damaged shape must not overflow
-        size = sum(int(np.prod([int(n) for n in item.shape], dtype=object)) * item.dtype.itemsize
-                   for item in file.values() if isinstance(item, h5py.Dataset))  # fmt: skip
-        return attributes, size
-
-
-def _one_line(error: Exception) -> str:
-    return f"{type(error).__name__}: {' '.join(str(error).split())[:120]}"
+    write_dataset(stamped, path, sealed=True)
 
 
 def load(path: str | PathLike[str], *, verify: bool = True) -> xr.Dataset:
     """Read a table into memory and close the file.
 
+    A file as :func:`save` left it carries the SHA-256 of its bytes, which is compared before
+    anything is parsed.  One without, which another program has written or edited, is first read
+    in a process of its own, with bounds on time and memory, which takes about a second.
+
     Parameters
     ----------
     path : file written by :func:`save`.
-    verify : compare the content with the SHA-256 stored in the file.
+    verify : compare bytes and content with the SHA-256s stored in the file; where False, a
+        file that has been edited is read nevertheless, but still not one that is no table.
 
     Raises
     ------
@@ -129,15 +88,41 @@ def load(path: str | PathLike[str], *, verify: bool = True) -> xr.Dataset:
         A file that is missing, not HDF5, truncated or damaged, of another major schema
         version, not a table, or whose content differs from its hash.
     """
+    content = _content(Path(path))
+    sealed = seal_holds(content)
+    if verify and sealed is False:
+        raise TableError(path, "is damaged: its bytes differ from the SHA-256 at their end; rebuild it")
+    if not sealed:
+        require_whole(content, path)
+        rehearse(content, path, verify)
+    return read(content, path, verify)
+
+
+def _content(path: Path) -> bytes:
+    """All bytes of an HDF5 file of bounded size: what is parsed is what was verified."""
+    try:
+        if not path.is_file():
+            raise TableError(path, f"{'is not a file' if path.exists() else 'does not exist'}: {EXPECTED}")
+        if path.stat().st_size > MAX_BYTES:
+            raise TableError(path, f"is larger than {MAX_BYTES} bytes: {EXPECTED}")
+        content = path.read_bytes()
+    except OSError as error:
+        raise TableError(path, f"cannot be read ({error.strerror}): {EXPECTED}") from error
+    if not content.startswith(_SIGNATURE):
+        raise TableError(path, f"is not an HDF5 file: {EXPECTED}")
+    return content
+
+
+def read(content: bytes, path: str | PathLike[str], verify: bool) -> xr.Dataset:
+    """Table that the bytes of a file hold; ``path`` is named in errors."""
     import xarray as xr
 
-    path = Path(path)
-    _require_table(path)
+    survey(content, path)
     try:
-        table = xr.load_dataset(path, engine="h5netcdf", mask_and_scale=False, decode_times=False)
+        table = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False)
         actual = content_hash(table) if verify else None
     except Exception as error:  # damaged chunks, headers or strings raise many kinds
-        raise TableError(path, f"is damaged ({_one_line(error)}): rebuild it") from error
+        raise TableError(path, f"is damaged ({one_line(error)}): rebuild it") from error
     if verify and actual != table.attrs.get(HASH):
         raise TableError(path, f"is damaged or was edited: its content differs from its {HASH}; rebuild it")
     schema.check(table, path)

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError, TableError
-from ..rolling_contact import contact
-from ..scene import Scene
 from ..tables import interpolate, schema
+from ..tables.accuracy import exact_fields, random_between
 from ..tables.grid import ATLAS_MAPS
 from .report import Check
 
@@ -54,9 +53,9 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     random = np.random.default_rng(seed)
     axes = {name: table[name].values for name in schema.AXES[kind]}
     index = {name: random.integers(nodes.size, size=count) for name, nodes in axes.items()}
-    at_nodes = _direct(kind, table, {name: nodes[index[name]] for name, nodes in axes.items()})
+    at_nodes = exact_fields(table, {name: nodes[index[name]] for name, nodes in axes.items()}, "direct")
     points = {name: _between(kind, name, nodes, random, count) for name, nodes in axes.items()}
-    exact, tabulated = _direct(kind, table, points), interpolate(table, **points)
+    exact, tabulated = exact_fields(table, points, "direct"), interpolate(table, **points)
     checks = []
     for name in schema.FIELDS[kind]:
         field = table[name]
@@ -81,25 +80,7 @@ def _largest(values: NDArray, exact: NDArray) -> float:
 
 def _between(kind: str, name: str, nodes: NDArray, random: np.random.Generator, count: int) -> NDArray:
     """Random points within random cells, even in the coordinate in which the table is interpolated."""
-    if nodes.size == 1 or (kind, name) == ("literal", "alpha"):
-        return nodes[random.integers(nodes.size, size=count)]  # the stated error is that at the table's alphas
+    if (kind, name) == ("literal", "alpha"):
+        return random.choice(nodes, count)  # the stated error is that at the table's alphas
     forward, back = ATLAS_MAPS[name] if kind == "atlas" else (np.asarray, np.asarray)
-    mapped = forward(nodes)
-    cell = random.integers(nodes.size - 1, size=count)
-    points = back(mapped[cell] + random.random(count) * (mapped[cell + 1] - mapped[cell]))
-    return np.clip(points, nodes[0], nodes[-1])
-
-
-def _direct(kind: str, table: xr.Dataset, points: dict[str, NDArray]) -> dict[str, NDArray]:
-    """The table's fields at ``points``, by root solves of the printed equations."""
-    if kind == "literal":
-        scene = Scene(points["alpha"], table["kappa"].item(), table["mu"].item())
-        return contact(scene, points["V"], delta=points["delta"], fields=schema.FIELDS[kind], method="direct").as_dict()
-    # mu = kappa = 1 turns V into kappa V, Q into Q/mu, M into kappa M, delta_star into kappa delta_star/mu
-    scene, V = Scene(points["alpha"], 1.0, 1.0), points["kappa_V"]
-    plane = contact(scene, V, delta=0.0, fields=("lam", "epsilon", "M", "delta_star"), method="direct")
-    volume = contact(scene, V, delta=points["s"] * plane.delta_star, fields=("beta", "Q"), method="direct")
-    return {
-        "lam": plane.lam, "epsilon": plane.epsilon, "kappa_M": plane.M, "kappa_delta_star_over_mu": plane.delta_star,
-        "beta": volume.beta, "Q_over_mu": volume.Q,
-    }  # fmt: skip
+    return np.clip(back(random_between(forward(nodes), random, count)), nodes[0], nodes[-1])

@@ -1,0 +1,48 @@
+"""A short sample of `make torture`, and the results that are kept of the long one."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+COMMITTED = json.loads((ROOT / "data/results/torture.json").read_text(encoding="utf-8"))
+#: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
+SLOWEST, MOST_MEMORY = 5.0, 1000.0
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
+    output = tmp_path_factory.mktemp("torture") / "torture.json"
+    command = [sys.executable, ROOT / "pipeline/torture.py", "--quick", "--only", "tables", "-o", output]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode in (0, 1), done.stderr
+    return json.loads(output.read_text(encoding="utf-8"))["parts"]["tables"]
+
+
+def test_nothing_goes_unnoticed(quick: list[dict]) -> None:
+    assert [(row["done"], row["how"]) for row in quick if row["wrong"]] == []
+
+
+def test_damage_is_done(quick: list[dict]) -> None:
+    """A sealed file is hardly ever unharmed: a flip must hit the few bytes that make a seal one."""
+    rows = {row["done"]: row for row in quick}
+    for name in ("one bit flipped", "1-16 bytes of headers and B-trees replaced"):
+        assert rows[name]["refused"] >= 0.9 * rows[name]["tried"]
+    assert rows["save on a full disk"]["refused"] == rows["save on a full disk"]["tried"]
+
+
+def test_committed_results_are_of_the_long_run() -> None:
+    section = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["torture"]
+    del section["quick"]
+    assert COMMITTED["sizes"].items() <= section.items()
+    for row in (row for part in COMMITTED["parts"].values() for row in part):
+        assert row["tried"] > 0
+        assert row["wrong"] == 0
+        assert (row["slowest_s"] or 0.0) < SLOWEST
+        assert (row["peak_mb"] or 0.0) < MOST_MEMORY
