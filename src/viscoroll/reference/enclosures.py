@@ -10,6 +10,7 @@ that cancel show as a wide ball, and the whole is done again with more.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -157,10 +158,10 @@ def ratio_k(z: Any) -> Any:
     the ball, where it may cancel; 0 < k' < k/z < k/z at the lower end carries the radius over.
     """
     flint = _flint()
-    if z > flint.ctx.prec:
+    if 5 * z > 3 * flint.ctx.prec:  # exp(-2 z) is far below the last digit
         return z.bessel_k(0, scaled=True) / z.bessel_k(1, scaled=True)
     middle = z.mid()
-    with flint.ctx.extraprec(int(3 * float(z.upper())) + 20):  # K0 I0 cancels from I0^2, e^(2 z) larger
+    with flint.ctx.extraprec(64 * (int(3 * float(z.upper())) // 64 + 2)):  # K0 I0 cancels from I0^2, e^(2 z) larger
         k0, i0, i1 = _k0_series(middle)
         k = k0 * i0 / (1 / middle - i1 * k0)
     return k + flint.arb(0, (z.rad() * k / z.lower()).abs_upper())
@@ -173,17 +174,30 @@ def _k0_series(z: Any) -> tuple[Any, Any, Any]:
     so that the rest of the sum is less than the last term taken.
     """
     flint = _flint()
-    arb, q = flint.arb, z * z / 4
-    term, harmonic, total, n = arb(1), arb(0), arb(0), 0
-    least = arb(2) ** -flint.ctx.prec
-    while not (n > z and term * harmonic < least):
-        n += 1
-        term *= q / (n * n)
-        harmonic += arb(1) / n
-        total += term * harmonic
-    total += arb(0, (term * harmonic).abs_upper())
+    q, count = z * z / 4, 32
+    least = flint.arb(2) ** -flint.ctx.prec
+    while True:
+        series = _harmonic_series(count, flint.ctx.prec)
+        last = series[count] * q**count
+        if count > z and last < least:
+            break
+        count += count // 2
+    total = series(q) + flint.arb(0, last.abs_upper())
     i0, i1 = z.bessel_i(0), z.bessel_i(1)
-    return total - ((z / 2).log() + arb.const_euler()) * i0, i0, i1
+    return total - ((z / 2).log() + flint.arb.const_euler()) * i0, i0, i1
+
+
+@functools.lru_cache(maxsize=256)
+def _harmonic_series(count: int, bits: int) -> Any:
+    """(1 + ... + 1/n)/n!^2 for n up to ``count``, as a polynomial."""
+    flint = _flint()
+    with flint.ctx.workprec(bits):
+        harmonic, factorial, terms = flint.arb(0), flint.arb(1), [flint.arb(0)]
+        for n in range(1, count + 1):
+            harmonic += flint.arb(1) / n
+            factorial *= n
+            terms.append(harmonic / (factorial * factorial))
+        return flint.arb_poly(terms)
 
 
 def _state(alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any] | None:
@@ -208,14 +222,17 @@ def _state(alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any
         return state | {"full_slip": True, "beta": arb(0), "Q": mu}
     if not over < 0:
         return None
-    eta = zeta
-    if delta != 0:
-        y = zeta * (1 + epsilon) - delta / (mu * V)
-        eta = y if c == 0 else _root(lambda z: _F(z, alpha, c), y, y.mid())
+    eta = zeta if delta == 0 else stick_length(zeta * (1 + epsilon) - delta / (mu * V), alpha)
     if eta is None:
         return None
     share = 1 - _H(eta, alpha, c)[0] * w**2 if delta != 0 else arb(0)
     return state | {"full_slip": False, "beta": eta / zeta if delta != 0 else arb(1), "Q": mu * share}
+
+
+def stick_length(y: Any, alpha: Any) -> Any:
+    """eta > 0 of Eq. (10), F(eta) = y; None without the digits for it."""
+    c = (alpha - 1) / alpha
+    return y if c == 0 else _root(lambda z: _F(z, alpha, c), y, y.mid())
 
 
 def _F(z: Any, alpha: Any, c: Any) -> tuple[Any, Any]:
