@@ -8,7 +8,7 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := data/tables/atlas.nc data/tables/paper.nc
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove test fuzz mutate check clean
+.PHONY: help setup demo tables validate figures bench numbers prove test fuzz mutate torture check clean interop interop-tools
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -48,17 +48,38 @@ bench: setup $(TABLES) ## run time against error beside the peers (long; LSODA w
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(RUN) pipeline/benchmark.py --config $(CONFIG)
 
-numbers: setup $(TABLES) ## measure again what README and docs state, and put it there (about 3 minutes)
+numbers: setup $(TABLES) ## measure again what README and docs state, and put it there (about 10 minutes)
 	$(RUN) pipeline/measure.py --config $(CONFIG)
+	$(RUN) pipeline/loading.py --config $(CONFIG)
+	$(RUN) pipeline/ensembles.py --config $(CONFIG)
 	$(RUN) pipeline/document.py
 	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
+	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
-prove: setup ## the contact law against certified enclosures: data/results/proofs.json (about 10 minutes)
+prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
 	$(RUN) pipeline/prove.py --config $(CONFIG)
+	$(RUN) pipeline/proof_figures.py
+	$(RUN) pipeline/error_maps.py --config $(CONFIG)
+	$(RUN) pipeline/independent.py
+	$(RUN) pipeline/large.py --config $(CONFIG)
 	$(RUN) pipeline/document.py
 
 test: setup ## the whole test suite
 	$(BIN)/pytest -n 2
+
+DEBIAN := netcdf-bin libnetcdf-dev octave octave-netcdf r-base-core r-cran-ncdf4
+SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
+interop: interop-tools $(TABLES) ## the tables in C, Octave, R, Node, ncdump and the CF checker, which it installs
+	$(BIN)/pytest -rs tests/test_interop.py
+
+# What cannot be installed, without a network say, is told here, and its tests are skipped with that reason.
+interop-tools: setup
+	$(SUDO) apt-get update -qq || echo "interop: Debian's lists of packages stay as they are"
+	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(DEBIAN) >/dev/null \
+	  || echo "interop: not installed: $(DEBIAN)"
+	npm install --silent --no-save --no-package-lock --prefix . h5wasm@0.10.3 || echo "interop: not installed: h5wasm"
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[interop]' \
+	  || echo "interop: not installed: compliance-checker"
 
 FUZZ_SECONDS ?= 600
 fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS) and the loaders (a minute each)
@@ -69,6 +90,10 @@ fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECOND
 
 mutate: setup ## plant defects in the kernels and see which the tests notice (about an hour)
 	$(RUN) pipeline/mutate.py
+
+torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 20 minutes)
+	$(RUN) pipeline/torture.py --config $(CONFIG)
+	$(RUN) pipeline/document.py
 
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports

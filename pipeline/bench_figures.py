@@ -18,6 +18,8 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 from bench.report import finished, paper_rows, read
 
+from viscoroll.files import replacing
+
 ROOT = Path(__file__).parents[1]
 #: line and marker by method: told apart without colour
 _STYLES = {
@@ -121,7 +123,8 @@ def draw(results: Path, folder: Path) -> None:
         if (result := read(results, part)) is not None:
             figure = figure_of(result)
             name = part if part == "work-precision" else f"bench-{part}"
-            figure.savefig(folder / f"{name}.png", dpi=110, metadata={"Software": None})
+            with replacing(folder / f"{name}.png") as temporary:
+                figure.savefig(temporary, dpi=110, metadata={"Software": None})
             plt.close(figure)
 
 

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
+import ensembles_report
 from bench import report
 
 from viscoroll import ViscorollError
@@ -24,8 +25,15 @@ from viscoroll.files import write_text
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "data/results/measured.json"
-PROOFS = ROOT / "data/results/proofs.json"
-DOCUMENTS = (ROOT / "README.md", ROOT / "docs/accuracy.md", ROOT / "docs/benchmark.md")
+#: results of other stages: file of data/results and the script that makes it, by name
+OTHERS = {
+    "proofs": "prove.py", "independent": "independent.py", "large": "large.py", "loading": "loading.py",
+    "torture": "torture.py", "ensembles": "ensembles.py",
+}  # fmt: skip
+DOCUMENTS = (
+    ROOT / "README.md", ROOT / "docs/accuracy.md", ROOT / "docs/benchmark.md", ROOT / "docs/design.md",
+    ROOT / "docs/loading/README.md", ROOT / "docs/ensembles.md",
+)  # fmt: skip
 _BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")
 _NAMES = {
@@ -152,6 +160,7 @@ def proofs(m: dict[str, Any]) -> str:
     """One table a proof, from proofs.json."""
     titles = {
         "ratios": "Bessel ratios", "contact": "Contact states", "shape": "Shape", "slopes": "Slopes and stress",
+        "motion": "Motion",
     }  # fmt: skip
     parts = []
     for name, title in titles.items():
@@ -162,16 +171,103 @@ def proofs(m: dict[str, Any]) -> str:
                 f"{row['points']:,}",
                 number(row["bound"]),
                 number(row["worst"]),
+                number(row["mean"]),
             )
-            for row in m["proofs"][name]
+            for row in m["proofs"]["proofs"][name]
         )
-        parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst'), rows)}")
+        parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst', 'mean'), rows)}")
     return "\n".join(parts)
+
+
+def independent(m: dict[str, Any]) -> str:
+    """Deviations from other implementations, worst and mean."""
+    rows = (
+        (row["source"], row["quantity"], f"{row['values']}", number(row["worst"]), number(row["mean"]))
+        for row in m["independent"]["deviations"]
+    )
+    return table(("from", "deviation in", "values", "worst", "mean"), rows)
+
+
+def paper(m: dict[str, Any]) -> str:
+    """Numbers that the paper prints, and the same computed here."""
+    names = {"alpha": "α", "kappa": "κ", "gamma": "γ", "delta": "δ", "lam": "λ", "epsilon": "ε", "beta": "β"}
+    rows = (
+        (
+            f"{row['section']:g}",
+            f"{row['t']:g}" if row["t"] != "" else "",
+            names.get(row["quantity"], row["quantity"]).replace("beta", "β"),
+            f"{row['value']:g}",
+            row["here"],
+            number(row["digits"]),
+        )
+        for row in m["independent"]["paper"]
+    )
+    return table(("Sect.", "t", "quantity", "printed", "here", "difference in last digits"), rows)
+
+
+def loading(m: dict[str, Any]) -> str:
+    """Errors of the ways to interpolate in the atlas."""
+    ways = {"spline": "tensor cubic spline (not-a-knot)", "six_points": "polynomial through six nodes along each axis"}
+    errors = m["loading"]["errors"]
+    rows = ((ways[way], *(number(errors[way][name]) for name in ("beta", "Q", "M"))) for way in ways)
+    head = ("interpolation", "β", "Q/μ", "κM")
+    return table(head, rows) + f"\nLargest of {m['loading']['points']:,} random states, by `pipeline/loading.py`.\n"
+
+
+def loading_steps(m: dict[str, Any]) -> str:
+    """The way from a state to Q and M through the atlas, with numbers."""
+    formulas = {
+        "kappa_V": "kappa abs(V)",
+        "kappa_delta_star_over_mu": "look up at (alpha, kappa_V)",
+        "delta_star": "(mu/kappa) kappa_delta_star_over_mu",
+        "s": "abs(delta)/delta_star; from 1 on: full slip, beta = 0 and Q_over_mu = 1",
+        "u": "1 - sqrt(1 - s), the coordinate to interpolate in",
+        "beta": "look up at (alpha, kappa_V, u)",
+        "Q_over_mu": "look up at (alpha, kappa_V, u)",
+        "Q": "mu Q_over_mu with the sign of V delta, that of omega - V",
+        "kappa_M": "look up at (alpha, kappa_V)",
+        "M": "kappa_M/kappa with the sign of V",
+    }
+    state = zip(("alpha", "kappa", "mu", "V", "delta"), m["loading"]["state"], strict=True)
+    rows = ((f"`{name}`", formula, f"{m['loading']['steps'][name]:.8g}") for name, formula in formulas.items())
+    given = ", ".join(f"{name} = {value:g}" for name, value in state)
+    return f"For {given}:\n\n{table(('name', 'how', 'value'), rows)}"
+
+
+def torture(m: dict[str, Any]) -> str:
+    """One table of all parts of torture.json."""
+    head = ("what was done", "how often", "refused", "unharmed", "wrong", "slowest, s of processor", "most memory, MB")
+    rows = (
+        (
+            row["done"],
+            *(f"{row[key]:,}" for key in ("tried", "refused", "unharmed", "wrong")),
+            *("" if row[key] is None else number(row[key]) for key in ("slowest_s", "peak_mb")),
+        )
+        for part in m["torture"]["parts"].values()
+        for row in part
+    )
+    return table(head, rows)
+
+
+def large(m: dict[str, Any]) -> str:
+    """Memory of large calls."""
+    rows = (
+        (
+            f"`{row['call']}`",
+            f"{row['elements']:.0e}".replace("e+0", "e"),
+            f"{row['result_bytes'] / 1e6:.0f} MB",
+            f"{row['extra_bytes'] / 1e6:.1f} MB",
+        )
+        for row in m["large"]["rows"]
+    )
+    return table(("call", "elements", "result", "beside input and result"), rows)
 
 
 BLOCKS: dict[str, Callable[[dict[str, Any]], str]] = {
     "headline": headline, "contact": contact, "direct": direct, "stress": stress, "motion": motion, "times": times,
-    "proofs": proofs,
+    "proofs": proofs, "independent": independent, "independent_paper": paper, "large": large, "loading": loading,
+    "loading_steps": loading_steps, "torture": torture,
+    **ensembles_report.BLOCKS,
 }  # fmt: skip
 
 
@@ -193,8 +289,8 @@ def filled(text: str, measured: dict[str, Any], folder: Path, name: str) -> str:
             if match[2] not in BLOCKS | report.BLOCKS:
                 names = ", ".join([*BLOCKS, *report.BLOCKS])
                 raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {names}") from error
-            script = "measure" if match[2] in BLOCKS else "benchmark"
-            raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline/{script}.py") from error
+            script = OTHERS.get(match[2].partition("_")[0], "measure.py") if match[2] in BLOCKS else "benchmark.py"
+            raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline/{script}") from error
 
     result, count = _BLOCK.subn(fill, text)
     if len(_MARK.findall(text)) != 2 * count:
@@ -211,7 +307,8 @@ def main() -> int:
     stale = []
     try:
         measured = json.loads(arguments.results.read_text(encoding="utf-8"))
-        measured |= {"proofs": json.loads(PROOFS.read_text(encoding="utf-8"))["proofs"]}
+        for name in OTHERS:
+            measured[name] = json.loads((ROOT / f"data/results/{name}.json").read_text(encoding="utf-8"))
         for path in arguments.files:
             old = path.read_text(encoding="utf-8")
             new = filled(old, measured, arguments.results.parent, path.name)

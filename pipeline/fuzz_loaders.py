@@ -38,12 +38,13 @@ def read_toml(path: Path) -> None:
 
 
 def read_table(path: Path) -> None:
+    """What ``tables.load`` does behind the seal and the rehearsal, in which a crash of HDF5 harms nobody."""
     from viscoroll import ViscorollError
-    from viscoroll.tables import info, load
+    from viscoroll.tables.store import read
 
-    for read in (load, lambda path: load(path, verify=False), info):
+    for verify in (True, False):
         try:
-            read(path)
+            read(path.read_bytes(), path, verify)
         except ViscorollError as error:
             own(error)
 

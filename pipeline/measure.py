@@ -117,7 +117,9 @@ def contact_errors(sizes: dict[str, Any]) -> dict[str, Any]:
             # the difference is formed with all digits: a double converts exactly
             error = abs((exact[name] - float(getattr(table, name)[i])) / exact[name])
             errors[name].append(float(error * (1 - float(delta[i]) / exact["delta_star"]) if name == "beta" else error))
-    return {name: {"worst": max(values), "median": float(np.median(values))} for name, values in errors.items()}
+    return {
+        name: {"worst": float(np.max(values)), "median": float(np.median(values))} for name, values in errors.items()
+    }
 
 
 def table_against_direct(sizes: dict[str, Any]) -> dict[str, float]:
@@ -135,7 +137,7 @@ def stress_closures(sizes: dict[str, Any]) -> dict[str, float]:
         for i in range(V.size)
     ]
     names = {"load": "load", "traction": "Q", "moment": "M"}
-    return {name: max(abs(one[key]) for one in found) for name, key in names.items()}
+    return {name: float(np.max([abs(one[key]) for one in found])) for name, key in names.items()}
 
 
 def motions(sizes: dict[str, Any]) -> dict[str, list[tuple[vr.Scene, float, float]]]:

@@ -8,6 +8,7 @@ from typing import Any
 import flint
 import numpy as np
 from check_values import EDGE_ALPHAS, chosen_state
+from claim import Claim
 from flint import arb
 from tqdm import tqdm
 
@@ -45,27 +46,15 @@ def by_slice(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
 
 
 class Tally:
-    """The worst of each row."""
+    """The claims of one way."""
 
     def __init__(self, way: str) -> None:
         self.way = way
-        self.rows: dict[str, dict[str, Any]] = {}
+        self.claims: dict[str, Claim] = {}
 
     def add(self, claim: str, bound: float, error: float, state: tuple[float, ...]) -> None:
-        row = self.rows.setdefault(
-            claim,
-            {
-                "claim": f"{claim} ({self.way})",
-                "domain": DOMAIN,
-                "bound": bound,
-                "worst": -1.0,
-                "points": 0,
-                "where": "",
-            },
-        )
-        row["points"] += 1
-        if not error <= row["worst"]:
-            row |= {"worst": error, "where": ", ".join(f"{n} = {v!r}" for n, v in zip(INPUTS, state, strict=True))}
+        row = self.claims.setdefault(claim, Claim(f"{claim} ({self.way})", DOMAIN, bound))
+        row.add(error, ", ".join(f"{n} = {v!r}" for n, v in zip(INPUTS, state, strict=True)))
 
 
 DOMAIN = "alpha in [1, 1e6], kappa V in [1e-300, 1e300], kappa, mu in [1e-6, 1e6], s from 1e-300 to 1 and beyond"
@@ -77,9 +66,9 @@ def compare(tally: Tally, state: tuple[float, ...], found: dict[str, float]) -> 
     if found["full_slip"] != exact["full_slip"]:
         star = exact["delta_star"]
         off = abs(arb(abs(state[4])) - star) / arb(float(np.spacing(float(star))))
-        tally.add("full_slip: distance from delta_star where wrong, ULP", SLIP_ULP, float(off.upper()), state)
+        tally.add(SLIP, SLIP_ULP, float(off.upper()), state)
         return
-    tally.add("full_slip: distance from delta_star where wrong, ULP", SLIP_ULP, 0.0, state)
+    tally.add(SLIP, SLIP_ULP, 0.0, state)
     condition = condition_numbers({name: arb(abs(value)) for name, value in zip(INPUTS, state, strict=True)})
     for name in FIELDS:
         error = relative_error(found[name], exact[name])
@@ -116,5 +105,5 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             values = method(states).as_dict()
             for i, state in enumerate(tqdm(states, desc="states", delay=1.0, leave=False)):
                 compare(tally, state, {name: column[i] for name, column in values.items()})
-        result += sorted(tally.rows.values(), key=lambda row: row["claim"])
+        result += sorted((claim.row for claim in tally.claims.values()), key=lambda row: row["claim"])
     return result

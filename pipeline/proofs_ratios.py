@@ -8,6 +8,7 @@ from typing import Any
 
 import flint
 import numpy as np
+from claim import Claim
 from flint import arb
 from tqdm import tqdm
 
@@ -59,23 +60,17 @@ def compared(x: float) -> Iterator[tuple[str, float]]:
         yield name, float((abs(arb(slope) - exact) / arb(float(unit))).upper())
 
 
+def claim_of(name: str) -> Claim:
+    if "slope" in name:
+        return Claim(f"{name}, ULP of the larger term of its Riccati equation", "all normal doubles", SLOPE_ULP)
+    return Claim(f"{name}, ULP", "all positive doubles", RATIO_ULP)
+
+
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    x = points(sizes["ratio_points"], sizes["seed"])
-    worst: dict[str, tuple[float, float]] = {}
-    for at in tqdm(x.tolist(), desc="Bessel ratios", delay=1.0, leave=False):
+    claims: dict[str, Claim] = {}
+    for at in tqdm(points(sizes["ratio_points"], sizes["seed"]).tolist(), desc="Bessel ratios", delay=1.0, leave=False):
         # the terms of the slopes, 1/x, cancel to 1/x^2
         with flint.ctx.workprec(_BITS + 2 * max(math.frexp(at)[1], 0)):
             for name, error in compared(at):
-                if not error <= worst.get(name, (-1.0, 0.0))[0]:
-                    worst[name] = (error, at)
-    return [
-        {
-            "claim": f"{name}, ULP" + (" of the larger term of its Riccati equation" if "slope" in name else ""),
-            "domain": "all normal doubles" if "slope" in name else "all positive doubles",
-            "bound": SLOPE_ULP if "slope" in name else RATIO_ULP,
-            "worst": error,
-            "points": x.size,
-            "where": f"x = {at!r}",
-        }
-        for name, (error, at) in worst.items()
-    ]
+                claims.setdefault(name, claim_of(name)).add(error, f"x = {at!r}")
+    return [claim.row for claim in claims.values()]

@@ -8,6 +8,7 @@ from typing import Any
 import flint
 import numpy as np
 from check_values import chosen_alpha
+from claim import Claim
 from flint import arb
 from proofs_shape import at_edges, contact
 from tqdm import tqdm
@@ -15,25 +16,13 @@ from tqdm import tqdm
 import viscoroll as vr
 from viscoroll.kernels.law import generators
 from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure, shape_enclosure, slopes
-from viscoroll.validation.stresses import stress_checks
+from viscoroll.validation.states import random_states
+from viscoroll.validation.stresses import closures
 
 SLOPE, STRESS, CLOSURE = 1e-10, 1e-11, 1e-11
 #: where the edges of the contact and of the stick zone lie: four roundings of x and lam, four of beta
 _SHIFT = 8.0 * 2.0**-53
 _FIELDS = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
-
-
-class Worst:
-    """The worst of one claim."""
-
-    def __init__(self, claim: str, domain: str, bound: float) -> None:
-        self.row: dict[str, Any] = {"claim": claim, "domain": domain, "bound": bound}
-        self.row |= {"worst": 0.0, "points": 0, "where": ""}
-
-    def add(self, error: float, where: str = "", points: int = 1) -> None:
-        self.row["points"] += points
-        if not error <= self.row["worst"]:
-            self.row |= {"worst": error, "where": where}
 
 
 def slope_scales(kappa: float, mu: float, V: float, alpha: float, delta_star: float) -> dict[str, float]:
@@ -61,7 +50,7 @@ def slope_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
     domain = "alpha in [1, 1e6], kappa V in [1e-8, 1e8], s in [1e-12, 1 - 1e-12]"
     measure = {"dQ_dV": "over μ/V", "dM_dV": "over (α − 1)/α"}
     relative = "relative, over max(1, condition of beta × 4.4e-6)"
-    worst = {name: Worst(f"{name}, {measure.get(name, relative)}", domain, SLOPE) for name in _FIELDS}
+    claims = {name: Claim(f"{name}, {measure.get(name, relative)}", domain, SLOPE) for name in _FIELDS}
     for _ in tqdm(range(count), desc="slopes", delay=1.0, leave=False):
         alpha = chosen_alpha(rng)
         kappa, mu, kappa_V, small, gap = (10.0 ** rng.uniform([-6, -6, -8, -12, -12], [6, 6, 8, 0, 0])).tolist()
@@ -75,22 +64,22 @@ def slope_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
             exact["dQ_domega"] = exact["dQ_ddelta"] / V
             errors = slope_errors(found, exact, slope_scales(kappa, mu, V, alpha, delta_star), condition)
         for name, error in errors.items():
-            worst[name].add(error, f"alpha = {alpha!r}, kappa = {kappa!r}, mu = {mu!r}, V = {V!r}, s = {s!r}")
-    return [one.row for one in worst.values()]
+            claims[name].add(error, f"alpha = {alpha!r}, kappa = {kappa!r}, mu = {mu!r}, V = {V!r}, s = {s!r}")
+    return [one.row for one in claims.values()]
 
 
 def jump_rows(rng: np.random.Generator) -> list[dict[str, Any]]:
     """Slopes at neighbouring doubles across every cell edge: largest step, over its scale."""
     claim = "step between neighbouring doubles, over its scale"
-    worst = {name: Worst(f"{name}: {claim}", "every cell edge", SLOPE) for name in _FIELDS}
+    claims = {name: Claim(f"{name}: {claim}", "every cell edge", SLOPE) for name in _FIELDS}
     for alpha in (1.0001, 1.5, 11.0, 1e3, 1e6):
         for kappa, mu, V, delta in at_edges("one by one", alpha, rng):
             state = contact("one by one", alpha, kappa, mu, V, delta, (*_FIELDS, "delta_star"))
             for name, scale in slope_scales(kappa, mu, V, alpha, state.delta_star).items():
                 steps = np.abs(np.diff(getattr(state, name)))
                 size = np.broadcast_to(scale, np.shape(getattr(state, name)))[..., 1:]
-                worst[name].add(float(np.max(steps / size)), f"alpha = {alpha!r}", steps.size)
-    return [one.row for one in worst.values()]
+                claims[name].add(steps / size, f"alpha = {alpha!r}")
+    return [one.row for one in claims.values()]
 
 
 def stress_points(state: Any, rng: np.random.Generator) -> np.ndarray:
@@ -115,8 +104,8 @@ def enclosed_stress(exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: A
 
 def stress_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
     domain = "alpha zeta in [1e-8, 1e8], alpha in [1, 1e4], s over its range, x at edges, stick point and between"
-    worst = [
-        Worst(f"{name} beyond a shift of x by 8 roundings, over its peak", domain, STRESS) for name in ("p", "tau")
+    claims = [
+        Claim(f"{name} beyond a shift of x by 8 roundings, over its peak", domain, STRESS) for name in ("p", "tau")
     ]
     for _ in tqdm(range(count), desc="stress", delay=1.0, leave=False):
         alpha = float(10.0 ** rng.uniform(0.0, 4.0))
@@ -141,17 +130,20 @@ def stress_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
                     off = abs(arb(float(values[i])) - here[n])
                     allowed = max(float(abs(other[n] - here[n]).mid()) for other in (up, down))
                     over = (float(off.upper()) - allowed) / (peak * (mu if n else 1.0))
-                    worst[n].add(over, where)
-    return [one.row for one in worst]
+                    claims[n].add(over, where)
+    return [one.row for one in claims]
 
 
 def closure_rows(count: int, seed: int) -> list[dict[str, Any]]:
-    names = ("Int p dx = P", "Int tau dx = Q", "Int x p dx = M")
-    return [
-        Worst(f"{name}, over the load", "alpha in [1, 1e4], kappa V in [1e-3, 1e3]", CLOSURE).row
-        | {"worst": float(check.measured), "points": count}
-        for name, check in zip(names, stress_checks(count, seed), strict=True)
-    ]
+    domain = "alpha in [1, 1e4], kappa V in [1e-3, 1e3]"
+    meaning = {"load": "Int p dx = P", "Q": "Int tau dx = Q", "M": "Int x p dx = M"}
+    claims = {name: Claim(f"{text}, over the load", domain, CLOSURE) for name, text in meaning.items()}
+    scene, V, delta = random_states(count, seed)
+    for i in range(count):
+        one = vr.Scene(scene.alpha[i], scene.kappa[i], scene.mu[i])
+        for name, error in closures(one, float(V[i]), float(delta[i])).items():
+            claims[name].add(abs(error), f"{one!r}, V = {V[i]!r}, delta = {delta[i]!r}")
+    return [claim.row for claim in claims.values()]
 
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:

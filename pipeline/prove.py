@@ -1,6 +1,6 @@
-"""Hold what is stated of the contact law against certified enclosures -> data/results/proofs.json (kept in git).
+"""Hold what is stated against truth that shares nothing with it -> data/results/proofs.json (kept in git).
 
-    python pipeline/prove.py [--config FILE] [--quick] [-o FILE]
+    python pipeline/prove.py [--config FILE] [--quick] [--only PROOF] [-o FILE]
 
 Each proof is a list of rows: the claim, its domain, the bound, the worst that was found, and where.
 Sizes and seeds are in [prove] of the configuration, those of --quick in [prove.quick].  Exit code 1
@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 import proofs_contact
+import proofs_motion
 import proofs_ratios
 import proofs_shape
 import proofs_slopes
@@ -30,6 +31,7 @@ PROOFS = {
     "contact": proofs_contact.rows,
     "shape": proofs_shape.rows,
     "slopes": proofs_slopes.rows,
+    "motion": proofs_motion.rows,
 }
 
 
@@ -37,11 +39,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--config", type=Path, default=ROOT / "pipeline/config/production.toml")
     parser.add_argument("--quick", action="store_true", help="few points: the size of a test")
+    parser.add_argument("--only", choices=PROOFS, help="renew one proof in a file that has the others")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/proofs.json")
     arguments = parser.parse_args()
     try:
         sizes = read_sizes(arguments.config, "prove", arguments.quick)
-        proofs = {name: rows(sizes) for name, rows in PROOFS.items()}
+        names = [arguments.only] if arguments.only else list(PROOFS)
+        proofs = {name: PROOFS[name](sizes) for name in names}
+        if arguments.only:
+            proofs = json.loads(arguments.output.read_text(encoding="utf-8"))["proofs"] | proofs
         arguments.output.parent.mkdir(parents=True, exist_ok=True)
         text = json.dumps(rounded({"proofs": proofs, "sizes": sizes}), indent=1, sort_keys=True, ensure_ascii=False)
         write_text(arguments.output, f"{text}\n")

@@ -16,6 +16,7 @@ import mpmath as mp
 import numpy as np
 from tqdm import tqdm
 
+from viscoroll.files import replacing
 from viscoroll.kernels import ratio_layout as layout
 
 TARGET = Path(__file__).parents[1] / "src/viscoroll/kernels/ratios.npy"
@@ -83,7 +84,8 @@ def main() -> None:
     mp.mp.dps = 60
     with tqdm(total=layout.TABLE_SIZE // layout.COEFFICIENTS, desc="bins") as progress:
         table = [c for segment in layout.SEGMENTS for c in fit_segment(segment, progress)]
-    np.save(output, np.array(table))
+    with replacing(output) as temporary:
+        np.save(temporary, np.array(table))
 
 
 if __name__ == "__main__":

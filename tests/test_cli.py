@@ -156,7 +156,7 @@ def test_example_of_help_runs(run, tables, here, figures, monkeypatch, command):
     example = run(*command.split(), "--help").partition("example:\n  viscoroll ")[2]
     if command in ("tables", "tables build"):
         example = example.replace("-o data/tables", "-o built")
-    assert run(*shlex.split(example)) or list(here.glob("*.nc")) or list(here.glob("*.png"))
+    assert run(*shlex.split(example)) or {path.suffix for path in here.iterdir()} & {".nc", ".txt", ".png"}
 
 
 @pytest.mark.parametrize(
@@ -450,6 +450,17 @@ def test_tables_export_and_info(run):
     assert run("tables", "info", "t.nc").startswith("t.nc: literal table")
 
 
+def test_tables_export_of_a_file(run, refuse, tables, here):
+    paper = str(tables / "paper.nc")
+    assert run("tables", "export", paper, "--format", "modelica", "--alpha", "11", "-o", "q.txt") == ""
+    assert "alpha = 11.0, kappa = 2.91, mu = 0.2" in (here / "q.txt").read_text()
+    assert run("tables", "export", paper, "-o", "copy.nc") == ""
+    assert vr.tables.load("copy.nc").identical(vr.tables.load(paper))
+    assert "alpha = 5: must be one that the table holds: 1, 11" in refuse(
+        "tables", "export", paper, "--alpha", "5", "-o", "t.nc"
+    )
+
+
 @pytest.mark.parametrize("name", ["atlas.nc", "paper.nc"])
 def test_tables_validate(run, tables, name):
     out = run("tables", "validate", str(tables / name), "-n", "500", "--seed", "3")
@@ -501,7 +512,12 @@ def test_table_without_stated_errors(refuse, tables, here):
         (["tables", "build", "-o", "file"], "file: cannot be made a folder"),
         (["tables", "build", "-o", "file/folder"], "file/folder: cannot be made a folder"),
         (["tables", "validate", "t.nc", "-n", "0"], "'0' must be"),
-        ([*EXPORT, "--alpha", "1", "-o", "t.csv"], "'t.csv' must end in .nc"),
+        ([*EXPORT, "--alpha", "1", "-o", "t.csv"], "path = t.csv: must be a name that ends in .nc for format netcdf4"),
+        ([*EXPORT, "--alpha", "1", "-o", "t.xlsx"], "'t.xlsx' must end in .nc or .csv or .txt or .mat"),
+        ([*EXPORT, "--alpha", "1", "--format", "dat", "-o", "t.nc"], "format = 'dat': must be out of netcdf4,"),
+        ([*EXPORT, "-o", "t.nc"], "table = --kappa, --mu, --V, --delta: must be FILE"),
+        ([*EXPORT[:2], "file", "--mu", "1", "-o", "t.nc"], "table = FILE, --mu: must be FILE"),
+        ([*EXPORT[:2], "file", "-o", "t.nc"], "file: is not an HDF5 file"),
         ([*EXPORT, "--alpha", "1"], "-o"),
         ([*EXPORT, "--alpha", "0.5", "-o", "t.nc"], "alpha = 0.5"),
         ([*EXPORT, "--alpha", "11,1", "-o", "t.nc"], "alpha"),

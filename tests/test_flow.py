@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import tolerances as tol
@@ -294,10 +296,24 @@ def test_damaged_file_is_built_again(damage):
         content = bytearray(next(p for p in flow._folder().iterdir() if p != path).read_bytes())
     path.write_bytes(content)
     flow._recent.clear()
-    again = flow.flow_map(SCENE, 2.0)
+    with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\); it is built anew"):
+        again = flow.flow_map(SCENE, 2.0)
     assert np.array_equal(again.table, first.table)
     flow._recent.clear()
     assert flow._load(path, first.parameters) is not None
+
+
+def test_a_map_in_a_read_only_folder_is_used(monkeypatch):
+    """Its time of use cannot be noted there; that is no reason to build it again."""
+    first = flow.flow_map(SCENE, 2.0)
+    flow._recent.clear()
+
+    def refuse(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(flow, "build", None)
+    monkeypatch.setattr(Path, "touch", refuse)
+    assert np.array_equal(flow.flow_map(SCENE, 2.0).table, first.table)
 
 
 def test_a_disk_that_cannot_be_written_is_no_obstacle(tmp_path, monkeypatch):

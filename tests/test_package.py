@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numba
 import pytest
+from ordinary_user import as_ordinary_user, let_in
 
 import viscoroll as vr
 from viscoroll.kernels import jit
@@ -24,12 +25,13 @@ HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "ms
 LAYERS = (
     {"kernels", "errors"},
     {"validity"},
-    {"scene", "alpha_slice", "blocks", "files", "sampling", "symbols"},
+    {"scene", "alpha_slice", "blocks", "files", "sampling", "sections", "symbols"},
     {"rolling_contact", "reference"},
     {"tables", "motion"},
     {"validation"},
     {"figures"},
     {"config"},
+    {"runs"},
     {"cli"},
     {"__main__"},
 )
@@ -230,6 +232,32 @@ def test_a_missing_file_is_replaced(cache, kind):
         path.unlink()
     assert fresh() == 0
     assert fresh() == 1
+
+
+def used_from_the_cache() -> None:
+    assert fresh() == 1
+
+
+def test_a_read_only_cache_is_used(cache):
+    let_in(cache.parent)
+    for path in (*cache.iterdir(), cache):
+        path.chmod(0o555)
+    assert as_ordinary_user(used_from_the_cache) == ""
+    cache.chmod(0o755)
+
+
+def compiled_with_a_note() -> None:
+    jit._note_cache_trouble.cache_clear()
+    with pytest.warns(RuntimeWarning, match=r"compiled kernels are not cached \(.*Permission denied"):
+        assert fresh() == 0
+
+
+def test_an_empty_read_only_folder_only_warns(cache):
+    let_in(cache.parent)
+    for path in cache.iterdir():
+        path.unlink()
+    cache.chmod(0o555)
+    assert as_ordinary_user(compiled_with_a_note) == ""
 
 
 def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):

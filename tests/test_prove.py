@@ -202,3 +202,17 @@ print(seen, tried)
     assert result.returncode == 0, result.stderr
     seen, tried = map(int, result.stdout.split())
     assert seen == tried
+
+
+def test_error_maps_are_below_what_is_stated(tmp_path):
+    """The committed maps, and new ones of few cells."""
+    files = [tmp_path / "maps.nc", tmp_path / "maps.png"]
+    result = run(str(PIPELINE / "error_maps.py"), "--quick", "-o", str(files[0]), "--figure", str(files[1]))
+    assert result.returncode == 0, result.stderr
+    assert files[1].stat().st_size > 0
+    for path in (files[0], ROOT / "data/results/error-maps.nc"):
+        with xr.open_dataset(path, engine="h5netcdf") as maps:
+            assert len(maps.data_vars) == 8
+            for name, errors in maps.data_vars.items():
+                assert np.all(errors.values >= 0.0), name
+                assert np.all(errors.values <= tol.PROVEN), name

@@ -183,3 +183,21 @@ def test_limits_that_are_allowed():
     assert vr.Cylinder(**(SI | {"nu": 0.5})).E_prime == pytest.approx(math.pi * 2.3e5 / 0.75, rel=tol.SCENE)
     assert vr.Cylinder(**(SI | {"T_epsilon": 0.97})).scene().alpha == 1.0
     assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
+
+
+@pytest.mark.parametrize(
+    ("changed", "field"),
+    [
+        ({"R": 1e-172, "m": 1e-172}, "kappa"),
+        ({"R": 1e-300, "m": 1e300, "E": 1e-300}, "kappa"),
+        ({"T_epsilon": 1e200}, "gamma"),
+        ({"T_epsilon": 1e300, "T_sigma": 1e-300}, "alpha"),
+    ],
+)
+def test_cylinders_beyond_the_doubles(changed, field):
+    """Products that underflow or overflow are refused by the field that they spoil, without a warning."""
+    cylinder = vr.Cylinder(
+        **({"R": 0.1, "m": 35.5, "E": 2e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 1.0, "mu": 0.2} | changed)
+    )
+    with pytest.raises(vr.ParameterError, match=field):
+        cylinder.scene()

@@ -55,6 +55,23 @@ def test_wave_speed():
     assert found.sentence.startswith("the speed is 20 % of that of shear waves")
 
 
+@pytest.mark.parametrize(("V", "density"), [(3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324)])
+def test_speeds_and_densities_beyond_all_bounds(V, density):
+    """No NaN, no warning: a ratio that no double can hold is infinite."""
+    found = vr.PAPER_CYLINDER.validity(V, density)
+    assert found.quasistatic.holds == (V < 1.0)
+    assert not np.isnan(found.quasistatic.value)
+    assert "nan" not in str(found)
+
+
+@pytest.mark.parametrize("kappa", [1e-300, 1e300])
+def test_scenes_beyond_all_bounds(kappa):
+    found = vr.Scene(11.0, kappa, 0.2).validity([0.0, 1e-300, 1.0, 1e300])
+    assert np.isfinite(found.small_contact.value).all()
+    assert found.small_contact.holds.all() == (kappa > 1.0)
+    assert "nan" not in str(found)
+
+
 def test_a_sentence_each():
     lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
     assert [line.split(":")[0] for line in lines] == list(SCENE.validity(1.0)._fields)

@@ -10,12 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .blocks import elements
 from .errors import ConvergenceError
 
 #: states from which on a slice is used: over three decades of V it costs as much as so many states without it
 WORTHWHILE = 4096
 #: log2 of the range of kappa |V| that is served
 _LOWEST, _HIGHEST = -30, 24
+#: states whose kappa V is held at a time
+_BLOCK = 1 << 16
 
 
 class Slice(NamedTuple):
@@ -34,10 +37,9 @@ def slice_for(alpha: float, kappa: NDArray[np.float64], V: NDArray[np.float64], 
     """
     from .kernels.law import contact_length
     from .kernels.slice_fit import speed_octave, stick_octave
-    from .kernels.slice_loop import EDGE, speed_range
+    from .kernels.slice_loop import EDGE
 
-    scale, speeds = (kappa[0], V) if kappa.size == 1 else (1.0, kappa * V)
-    slow, fast = speed_range(scale, speeds, 2.0**_LOWEST, 2.0**_HIGHEST)
+    slow, fast = _speeds_within(kappa, V)
     if slow > fast:
         return None
     speed, first_speed = _octaves(speed_octave, alpha, slow, fast)
@@ -46,6 +48,23 @@ def slice_for(alpha: float, kappa: NDArray[np.float64], V: NDArray[np.float64], 
     # zeta <= F(zeta) <= zeta + 1/2, with a margin for rounding
     short, long = (contact_length(u, alpha, (alpha - 1.0) / alpha)[0] / (2.0 * u) for u in (fast, slow))
     return Slice(speed, first_speed, *_octaves(stick_octave, alpha, 0.99 * EDGE * short, 1.01 * long + 0.5))
+
+
+def _speeds_within(kappa: NDArray[np.float64], V: NDArray[np.float64]) -> tuple[float, float]:
+    """Least and largest kappa |V| that are served; least > largest if there is none."""
+    from .kernels.slice_loop import speed_range
+
+    shape = np.broadcast_shapes(kappa.shape, V.shape)
+    kappas, speeds = elements(kappa, shape), elements(V, shape)
+    slow, fast = 2.0**_HIGHEST, 0.0
+    for start in range(0, math.prod(shape), _BLOCK):
+        factor, part = (of(start, min(start + _BLOCK, math.prod(shape))) for of in (kappas, speeds))
+        if factor.size > 1:
+            factor, part = np.ones(1), factor * part
+            part.flags.writeable = False
+        least, largest = speed_range(factor[0], part, 2.0**_LOWEST, 2.0**_HIGHEST)
+        slow, fast = min(slow, least), max(fast, largest)
+    return slow, fast
 
 
 def _octaves(fit: Callable, alpha: float, low: float, high: float) -> tuple[NDArray[np.float64], int]:

@@ -1,4 +1,4 @@
-"""Cut array work into fixed blocks and run them on threads, with a progress bar.
+"""Cut array work into fixed blocks, gather their elements, and run them on threads, with a progress bar.
 
 The kernels release the GIL, so plain threads give the cores' full speed without a compiled
 parallel region: no second compilation, no threading layer to clash with a host program's,
@@ -9,8 +9,40 @@ work alone, so results do not depend on the number of threads.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: blocks in hand, a worker
+_WAITING = 8
+
+
+def elements(array: NDArray[np.float64], shape: tuple[int, ...]) -> Callable[[int, int], NDArray[np.float64]]:
+    """(start, stop) -> those elements of ``array`` broadcast to ``shape``, as a vector; a single value stays one.
+
+    A view where they lie so in memory, else a copy of these elements alone.  Read-only whatever was
+    given: a kernel is compiled anew for every kind of array that it sees.
+    """
+    if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
+        vector = array.reshape(-1).view()
+        vector.flags.writeable = False
+        return (lambda start, stop: vector) if array.size == 1 else (lambda start, stop: vector[start:stop])
+    whole = np.broadcast_to(array, shape)
+
+    def gathered(start: int, stop: int) -> NDArray[np.float64]:
+        iterator: Any = np.nditer  # its stubs do not know "contig"
+        flags = ["external_loop", "buffered", "ranged"]
+        chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)
+        chunks.iterrange = start, stop
+        vector = np.concatenate([chunk.copy() for chunk in chunks])  # each is overwritten by the next
+        vector.flags.writeable = False
+        return vector
+
+    return gathered
 
 
 def thread_count(threads: int | None = None) -> int:
@@ -32,17 +64,31 @@ def run_blocks(
 
     ``progress`` names a progress bar, drawn on standard error after the first second.
     """
-    edges = [(start, min(start + block, count)) for start in range(0, count, block)]
-    workers = min(thread_count(threads), len(edges))
+    edges = ((start, min(start + block, count)) for start in range(0, count, block))
+    blocks = -(-count // block)
+    workers = min(thread_count(threads), blocks)
     if workers <= 1 and progress is None:
         for start, stop in edges:
             work(start, stop)
         return
-    with ThreadPoolExecutor(max(workers, 1)) as pool:
-        futures = pool.map(lambda edge: work(*edge), edges)
-        if progress is not None:
-            from tqdm import tqdm
+    if progress is not None:
+        from tqdm import tqdm
 
-            futures = tqdm(futures, desc=progress, total=len(edges), delay=1.0, leave=False)
-        for _ in futures:
-            pass
+        edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
+    with ThreadPoolExecutor(max(workers, 1)) as pool:
+        _run(pool, work, edges, workers)
+
+
+def _run(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], workers: int) -> None:
+    """Keep the workers busy with no more than a few blocks waiting: a future for each would take a kilobyte a block."""
+    waiting: deque[Future[None]] = deque()
+    try:
+        for edge in edges:
+            waiting.append(pool.submit(work, *edge))
+            if len(waiting) > _WAITING * workers:
+                waiting.popleft().result()
+        while waiting:
+            waiting.popleft().result()
+    finally:  # after an error the others need not start
+        for future in waiting:
+            future.cancel()

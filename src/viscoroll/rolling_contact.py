@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .alpha_slice import WORTHWHILE, slice_for
-from .blocks import run_blocks
+from .blocks import elements, run_blocks
 from .errors import ConvergenceError, ParameterError
 from .scene import Scene, broadcast_shape, checked
 
@@ -107,6 +107,9 @@ def contact(
     calls of single states to 2e-14 and not bit for bit; full slip begins at the delta_star that
     the call reports, within 16 units in the last place of the other.  Either way a state's
     result depends on nothing else in the call but the number of states and the fields.
+
+    Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
+    however they broadcast (``tests/test_hostile.py``).
     """
     if (delta is None) == (omega is None):
         both = "both" if delta is not None else "neither"
@@ -120,8 +123,7 @@ def contact(
     arrays = {name: checked(name, value) for name, value in inputs.items()}
     shape = broadcast_shape(**arrays)
     _refuse_overflow(arrays["kappa"], arrays["V"])
-    flat = [flattened(array, shape) for array in arrays.values()]
-    rows = _compute(flat, creep_name == "omega", names, int(np.prod(shape)), method)
+    rows = _compute(list(arrays.values()), shape, creep_name == "omega", names, method)
     return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
 
 
@@ -160,7 +162,10 @@ def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
     return vector
 
 
-def _compute(flat: list[NDArray], creep_is_omega: bool, names: tuple[str, ...], count: int, method: str) -> NDArray:
+def _compute(
+    arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...], method: str
+) -> NDArray:
+    """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``."""
     from .kernels.contact_loop import ROWS
 
     wanted = set(names)
@@ -170,14 +175,18 @@ def _compute(flat: list[NDArray], creep_is_omega: bool, names: tuple[str, ...], 
         bool(wanted & {"M", "dM_dV"}),
         bool(wanted & set(SLOPES)),
     )
-    loop, tables = _chosen_loop(flat, need, count, method)
+    count = int(np.prod(shape))
+    loop, tables = _chosen_loop(arrays, need, count, method)
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
+    parts = [elements(array, shape) for array in arrays]
     failures: list[int] = []
 
     def work(start: int, stop: int) -> None:
-        if loop(*flat, creep_is_omega, need, rows, *tables, out, start, stop):
+        found = np.empty((len(names), stop - start))
+        if loop(*(part(start, stop) for part in parts), creep_is_omega, need, rows, *tables, found, 0, stop - start):
             failures.append(start)
+        out[:, start:stop] = found
 
     run_blocks(work, count, _BLOCK)
     if failures:
@@ -185,7 +194,7 @@ def _compute(flat: list[NDArray], creep_is_omega: bool, names: tuple[str, ...], 
     return out
 
 
-def _chosen_loop(flat: list[NDArray], need: tuple[bool, ...], count: int, method: str) -> tuple[Callable, tuple]:
+def _chosen_loop(arrays: list[NDArray], need: tuple[bool, ...], count: int, method: str) -> tuple[Callable, tuple]:
     """The kernel for a call and the tables that it wants."""
     from .kernels.contact_loop import contact_loop
 
@@ -193,11 +202,11 @@ def _chosen_loop(flat: list[NDArray], need: tuple[bool, ...], count: int, method
         from .kernels.direct_loop import direct_loop
 
         return direct_loop, ()
-    alpha, kappa, _, V, _ = flat
+    alpha, kappa, _, V, _ = arrays
     _, need_stick, _, need_slopes = need
     # at alpha = 1 the law has closed forms
-    if count >= WORTHWHILE and alpha.size == 1 and alpha[0] > 1.0 and not need_slopes:
-        tables = slice_for(float(alpha[0]), kappa, V, stick=need_stick)
+    if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not need_slopes:
+        tables = slice_for(alpha.item(), kappa, V, stick=need_stick)
         if tables is not None:
             from .kernels.slice_loop import slice_loop
 
@@ -242,21 +251,28 @@ def stress(
     Notes
     -----
     Relative to the peak the error is below 1e-11 for alpha zeta from 1e-8 to 1e8
-    (``tests/test_stress.py``).
+    (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
+    held beside the result: 56 bytes an element of theirs.
     """
     from .kernels.stress_loop import stress_loop
 
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
-    backward = checked("V", V) < 0.0
-    given = {"x": checked("x", x), "V": backward, "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu}
+    # for V < 0 everything is mirrored, tau once more
+    mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
+    given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
     given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta", "zeta")}
-    arrays = {name: np.asarray(value) for name, value in given.items()}
+    given |= {"alpha": scene.alpha, "mirror": mirror, "sign": np.sign(state.delta) * mirror}
+    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
-    arrays["x"] = np.where(backward, -arrays["x"], arrays["x"])
-    order = ("x", "kappa", "mu", "lam", "epsilon", "beta", "zeta", "alpha")
-    flat = [flattened(np.asarray(arrays[name], dtype=np.float64), shape) for name in order]
+    x_of, *others, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
-    run_blocks(lambda start, stop: stress_loop(*flat, p, tau, start, stop), count, _BLOCK)
-    sign = np.sign(state.delta) * np.where(backward, -1.0, 1.0)
-    return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", sign * tau.reshape(shape) + 0.0, shape)})
+
+    def work(start: int, stop: int) -> None:
+        mirrored = mirror_of(start, stop) * x_of(start, stop)
+        mirrored.flags.writeable = False  # as all that a kernel reads, see elements
+        stress_loop(mirrored, *(part(start, stop) for part in others), p[start:stop], tau[start:stop], 0, stop - start)
+        tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
+
+    run_blocks(work, count, _BLOCK)
+    return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)})

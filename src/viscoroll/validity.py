@@ -68,11 +68,11 @@ def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, 
 
 def judge(reach: Any, epsilon: Any, wave_ratio: Any, plane: str) -> Validity:
     """Numbers put into words; ``wave_ratio`` None where it is not known."""
-    far, ahead = np.max(reach, initial=0.0), np.max(epsilon, initial=0.0)
+    far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
     small = Assumption(
         reach <= REACH_LIMIT, reach,
         f"the contact reaches {far:.2g} R from the axis, where the parabola that stands for the circle is off by "
-        f"{25.0 * far**2:.2g} %; up to {REACH_LIMIT} R (1 %) counts as small",
+        f"{25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) counts as small",
     )  # fmt: skip
     under = Assumption(
         epsilon <= 1.0, epsilon,
@@ -86,7 +86,7 @@ def judge(reach: Any, epsilon: Any, wave_ratio: Any, plane: str) -> Validity:
     else:
         slow = Assumption(
             wave_ratio <= WAVE_LIMIT, wave_ratio,
-            f"the speed is {100.0 * np.max(wave_ratio, initial=0.0):.2g} % of that of shear waves; up to "
+            f"the speed is {100.0 * float(np.max(wave_ratio, initial=0.0)):.2g} % of that of shear waves; up to "
             f"{100.0 * WAVE_LIMIT:g} % the load is within 10 % of the static one",
         )  # fmt: skip
     same = Assumption(

@@ -1,0 +1,60 @@
+"""Elements of broadcast arrays by blocks, and blocks on threads (blocks.py)."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+
+import viscoroll as vr
+from viscoroll.blocks import elements, run_blocks
+
+GRID = np.arange(60.0).reshape(4, 5, 3)
+ARRAYS = {
+    "single": np.array(7.0),
+    "one": np.array([7.0]),
+    "row": np.arange(3.0),
+    "column": np.arange(5.0)[:, None],
+    "plane": np.arange(4.0)[:, None, None],
+    "whole": GRID,
+    "Fortran order": np.asfortranarray(GRID),
+    "turned": GRID[::-1, :, ::-1],
+    "every other": np.arange(120.0).reshape(4, 5, 6)[..., ::2],
+}
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_elements_are_those_of_the_broadcast_array(name):
+    array = ARRAYS[name]
+    of, whole = elements(array, GRID.shape), np.broadcast_to(array, GRID.shape).reshape(-1)
+    for start, stop in ((0, 60), (0, 1), (59, 60), (7, 22), (13, 14)):
+        part = of(start, stop)
+        assert not part.flags.writeable
+        assert part.flags.c_contiguous
+        assert np.array_equal(np.broadcast_to(part, (stop - start,)), whole[start:stop])
+        assert part.size == (1 if array.size == 1 else stop - start)
+    assert np.shares_memory(of(0, 60), array) == (name in ("single", "one", "whole"))
+
+
+def test_a_grid_of_two_axes_is_as_the_grid_written_out():
+    """Bit for bit, across the edges of blocks."""
+    scene, V, delta = vr.PAPER_SECTION_5, np.linspace(-1.0, 2.0, 301), np.linspace(-0.04, 0.04, 333)
+    axes = vr.contact(scene, V[:, None], delta=delta).as_dict()
+    written_out = vr.contact(scene, *np.meshgrid(V, delta, indexing="ij")).as_dict()
+    for name, values in axes.items():
+        assert np.array_equal(values, written_out[name], equal_nan=True), name
+
+
+def test_blocks_after_an_error_are_not_begun():
+    begun, lock = [], threading.Lock()
+
+    def work(start: int, stop: int) -> None:
+        with lock:
+            begun.append(start)
+        if start == 10:
+            raise ValueError("block 10")
+
+    with pytest.raises(ValueError, match="block 10"):
+        run_blocks(work, 100_000, 1, threads=2)
+    assert len(begun) < 1000
