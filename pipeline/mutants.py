@@ -41,7 +41,7 @@ LAW = [
     ("slopes.py", "d_i2 = alpha * 2.0 * (r * r - i2) * per_x", "d_i2 = alpha * 2.0 * (r - i2) * per_x", _LAW),
     ("slopes.py", "(ddH * dF - dH * ddg)", "(ddH * dF + dH * ddg)", _LAW),
     ("ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
-    ("ratios.py", "else 1.0 - 2.0 * r * per_x", "else 1.0 - (2.0 + 1e-10) * r * per_x", _RATIOS),
+    ("ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
     ("ratios.py", "return k if z < 1.0 else", "return k if z <= 1.0 else", _RATIOS),
     ("ratios.py", "return complement * (1.0 + r) - r / x", "return complement * (1.0 - r) - r / x", _RATIOS),
     ("ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),

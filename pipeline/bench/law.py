@@ -78,11 +78,13 @@ def _assemble(count, block, kappa, mu):
     for i in range(count):
         z, e, c, x, y = block[_Z + i], block[_ETA + i], block[_C + i], block[_X + i], block[_Y + i]
         per_z, per_x, per_y = block[_PER_Z + i], block[_PER_X + i], block[_PER_Y + i]
-        r, _ = r_from(block[_PIECES + i], x, per_x)
-        k, _ = k_from(block[_PIECES + _TOGETHER + i], z, per_z)
-        i2 = i2_from(block[_PIECES + 2 * _TOGETHER + i], x, per_x, r)
-        r_eta, _ = r_from(block[_PIECES + 3 * _TOGETHER + i], y, per_y)
-        k_eta, _ = k_from(block[_PIECES + 4 * _TOGETHER + i], e, block[_PER_ETA + i])
+        at_r, at_k, at_i2 = block[_PIECES + i], block[_PIECES + _TOGETHER + i], block[_PIECES + 2 * _TOGETHER + i]
+        at_r_eta, at_k_eta = block[_PIECES + 3 * _TOGETHER + i], block[_PIECES + 4 * _TOGETHER + i]
+        r, _ = r_from(at_r, x, at_r * per_x)
+        k, _ = k_from(at_k, z, at_k * per_z)
+        i2 = i2_from(at_i2, x, r)
+        r_eta, _ = r_from(at_r_eta, y, at_r_eta * per_y)
+        k_eta, _ = k_from(at_k_eta, e, at_k_eta * block[_PER_ETA + i])
         p, p_eta = r * k, r_eta * k_eta
         both = c / ((1.0 + p) * (1.0 + p_eta))
         share, h_eta = both * (1.0 + p_eta), both * (1.0 + p) * r_eta

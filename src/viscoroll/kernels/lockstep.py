@@ -61,8 +61,8 @@ def _second_slopes(i, c, block):
     """``second_slopes`` at z = _Z, from the polynomials."""
     z, alpha, per_x = block[_Z + i], block[_A + i], block[_PER_X + i]
     per_z = alpha * per_x
-    r, r_complement = r_from(block[_AT_R + i], alpha * z, per_x)
-    k, k_complement = k_from(block[_AT_K + i], z, per_z)
+    r, r_complement = r_from(block[_AT_R + i], alpha * z, block[_AT_R + i] * per_x)
+    k, k_complement = k_from(block[_AT_K + i], z, block[_AT_K + i] * per_z)
     s, dk = slopes_of(r, r_complement, k, k_complement, per_x, per_z)
     return assemble(per_z, per_x, r, k, s, dk, alpha, c)
 

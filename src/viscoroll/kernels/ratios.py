@@ -120,18 +120,18 @@ def place_r(x, per_x):
 
 
 @kernel(inline=True)
-def r_from(piece, x, per_x):
-    """r and 1 - r from the value of its polynomial."""
-    r, complement = x * piece, piece * per_x
+def r_from(piece, x, complement):
+    """r and 1 - r from the value of its polynomial and that over x."""
+    r = x * piece
     return r if x < 2.0 else 1.0 - complement, 1.0 - r if x < 2.0 else complement
 
 
 @kernel(inline=True)
 def ratio_r(x):
     """r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy."""
-    per_x = 1.0 / x
-    row, t = place_r(x, per_x)
-    return r_from(piece_of(row, t), x, per_x)
+    row, t = place_r(x, 1.0 / x)
+    piece = piece_of(row, t)
+    return r_from(piece, x, piece / x)
 
 
 @kernel(inline=True)
@@ -149,26 +149,27 @@ def place_k(z, per_z):
 
 
 @kernel(inline=True)
-def k_from(piece, z, per_z):
-    """k and 1 - k from the value of its polynomial."""
-    k, complement = z * piece, piece * per_z
+def k_from(piece, z, complement):
+    """k and 1 - k from the value of its polynomial and that over z."""
+    k = z * piece
     return k if z < 1.0 else 1.0 - complement, 1.0 - k if z < 1.0 else complement
 
 
 @kernel(inline=True)
-def k_given(z, per_z):
-    """k = K0/K1 and 1 - k at z >= 0, given 1/z."""
-    if z < K_LEAST:
-        k = z * small_k_over_z(z) if z > 0.0 else 0.0
-        return k, 1.0 - k
-    row, t = place_k(z, per_z)
-    return k_from(piece_of(row, t), z, per_z)
+def small_k(z):
+    """k and 1 - k for 0 <= z < ``K_LEAST``."""
+    k = z * small_k_over_z(z) if z > 0.0 else 0.0
+    return k, 1.0 - k
 
 
 @kernel(inline=True)
 def ratio_k(z):
     """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
-    return k_given(z, 1.0 / z)
+    if z < K_LEAST:
+        return small_k(z)
+    row, t = place_k(z, 1.0 / z)
+    piece = piece_of(row, t)
+    return k_from(piece, z, piece / z)
 
 
 @kernel(inline=True)
@@ -180,16 +181,16 @@ def place_i2(x):
 
 
 @kernel(inline=True)
-def i2_from(piece, x, per_x, r):
+def i2_from(piece, x, r):
     """i2 from the value of its polynomial, and r(x)."""
-    return x * x * piece if x < 4.0 else 1.0 - 2.0 * r * per_x
+    return x * x * piece if x < 4.0 else 1.0 - 2.0 * r / x
 
 
 @kernel(inline=True)
 def ratio_i2(x, r):
     """i2 = I2/I0 at x >= 0, given r(x)."""
     row, t = place_i2(x)
-    return i2_from(piece_of(row, t), x, 1.0 / x, r)
+    return i2_from(piece_of(row, t), x, r)
 
 
 @kernel(inline=True)
@@ -199,8 +200,14 @@ def ratios_and_slopes(z, alpha):
     per_x = 1.0 / x
     per_z = alpha * per_x
     row, t = place_r(x, per_x)
-    r, r_complement = r_from(piece_of(row, t), x, per_x)
-    k, k_complement = k_given(z, per_z)
+    piece = piece_of(row, t)
+    r, r_complement = r_from(piece, x, piece * per_x)
+    if z < K_LEAST:
+        k, k_complement = small_k(z)
+    else:
+        row, t = place_k(z, per_z)
+        piece = piece_of(row, t)
+        k, k_complement = k_from(piece, z, piece * per_z)
     s, dk = slopes_of(r, r_complement, k, k_complement, per_x, per_z)
     return x, r, k, s, dk, per_x, per_z
 
