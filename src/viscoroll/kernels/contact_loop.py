@@ -152,7 +152,7 @@ def _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out):
         out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)
 
 
-@kernel
+@kernel(allocates=True)
 def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
     """States start..stop; inputs hold one value or one a state; ``rows`` picks the output.
 

@@ -32,7 +32,7 @@ def slope_at(regime, u, sigma, par, slope):
     if regime == FULL:
         slope[0], slope[1], slope[2], slope[3] = sliding_rhs(u[0], u[1], sigma, par)
         return 0.0
-    dy, d_offset, V, delta, _, _, relaxation, _ = partial_rates(u[0], u[1], par)
+    dy, d_offset, V, delta, _, _, relaxation, _, _ = partial_rates(u[0], u[1], par)
     slope[0], slope[1], slope[2], slope[3] = dy, d_offset, V, V * (1.0 + delta)
     return -relaxation
 
