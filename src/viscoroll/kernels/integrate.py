@@ -142,7 +142,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     u, new, error, K, terms = np.zeros(4), np.zeros(4), np.zeros(4), np.zeros((EXTENDED, 4)), np.zeros((6, 4))
     slope, offset, travelled = np.zeros(4), np.zeros(2), np.zeros(2)
     work = (
-        np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2)), np.empty((ROWS, N + 1)), np.empty(N + 1),
+        np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2)), np.empty((ROWS, N + 1)), np.empty(N + 2),
     )  # fmt: skip
     fresh = True
     over = False
@@ -182,6 +182,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             )  # fmt: skip
             relaxation = slope_at(regime, u, sigma, par, slope)
             share = slip_share(u, par)
+            h = max(h, 0.5 / relaxation)
             continue
         if regime == PARTIAL and (over or tau >= try_at and settled(u, slope, share, relaxation, rtol)):
             over = False

@@ -20,52 +20,62 @@ from .arrays import fill
 from .collocation import INNER_POWERS, INTEGRAL, INTEGRALS, NODES, SMOOTH_SLOPES, TO_START, N, integral_terms
 from .jit import kernel
 from .partial_slip import creep_rates
-from .slow import node_D, slow_solve, slow_start, sticks_throughout, stiffness
+from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
 
 #: rows of the values at the nodes of a panel: y, and the four right-hand sides
 Y, D_Y, D_TAU, D_X, D_TURN = range(5)
 ROWS = 5
 _MOST_ITERATIONS = 8
-#: interval in y that the manifold is solved for, and its part below the start
-_REACH, _BELOW = 0.5, 0.1
+#: the interval in y that the manifold is solved for: so many e-folds at the pace of y on the manifold, and of
+#: that at the start; longest, and shortest
+_LATE, _EARLY, _LONGEST, _SHORTEST = 100.0, 4.0, 0.5, 0.15
 #: relaxation over the rise of y below which there is no manifold to speak of
 _STIFF = 20.0
 
 
 @kernel
-def manifold(y, tolerance, values, matrix, right, slow, par):
-    """S(y) around y as powers of t, ``slow``, in [y - _BELOW, y - _BELOW + _REACH].  Whether there is one.
+def manifold(y, D, tolerance, values, matrix, right, slow, par):
+    """S around y as powers of t in [-1, 1], in ``slow``, with the ends of its interval behind.  Whether there is one.
 
     Collocation at nodes 1 ... N alone: no left end, so that nothing of the fast motion enters.
     """
-    left = y - _BELOW
-    slow_start(left, 0.0, values, par)
-    solved = slow_solve(left, _REACH, tolerance, SMOOTH_SLOPES, values, matrix, right, par)
-    if not (solved and sticks_throughout(left, _REACH, values) and stiffness(values) > _STIFF):
+    slow_start(y, 0.0, values, par)
+    rise = 1.0 / stiffness(REACHED, values)
+    dy, dD, _, _ = creep_rates(y, D, par)
+    early = _EARLY * dy / dD * (node_D(REACHED, values) - D)
+    left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
+    reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
+    if not (0.0 < rise < 1.0 / _STIFF and slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, par)):
+        return False
+    for i in range(1, N + 1):
+        if not stiffness(i, values) > _STIFF:
+            return False
+    if not sticks_throughout(left, reach, values):
         return False
     for k in range(N):
         slow[k] = 0.0
         for i in range(N):
             slow[k] += INNER_POWERS[k, i] * node_D(i + 1, values)
-    slow[N] = left
+    slow[N], slow[N + 1] = left, left + reach
     return True
 
 
 @kernel
 def slow_creep(y, slow):
     """(S, dS/dy) at y."""
-    t = (y - slow[N]) * (2.0 / _REACH) - 1.0
+    per_half = 2.0 / (slow[N + 1] - slow[N])
+    t = (y - slow[N]) * per_half - 1.0
     S = slope = 0.0
     for k in range(N - 1, -1, -1):
         slope = S + t * slope
         S = slow[k] + t * S
-    return S, slope * (2.0 / _REACH)
+    return S, slope * per_half
 
 
 @kernel
 def within(y, slow):
     """Whether the manifold is known at y."""
-    return slow[N] <= y <= slow[N] + _REACH
+    return slow[N] <= y <= slow[N + 1]
 
 
 @kernel

@@ -23,23 +23,25 @@ from .layer import (
 )  # fmt: skip
 from .motion_output import put
 from .partial_slip import creep_speeds, signed_D, slow_D
-from .slow_phase import note_nodes, NEWTON, OVERSTATED
+from .slow_phase import NEWTON, note_nodes
 from .stepper import PARTIAL
 
 #: panels in e-folds: longest, and shortest beside the first guess
-_FIRST, _LONGEST, _SHORTEST = 0.5, 6.0, 1e-2
+_LONGEST, _SHORTEST = 6.0, 1e-2
+#: near eta = 0 the law bends on the scale 1/alpha: share of it in the first panel at rtol = 1
+_FIRST = 50.0
 _GROWTH = 6.0
 _GRADED = 3
+#: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate
+_SUBSTITUTION = 1e-3
+#: a mismatch of the integrands at the left end overstates the error of their interpolants
+_OVERSTATED = 0.01
 #: a panel that would end this little short of delta = 0 or of the end of the layer, or behind, ends there
 _NEARLY = 1.3
 #: distance from the manifold at which the layer is over, over its tolerance
 _OVER = 0.3
-
-
-@kernel
-def first_panel(u, D, e, par):
-    """Length of the first panel: near eta = 0 the law bends on the scale 1/alpha."""
-    return _FIRST * (np.exp(u[0]) - abs(D) + 1.0 / par[0]) / abs(e)
+#: e over zeta below which a panel that fails is no longer tried again: rounding spoils the rate of e
+_ROUNDING = 1e-6
 
 
 @kernel
@@ -52,7 +54,7 @@ def panel_error(length, rtol, travelled, nodes):
     turn, turn_off = layer_rise(D_TURN, half, nodes)
     rate = abs(nodes[D_Y, N] / nodes[D_TAU, N])
     error = max(y_off, tau_off * rate, X_off / (travelled[0] + X), turn_off / (travelled[1] + abs(X + turn)))
-    return OVERSTATED * error / (SHARE * rtol)
+    return _OVERSTATED * error / (SHARE * rtol)
 
 
 @kernel
@@ -72,6 +74,14 @@ def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, 
 
 
 @kernel
+def above_manifold(y, D, rtol, values, matrix, right, slow, par):
+    """e at (y, D), with the manifold around it solved for; NaN if there is none."""
+    if not manifold(y, D, max(NEWTON * SHARE * rtol, 1e-12), values, matrix, right, slow, par):
+        return np.nan
+    return D - slow_creep(y, slow)[0]
+
+
+@kernel
 def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, max_steps, steps,
                 out, step_ends, ends, work):  # fmt: skip
     """Follow the layer from u until it is over, outputs end, or a panel fails.
@@ -79,27 +89,27 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
     Returns (whether it is over, tau, next column, steps, ends noted).
     """
     values, matrix, right, powers, nodes, slow = work
-    tolerance = NEWTON * SHARE * rtol
-    if not manifold(u[0], tolerance, values, matrix, right, slow, par):
-        return False, tau, at, steps, ends
-    S, _ = slow_creep(u[0], slow)
+    tolerance = max(_SUBSTITUTION * SHARE * rtol, 1e-14)
     D = signed_D(u[0], u[1], par)
-    e = D - S
-    over = _OVER * SHARE * rtol / max(creep_weight(S * np.exp(-u[0])) * np.exp(-u[0]), values[1, 8])
-    length = first_panel(u, D, e, par)
+    e = above_manifold(u[0], D, rtol, values, matrix, right, slow, par)
+    if np.isnan(e):
+        return False, tau, at, steps, ends
+    known, S = u[0], D - e
+    per = np.exp(-u[0])
+    over = _OVER * SHARE * rtol / max(creep_weight(S * per) * per, values[1, 8])
+    length = _FIRST * rtol ** (1.0 / 3.0) * (1.0 / per - abs(D) + 1.0 / par[0]) / abs(e)
     shortest = _SHORTEST * length
     nodes[Y, 0] = u[0]
     for row in range(D_Y, ROWS):
         nodes[row, 0] = 0.0
     power = _GRADED
-    crosses, left = D * S < 0.0, np.log(abs(e) / over)
+    crosses, left, stretch = D * S < 0.0, np.log(abs(e) / over), _NEARLY
     while at < tau_out.size and steps < max_steps and left > 0.0:
+        zero = np.log(-e / slow_creep(u[0], slow)[0]) if crosses else left
         length = min(length, _LONGEST)
-        length = left if _NEARLY * length > left else length
-        zero = np.log(-e / slow_creep(u[0], slow)[0]) if crosses else np.inf
-        to_zero = _NEARLY * length > zero
-        if to_zero:
-            length = zero
+        if stretch * length >= min(zero, left):
+            length = min(zero, left)
+        to_zero = crosses and length == zero
         solved = layer_solve(e, length, power, to_zero, tolerance, nodes, slow, par)
         steps += 1
         size = np.inf
@@ -107,8 +117,19 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
             length = solved
             size = panel_error(length, rtol, travelled, nodes)
         if not size <= 1.0:
-            length *= max(0.2, 0.9 * size ** (-1.0 / N)) if size < 1e300 else 0.3
-            length = min(length, 0.5 * zero)
+            stretch = 1.0
+            if abs(e) * per < _ROUNDING:
+                break
+            if size == np.inf and u[0] != known:
+                # perhaps the panel ends where the manifold is not known
+                known, D = u[0], slow_creep(u[0], slow)[0] + e
+                renewed = above_manifold(u[0], D, rtol, values, matrix, right, slow, par)
+                if not renewed * e > 0.0:
+                    break
+                e, left = renewed, np.log(abs(renewed) / over)
+                continue
+            order = N if power == 1 else 3
+            length *= max(0.1, 0.9 * size ** (-1.0 / order)) if size < 1e300 else 0.3
             if length < shortest:
                 break
             continue
@@ -131,9 +152,10 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
         nodes[Y, 0] = nodes[Y, N]
         for row in range(D_Y, ROWS):
             nodes[row, 0] = nodes[row, N] / power
+        crosses, stretch = crosses and not to_zero, _NEARLY
+        # what graded nodes are for, the law's bend at eta = 0, is left behind
+        length *= _GROWTH / 2 if power > 1 else max(0.2, min(_GROWTH, 0.9 * (size + 1e-30) ** (-1.0 / N)))
         power = 1
-        crosses = crosses and not to_zero
-        length *= max(0.2, min(_GROWTH, 0.9 * (size + 1e-30) ** (-1.0 / N)))
     u[1] = slow_creep(u[0], slow)[0] + e - slow_D(u[0], par)[0]
     return left <= 0.0, tau, at, steps, ends
 

@@ -29,7 +29,7 @@ _STIFF = 20.0
 #: Newton stops at this share of the tolerance of an interval
 NEWTON = 0.05
 #: a mismatch of the integrands at the left end overstates the error of their interpolants
-OVERSTATED = 0.05
+_OVERSTATED = 0.05
 
 
 @kernel
@@ -44,7 +44,7 @@ def attempt(u, length, rtol, travelled, values, matrix, right, par):
     error = max(tau_off * values[0, 1], X_off / (travelled[0] + X), turn_off / (travelled[1] + abs(angle)))
     per = 1.0 / (SHARE * rtol)
     offset_error = rest * max(creep_weight(slip_share(u, par)) * np.exp(-u[0]), values[0, 8])
-    return OVERSTATED * error * per, offset_error * per, tau, X, angle
+    return _OVERSTATED * error * per, offset_error * per, tau, X, angle
 
 
 @kernel
