@@ -141,11 +141,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     tau_end = tau_out[tau_out.size - 1]
     u, new, error, K, terms = np.zeros(4), np.zeros(4), np.zeros(4), np.zeros((EXTENDED, 4)), np.zeros((6, 4))
     slope, offset, travelled = np.zeros(4), np.zeros(2), np.zeros(2)
-    work = (
-        np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2)), np.empty((ROWS, N + 1)), np.empty(N + 2),
-    )  # fmt: skip
-    fresh = True
-    over = False
+    work = np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2))
+    nodes, slow = np.empty((ROWS, N + 1)), np.empty(N + 2)
     steps = turns = at = rejected = ends = 0
     onset_time = rest_time = np.nan
     if max(abs(V0), abs(omega0)) < rest:
@@ -165,7 +162,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     relaxation = relaxation_new = slope_at(regime, u, sigma, par, slope)
     wish = length_before = size_before = 0.0
     share = share_new = slip_share(u, par) if regime == PARTIAL else 0.0
-    try_at = 0.0 if par[1] > 0.0 else np.inf
+    # alpha = 1: nothing moves on the slow manifold, which both phases need
+    layer_ahead, over, try_at = par[1] > 0.0, False, 0.0 if par[1] > 0.0 else np.inf
     h = first_length(regime, u, rtol, par)
     while at < tau_out.size:
         if steps >= max_steps or rejected > _MOST_REJECTIONS:
@@ -174,17 +172,17 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         if regime == PARTIAL and u[0] > np.log(_COAST):
             status, rest_time = finish_coasting(at, tau_out, tau, u, direction, par, gamma, offset, rest, out)
             break
-        if regime == PARTIAL and fresh and par[1] > 0.0:
-            fresh = False
+        if regime == PARTIAL and layer_ahead:
+            layer_ahead = False
             over, tau, at, steps, ends = layer_phase(
                 u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, max_steps, steps, out,
-                step_ends, ends, work,
+                step_ends, ends, work, nodes, slow,
             )  # fmt: skip
             relaxation = slope_at(regime, u, sigma, par, slope)
             share = slip_share(u, par)
-            h = max(h, 0.5 / relaxation)
+            h = max(h, 0.5 / relaxation) if over else h
             continue
-        if regime == PARTIAL and (over or tau >= try_at and settled(u, slope, share, relaxation, rtol)):
+        if regime == PARTIAL and (over or (tau >= try_at and settled(u, slope, share, relaxation, rtol))):
             over = False
             outcome, tau, at, steps, ends, try_at = slow_phase(
                 u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, np.log(_COAST),
@@ -254,7 +252,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             if regime == PARTIAL:
                 method = STIFF if h * relaxation > (_STIFF_FROM if method == EXPLICIT else 1.0) else EXPLICIT
             continue
-        fresh = True
+        layer_ahead = par[1] > 0.0
         regime, direction, sigma = switch(event, regime, direction, sigma, u, par, offset)
         copy(u, new)
         method = EXPLICIT

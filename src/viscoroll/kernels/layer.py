@@ -45,7 +45,9 @@ def manifold(y, D, tolerance, values, matrix, right, slow, par):
     early = _EARLY * dy / dD * (node_D(REACHED, values) - D)
     left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
     reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
-    if not (0.0 < rise < 1.0 / _STIFF and slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, par)):
+    if not 0.0 < rise < 1.0 / _STIFF:
+        return False
+    if not slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, par):
         return False
     for i in range(1, N + 1):
         if not stiffness(i, values) > _STIFF:
@@ -125,10 +127,10 @@ def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, par):
 @kernel
 def decays_throughout(nodes):
     """Whether e falls at all nodes."""
+    slowest = np.inf
     for i in range(1, N + 1):
-        if not nodes[D_TAU, i] > 0.0:
-            return False
-    return True
+        slowest = min(slowest, nodes[D_TAU, i])
+    return slowest > 0.0
 
 
 @kernel

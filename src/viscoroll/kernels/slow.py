@@ -122,6 +122,12 @@ def stiffness(i, values):
 
 
 @kernel
+def creep_slope(i, values):
+    """d delta/dD at node i."""
+    return values[i, _DELTA_D]
+
+
+@kernel
 def node_D(i, values):
     """D at node i."""
     return values[i, _D]

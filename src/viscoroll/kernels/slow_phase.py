@@ -106,7 +106,7 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
 
     Returns (outcome, tau, next column, steps, ends noted, time to try again).
     """
-    values, matrix, right, powers = work[:4]
+    values, matrix, right, powers = work
     tau_end = tau_out[tau_out.size - 1]
     length, entering = _FIRST, True
     slow_start(u[0], u[1], values, par)
