@@ -1,6 +1,6 @@
 """One step of the explicit method DOP853 (:mod:`dop853`) on the four unknowns of a motion.
 
-It serves full slip, which is not stiff, and the boundary layer behind the onset of stick, which
+It serves full slip, which is not stiff, and a boundary layer that :mod:`layer_phase` gives up, which
 has to be resolved in any case.
 """
 

@@ -1,6 +1,8 @@
 """One motion from start to end: regimes as state, step-size control, switches, output.
 
 The regime changes only at a located event (:mod:`events`); nothing re-tests it between.
+Partial slip is entered through its boundary layer (:mod:`layer_phase`) and left for the slow
+manifold (:mod:`slow_phase`); steps are for full slip, and where one of the two gives up.
 """
 
 from __future__ import annotations
@@ -133,7 +135,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
 
     ``switches`` (k, 2) receives (t, regime behind) of the regime changes, ``step_ends`` the
-    times behind the steps and at the nodes of the slow manifold; what does not fit is not kept.
+    times behind the steps and at the nodes of the layer and the slow manifold; what does not fit is not kept.
     Returns (status, steps, switches, onset time, rest time).
     """
     par = (alpha, (alpha - 1.0) / alpha, kappa, mu, j)
