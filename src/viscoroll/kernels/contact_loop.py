@@ -177,7 +177,7 @@ def _slipping(first, count, mu, V, creep, creep_is_omega, block, some):
     return found
 
 
-@kernel
+@kernel(allocates=True)
 def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
     """States start..stop; inputs hold one value or one a state; ``rows`` picks the output."""
     state = np.empty(len(ROWS))

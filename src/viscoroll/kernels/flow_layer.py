@@ -114,7 +114,7 @@ def _crossing(u, h, sign, V0, per_E, par, K, new):
     return high
 
 
-@kernel
+@kernel(allocates=True)
 def _roll(V0, entering, sign, low, par, values, crossing):
     """One motion from V0: ``values[bin, column, node]``, state at the end, and at delta = 0.
 
@@ -150,7 +150,7 @@ def _roll(V0, entering, sign, low, par, values, crossing):
     return E, V, u[2], u[3], u[4]
 
 
-@kernel
+@kernel(allocates=True)
 def layer_octave(top, octave, entering, sign, crosses, cross, par, table, layer, entry):
     """Fill one octave of an ``entry`` table and of its layer's; False if it cannot be served.
 
@@ -180,7 +180,7 @@ def layer_octave(top, octave, entering, sign, crosses, cross, par, table, layer,
     return True
 
 
-@kernel
+@kernel(allocates=True)
 def _join_slow(v, E, V, x, angle, loss, par, table, whole):
     """What a motion that ends on the slow manifold has in common with it, into ``whole``."""
     rate, slow_rate = stiff_rate(v / par[2], par), par[1] / (1.0 + par[4])
@@ -218,7 +218,7 @@ def _join_crossing(v, crossing, first, cross, par, table, whole):
     return True
 
 
-@kernel
+@kernel(allocates=True)
 def _fit_layer(values, low, table):
     """Coefficients table[bin, column, speed, E] from values[speed, bin, column, E]."""
     half = np.empty((_SPEED_N, _FAST_N))
@@ -238,7 +238,7 @@ def _fit_layer(values, low, table):
                     table[b, column, k, m] = total
 
 
-@kernel
+@kernel(allocates=True)
 def _fit_entry(whole, first, octave, crosses, par, table, entry):
     """Entry columns on the finer bins, and what they are known to be differences from."""
     rows, fine = np.empty((layout.ENTRY_COLUMNS, N)), np.empty(_WHOLE)

@@ -181,7 +181,7 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, par,
     return RESTED, onset_time, resting
 
 
-@kernel
+@kernel(allocates=True)
 def flow_loop(
     par, gamma, first, rest, rest_lambda, table, V0, omega0, t, rows,
     out, status, onset, resting, switches, start, stop,

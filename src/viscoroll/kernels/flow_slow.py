@@ -29,7 +29,7 @@ def _relative_rate(y, dy, par):
     return -dy * (1.0 + h / zeta + dh) / (1.0 + 2.0 * h / zeta)
 
 
-@kernel
+@kernel(allocates=True)
 def _collocate(v, y, half, offset_end, offset, par):
     """Solve for ``offset`` at the nodes v of a bin, given its value at the right end; False if it fails."""
     f, slope = np.empty(N), np.empty(N)
@@ -67,7 +67,7 @@ def _collocate(v, y, half, offset_end, offset, par):
     return False
 
 
-@kernel
+@kernel(allocates=True)
 def slow_table(par, table):
     """Fill ``slow``; False where there is no such motion within the stick zone."""
     _, c, _, _, j = par
@@ -109,7 +109,7 @@ def _stick_bound(y, par):
     return par[3] * V * (zeta + g)
 
 
-@kernel
+@kernel(allocates=True)
 def _integrals(rate, V, delta, power, pace, table):
     """Lambda, distance, angle and slip loss to go by integration of dtau = pace dv upward from V -> 0."""
     zero = BINS * (-2 - _LOW)  # the bin that starts at kappa V = 1/4
@@ -161,7 +161,7 @@ def _by_lambda(slow, lam, kappa, n, rows):
     rows[layout.LOSS_TO_GO, n] = share**3 * value(slow, at, layout.LOSS_TO_GO, t)
 
 
-@kernel
+@kernel(allocates=True)
 def late_table(slow, kappa, table):
     """Fill ``late``."""
     rows = np.empty((5, N))
@@ -172,7 +172,7 @@ def late_table(slow, kappa, table):
             put(table, b, column, rows[column])
 
 
-@kernel
+@kernel(allocates=True)
 def early_table(slow, kappa, table):
     """Fill ``early``."""
     rows = np.empty((5, N))

@@ -13,7 +13,7 @@ from .motion_output import OUTPUTS
 _ENDS = 1000
 
 
-@kernel
+@kernel(allocates=True)
 def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
     """Motions start..stop; as ``motion_loop``, but ``rows`` may name those of :mod:`losses` too."""
     one, losses = np.empty((OUTPUTS, t.size)), np.empty((2, t.size))

@@ -41,7 +41,7 @@ def _slip_power(V, omega, delta, regime, scene, state):
     return delta * V * state[Q]
 
 
-@kernel
+@kernel(allocates=True)
 def _panels(step_ends, t):
     """0, output times and ends of steps up to the last output, ascending; forgets the ends."""
     count = 0
@@ -55,7 +55,7 @@ def _panels(step_ends, t):
     return np.sort(edges)
 
 
-@kernel
+@kernel(allocates=True)
 def add_losses(scene, V0, omega0, t, rtol, rest, max_steps, out, step_ends, losses):
     """Fill ``losses`` (2, times) of the motion whose outputs and ends of steps are given; ends become 0.
 

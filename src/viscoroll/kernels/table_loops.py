@@ -48,7 +48,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     return worst
 
 
-@kernel
+@kernel(allocates=True)
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
     need = (True, True, True, False)
