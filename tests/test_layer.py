@@ -41,6 +41,20 @@ def test_outputs_do_not_move_the_motion(ic):
     assert many.V[-1] == vr.roll(PAPER, *PAPER_STARTS[ic], [end]).V[0]
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-12])
+@pytest.mark.parametrize("ic", PAPER_STARTS)
+def test_outputs_on_the_onset_and_just_behind(ic, rtol):
+    """Graded nodes have no slope at the left end, where a time is looked for."""
+    onset = vr.roll(PAPER, *PAPER_STARTS[ic], [1e-3], rtol=rtol).onset_time
+    t = onset * (1.0 + np.array([0.0, 2e-16, 1e-15, 1e-13, 1e-11, 1e-9, 1e-2]))
+    motion = vr.roll(PAPER, *PAPER_STARTS[ic], t, rtol=rtol)
+    # the speeds change by a few thousandths a per cent of the time, so not at all over 1e-9 of it
+    np.testing.assert_allclose(motion.V[:6], motion.V[0], rtol=1e-8)
+    np.testing.assert_allclose(motion.omega[:6], motion.omega[0], rtol=1e-8)
+    assert np.all(np.isfinite(motion.delta))
+    assert np.all(np.isfinite(motion.x))
+
+
 @pytest.mark.parametrize("ic", PAPER_STARTS)
 def test_the_layer_is_not_stepped_through(ic):
     """Steps of an explicit method are at most three e-folds long: sixteen e-folds to 1e-7 and their start took 20."""

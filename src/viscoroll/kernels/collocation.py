@@ -70,6 +70,8 @@ def place(value, t, powers, row):
         for k in range(powers.shape[1] - 1, -1, -1):
             slope = reached + t * slope
             reached = powers[row, k] + t * reached
+        if reached == value:
+            break
         change = (value - reached) / slope
         t = min(max(t + change, -1.0), 1.0)
         if abs(change) <= 1e-9:

@@ -63,7 +63,7 @@ def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, 
     t = -1.0
     while at < tau_out.size and tau_out[at] <= tau + rise:
         since = tau_out[at] - tau
-        t = place(since, max(t, 2.0 * since / rise - 1.0), powers, 0)
+        t = place(since, max(t, 2.0 * max(since / rise, 0.0) ** (1.0 / power) - 1.0), powers, 0)
         y, X = u[0] + polynomial(t, powers, 3), polynomial(t, powers, 1)
         V, delta = creep_speeds(y, slow_creep(y, slow)[0] + e * np.exp(-length * (0.5 * (1.0 + t)) ** power), par)
         put(out, at, direction, PARTIAL, V, V * (1.0 + delta), delta,
