@@ -431,3 +431,17 @@ def test_bad_input(options, name, value, allowed):
     assert allowed in text
     assert isinstance(caught.value, vr.ViscorollError)
     assert isinstance(caught.value, ValueError)
+
+
+def test_a_state_is_the_same_bits_in_any_company():
+    """300 states over all speeds, alpha = 1 among them, solved side by side and one by one."""
+    rng = np.random.default_rng(5)
+    alpha, V = 1.0 + 10.0 ** rng.uniform(-8, 6, 300), 10.0 ** rng.uniform(-4, 4, 300) * rng.choice([-1.0, 1.0], 300)
+    alpha[::50], V[::7], V[7] = 1.0, 10.0 ** rng.uniform(-30, 30, 43), 0.0
+    scene = vr.Scene(alpha, 10.0 ** rng.uniform(-2, 2, 300), 0.3)
+    s = np.where(rng.uniform(size=300) < 0.3, 10.0 ** rng.uniform(-20, 0, 300), rng.uniform(0.0, 1.05, 300))
+    delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    together = vr.contact(scene, V, delta=delta)
+    for i in range(300):
+        alone = vr.contact(vr.Scene(alpha[i], scene.kappa[i], 0.3), V[i], delta=delta[i])
+        assert all(getattr(together, name)[i] == getattr(alone, name) for name in FIELDS), i

@@ -13,11 +13,15 @@ from scipy import stats
 import viscoroll as vr
 from viscoroll.blocks import run_blocks, thread_count
 from viscoroll.files import write_dataset
-from viscoroll.motion.batch import FIELDS
+from viscoroll.motion.batch import FIELDS, STATES
 from viscoroll.sampling import DESIGNS, Sample, sample
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 7)
+
+
+#: sticks, slides again, and sticks for good within 2.5e-3 from V = omega = 1
+RETURNING = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5)
 
 
 def starts(count: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -50,7 +54,7 @@ def test_ensemble_is_roll_bit_for_bit(many):
     result = vr.ensemble(many, V0, omega0, T, fields=FIELDS)
     for i in range(V0.size):
         motion = vr.roll(one_of(many, i) if many.shape else many, V0[i], omega0[i], T)
-        for name in FIELDS:
+        for name in STATES:
             assert equal(getattr(result, name)[i], getattr(motion, name)), (i, name)
         assert equal(result.onset_time[i], motion.onset_time)
         assert result.status[i] == motion.status
@@ -103,6 +107,43 @@ def test_progress_bar_only_when_it_takes_long(capsys):
     vr.ensemble(SCENE, V0, omega0, T)  # compiles
     vr.ensemble(SCENE, V0, omega0, T, progress=True)
     assert "motions" not in capsys.readouterr().err
+
+
+# --- energy ---
+
+
+@pytest.mark.parametrize("many", [SCENE, RETURNING, SCENE.replace(alpha=1.0)], ids=["paper", "slip returns", "elastic"])
+def test_losses_are_the_integrals_of_their_powers(many):
+    """Rolling, which the package takes from the balance of energy, by a quadrature of its own."""
+    V0, omega0, end = 1.5, 0.5, 2e-3
+    result = vr.ensemble(many, V0, omega0, [0.0, end], rtol=1e-10, fields=FIELDS)
+    motion = vr.roll(many, V0, omega0, end, rtol=1e-10)
+    node, weight = np.polynomial.legendre.leggauss(10)
+    edges = np.unique([*motion.t, *(s.t for s in motion.switches)])
+    width = 0.5 * np.diff(edges)[:, None]
+    along = motion.at((edges[:-1, None] + width * (1.0 + node)).ravel())
+    state, weight = along.contact(("Q", "M")), many.gamma * (width * weight).ravel()
+    energy = 0.5 * (V0**2 + many.j * omega0**2)
+    slip, rolling = weight @ ((along.omega - along.V) * state.Q), weight @ (0.5 * (along.V + along.omega) * state.M)
+    assert result.slip_loss[0] == pytest.approx([0.0, slip], abs=tol.MOTION_IDENTITY * energy)
+    assert result.rolling_loss[0] == pytest.approx([0.0, rolling], abs=tol.MOTION_IDENTITY * energy)
+
+
+def test_all_energy_is_lost_at_rest():
+    V0, omega0 = starts(20)
+    result = vr.ensemble(SCENE, V0, omega0, [1.0], rest=1e-6, fields=FIELDS)
+    energy = 0.5 * (V0**2 + SCENE.j * omega0**2)
+    assert (result.V == 0.0).all()
+    np.testing.assert_allclose((result.slip_loss + result.rolling_loss)[:, 0], energy, rtol=tol.ENERGY)
+    assert (result.slip_loss >= 0.0).all()
+
+
+def test_in_full_slip_friction_takes_mu_a_unit_of_path():
+    V0, omega0 = np.array([1.0, -1.0, 0.3]), np.array([-1.0, 1.0, 2.0])
+    result = vr.ensemble(SCENE, V0, omega0, [1e-5, 5e-5], fields=FIELDS)
+    assert (result.regime == 0).all()
+    slipped = SCENE.gamma * SCENE.mu * np.abs(result.angle - result.x)
+    np.testing.assert_allclose(result.slip_loss, slipped, rtol=tol.SLIDING_LOSS)
 
 
 # --- what a result holds ---

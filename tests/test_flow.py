@@ -10,9 +10,9 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
-from viscoroll.kernels.flow import slide
+from viscoroll.kernels.flow import SPEEDS, slide
 from viscoroll.motion import flow
-from viscoroll.motion.batch import FIELDS
+from viscoroll.motion.batch import FIELDS, LOSSES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 16)
@@ -53,8 +53,8 @@ def starts(count: int, seed: int, scene: vr.Scene) -> tuple[np.ndarray, np.ndarr
     return V0, omega0
 
 
-def compare(scene: vr.Scene, count: int, seed: int, t: np.ndarray) -> tuple[vr.Ensemble, float, float]:
-    """(flow's result, largest difference of the speeds and of the path to the integrator's at rtol 1e-11)."""
+def compare(scene: vr.Scene, count: int, seed: int, t: np.ndarray) -> tuple[vr.Ensemble, float, float, float]:
+    """(flow's result, largest difference of speeds, path and losses to the integrator's at rtol 1e-11)."""
     V0, omega0 = starts(count, seed, scene)
     mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
     rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-11, fields=FIELDS)
@@ -64,30 +64,34 @@ def compare(scene: vr.Scene, count: int, seed: int, t: np.ndarray) -> tuple[vr.E
     # what is left to rest is at most V times the decay time
     whole = 1e-5 * decay_time(scene) * speed[:, :1]
     paths = np.maximum(np.abs(mapped.x - rolled.x), np.abs(mapped.angle - rolled.angle)) / (moved + whole)
+    energy = np.maximum(0.5 * (V0**2 + scene.j * omega0**2), np.finfo(float).tiny)[:, None]
+    losses = np.maximum(*(np.abs(getattr(mapped, name) - getattr(rolled, name)) for name in LOSSES)) / energy
     assert np.array_equal(mapped.regime[mapped.flow], rolled.regime[mapped.flow])
     assert np.array_equal(mapped.switches, rolled.switches)
     assert np.array_equal(np.isnan(mapped.onset_time), np.isnan(rolled.onset_time))
-    return mapped, speeds[mapped.flow].max(initial=0.0), paths[mapped.flow].max(initial=0.0)
+    return mapped, *(errors[mapped.flow].max(initial=0.0) for errors in (speeds, paths, losses))
 
 
 def test_paper_scene_to_its_stated_error():
-    mapped, speeds, paths = compare(SCENE, 500, 1, T)
+    mapped, speeds, paths, losses = compare(SCENE, 500, 1, T)
     built = flow.flow_map(SCENE, 2.0)
     assert mapped.flow.mean() > 0.99
     assert built.error < tol.FLOW_SPEED
     assert speeds < built.error
     assert paths < built.path_error
+    assert losses < built.loss_error < tol.FLOW_LOSS
 
 
 @pytest.mark.parametrize("scene", random_scenes(12, 5), ids=str)
 def test_random_scenes_to_their_stated_error(scene):
     """Every start of every scene is served, by the map or by the integrator."""
-    mapped, speeds, paths = compare(scene, 60, 2, np.geomspace(1e-3, 5.0, 12) * decay_time(scene))
+    mapped, speeds, paths, losses = compare(scene, 60, 2, np.geomspace(1e-3, 5.0, 12) * decay_time(scene))
     assert (mapped.status == MotionStatus.DONE).all()
     if mapped.flow.any():
         built = flow.flow_map(scene, 2.0)
         assert speeds < built.error
         assert paths < built.path_error
+        assert losses < built.loss_error
 
 
 def test_onset_times():
@@ -109,6 +113,8 @@ def test_within_the_boundary_layer():
     np.testing.assert_allclose(mapped.delta, rolled.delta, rtol=0.0, atol=tol.FLOW_SPEED)
     np.testing.assert_allclose(mapped.V, rolled.V, rtol=tol.FLOW_SPEED)
     np.testing.assert_allclose(mapped.omega, rolled.omega, rtol=tol.FLOW_SPEED)
+    for name in LOSSES:
+        np.testing.assert_allclose(getattr(mapped, name), getattr(rolled, name), atol=tol.FLOW_LOSS)
 
 
 def test_start_inside_the_stick_zone_is_a_point_of_an_earlier_motion():
@@ -219,7 +225,7 @@ def test_scenes_without_a_map_are_integrated(scene, why):
 def test_motions_beyond_the_map_are_integrated():
     """The second and third slide until V and omega vanish nearly together: their onset lies below every table."""
     built = flow.flow_map(SCENE, 2.0)
-    T, _ = slide(-1.0, False, built.table, built.parameters)
+    T, _ = slide(-1.0, SPEEDS, built.table, built.parameters)
     omega = (-1.0 - 2.0 * SCENE.mu * T) / SCENE.j
     V0, omega0 = np.array([1.0, -1.0, -1.0, 0.0]), np.array([1.0, omega, omega * (1.0 + 1e-7), 0.0])
     mapped = vr.ensemble(SCENE, V0, omega0, T_OUT := np.array([1e-3, 3e-3]), method="flow")
@@ -332,4 +338,6 @@ def test_old_maps_are_removed(monkeypatch):
 def test_distance_is_not_looked_up_unless_asked_for(monkeypatch):
     """Fields that are not asked for do not enter the decision either: the speeds' error alone counts."""
     built = flow.flow_map(SCENE, 2.0)
-    assert built.stated_error(False) == built.error <= built.stated_error(True)
+    assert built.stated_error(path=False, loss=False) == built.error
+    assert built.stated_error(path=True, loss=False) == max(built.error, built.path_error)
+    assert built.stated_error(path=True, loss=True) == max(built.error, built.path_error, built.loss_error)

@@ -154,6 +154,12 @@ RETURN_TIME = 3e-9
 #: Kolmogorov-Smirnov p-value of a recorded seed: fixed, so no chance of a false alarm.
 KOLMOGOROV = 0.01
 
+# --- energy lost (test_ensemble.py) ---
+#: The two losses against the energy that there was, both from the same V and omega: roundings.
+ENERGY = 1e-14
+#: mu times the path slipped, against the quadrature, at rtol 1e-8: the error of the path; measured below 1e-12.
+SLIDING_LOSS = 1e-9
+
 # --- validation (test_validation.py) ---
 #: The comparison's own integrator against roll at rtol 1e-12, relative to the speed, down to |V| = 1e-6: LSODA at
 #: 1e-13 and the noise of Q as printed; measured 1.9e-10.
@@ -187,6 +193,9 @@ FLOW_SPEED = 1e-9
 FLOW_PATH = 2e-9
 #: onset times, relative: inverse of an integral over 52 octaves in pieces of degree 7; measured 6e-12.
 FLOW_ONSET = 5e-11
+
+#: energy lost, over that at the start: as FLOW_SPEED, but twice, the energy being a square; measured 7.6e-10.
+FLOW_LOSS = 2e-9
 
 # --- a hostile host (test_hostile.py) ---
 #: Numbers below it, and inverses of them, may become 0 or infinite where subnormals are flushed: products of a few.

@@ -45,6 +45,12 @@ SYMBOLS = {
     "kappa_M": Symbol(r"\kappa M", "kappa times rolling resistance moment over P R", ">= 0", "Eq. (16)"),
     "p": Symbol("p/E'", "contact pressure over E'", ">= 0", "Eq. (11)"),
     "tau": Symbol(r"\tau/E'", "shear stress on the cylinder over E'", "|tau| <= mu p", "Eqs. (12), (13)"),
+    "slip_loss": Symbol(
+        r"E_\mathrm{slip}", "energy lost in slip since t = 0 over m (R/T_epsilon)^2", ">= 0", "Eq. (22)"
+    ),
+    "rolling_loss": Symbol(
+        r"E_\mathrm{roll}", "energy lost in rolling since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)"
+    ),
     "onset_time": Symbol("t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)"),
 }
 

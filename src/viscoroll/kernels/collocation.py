@@ -1,9 +1,12 @@
-"""Nodes and matrices of Radau IIA collocation on [-1, 1], with the left end as node 0."""
+"""Radau IIA collocation on [-1, 1], with the left end as node 0: nodes, matrices, interpolants."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import legendre
+
+from .arrays import fill
+from .jit import kernel
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
 N = 9
@@ -29,6 +32,48 @@ _SLOPES = np.hstack((np.zeros((N + 1, 1)), _POWERS[:, :-1] * np.arange(1, N + 1)
 #: values at all nodes to slopes at nodes 1 ... N
 SLOPES = (_SLOPES @ TO_POWERS)[1:]
 _INNER = np.linalg.inv(_POWERS[1:, :-1])
-#: values at nodes 1 ... N to the integral over [-1, 1], and to the value at -1
-INTEGRAL = np.array([(1.0 - (-1.0) ** (k + 1)) / (k + 1) for k in range(N)]) @ _INNER
+#: values at nodes 1 ... N to the coefficients of powers, to slopes there (column 0 is that of node 0)
+INNER_POWERS = _INNER
+SMOOTH_SLOPES = np.hstack((np.zeros((N, 1)), _SLOPES[1:, :-1] @ _INNER))
+#: values at nodes 1 ... N to the integrals from -1 to each of them, and to the value at -1
+INTEGRALS = np.array([[(x ** (k + 1) - (-1.0) ** (k + 1)) / (k + 1) for k in range(N)] for x in NODES[1:]]) @ _INNER
+INTEGRAL = INTEGRALS[N - 1].copy()
 TO_START = (-1.0) ** np.arange(N) @ _INNER
+
+
+@kernel
+def polynomial(t, powers, row):
+    """Polynomial with the coefficients ``powers[row]``."""
+    total = 0.0
+    for k in range(powers.shape[1] - 1, -1, -1):
+        total = powers[row, k] + t * total
+    return total
+
+
+@kernel
+def integral_terms(values, half, powers, row):
+    """Coefficients of the integral from -1 of the interpolant of all nodes, over t in [-1, 1] scaled by ``half``."""
+    fill(0.0, powers[row])
+    for k in range(N + 1):
+        total = 0.0
+        for i in range(N + 1):
+            total += TO_POWERS[k, i] * values[i]
+        powers[row, k + 1] = total * half / (k + 1.0)
+    powers[row, 0] = -polynomial(-1.0, powers, row)
+
+
+@kernel
+def place(value, t, powers, row):
+    """t in [-1, 1] where the rising polynomial in this row has this value, by Newton's iteration from t."""
+    for _ in range(20):
+        reached = slope = 0.0
+        for k in range(powers.shape[1] - 1, -1, -1):
+            slope = reached + t * slope
+            reached = powers[row, k] + t * reached
+        if reached == value:
+            break
+        change = (value - reached) / slope
+        t = min(max(t + change, -1.0), 1.0)
+        if abs(change) <= 1e-9:
+            break
+    return t

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from . import lockstep
 from .jit import kernel
 from .law import (
     CLOSE,
@@ -12,6 +13,8 @@ from .law import (
     generator_slopes,
     moment_of,
     near_length,
+    slight,
+    stick_from_root,
     stick_solution,
 )
 from .ratios import small_k_over_z
@@ -30,8 +33,8 @@ FAR = 1e17
 NEAR = 1e-140
 #: below this s = |delta|/delta_star, Q is linear in s to rounding, while zeta - eta may underflow
 _LINEAR = 1e-17
-#: states whose lengths are guessed together
-_TOGETHER = 128
+#: in place of (eta, g and h there, whether it is known) for ``stick``: eta is to be solved for
+UNSOLVED = (0.0, 0.0, 0.0, False)
 
 
 @kernel
@@ -57,7 +60,7 @@ def creep_ratio(V, creep, slip, creep_is_omega):
 
 
 @kernel
-def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, alpha, c):
+def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, root, alpha, c):
     """(eta, zeta - eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
     s = delta / delta_star
     if c == 0.0 or not NEAR <= zeta <= FAR:
@@ -66,7 +69,12 @@ def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, alpha, c):
         _, _, dg, dh = generator_slopes(zeta, alpha, c)
         share = s * (1.0 + g / zeta) / (1.0 + dg)  # (zeta - eta)/zeta
         return zeta, share * zeta, 1.0, share * 2.0 * lam * lam * (1.0 + (h + zeta * dh) / zeta), OK
-    eta, D, dH, status = stick_solution(zeta, g, h, dg, delta / (mu * speed), alpha, c)
+    d = delta / (mu * speed)
+    if root[3]:
+        eta, D, dH = stick_from_root(root[0], root[1], root[2], zeta, g, h, d, alpha, c)
+        status = OK
+    else:
+        eta, D, dH, status = stick_solution(zeta, g, h, dg, d, alpha, c)
     return eta, D, eta / zeta, min(dH * (lam / zeta) * lam, 1.0), status
 
 
@@ -90,17 +98,17 @@ def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
     """All rows of one state into ``out``; ``need`` = (shift, stick, moment, slopes)."""
     c = (alpha - 1.0) / alpha
     kappa_V = kappa * abs(V)
-    return contact_state_from(near_length(kappa_V, alpha, c), alpha, kappa, mu, V, creep, creep_is_omega, need, out)
+    solved = contact_solution(near_length(kappa_V, alpha, c, 1.0 / np.sqrt(alpha)), kappa_V, alpha, c)
+    return contact_state_at(solved, UNSOLVED, alpha, kappa, mu, V, creep, creep_is_omega, need, out)
 
 
 @kernel(inline=True)
-def contact_state_from(guess, alpha, kappa, mu, V, creep, creep_is_omega, need, out):
-    """``contact_state`` from a guess of lam."""
+def contact_state_at(solved, root, alpha, kappa, mu, V, creep, creep_is_omega, need, out):
+    """``contact_state`` from the solution of Eq. (6), and for ``stick`` perhaps that of Eq. (10)."""
     need_shift, need_stick, need_moment, need_slopes = need
     c = (alpha - 1.0) / alpha
     speed = abs(V)
-    kappa_V = kappa * speed
-    lam, zeta, g, h, dg, status = contact_solution(guess, kappa_V, alpha, c)
+    lam, zeta, g, h, dg, status = solved
     out[LAM], out[ZETA] = lam, zeta
     if need_moment:
         _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out)
@@ -121,7 +129,7 @@ def contact_state_from(guess, alpha, kappa, mu, V, creep, creep_is_omega, need, 
         out[BETA], out[Q] = 0.0, mu * sign
         out[DQ_DV] = out[DQ_DDELTA] = out[DQ_DOMEGA] = 0.0
         return status
-    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, g, h, dg, delta_star, alpha, c)
+    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, g, h, dg, delta_star, root, alpha, c)
     out[BETA] = beta
     out[Q] = sign * mu * share
     if need_slopes:
@@ -153,34 +161,53 @@ def _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out):
 
 
 @kernel
-def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
-    """States start..stop; inputs hold one value or one a state; ``rows`` picks the output.
+def _slipping(first, count, mu, V, creep, creep_is_omega, block, some):
+    """Collects states in partial slip that is not slight, with y = F(zeta) - d; returns how many."""
+    found = 0
+    for i in range(count):
+        n = first + i
+        speed, zeta, g = abs(V[min(n, V.size - 1)]), block[lockstep.ZETA + i], block[lockstep.G + i]
+        slip, _, _ = signed_slip(V[min(n, V.size - 1)], creep[min(n, creep.size - 1)], creep_is_omega)
+        delta = creep_ratio(V[min(n, V.size - 1)], creep[min(n, creep.size - 1)], slip, creep_is_omega)
+        d = abs(delta) / (mu[min(n, mu.size - 1)] * speed)
+        y = (zeta + g) - d
+        if y > 0.0 and not slight(d, zeta, g) and block[lockstep.ALPHA + i] > 1.0 and NEAR <= zeta <= FAR:
+            block[lockstep.Y + i], some[found] = y, i
+            found += 1
+    return found
 
-    The guesses of many states come first, in a loop so short that the processor works on
-    several at once.
-    """
+
+@kernel(allocates=True)
+def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
+    """States start..stop; inputs hold one value or one a state; ``rows`` picks the output."""
     state = np.empty(len(ROWS))
-    guess = np.empty(_TOGETHER)
+    block, place = np.empty(lockstep.SIZE), np.empty(lockstep.PLACES, np.int64)
+    some = np.empty(lockstep.TOGETHER, np.int64)
     worst = OK
-    for first in range(start, stop, _TOGETHER):
-        last = min(first + _TOGETHER, stop)
-        for i in range(first, last):
-            a = alpha[min(i, alpha.size - 1)]
-            speed = abs(V[min(i, V.size - 1)])
-            guess[i - first] = near_length(kappa[min(i, kappa.size - 1)] * speed, a, (a - 1.0) / a)
-        for i in range(first, last):
-            status = contact_state_from(
-                guess[i - first],
-                alpha[min(i, alpha.size - 1)],
-                kappa[min(i, kappa.size - 1)],
-                mu[min(i, mu.size - 1)],
-                V[min(i, V.size - 1)],
-                creep[min(i, creep.size - 1)],
-                creep_is_omega,
-                need,
-                state,
-            )
+    for first in range(start, stop, lockstep.TOGETHER):
+        count = min(stop - first, lockstep.TOGETHER)
+        for i in range(count):
+            n = first + i
+            block[lockstep.ALPHA + i] = alpha[min(n, alpha.size - 1)]
+            block[lockstep.KAPPA_V + i] = kappa[min(n, kappa.size - 1)] * abs(V[min(n, V.size - 1)])
+            block[lockstep.FOUND + i] = 0.0
+        lockstep.solve_lengths(count, block, place)
+        if need[1]:
+            slipping = _slipping(first, count, mu, V, creep, creep_is_omega, block, some)
+            lockstep.solve_roots(slipping, some, block, place)
+        for i in range(count):
+            n = first + i
+            solved = (
+                block[lockstep.LAM + i], block[lockstep.ZETA + i], block[lockstep.G + i], block[lockstep.H + i],
+                block[lockstep.DG + i], int(block[lockstep.STATUS + i]),
+            )  # fmt: skip
+            found = block[lockstep.FOUND + i] == 1.0
+            root = block[lockstep.ETA + i], block[lockstep.G_ETA + i], block[lockstep.H_ETA + i], found
+            status = contact_state_at(
+                solved, root, alpha[min(n, alpha.size - 1)], kappa[min(n, kappa.size - 1)], mu[min(n, mu.size - 1)],
+                V[min(n, V.size - 1)], creep[min(n, creep.size - 1)], creep_is_omega, need, state,
+            )  # fmt: skip
             worst = max(worst, status)
             for m in range(rows.size):
-                out[m, i] = state[rows[m]]
+                out[m, n] = state[rows[m]]
     return worst

@@ -85,8 +85,8 @@ def first_length(regime, u, rtol, par):
         # M(V) bends at kappa V of order 1: from rest, step first to where that begins
         return length if kappa * V > _BEND else min(length, _BEND / (kappa * mu))
     # where the stick zone is small the law bends on the scale eta ~ 1/alpha, however large zeta
-    _, drift, _, _, _, _, relaxation, _ = partial_rates(u[0], u[1], par)
-    eta = np.exp(u[0]) - abs(signed_D(u[0], u[1], par))
+    _, drift, _, _, _, _, relaxation, _, D = partial_rates(u[0], u[1], par)
+    eta = np.exp(u[0]) - abs(D)
     scale = max(eta, 0.0) + max(1.0 / par[0], 1e-9 * np.exp(u[0]))
     bend = abs(drift) / scale if par[1] > 0.0 else 0.0
     return rtol ** (1.0 / 3.0) / (abs(relaxation) + bend + 1e-300)

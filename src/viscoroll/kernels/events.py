@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import copy
 from .explicit import explicit_dense_terms, explicit_step, slope_at
 from .full_slip import onset, onset_slope, sliding_speed
 from .jit import kernel
@@ -59,7 +60,7 @@ def event_value(event, regime, u0, u1, sigma, par, rest):
 def advance(method, regime, u, slope, h, sigma, par, K, new, error):
     """One step by the method, with the slope at its end in K[12]; the rate at which the offset relaxes there."""
     if method == EXPLICIT:
-        K[0] = slope
+        copy(slope, K[0])
         explicit_step(regime, u, h, sigma, par, K, new, error)
     else:
         stiff_step(u, h, par, K, new, error)

@@ -1,6 +1,6 @@
 """One step of the explicit method DOP853 (:mod:`dop853`) on the four unknowns of a motion.
 
-It serves full slip, which is not stiff, and the boundary layer behind the onset of stick, which
+It serves full slip, which is not stiff, and a boundary layer that :mod:`layer_phase` gives up, which
 has to be resolved in any case.
 """
 
@@ -32,7 +32,7 @@ def slope_at(regime, u, sigma, par, slope):
     if regime == FULL:
         slope[0], slope[1], slope[2], slope[3] = sliding_rhs(u[0], u[1], sigma, par)
         return 0.0
-    dy, d_offset, V, delta, _, _, relaxation, _ = partial_rates(u[0], u[1], par)
+    dy, d_offset, V, delta, _, _, relaxation, _, _ = partial_rates(u[0], u[1], par)
     slope[0], slope[1], slope[2], slope[3] = dy, d_offset, V, V * (1.0 + delta)
     return -relaxation
 

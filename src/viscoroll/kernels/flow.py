@@ -16,6 +16,8 @@ from .jit import kernel
 from .law import GAUSS_W, GAUSS_X
 
 PLUS, MINUS, CROSS = range(3)
+#: what a motion is asked for: V and omega, also distance and angle, also the energy lost in slip
+SPEEDS, PATH, LOSS = range(3)
 _N = layout.COEFFICIENTS
 LOWEST, HIGHEST = 2.0**layout.LOW, 2.0 ** (layout.HIGH - 2)
 #: stiff rate that stands for a layer that is over
@@ -43,7 +45,7 @@ _BLOCK = layout.SPEED_COEFFICIENTS * layout.FAST_COEFFICIENTS
 
 
 @kernel(inline=True)
-def slide(V, need_path, table, par):
+def slide(V, need, table, par):
     """(T, X) of sliding from rest to V in the mirrored frame, T with the sign of V."""
     _, _, kappa, mu, _ = par
     speed = abs(V)
@@ -52,7 +54,7 @@ def slide(V, need_path, table, par):
     b, t = bits_and_offset(kappa * speed)
     at = b * _SLIDE + (_SLIDE_UP if V > 0.0 else _SLIDE_DOWN)
     T = polynomial(table, at + layout.T * _N, t)
-    X = polynomial(table, at + layout.X * _N, t) if need_path else 0.0
+    X = polynomial(table, at + layout.X * _N, t) if need >= PATH else 0.0
     return T if V > 0.0 else -T, X
 
 
@@ -84,7 +86,7 @@ def speed_after(T, table, par):
 
 
 @kernel(inline=True)
-def onset_of(I, need_path, table, par):
+def onset_of(I, need, table, par):
     """(V, T, X) at stick onset in the mirrored frame; V = 0 where the tables do not reach."""
     x = par[2] * abs(I) / (1.0 + par[4])
     if not LOWEST <= x < HIGHEST:
@@ -93,7 +95,7 @@ def onset_of(I, need_path, table, par):
     at = b * _ONSET + (_ONSET_UP if I < 0.0 else _ONSET_DOWN)
     V = polynomial(table, at + layout.ONSET_V * _N, t)
     T = polynomial(table, at + layout.ONSET_T * _N, t)
-    X = polynomial(table, at + layout.ONSET_X * _N, t) if need_path else 0.0
+    X = polynomial(table, at + layout.ONSET_X * _N, t) if need >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
@@ -142,6 +144,13 @@ def slow_path(start, end, rate, table):
 
 
 @kernel
+def slow_loss(lam, table):
+    """Energy still to be lost in slip at lambda on the slow manifold; it falls like V^3 as V -> 0."""
+    at, t, share = _slow(lam)
+    return share**3 * polynomial(table, at + layout.LOSS_TO_GO * _N, t)
+
+
+@kernel
 def slow_creep(v, table):
     """Delta on the slow manifold at v = kappa V."""
     b, t = bits_and_offset(v)
@@ -152,7 +161,7 @@ def slow_creep(v, table):
 def slow_entry(v, table):
     """:func:`entry_state` of a motion on the slow manifold at v = kappa V: no layer is left."""
     b, t = bits_and_offset(v)
-    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0
+    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0, 0.0
 
 
 @kernel(inline=True)
@@ -164,13 +173,16 @@ def _entry(family, v, first):
 
 
 @kernel(inline=True)
-def entry_state(family, v, first, need_path, table):
-    """(lambda, k0, distance and angle gained on the slow manifold) of the entry of a family into partial slip."""
+def entry_state(family, v, first, need, table):
+    """(lambda, k0; distance, angle, slip loss gained on the slow manifold) of a family's entry into partial slip."""
     at, t = _entry(family, v, first)
-    x = angle = 0.0
-    if need_path:
+    x = angle = loss = 0.0
+    if need >= PATH:
         x, angle = polynomial(table, at + layout.ENTRY_X * _N, t), polynomial(table, at + layout.ENTRY_ANGLE * _N, t)
-    return polynomial(table, at + layout.ENTRY_LAMBDA * _N, t), polynomial(table, at + layout.RATE * _N, t), x, angle
+    if need >= LOSS:
+        loss = polynomial(table, at + layout.ENTRY_LOSS * _N, t)
+    lam, rate = polynomial(table, at + layout.ENTRY_LAMBDA * _N, t), polynomial(table, at + layout.RATE * _N, t)
+    return lam, rate, x, angle, loss
 
 
 @kernel
@@ -197,8 +209,8 @@ def _layer_value(table, at, t, s):
 
 
 @kernel
-def layer_state(family, v, E, first, need_path, table):
-    """(ln V/V0, delta, X excess, angle excess) behind the entry of a family at v = kappa V0."""
+def layer_state(family, v, E, first, need, table):
+    """(ln V/V0, delta, X excess, angle excess, slip loss over V0^2) behind the entry of a family at v = kappa V0."""
     bits = np.float64(v).view(np.int64)
     t = np.int64((bits & MANTISSA) | ONE).view(np.float64) - 1.5
     octave = (bits >> 52) - (1023 + first + LAYER_SKIP)
@@ -209,35 +221,41 @@ def layer_state(family, v, E, first, need_path, table):
         low, bins, start = 0, layout.SHAPES.layer_cross[1], layout.STARTS.layer_cross
         octave += layout.CROSS_MARGIN
     b, s = _fast_bin(E, low)
-    at = start + (octave * bins + b) * 4 * _BLOCK
+    at = start + (octave * bins + b) * layout.LAYER_COLUMNS * _BLOCK
     a, delta = _layer_value(table, at, t, s), _layer_value(table, at + _BLOCK, t, s)
-    if not need_path:
-        return a, delta, 0.0, 0.0
-    return a, delta, _layer_value(table, at + 2 * _BLOCK, t, s), _layer_value(table, at + 3 * _BLOCK, t, s)
+    x = angle = loss = 0.0
+    if need >= PATH:
+        x, angle = _layer_value(table, at + 2 * _BLOCK, t, s), _layer_value(table, at + 3 * _BLOCK, t, s)
+    if need >= LOSS:
+        loss = _layer_value(table, at + 4 * _BLOCK, t, s)
+    return a, delta, x, angle, loss
 
 
 @kernel
-def layer_speeds(family, v, rate, elapsed, first, need_path, table, kappa):
-    """(V, delta, distance, angle since the entry) within the boundary layer behind an entry."""
+def layer_speeds(family, v, rate, elapsed, first, need, table, kappa):
+    """(V, delta; distance, angle, slip loss since the entry) within the boundary layer behind an entry."""
     E = elapsed * rate
-    x = angle = 0.0
+    x = angle = loss = 0.0
     at, t = _entry(family, v, first)
     crossing = polynomial(table, at + layout.CROSSING * _N, t)
     if E > crossing:
-        if need_path:
+        if need >= PATH:
             x, angle = (
                 polynomial(table, at + layout.CROSSING_X * _N, t),
                 polynomial(table, at + layout.CROSSING_ANGLE * _N, t),
             )
+        if need >= LOSS:
+            loss = polynomial(table, at + layout.CROSSING_LOSS * _N, t)
         v *= np.exp(polynomial(table, at + layout.CROSSING_SPEED * _N, t))
         family = CROSS
         at, t = _entry(family, v, first)
         cross_rate = polynomial(table, at + layout.RATE * _N, t)
         E, rate = (E - crossing) / rate * cross_rate, cross_rate
-    a, delta, x_excess, angle_excess = layer_state(family, v, E, first, need_path, table)
+    a, delta, x_excess, angle_excess, share = layer_state(family, v, E, first, need, table)
     V0 = v / kappa
     scale = V0 / rate
-    return V0 * np.exp(a), delta, x + scale * (E + x_excess), angle + scale * (E + angle_excess)
+    x, angle = x + scale * (E + x_excess), angle + scale * (E + angle_excess)
+    return V0 * np.exp(a), delta, x, angle, loss + share * V0 * V0
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import flow_layout as layout
-from .flow import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, layer_state, slow_creep
+from .flow import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, SPEEDS, layer_state, slow_creep
 from .jit import kernel
 
 #: creep ratios nearer to the slow manifold than this are on it: an error of that size in omega
@@ -45,7 +45,7 @@ def earlier_entry(V, delta, first, table, par):
     for n in range(_SOLVER_CAP):
         reached = slow
         for _ in range(3):
-            a, reached, _, _ = layer_state(family, v0, E, first, False, table)
+            a, reached, _, _, _ = layer_state(family, v0, E, first, SPEEDS, table)
             v0 = max(lowest, min(v * np.exp(-a), 0.99 * highest))
         gap = reached - slow
         excess = np.log(abs(gap)) - size if gap * (delta - slow) > 0.0 else -1.0
@@ -69,6 +69,6 @@ def earlier_entry(V, delta, first, table, par):
         if abs(excess) < 1e-12 or high - low < 1e-13 * high:
             break
         E = low + (high - low) * at_low / (at_low - at_high)
-    a, reached, _, _ = layer_state(family, v0, E, first, False, table)
+    a, reached, _, _, _ = layer_state(family, v0, E, first, SPEEDS, table)
     found = abs(v0 * np.exp(a) - v) <= _RESIDUAL * v and abs(reached - delta) <= _RESIDUAL
     return family, v0, E, found

@@ -23,7 +23,7 @@ EARLY_HIGH = 40
 #: lambda in ``late``, by bins of equal width
 LATE_LOW, LATE_HIGH, LATE_WIDTH = -26.0, 1.0, 0.25
 #: octaves of kappa V at stick onset, down from the highest; those with a table of the boundary layer
-ENTRY_OCTAVES, LAYER_OCTAVES = 20, 13
+ENTRY_OCTAVES, LAYER_OCTAVES = 20, 10
 #: coefficients of the tables over two variables: in kappa V at onset (an octave a bin), in E
 SPEED_COEFFICIENTS, FAST_COEFFICIENTS = 12, 8
 #: bins of E: [0, 2^E_LOW), an octave each to 1, then half octaves to 2^E_HIGH
@@ -32,10 +32,11 @@ E_LOW, E_HIGH = -8, 5
 LAYER_END = 28.0
 
 (T, X, I, L), (ONSET_V, ONSET_T, ONSET_X) = range(4), range(3)
-LAMBDA, DELTA, X_TO_GO, ANGLE_TO_GO = range(4)
+LAMBDA, DELTA, X_TO_GO, ANGLE_TO_GO, LOSS_TO_GO = range(5)
 SPEED = 0  # in place of LAMBDA in ``late`` and ``early``
-ENTRY_COLUMNS = 8
-ENTRY_LAMBDA, ENTRY_X, ENTRY_ANGLE, RATE, CROSSING, CROSSING_SPEED, CROSSING_X, CROSSING_ANGLE = range(8)
+ENTRY_COLUMNS, LAYER_COLUMNS = 10, 5
+ENTRY_LAMBDA, ENTRY_X, ENTRY_ANGLE, ENTRY_LOSS, RATE = range(5)
+CROSSING, CROSSING_SPEED, CROSSING_X, CROSSING_ANGLE, CROSSING_LOSS = range(5, 10)
 
 
 class FlowTables(NamedTuple):
@@ -52,15 +53,16 @@ class FlowTables(NamedTuple):
         onset at V; L = delta_star |V|.
     time_up, time_down : kappa mu |T| -> V.
     onset_up, onset_down : kappa |I|/(1 + j) -> V, T, X at stick onset.
-    slow : kappa V -> lambda, delta, distance and angle to go to rest, on the slow manifold.
-    late, early : lambda or 1 + lambda -> V, delta, distance and angle to go.
+    slow : kappa V -> lambda, delta, distance, angle and slip loss to go to rest, on the slow manifold.
+    late, early : lambda or 1 + lambda -> V, delta, distance, angle and slip loss to go.
     entry_plus, entry_minus, entry_cross : kappa V at onset -> what the motion that enters
         partial slip there with omega > V, with omega < V, or that passes delta = 0 there, will
-        have in common with the slow manifold: its lambda, and the distance and angle that it
-        gains on that motion; k0; E, ln(V/V0), distance and angle at delta = 0.
+        have in common with the slow manifold: its lambda, and the distance, angle and slip loss that
+        it gains on that motion; k0; E, ln(V/V0), distance, angle and slip loss at delta = 0.
     layer_plus, layer_minus, layer_cross : the boundary layer behind such an onset, and that
         behind delta = 0; shape (octave, bin of E, column, SPEED_COEFFICIENTS,
-        FAST_COEFFICIENTS): ln(V/V0), delta, int (V/V0 - 1) dE, int (omega/V0 - 1) dE.
+        FAST_COEFFICIENTS): ln(V/V0), delta, int (V/V0 - 1) dE, int (omega/V0 - 1) dE, slip
+        loss over V0^2.
     """
 
     slide_up: Any
@@ -90,7 +92,7 @@ def _fine(octaves: int, columns: int) -> tuple[int, int, int]:
 
 
 def _layer(octaves: int, low: int) -> tuple[int, ...]:
-    return octaves, fast_bins(low), 4, SPEED_COEFFICIENTS, FAST_COEFFICIENTS
+    return octaves, fast_bins(low), LAYER_COLUMNS, SPEED_COEFFICIENTS, FAST_COEFFICIENTS
 
 
 #: one octave more at either end, for motions that pass delta = 0 faster or slower than they entered
@@ -101,8 +103,8 @@ SHAPES = FlowTables(
     slide_up=_fine(HIGH - LOW, 4), slide_down=_fine(HIGH - LOW, 4),
     time_up=_fine(HIGH - LOW, 1), time_down=_fine(HIGH - LOW, 1),
     onset_up=_fine(HIGH - LOW, 3), onset_down=_fine(HIGH - LOW, 3),
-    slow=_fine(HIGH - LOW, 4),
-    late=(int((LATE_HIGH - LATE_LOW) / LATE_WIDTH), 4, COEFFICIENTS), early=_fine(EARLY_HIGH, 4),
+    slow=_fine(HIGH - LOW, 5),
+    late=(int((LATE_HIGH - LATE_LOW) / LATE_WIDTH), 5, COEFFICIENTS), early=_fine(EARLY_HIGH, 5),
     entry_plus=_fine(ENTRY_OCTAVES, ENTRY_COLUMNS), entry_minus=_fine(ENTRY_OCTAVES, ENTRY_COLUMNS),
     entry_cross=_fine(ENTRY_OCTAVES + 2 * CROSS_MARGIN, ENTRY_COLUMNS),
     layer_plus=_layer(LAYER_OCTAVES, E_LOW), layer_minus=_layer(LAYER_OCTAVES, E_LOW),

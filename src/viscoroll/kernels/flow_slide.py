@@ -15,7 +15,7 @@ _LOW = layout.LOW
 _T, _X, _I, _L = layout.T, layout.X, layout.I, layout.L
 
 
-@kernel
+@kernel(allocates=True)
 def slide_table(sign, par, table):
     """Fill ``slide_up`` (sign = 1) or ``slide_down`` (-1); False where V' is not positive or I not monotone."""
     _, _, kappa, mu, j = par
@@ -52,7 +52,7 @@ def slide_table(sign, par, table):
     return True
 
 
-@kernel
+@kernel(allocates=True)
 def time_table(slide, par, table):
     """Fill ``time_up`` or ``time_down``: V as a function of T."""
     _, _, kappa, mu, _ = par
@@ -64,7 +64,7 @@ def time_table(slide, par, table):
         put(table, b, 0, values)
 
 
-@kernel
+@kernel(allocates=True)
 def onset_table(slide, par, table):
     """Fill ``onset_up`` or ``onset_down``: V, T and X at onset as functions of I."""
     _, _, kappa, mu, j = par

@@ -29,7 +29,7 @@ def _relative_rate(y, dy, par):
     return -dy * (1.0 + h / zeta + dh) / (1.0 + 2.0 * h / zeta)
 
 
-@kernel
+@kernel(allocates=True)
 def _collocate(v, y, half, offset_end, offset, par):
     """Solve for ``offset`` at the nodes v of a bin, given its value at the right end; False if it fails."""
     f, slope = np.empty(N), np.empty(N)
@@ -67,14 +67,14 @@ def _collocate(v, y, half, offset_end, offset, par):
     return False
 
 
-@kernel
+@kernel(allocates=True)
 def slow_table(par, table):
     """Fill ``slow``; False where there is no such motion within the stick zone."""
     _, c, _, _, j = par
     rate = c / (1.0 + j)
     bins = table.shape[0]
     v, y, offset, V = np.empty(N), np.empty(N), np.empty(N), np.empty((bins, N))
-    pace, delta = np.empty((bins, N)), np.empty((bins, N))
+    pace, delta, power = np.empty((bins, N)), np.empty((bins, N)), np.empty((bins, N))
     end = 0.0
     for b in range(bins + EXTRA * BINS - 1, -1, -1):
         for n in range(N):
@@ -93,7 +93,10 @@ def slow_table(par, table):
             if not (fall > 0.0 and abs(delta[b, n]) < _stick_bound(y[n], par)):
                 return False
             pace[b, n] = half / (v[n] * fall)
-    _integrals(rate, V, delta, pace, table)
+            # Q = V' + M/2
+            m = at_contact(np.exp(y[n]), par[0], c)[6]
+            power[b, n] = V[b, n] * delta[b, n] * V[b, n] * (0.5 * m - fall)
+    _integrals(rate, V, delta, power, pace, table)
     return True
 
 
@@ -106,12 +109,13 @@ def _stick_bound(y, par):
     return par[3] * V * (zeta + g)
 
 
-@kernel
-def _integrals(rate, V, delta, pace, table):
-    """Lambda, distance and angle to go by integration of dtau = pace dv upward from V -> 0."""
+@kernel(allocates=True)
+def _integrals(rate, V, delta, power, pace, table):
+    """Lambda, distance, angle and slip loss to go by integration of dtau = pace dv upward from V -> 0."""
     zero = BINS * (-2 - _LOW)  # the bin that starts at kappa V = 1/4
-    ends = np.array([0.0, V[0, 0] / rate, V[0, 0] * (1.0 + delta[0, 0]) / rate])
-    rows = np.empty((4, N))
+    lowest = V[0, 0]
+    ends = np.array([0.0, lowest / rate, lowest * (1.0 + delta[0, 0]) / rate, power[0, 0] / (3.0 * rate)])
+    rows = np.empty((5, N))
     start = 0.0
     for b in range(table.shape[0]):
         if b == zero:
@@ -120,24 +124,27 @@ def _integrals(rate, V, delta, pace, table):
             rows[layout.DELTA, n] = delta[b, n]
             rows[layout.LAMBDA, n] = ends[0]
             rows[layout.X_TO_GO, n], rows[layout.ANGLE_TO_GO, n] = ends[1], ends[2]
+            rows[layout.LOSS_TO_GO, n] = ends[3]
             for m in range(N):
                 weight = TO_NODES[n, m] * pace[b, m]
                 rows[layout.LAMBDA, n] += weight * rate
                 rows[layout.X_TO_GO, n] += weight * V[b, m]
                 rows[layout.ANGLE_TO_GO, n] += weight * V[b, m] * (1.0 + delta[b, m])
+                rows[layout.LOSS_TO_GO, n] += weight * power[b, m]
         for m in range(N):
             weight = TO_END[m] * pace[b, m]
             ends[0] += weight * rate
             ends[1] += weight * V[b, m]
             ends[2] += weight * V[b, m] * (1.0 + delta[b, m])
-        for column in range(4):
+            ends[3] += weight * power[b, m]
+        for column in range(5):
             put(table, b, column, rows[column])
     table[:, layout.LAMBDA, 0] -= start
 
 
 @kernel
 def _by_lambda(slow, lam, kappa, n, rows):
-    """V, delta, distance and angle to go at lambda into rows[:, n]."""
+    """V, delta, distance, angle and slip loss to go at lambda into rows[:, n]."""
     bottom = value(slow, 0, layout.LAMBDA, -HALF)
     at, t, share = 0, -HALF, 1.0
     if lam < bottom:
@@ -151,25 +158,26 @@ def _by_lambda(slow, lam, kappa, n, rows):
     rows[layout.SPEED, n] = v / kappa
     for column in range(1, 4):
         rows[column, n] = share * value(slow, at, column, t)
+    rows[layout.LOSS_TO_GO, n] = share**3 * value(slow, at, layout.LOSS_TO_GO, t)
 
 
-@kernel
+@kernel(allocates=True)
 def late_table(slow, kappa, table):
     """Fill ``late``."""
-    rows = np.empty((4, N))
+    rows = np.empty((5, N))
     for b in range(table.shape[0]):
         for n in range(N):
             _by_lambda(slow, layout.LATE_LOW + (b + 0.5 + 0.5 * NODES[n]) * layout.LATE_WIDTH, kappa, n, rows)
-        for column in range(4):
+        for column in range(5):
             put(table, b, column, rows[column])
 
 
-@kernel
+@kernel(allocates=True)
 def early_table(slow, kappa, table):
     """Fill ``early``."""
-    rows = np.empty((4, N))
+    rows = np.empty((5, N))
     for b in range(table.shape[0]):
         for n in range(N):
             _by_lambda(slow, node(b, n, 0) - 1.0, kappa, n, rows)
-        for column in range(4):
+        for column in range(5):
             put(table, b, column, rows[column])

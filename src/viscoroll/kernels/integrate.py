@@ -1,12 +1,15 @@
 """One motion from start to end: regimes as state, step-size control, switches, output.
 
 The regime changes only at a located event (:mod:`events`); nothing re-tests it between.
+Partial slip is entered through its boundary layer (:mod:`layer_phase`) and left for the slow
+manifold (:mod:`slow_phase`); steps are for full slip, and where one of the two gives up.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from .arrays import copy, fill
 from .collocation import N
 from .control import (
     SHARE,
@@ -25,7 +28,9 @@ from .explicit import rhs, slope_at
 from .full_slip import onset, onset_slope, stick_limit
 from .jit import kernel
 from .law import OK, generator_slopes, stick_length
-from .motion_output import coast, fill, put, write_outputs
+from .layer import ROWS
+from .layer_phase import layer_phase
+from .motion_output import at_rest, coast, put, write_outputs
 from .partial_slip import signed_D, slow_D
 from .slow import COLUMNS
 from .slow_phase import SLOW_REST, slow_phase
@@ -47,7 +52,7 @@ _COAST = 1e17
 def start(V, omega, par, u):
     """Put (V, omega) into the unknowns of its regime: (regime, direction, sigma, status)."""
     alpha, c, kappa, mu, j = par
-    u[:] = 0.0
+    fill(0.0, u)
     if max(abs(V), abs(omega)) < _TINY:
         # sliding ends within a time of that order: V + j omega is kept
         V = omega = (V + j * omega) / (1.0 + j)
@@ -121,16 +126,16 @@ def finish_coasting(at, tau_out, tau, u, direction, par, gamma, offset, rest, ou
         return DONE, np.nan
     V, _, _ = speeds(PARTIAL, u[0], u[1], par)
     length = direction * (V - rest) * (1.0 + par[4]) / par[1]
-    fill(out, at, offset[0] + direction * u[2] + length, offset[1] + direction * u[3] + length, gamma)
+    at_rest(out, at, offset[0] + direction * u[2] + length, offset[1] + direction * u[3] + length, gamma)
     return RESTED, crossing / gamma
 
 
-@kernel
+@kernel(allocates=True)
 def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_steps, out, switches, step_ends):
     """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
 
     ``switches`` (k, 2) receives (t, regime behind) of the regime changes, ``step_ends`` the
-    times behind the steps and at the nodes of the slow manifold; what does not fit is not kept.
+    times behind the steps and at the nodes of the layer and the slow manifold; what does not fit is not kept.
     Returns (status, steps, switches, onset time, rest time).
     """
     par = (alpha, (alpha - 1.0) / alpha, kappa, mu, j)
@@ -139,16 +144,17 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     u, new, error, K, terms = np.zeros(4), np.zeros(4), np.zeros(4), np.zeros((EXTENDED, 4)), np.zeros((6, 4))
     slope, offset, travelled = np.zeros(4), np.zeros(2), np.zeros(2)
     work = np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2))
+    nodes, slow = np.empty((ROWS, N + 1)), np.empty(N + 2)
     steps = turns = at = rejected = ends = 0
     onset_time = rest_time = np.nan
     if max(abs(V0), abs(omega0)) < rest:
-        fill(out, 0, 0.0, 0.0, gamma)
+        at_rest(out, 0, 0.0, 0.0, gamma)
         return RESTED, steps, turns, onset_time, 0.0
     regime, direction, sigma, start_status = start(V0, omega0, par, u)
     if start_status != OK:
         return NOT_CONVERGED, steps, turns, onset_time, rest_time
     if regime == REST:
-        fill(out, 0, 0.0, 0.0, gamma)
+        at_rest(out, 0, 0.0, 0.0, gamma)
         return DONE, steps, turns, onset_time, 0.0
     while at < tau_out.size and tau_out[at] == 0.0:
         _, _, delta = speeds(regime, u[0], u[1], par)
@@ -158,7 +164,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     relaxation = relaxation_new = slope_at(regime, u, sigma, par, slope)
     wish = length_before = size_before = 0.0
     share = share_new = slip_share(u, par) if regime == PARTIAL else 0.0
-    try_at = 0.0 if par[1] > 0.0 else np.inf
+    # alpha = 1: nothing moves on the slow manifold, which both phases need
+    layer_ahead, over, try_at = par[1] > 0.0, False, 0.0 if par[1] > 0.0 else np.inf
     h = first_length(regime, u, rtol, par)
     while at < tau_out.size:
         if steps >= max_steps or rejected > _MOST_REJECTIONS:
@@ -167,13 +174,24 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         if regime == PARTIAL and u[0] > np.log(_COAST):
             status, rest_time = finish_coasting(at, tau_out, tau, u, direction, par, gamma, offset, rest, out)
             break
-        if regime == PARTIAL and tau >= try_at and settled(u, slope, share, relaxation, rtol):
+        if regime == PARTIAL and layer_ahead:
+            layer_ahead = False
+            over, tau, at, steps, ends = layer_phase(
+                u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, max_steps, steps, out,
+                step_ends, ends, work, nodes, slow,
+            )  # fmt: skip
+            relaxation = slope_at(regime, u, sigma, par, slope)
+            share = slip_share(u, par)
+            h = max(h, 0.5 / relaxation) if over else h
+            continue
+        if regime == PARTIAL and (over or (tau >= try_at and settled(u, slope, share, relaxation, rtol))):
+            over = False
             outcome, tau, at, steps, ends, try_at = slow_phase(
                 u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, np.log(_COAST),
                 max_steps, steps, out, step_ends, ends, work,
             )  # fmt: skip
             if outcome == SLOW_REST:
-                fill(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
+                at_rest(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
                 status, rest_time = RESTED, tau / gamma
                 break
             relaxation = slope_at(regime, u, sigma, par, slope)
@@ -189,7 +207,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         event = NO_EVENT
         if regime == FULL and entered and sticks_at_once(u, sigma, par):
             event, length, last = STICK, 0.0, False
-            new[:] = u
+            copy(u, new)
         elif length > 0.0:
             part = 1.0
             relaxation_new = advance(method, regime, u, slope, length, sigma, par, K, new, error)
@@ -220,24 +238,25 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         )  # fmt: skip
         for m in range(2):
             travelled[m] += abs(new[2 + m] - u[2 + m])
-        u[:] = new
+        copy(new, u)
         tau += length
         if ends < step_ends.size:
             step_ends[ends] = tau / gamma
             ends += 1
         if event == AT_REST:
-            fill(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
+            at_rest(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
             status, rest_time = RESTED, tau / gamma
             break
         entered = event != NO_EVENT and not (event == STICK and length == 0.0)
         if event == NO_EVENT:
-            slope[:] = K[12]
+            copy(K[12], slope)
             relaxation, share = relaxation_new, share_new
             if regime == PARTIAL:
                 method = STIFF if h * relaxation > (_STIFF_FROM if method == EXPLICIT else 1.0) else EXPLICIT
             continue
+        layer_ahead = par[1] > 0.0
         regime, direction, sigma = switch(event, regime, direction, sigma, u, par, offset)
-        new[:] = u
+        copy(u, new)
         method = EXPLICIT
         relaxation = slope_at(regime, u, sigma, par, slope)
         share = slip_share(u, par) if regime == PARTIAL else 0.0

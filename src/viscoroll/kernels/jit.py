@@ -111,16 +111,18 @@ class _Cache(caching.FunctionCache):
             super().save_overload(sig, data)
 
 
-def kernel(function: Callable | None = None, *, parallel: bool = False, inline: bool = False) -> Callable:
+def kernel(function: Callable | None = None, *, inline: bool = False, allocates: bool = False) -> Callable:
     """Compile ``function`` with numba, lazily, cached on disk (see the module docstring).
 
     ``inline`` is for the few short functions at the bottom of every loop: a call of a numba
     function costs as much as a polynomial, and LLVM by itself does not always spare it.
+    ``allocates`` says that arrays are made or assigned as a whole.  Without it no references are
+    counted; numba counts those of constant tables too, which took a fifth of the time of a motion.
     """
     if function is None:
-        return lambda f: kernel(f, parallel=parallel, inline=inline)
+        return lambda f: kernel(f, inline=inline, allocates=allocates)
     compiled = numba.njit(
-        function, parallel=parallel, fastmath=CONTRACT, error_model="numpy", nogil=True, forceinline=inline
+        function, fastmath=CONTRACT, error_model="numpy", nogil=True, forceinline=inline, _nrt=allocates
     )
     if not numba.config.DISABLE_JIT:
         compiled._cache = _Cache(function)

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from .jit import kernel
-from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from .ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
 
 OK, NOT_CONVERGED = 0, 1
 _MAX_STEPS = 60
@@ -55,11 +55,8 @@ def generator_slopes(z, alpha, c):
     """(g, h, g', h') at z, all 0 for z <= 0."""
     if c == 0.0 or z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    dr = alpha * slope_r(x, r, rc)
-    dk = slope_k(z, k, kc)
+    _, r, k, s, dk, _, _ = ratios_and_slopes(z, alpha)
+    dr = alpha * s
     p = r * k
     dp = dr * k + r * dk
     whole = 1.0 / (1.0 + p)
@@ -72,18 +69,16 @@ def second_slopes(z, alpha, c):
     """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
     if c == 0.0 or z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    return assemble(z, x, r, k, slope_r(x, r, rc), slope_k(z, k, kc), alpha, c)
+    _, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
+    return assemble(per_z, per_x, r, k, s, dk, alpha, c)
 
 
 @kernel(inline=True)
-def assemble(z, x, r, k, s, dk, alpha, c):
-    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'."""
+def assemble(per_z, per_x, r, k, s, dk, alpha, c):
+    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'; per_z = 1/z, per_x = 1/(alpha z)."""
     dr = alpha * s
-    ddr = alpha * alpha * ((r / x - s) / x - 2.0 * r * s)
-    ddk = 2.0 * k * dk + (dk - k / z) / z
+    ddr = alpha * alpha * ((r * per_x - s) * per_x - 2.0 * r * s)
+    ddk = 2.0 * k * dk + (dk - k * per_z) * per_z
     p = r * k
     dp = dr * k + r * dk
     ddp = ddr * k + 2.0 * dr * dk + r * ddk
@@ -97,13 +92,13 @@ def assemble(z, x, r, k, s, dk, alpha, c):
     return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
 
 
-@kernel
-def near_length(kappa_V, alpha, c):
-    """lam to some per cent: a step of Newton's iteration with r(x) near x/(rho + x) and k(z) near z/(z + 0.35)."""
-    if c == 0.0:
-        return 1.0
+@kernel(inline=True)
+def near_length(kappa_V, alpha, c, low):
+    """lam to some per cent: a step of Newton's iteration with r(x) near x/(rho + x) and k(z) near z/(z + 0.35).
+
+    ``low`` = alpha^(-1/2), the least that it can be.
+    """
     w = 2.0 * kappa_V
-    low = 1.0 / np.sqrt(alpha)
     # lam^2 + 2 w lam h = 1 with h between its limits c alpha zeta/2 and c/2
     start = c * 0.5 * w
     lam = max(1.0 / (np.sqrt(1.0 + start * start) + start), low)
@@ -118,47 +113,61 @@ def near_length(kappa_V, alpha, c):
 
 
 @kernel(inline=True)
-def contact_solution(guess, kappa_V, alpha, c):
-    """Eq. (6): (lam, zeta, g, h, g', status) at kappa |V| >= 0, from a guess of lam; g' to about 1e-10.
+def at_an_end(w, low, alpha, c):
+    """Whether the length is that at rest, or that at high speed, to rounding."""
+    return c * w < _SLOW or alpha * low < _FAST * w
 
-    Halley's iteration on the square root of lam^2 + 2 w lam h(lam/w) = 1, w = 2 kappa V, which is
-    nearly linear in lam, kept inside [alpha^(-1/2), 1].  Its last step carries g and h along.
+
+@kernel(inline=True)
+def length_step(lam, z, w, per_w, slopes, low, high):
+    """One step of Halley's iteration for Eq. (6): (new lam, zeta, g, h, g' there, low, high).
+
+    From ``second_slopes`` at z = lam/w, w = 2 kappa V.  On the square root of
+    lam^2 + 2 w lam h(lam/w) = 1, which is nearly linear in lam, kept inside the bracket
+    [low, high].  g and h are carried along: they are good where the step was small.
     """
+    g, h, dg, dh, ddg, ddh = slopes
+    root = np.sqrt(lam * (lam + 2.0 * w * h))
+    excess = root - 1.0
+    low, high = lam if excess <= 0.0 else low, lam if excess > 0.0 else high
+    # slope and second derivative of the square of the root, halved; 1/root to first order in the excess
+    slope = lam + w * h + lam * dh
+    bend = (1.0 + 2.0 * dh + z * ddh) * root - slope * slope * (1.0 - excess)
+    new = lam - 2.0 * excess * slope * root / (2.0 * slope * slope - excess * bend)
+    new = new if low <= new <= high else 0.5 * (low + high)
+    zeta = new * per_w
+    dz = zeta - z
+    return new, zeta, g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh), dg + dz * ddg, low, high
+
+
+@kernel(inline=True)
+def small_step(old, new):
+    """Whether a step of Halley's iteration was small enough to be the last."""
+    return abs(new - old) <= _CUBED * old
+
+
+@kernel(inline=True)
+def contact_solution(guess, kappa_V, alpha, c):
+    """Eq. (6): (lam, zeta, g, h, g', status) at kappa |V| >= 0, from a guess of lam; g' to about 1e-10."""
     w = 2.0 * kappa_V
     low, high = 1.0 / np.sqrt(alpha), 1.0
-    if c * w < _SLOW or alpha * low < _FAST * w:
+    if at_an_end(w, low, alpha, c):
         lam = high if c * w < _SLOW else low
         g, h, dg, _ = generator_slopes(lam / w, alpha, c)
         return lam, lam / w, g, h, dg, OK
-    lam = guess
+    lam, per_w = guess, 1.0 / w
     for _ in range(_MAX_STEPS):
-        z = lam / w
-        g, h, dg, dh, ddg, ddh = second_slopes(z, alpha, c)
-        root = np.sqrt(lam * (lam + 2.0 * w * h))
-        excess = root - 1.0
-        if excess > 0.0:
-            high = lam
-        else:
-            low = lam
-        # slope and second derivative of the square of the root, halved; 1/root to first order in the excess
-        slope = lam + w * h + lam * dh
-        bend = (1.0 + 2.0 * dh + z * ddh) * root - slope * slope * (1.0 - excess)
-        new = lam - 2.0 * excess * slope * root / (2.0 * slope * slope - excess * bend)
-        if not (low <= new <= high):
-            new = 0.5 * (low + high)
-        if abs(new - lam) <= _CUBED * lam:
-            zeta = new / w
-            dz = zeta - z
-            g, h = g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh)
-            return new, zeta, g, h, dg + dz * ddg, OK
-        lam = new
-    return lam, lam / w, g, h, dg, NOT_CONVERGED
+        old, z = lam, lam * per_w
+        lam, zeta, g, h, dg, low, high = length_step(old, z, w, per_w, second_slopes(z, alpha, c), low, high)
+        if small_step(old, lam):
+            return lam, zeta, g, h, dg, OK
+    return lam, zeta, g, h, dg, NOT_CONVERGED
 
 
 @kernel
 def contact_length(kappa_V, alpha, c):
     """Eq. (6): lam at kappa |V| >= 0, and a status."""
-    lam, _, _, _, _, status = contact_solution(near_length(kappa_V, alpha, c), kappa_V, alpha, c)
+    lam, _, _, _, _, status = contact_solution(near_length(kappa_V, alpha, c, 1.0 / np.sqrt(alpha)), kappa_V, alpha, c)
     return lam, status
 
 
@@ -202,19 +211,31 @@ def stick_solution(zeta, g, h, dg, d, alpha, c):
     """
     if c == 0.0:
         return zeta - d, d, (2.0 - d / zeta) * d, OK
-    F = zeta + g
-    if d <= _SLIGHT * F:
+    if slight(d, zeta, g):
         _, _, dg, _, ddg, _ = second_slopes(zeta, alpha, c)
         D = d / (1.0 + dg)
         return _sharper(zeta, D * (1.0 + 0.5 * D * ddg / (1.0 + dg)), d, alpha, c)
-    y = F - d
-    eta, g_eta, h_eta, status = root_of_F(y, _near_eta(y, zeta, g, dg), alpha, c)
+    y = (zeta + g) - d
+    eta, g_eta, h_eta, status = root_of_F(y, near_eta(y, zeta, g, dg), alpha, c)
+    eta, D, rise_H = stick_from_root(eta, g_eta, h_eta, zeta, g, h, d, alpha, c)
+    return eta, D, rise_H, status
+
+
+@kernel(inline=True)
+def slight(d, zeta, g):
+    """Whether slip is so slight that zeta - eta starts from the slopes at zeta."""
+    return d <= _SLIGHT * (zeta + g)
+
+
+@kernel(inline=True)
+def stick_from_root(eta, g_eta, h_eta, zeta, g, h, d, alpha, c):
+    """``stick_solution`` without its status from the root of F(eta) = F(zeta) - d and g, h there."""
     D = d - (g - g_eta)
-    if d <= CLOSE * F:
+    if d <= CLOSE * (zeta + g):
         eta, D, rise_H, _ = _sharper(zeta, D, d, alpha, c)
-        return eta, D, rise_H, status
+        return eta, D, rise_H
     ratio = eta / zeta
-    return eta, D, (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta), status
+    return eta, D, (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
 
 
 @kernel
@@ -227,8 +248,8 @@ def _sharper(zeta, D, d, alpha, c):
     return eta - more, D + more, rise_H + 2.0 * more * (eta + h + eta * dh) / zeta, OK
 
 
-@kernel
-def _near_eta(y, zeta, g, dg):
+@kernel(inline=True)
+def near_eta(y, zeta, g, dg):
     """F^-1(y) with g(z) near A z/(B + z), which has the given value and slope at zeta."""
     curve = g - zeta * dg
     if curve <= 0.0:
@@ -239,28 +260,37 @@ def _near_eta(y, zeta, g, dg):
     return half + root if half > 0.0 else y * B / (root - half)
 
 
+@kernel(inline=True)
+def root_bracket(y, c):
+    """Bounds of F^-1(y)."""
+    low, high = max(y - 0.5 * c, 0.0), y
+    return low, high
+
+
+@kernel(inline=True)
+def root_step(eta, y, slopes, low, high):
+    """One step of Halley's iteration for F(eta) = y from ``second_slopes``: (new eta, g, h there, low, high)."""
+    g, h, dg, dh, ddg, ddh = slopes
+    excess = (eta - y) + g
+    low, high = eta if excess <= 0.0 else low, eta if excess > 0.0 else high
+    slope = 1.0 + dg
+    new = eta - 2.0 * excess * slope / (2.0 * slope * slope - excess * ddg)
+    new = new if low <= new <= high else 0.5 * (low + high)
+    dz = new - eta
+    return new, g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh), low, high
+
+
 @kernel
 def root_of_F(y, guess, alpha, c):
     """F(eta) = y > 0 by Halley's iteration: (eta, g, h, status); y - c/2 <= eta <= y."""
-    low, high = max(y - 0.5 * c, 0.0), y
+    low, high = root_bracket(y, c)
     eta = guess
     g, h = 0.0, 0.0
     for _ in range(_MAX_STEPS):
-        g, h, dg, dh, ddg, ddh = second_slopes(eta, alpha, c)
-        excess = (eta - y) + g
-        if excess > 0.0:
-            high = eta
-        else:
-            low = eta
-        slope = 1.0 + dg
-        step = 2.0 * excess * slope / (2.0 * slope * slope - excess * ddg)
-        new = eta - step
-        if not (low <= new <= high):
-            new = 0.5 * (low + high)
-        dz = new - eta
-        if abs(dz) <= _CUBED * eta or high <= low:
-            return new, g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh), OK
-        eta = new
+        old = eta
+        eta, g, h, low, high = root_step(old, y, second_slopes(old, alpha, c), low, high)
+        if small_step(old, eta) or high <= low:
+            return eta, g, h, OK
     return eta, g, h, NOT_CONVERGED
 
 

@@ -12,7 +12,7 @@ from .motion_output import OUTPUTS
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
 
 
-@kernel
+@kernel(allocates=True)
 def motion_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
     """Motions start..stop; parameters hold one value or one a motion.
 

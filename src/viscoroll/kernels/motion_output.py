@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arrays import copy
 from .events import EXPLICIT, interpolant, speeds
 from .explicit import explicit_step
 from .jit import kernel
@@ -21,7 +22,7 @@ def put(out, column, direction, regime, V, omega, delta, X, angle, gamma):
     out[4, column], out[5, column] = delta, regime
 
 
-@kernel
+@kernel(allocates=True)
 def write_outputs(
     tau_out, at, tau, h, last, method, regime, direction, sigma, old, new, slope, K, terms, par, gamma, offset, out
 ):
@@ -32,15 +33,15 @@ def write_outputs(
     if at >= tau_out.size or not (last or tau_out[at] < tau + h):
         return at
     stepped = method == EXPLICIT and regime == PARTIAL
-    point, error = new.copy(), np.empty(4)
+    point, error = np.empty(4), np.empty(4)
     if h > 0.0 and not stepped:
         interpolant(method, regime, old, new, h, sigma, par, K, terms)
     while at < tau_out.size and (last or tau_out[at] < tau + h):
         theta = min((tau_out[at] - tau) / h, 1.0) if h > 0.0 else 1.0
         if theta == 1.0:
-            point[:] = new
+            copy(new, point)
         elif stepped:
-            K[0] = slope
+            copy(slope, K[0])
             explicit_step(regime, old, theta * h, sigma, par, K, point, error)
         else:
             for m in range(4):
@@ -75,7 +76,7 @@ def coast(tau_out, at, tau, u, direction, par, gamma, offset, rest, out):
 
 
 @kernel
-def fill(out, at, x, angle, gamma):
+def at_rest(out, at, x, angle, gamma):
     """Outputs after rest: V = omega = 0 at the place where the threshold was crossed."""
     for column in range(at, out.shape[1]):
         put(out, column, 1.0, REST, 0.0, 0.0, 0.0, x, angle, gamma)

@@ -74,18 +74,35 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
 @kernel(inline=True)
 def partial_rhs(y, offset, par):
     """(y', offset', V, omega) at y = ln zeta and offset = D - D0(y)."""
-    dy, d_offset, V, delta, _, _, _, _ = partial_rates(y, offset, par)
+    dy, d_offset, V, delta, _, _, _, _, _ = partial_rates(y, offset, par)
     return dy, d_offset, V, V * (1.0 + delta)
 
 
 @kernel(inline=True)
 def partial_rates(y, offset, par):
-    """(y', offset', V, delta, V'/V, and d(y', offset', delta)/d offset; of offset' to leading order in V)."""
-    alpha, c, kappa, mu, j = par
+    """(y', offset', V, delta, V'/V, d(y', offset', delta)/d offset, D; d offset' to leading order in V)."""
     zeta = np.exp(y)
-    g, h, dg, dh, _, ddh, m, dm = at_contact(zeta, alpha, c)
+    contact = at_contact(zeta, par[0], par[1])
+    _, h, _, dh, _, ddh, m, dm = contact
     D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
     D = D0 + offset
+    dy, dD, V, delta, rate, dy_D, dD_D, delta_D = _rates(zeta, D, contact, par)
+    return dy, dD - D0_y * dy, V, delta, rate, dy_D, dD_D - D0_y * dy_D, delta_D, D
+
+
+@kernel(inline=True)
+def creep_rates(y, D, par):
+    """(y', D', V, delta) at y = ln zeta and D."""
+    zeta = np.exp(y)
+    dy, dD, V, delta, _, _, _, _ = _rates(zeta, D, at_contact(zeta, par[0], par[1]), par)
+    return dy, dD, V, delta
+
+
+@kernel(inline=True)
+def _rates(zeta, D, contact, par):
+    """(y', D', V, delta, V'/V, d(y', D', delta)/dD; that of D' to leading order in V)."""
+    alpha, c, kappa, mu, j = par
+    g, h, dg, dh, _, _, m, _ = contact
     size = abs(D)
     g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, alpha, c)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
@@ -108,9 +125,8 @@ def partial_rates(y, offset, par):
     # dQ/dD = mu H'(eta)/H(zeta)
     eta = max(zeta - size, 0.0)
     stiffness = 2.0 * scale * per * (eta + h_eta + eta * dh_eta)
-    dy_D = stiffness * per_rise
-    d_offset_D = -(1.0 + 1.0 / j) * stiffness * (per_V / mu) * per_F - D0_y * dy_D
-    return dy, dD - D0_y * dy, V, mu * V * d, rate, dy_D, d_offset_D, mu * V * slope_F
+    dD_D = -(1.0 + 1.0 / j) * stiffness * (per_V / mu) * per_F
+    return dy, dD, V, mu * V * d, rate, stiffness * per_rise, dD_D, mu * V * slope_F
 
 
 @kernel
@@ -182,9 +198,14 @@ def signed_D(y, offset, par):
 @kernel
 def partial_speeds(y, offset, par):
     """(V, delta) at y = ln zeta and offset = D - D0(y)."""
+    return creep_speeds(y, signed_D(y, offset, par), par)
+
+
+@kernel
+def creep_speeds(y, D, par):
+    """(V, delta) at y = ln zeta and D."""
     alpha, c, kappa, mu, _ = par
     zeta = np.exp(y)
-    D = signed_D(y, offset, par)
     g, h = generators(zeta, alpha, c)
     g_eta, h_eta = generators(zeta - abs(D), alpha, c)
     rise_F, _ = slip_differences(zeta, abs(D), g, h, g_eta, h_eta, alpha, c)

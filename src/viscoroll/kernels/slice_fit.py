@@ -45,7 +45,7 @@ def _node(octave, index, n):
     return 2.0**octave * (1.0 + (index + 0.5 + 0.5 * _NODES[n]) / BINS)
 
 
-@kernel
+@kernel(allocates=True)
 def _fitted(values):
     """Coefficients[bin, function, power] from values[bin, function, node].
 
@@ -68,7 +68,7 @@ def _fitted(values):
     return out
 
 
-@kernel
+@kernel(allocates=True)
 def speed_octave(alpha, octave):
     """(coefficients[bin, function, power], status) for kappa |V| in [2^octave, 2^(octave + 1))."""
     c = (alpha - 1.0) / alpha
@@ -88,7 +88,7 @@ def speed_octave(alpha, octave):
     return _fitted(values), worst
 
 
-@kernel
+@kernel(allocates=True)
 def stick_octave(alpha, octave):
     """(coefficients[bin, function, power], status) for y = F(eta) in [2^octave, 2^(octave + 1))."""
     c = (alpha - 1.0) / alpha

@@ -63,7 +63,7 @@ def traction_near_rest(u, L, D, stick, first):
     return 2.0 * D * total
 
 
-@kernel
+@kernel(allocates=True)
 def slice_loop(
     alpha, kappa, mu, V, creep, creep_is_omega, need, rows,
     speed, first_speed, stick, first_stick, out, start, stop,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .jit import kernel
 from .law import GAUSS_W, GAUSS_X, assemble, generator_slopes, second_slopes
-from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from .ratios import ratio_i2, ratios_and_slopes
 
 
 @kernel(inline=True)
@@ -12,17 +12,13 @@ def at_contact(z, alpha, c):
     """(g, h, g', h', g'', h'', m, m') at z = zeta from one pair of ratios; M = V m."""
     if c == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x = alpha * z
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(z)
-    s = slope_r(x, r, rc)
-    dk = slope_k(z, k, kc)
-    g, h, dg, dh, ddg, ddh = assemble(z, x, r, k, s, dk, alpha, c)
+    x, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
+    g, h, dg, dh, ddg, ddh = assemble(per_z, per_x, r, k, s, dk, alpha, c)
     i2 = ratio_i2(x, r)
-    lam2 = 1.0 / (1.0 + 2.0 * h / z)
+    lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
     whole = 1.0 / (1.0 + r * k)
-    d_lam2 = -2.0 * lam2 * lam2 * (dh - h / z) / z
-    d_i2 = alpha * 2.0 * (r * r - i2) / x
+    d_lam2 = -2.0 * lam2 * lam2 * (dh - h * per_z) * per_z
+    d_i2 = alpha * 2.0 * (r * r - i2) * per_x
     m = c * (lam2 * i2 + r * k) * whole
     dp = alpha * s * k + r * dk
     return g, h, dg, dh, ddg, ddh, m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)

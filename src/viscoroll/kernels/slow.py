@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from .collocation import INTEGRAL, NODES, SLOPES, TO_POWERS, TO_START, N
+from .arrays import copy, fill
+from .collocation import INTEGRAL, NODES, TO_POWERS, TO_START, N, integral_terms, polynomial
 from .jit import kernel
-from .partial_slip import partial_rates, signed_D
+from .partial_slip import partial_rates
 
 #: columns of the values at the nodes
-_OFFSET, _RATE, _DRIFT, _V, _DELTA, _DECAY, _RATE_D, _DRIFT_D, _DELTA_D = range(9)
-COLUMNS = 9
+_OFFSET, _RATE, _DRIFT, _V, _DELTA, _DECAY, _RATE_D, _DRIFT_D, _DELTA_D, _D = range(10)
+COLUMNS = 10
 #: row behind the nodes: the left end as it was reached, before :func:`project`
 REACHED = N + 1
 _MOST_ITERATIONS = 6
@@ -27,11 +28,10 @@ _LEAST_STICK = 1e-3
 @kernel
 def _evaluate(i, y, values, par):
     """Fill node i at y from its offset."""
-    rates = partial_rates(y, values[i, _OFFSET], par)
-    values[i, _RATE], values[i, _DRIFT], values[i, _V], values[i, _DELTA] = rates[0], rates[1], rates[2], rates[3]
-    values[i, _DECAY], values[i, _RATE_D], values[i, _DRIFT_D], values[i, _DELTA_D] = (
-        rates[4], rates[5], rates[6], rates[7],
-    )  # fmt: skip
+    (
+        values[i, _RATE], values[i, _DRIFT], values[i, _V], values[i, _DELTA], values[i, _DECAY],
+        values[i, _RATE_D], values[i, _DRIFT_D], values[i, _DELTA_D], values[i, _D],
+    ) = partial_rates(y, values[i, _OFFSET], par)  # fmt: skip
 
 
 @kernel
@@ -52,13 +52,14 @@ def _eliminate(matrix, right):
 
 
 @kernel
-def slow_solve(y, length, tolerance, values, matrix, right, par):
+def slow_solve(y, length, tolerance, slopes, values, matrix, right, par):
     """Collocate on [y, y + length] from the left end in ``values[REACHED]``.  Whether it converged.
 
-    ``tolerance`` bounds the remaining errors of y' (relative) and of the creep ratio.
+    ``tolerance`` bounds the remaining errors of y' (relative) and of the creep ratio.  ``slopes``
+    turns values at nodes into slopes; without a column for node 0, that is the first guess only.
     """
     half = 0.5 * length
-    values[0] = values[REACHED]
+    copy(values[REACHED], values[0])
     for i in range(1, N + 1):
         values[i, _OFFSET] = values[0, _OFFSET]
     before = 0.0
@@ -68,11 +69,11 @@ def slow_solve(y, length, tolerance, values, matrix, right, par):
         for i in range(N):
             slope = 0.0
             for n in range(N + 1):
-                slope += SLOPES[i, n] * values[n, _OFFSET]
+                slope += slopes[i, n] * values[n, _OFFSET]
             slope /= half
             rate = values[i + 1, _RATE]
             for n in range(N):
-                matrix[i, n] = rate * SLOPES[i, n + 1] / half
+                matrix[i, n] = rate * slopes[i, n + 1] / half
             matrix[i, i] += slope * values[i + 1, _RATE_D] - values[i + 1, _DRIFT_D]
             right[i] = values[i + 1, _DRIFT] - rate * slope
         _eliminate(matrix, right)
@@ -84,6 +85,7 @@ def slow_solve(y, length, tolerance, values, matrix, right, par):
             creep = values[row, _DELTA_D] * shift
             change = max(change, abs(factor - 1.0), abs(creep))
             values[row, _OFFSET] += shift
+            values[row, _D] += shift
             values[row, _RATE] *= factor
             values[row, _DECAY] *= factor
             values[row, _DELTA] += creep
@@ -104,15 +106,31 @@ def slow_start(y, offset, values, par):
 
 
 @kernel
-def sticks_throughout(y, length, values, par):
+def sticks_throughout(y, length, values):
     """Whether y rises and the stick zone lasts at all nodes."""
     for i in range(1, N + 1):
-        place = y + 0.5 * length * (1.0 + NODES[i])
-        if not values[i, _RATE] > 0.0:
-            return False
-        if not abs(signed_D(place, values[i, _OFFSET], par)) * np.exp(-place) < 1.0 - _LEAST_STICK:
+        zeta = np.exp(y + 0.5 * length * (1.0 + NODES[i]))
+        if not (values[i, _RATE] > 0.0 and abs(values[i, _D]) < (1.0 - _LEAST_STICK) * zeta):
             return False
     return True
+
+
+@kernel
+def stiffness(i, values):
+    """Relaxation of the offset over a rise of y by 1 at node i."""
+    return -values[i, _DRIFT_D] / values[i, _RATE]
+
+
+@kernel
+def creep_slope(i, values):
+    """d delta/dD at node i."""
+    return values[i, _DELTA_D]
+
+
+@kernel
+def node_D(i, values):
+    """D at node i."""
+    return values[i, _D]
 
 
 @kernel
@@ -125,6 +143,7 @@ def project(values):
     for i in range(1, N + 1):
         rest -= TO_START[i - 1] * values[i, _OFFSET]
     values[0, _OFFSET] -= rest
+    values[0, _D] -= rest
     values[0, _RATE] -= values[0, _RATE_D] * rest
     values[0, _DELTA] -= values[0, _DELTA_D] * rest
     return rest
@@ -155,60 +174,27 @@ def slow_quadratures(length, values):
     return half * tau, half * X, half * (X + turn), length * abs(tau_off), length * abs(X_off), length * abs(turn_off)
 
 
-@kernel
+@kernel(allocates=True)
 def slow_dense_terms(y, length, values, powers):
-    """Coefficients in t in [-1, 1]: tau and X, angle - X as integrals from -1, ln V + y and delta/V."""
+    """Coefficients in t in [-1, 1]: tau, X and angle - X as integrals from -1, ln V + y and delta/V."""
     half = 0.5 * length
-    powers[:] = 0.0
+    integrands = np.empty((3, N + 1))
+    fill(0.0, powers[3])
+    fill(0.0, powers[4])
     for i in range(N + 1):
-        f, v, w = _integrands(i, values)
+        integrands[0, i], integrands[1, i], integrands[2, i] = _integrands(i, values)
         shape = np.log(values[i, _V]) + half * (1.0 + NODES[i])
         creep = values[i, _DELTA] / values[i, _V]
         for k in range(N + 1):
-            weight = TO_POWERS[k, i]
-            powers[0, k + 1] += weight * f
-            powers[1, k + 1] += weight * v
-            powers[2, k + 1] += weight * w
-            powers[3, k] += weight * shape
-            powers[4, k] += weight * creep
+            powers[3, k] += TO_POWERS[k, i] * shape
+            powers[4, k] += TO_POWERS[k, i] * creep
     for row in range(3):
-        for k in range(N + 1):
-            powers[row, k + 1] *= half / (k + 1.0)
-        powers[row, 0] = -_polynomial(-1.0, powers, row)
-
-
-@kernel
-def _polynomial(t, powers, row):
-    total = powers[row, N + 1]
-    for k in range(N, -1, -1):
-        total = powers[row, k] + t * total
-    return total
-
-
-@kernel
-def slow_time(t, powers):
-    """Time since the left end."""
-    return _polynomial(t, powers, 0)
-
-
-@kernel
-def slow_place(tau, t, powers):
-    """t in [-1, 1] where the time since the left end is tau, by Newton from t."""
-    for _ in range(20):
-        value = slope = 0.0
-        for k in range(N + 1, -1, -1):
-            slope = value + t * slope
-            value = powers[0, k] + t * value
-        change = (tau - value) / slope
-        t = min(max(t + change, -1.0), 1.0)
-        if abs(change) <= 1e-9:
-            break
-    return t
+        integral_terms(integrands[row], half, powers, row)
 
 
 @kernel
 def slow_state(t, length, powers):
     """(V, delta, X and angle since the left end) at t."""
-    V = np.exp(_polynomial(t, powers, 3) - 0.5 * length * (1.0 + t))
-    X = _polynomial(t, powers, 1)
-    return V, V * _polynomial(t, powers, 4), X, X + _polynomial(t, powers, 2)
+    V = np.exp(polynomial(t, powers, 3) - 0.5 * length * (1.0 + t))
+    X = polynomial(t, powers, 1)
+    return V, V * polynomial(t, powers, 4), X, X + polynomial(t, powers, 2)

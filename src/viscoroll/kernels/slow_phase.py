@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .collocation import NODES, N
+from .arrays import copy
+from .collocation import NODES, SLOPES, N, place, polynomial
 from .control import SHARE, creep_weight, slip_share
 from .jit import kernel
 from .motion_output import put
@@ -12,12 +13,10 @@ from .slow import (
     REACHED,
     project,
     slow_dense_terms,
-    slow_place,
     slow_quadratures,
     slow_solve,
     slow_start,
     slow_state,
-    slow_time,
     sticks_throughout,
 )  # fmt: skip
 from .stepper import PARTIAL
@@ -28,7 +27,7 @@ _FIRST, _LONGEST, _SHORTEST = 0.5, 2.5, 0.02
 #: relaxation over an interval, in e-folds, below which it is no business of this module
 _STIFF = 20.0
 #: Newton stops at this share of the tolerance of an interval
-_NEWTON = 0.05
+NEWTON = 0.05
 #: a mismatch of the integrands at the left end overstates the error of their interpolants
 _OVERSTATED = 0.05
 
@@ -37,8 +36,8 @@ _OVERSTATED = 0.05
 def attempt(u, length, rtol, travelled, values, matrix, right, par):
     """One interval: (error of its interpolants, and of the offset at its left end, over their tolerances;
     rise of tau, X and angle).  The errors are infinite where it failed."""
-    solved = slow_solve(u[0], length, _NEWTON * SHARE * rtol, values, matrix, right, par)
-    if not (solved and sticks_throughout(u[0], length, values, par)):
+    solved = slow_solve(u[0], length, NEWTON * SHARE * rtol, SLOPES, values, matrix, right, par)
+    if not (solved and sticks_throughout(u[0], length, values)):
         return np.inf, np.inf, 0.0, 0.0, 0.0
     rest = abs(project(values))
     tau, X, angle, tau_off, X_off, turn_off = slow_quadratures(length, values)
@@ -82,7 +81,7 @@ def slow_outputs(tau_out, at, tau, rise, u, length, direction, powers, par, gamm
     t = -1.0
     while at < tau_out.size and tau_out[at] <= tau + rise:
         since = tau_out[at] - tau
-        t = slow_place(since, max(t, 2.0 * since / rise - 1.0), powers)
+        t = place(since, max(t, 2.0 * since / rise - 1.0), powers, 0)
         V, delta, X, angle = slow_state(t, length, powers)
         put(out, at, direction, PARTIAL, V, V * (1.0 + delta), delta,
             offset[0] + direction * (u[2] + X), offset[1] + direction * (u[3] + angle), gamma)  # fmt: skip
@@ -95,7 +94,7 @@ def note_nodes(tau, powers, gamma, step_ends, ends):
     """Times of the nodes among the ends of steps; how many there are now."""
     for i in range(1, N + 1):
         if ends < step_ends.size:
-            step_ends[ends] = (tau + slow_time(NODES[i], powers)) / gamma
+            step_ends[ends] = (tau + polynomial(NODES[i], powers, 0)) / gamma
             ends += 1
     return ends
 
@@ -143,7 +142,7 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
         tau += rise
         if rested:
             return SLOW_REST, tau, at, steps, ends, tau
-        values[REACHED] = values[N]
+        copy(values[N], values[REACHED])
         relaxation = -values[REACHED, 7]
         length = ahead
     return FINISHED, tau, at, steps, ends, tau

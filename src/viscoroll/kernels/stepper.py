@@ -108,8 +108,8 @@ def dense_terms(K, terms):
             second += _H[1, n] * K[n, m]
             third += _H[2, n] * K[n, m]
         # first + theta (second + theta third), in theta and 1 - theta
-        terms[:, m] = 0.0
         terms[0, m], terms[1, m], terms[2, m] = first, second + third, -third
+        terms[3, m] = terms[4, m] = terms[5, m] = 0.0
 
 
 @kernel

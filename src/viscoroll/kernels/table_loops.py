@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, ROWS, M, Q, contact_state, stick
+from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, ROWS, UNSOLVED, M, Q, contact_state, stick
 from .jit import kernel
 from .law import OK, contact_solution, moment_of, near_length
 
@@ -27,7 +27,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     for i in range(start, stop):
         a, w = alpha[i // kappa_V.size], kappa_V[i % kappa_V.size]
         c = (a - 1.0) / a
-        lam, zeta, g, h, dg, status = contact_solution(near_length(w, a, c), w, a, c)
+        lam, zeta, g, h, dg, status = contact_solution(near_length(w, a, c, 1.0 / np.sqrt(a)), w, a, c)
         worst = max(worst, status)
         epsilon = g / zeta
         # mu = kappa = 1 turns V into kappa V, Q into Q/mu, delta_star into kappa delta_star/mu
@@ -40,13 +40,15 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
             if s[n] >= 1.0:
                 volume[0, i, n], volume[1, i, n] = 0.0, 1.0
                 continue
-            _, _, beta, share, status = stick(w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, a, c)
+            _, _, beta, share, status = stick(
+                w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, UNSOLVED, a, c
+            )
             worst = max(worst, status)
             volume[0, i, n], volume[1, i, n] = beta, share
     return worst
 
 
-@kernel
+@kernel(allocates=True)
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
     need = (True, True, True, False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +19,8 @@ from .flow import Answer, FlowMap, ask, flow_map
 if TYPE_CHECKING:
     import xarray as xr
 
-FIELDS = ("V", "omega", "x", "angle", "delta", "regime")
+STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
+FIELDS = STATES + LOSSES
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 #: motions a block: where all are integrated, and where most come from a map
 _BLOCK, _MAPPED_BLOCK = 64, 1 << 14
@@ -35,13 +36,17 @@ class Ensemble:
     ----------
     t : output times.
     V, omega, x, angle, delta, regime : shape (n, len(t)); those not asked for are None.
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2: the integrals of
+        gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
+        (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
     status : (n,), a :class:`MotionStatus` each; outputs a motion did not reach are NaN.
     switches, steps : (n,), changes of regime, and integration steps taken.
     flow : (n,), whether the flow map gave this motion; the others were integrated.
     flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
-        ``angle`` among the fields, that relative to the path if larger; NaN without a map.
+        ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
+        relative to the energy at the start if larger; NaN without a map.
     flow_problem : why a map that was tried could not be used, or "".
     """
 
@@ -55,6 +60,8 @@ class Ensemble:
     angle: NDArray[np.float64] | None
     delta: NDArray[np.float64] | None
     regime: NDArray[np.float64] | None
+    slip_loss: NDArray[np.float64] | None
+    rolling_loss: NDArray[np.float64] | None
     onset_time: NDArray[np.float64]
     rest_time: NDArray[np.float64]
     status: NDArray[np.int8]
@@ -113,7 +120,8 @@ def ensemble(
         where its stated error is at most ``rtol``, and only for the motions that it holds;
         all others are integrated.  The result says which, and the map's error.
     rtol, rest, max_steps : as for :func:`roll`.
-    fields : out of ``V omega x angle delta regime``; only these are kept in memory.
+    fields : out of ``V omega x angle delta regime slip_loss rolling_loss``; only these are kept in
+        memory.  A loss takes an integrated motion a second pass, to some rtol of the energy.
     speed : highest speed that the flow map is made for; default the largest of the starts.
         Where a large ensemble is rolled in several calls, one number for all makes the
         bits independent of how it is cut.
@@ -160,7 +168,9 @@ def ensemble(
     bar = "motions" if progress else None
     use_map = method == "flow" or (method == "auto" and not scene.shape and count >= _FLOW_PAYS)
     chosen = _map_of(scene, flat[5], flat[6], speed, threads) if use_map else None
-    error = np.nan if chosen is None else chosen.stated_error(not {2, 3}.isdisjoint(rows))
+    error = (
+        np.nan if chosen is None else chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
+    )
     if chosen is not None and error <= rtol:
         answer = ask(chosen, scene.gamma, threshold, flat[5], flat[6], times, rows, threads=threads, progress=bar)
     else:
@@ -192,16 +202,32 @@ def _integrate_others(
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        from ..kernels.motion_loop import INFO, motion_loop
+        from ..kernels.motion_loop import INFO
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
         inputs = [flattened(array[left], left.shape) if array.size > 1 else array for array in flat]
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
-        motion_loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
+        loop = _loop(tuple(FIELDS[row] for row in rows))
+        loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
     return steps
+
+
+def _among(names: tuple[str, ...], *some: str) -> bool:
+    return not set(names).isdisjoint(some)
+
+
+def _loop(names: tuple[str, ...]) -> Callable:
+    """The kernel that integrates motions to these fields."""
+    if not _among(names, *LOSSES):
+        from ..kernels.motion_loop import motion_loop
+
+        return motion_loop
+    from ..kernels.loss_loop import loss_loop
+
+    return loss_loop

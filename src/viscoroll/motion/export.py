@@ -86,7 +86,7 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
     dims = ("motion", "t")
     data = {
         name: _variable(dims, name, getattr(result, name))
-        for name in ("V", "omega", "x", "angle", "delta")
+        for name in ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
         if getattr(result, name) is not None
     }
     if result.regime is not None:
@@ -104,7 +104,7 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
 def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
     data: dict[str, xr.Variable] = {}
-    for name in ("V", "omega", "x", "angle"):
+    for name in ("V", "omega", "x", "angle", "slip_loss", "rolling_loss"):
         values = getattr(result, name)
         if values is None:
             continue

@@ -25,9 +25,11 @@ from ..rolling_contact import flattened
 from ..scene import Scene
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
-#: speeds, of the path), below which the integrator's own error shows
-_MARGIN, _FLOOR = 4.0, np.array([1e-10, 5e-10])
-_SAMPLED, _SAMPLE_TIMES, _SAMPLE_RTOL = 100, 40, 1e-11
+#: speeds, the path, the energy lost), below which the integrator's own error shows
+_MARGIN, _FLOOR = 4.0, np.array([1e-10, 5e-10, 1e-10])
+_SAMPLED, _SAMPLE_TIMES, _SAMPLE_RTOL, _SAMPLE_STEPS = 100, 40, 1e-11, 1_000_000
+#: V, omega, x, angle, slip_loss, rolling_loss; the losses take the integrator longest
+_MEASURED, _LOSS_EVERY = (0, 1, 2, 3, 6, 7), 4
 #: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
 #: far and to this share of the whole
 _PATH_SHARE = 1e-5
@@ -54,6 +56,7 @@ class FlowMap:
         of 100 motions that the integrator rolled at rtol 1e-11 when the map was built.
     path_error : the same of distance and angle, relative to the larger of the two so far (and
         to 1e-5 of that at rest: they are differences of what is left to it).
+    loss_error : the same of the energy lost in slip and in rolling, relative to that at the start.
     problem : why the scene has no map, or "".
     """
 
@@ -62,11 +65,12 @@ class FlowMap:
     table: NDArray[np.float64]
     error: float
     path_error: float
+    loss_error: float
     problem: str
 
-    def stated_error(self, path: bool) -> float:
-        """The error of the speeds, or the larger of that and the error of the path."""
-        return max(self.error, self.path_error) if path else self.error
+    def stated_error(self, *, path: bool, loss: bool) -> float:
+        """The largest of the errors of the speeds and, where asked for, of the path and the losses."""
+        return max(self.error, self.path_error if path else 0.0, self.loss_error if loss else 0.0)
 
 
 def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
@@ -135,7 +139,7 @@ def _parsed(content: bytes, parameters: tuple[float, ...]) -> FlowMap:
     with np.load(io.BytesIO(content)) as data:
         found = FlowMap(
             tuple(data["parameters"].tolist()), int(data["first"]), data["table"],
-            float(data["error"]), float(data["path_error"]), str(data["problem"]),
+            float(data["error"]), float(data["path_error"]), float(data["loss_error"]), str(data["problem"]),
         )  # fmt: skip
     if found.parameters != parameters or found.table.shape != (SIZE,):
         raise ValueError("it is that of another scene")
@@ -148,7 +152,7 @@ def _save(made: FlowMap, path: Path) -> None:
         content = io.BytesIO()
         np.savez(
             content, parameters=made.parameters, first=made.first, table=made.table,
-            error=made.error, path_error=made.path_error, problem=made.problem,
+            error=made.error, path_error=made.path_error, loss_error=made.loss_error, problem=made.problem,
         )  # fmt: skip
         write_bytes(path, seal(content.getvalue()))
         oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
@@ -164,11 +168,11 @@ def build(parameters: tuple[float, ...], octave: int, threads: int | None = None
 
     table = np.zeros(SIZE)
     problem = _fill(parameters, octave, table, threads)
-    made = FlowMap(parameters, octave - ENTRY_OCTAVES, table, math.inf, math.inf, problem)
+    made = FlowMap(parameters, octave - ENTRY_OCTAVES, table, math.inf, math.inf, math.inf, problem)
     if problem:
         return made
-    error, path_error = _measure(made, octave, threads)
-    return replace(made, error=error, path_error=path_error)
+    error, path_error, loss_error = _measure(made, octave, threads)
+    return replace(made, error=error, path_error=path_error, loss_error=loss_error)
 
 
 def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
@@ -220,7 +224,7 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
     return "the stick zone does not always last" if failed else ""
 
 
-def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, float]:
+def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
     """Largest errors against the integrator, times the margin, on motions spread over the map."""
     kappa, mu = made.parameters[2:4]
     rng = np.random.default_rng(20)
@@ -229,28 +233,27 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, fl
     starts = size[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     near = starts[: _SAMPLED // 5]  # inside the stick zone, or close to it
     near[:, 1] = near[:, 0] * (1.0 + mu / kappa * rng.uniform(-0.5, 0.5, near.shape[0]))
-    errors = np.zeros((_SAMPLED, 2))
+    errors = np.zeros((_SAMPLED, 3))
 
     def work(start: int, stop: int) -> None:
         for n in range(start, stop):
-            errors[n] = _error_of(made, *starts[n])
+            errors[n] = _error_of(made, _MEASURED if n % _LOSS_EVERY == 0 else _MEASURED[:4], *starts[n])
 
     run_blocks(work, _SAMPLED, 1, threads=threads)
     worst = np.maximum(_MARGIN * errors.max(axis=0), _FLOOR)
-    return float(worst[0]), float(worst[1])
+    return tuple(worst.tolist())
 
 
-def _error_of(made: FlowMap, V0: float, omega0: float) -> tuple[float, float]:
-    """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle."""
+def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
+    """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
     from ..kernels.flow_layer import stiff_rate
-    from ..kernels.integrate import integrate
-    from ..kernels.motion_output import OUTPUTS
+    from ..kernels.loss_loop import loss_loop
 
     alpha, c, kappa, mu, j = made.parameters
     start = np.array([V0]), np.array([omega0])
 
     def flow(times: NDArray) -> Answer:
-        return ask(made, 1.0, 0.0, *start, times, (0, 1, 2, 3))
+        return ask(made, 1.0, 0.0, *start, times, rows)
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
@@ -260,19 +263,19 @@ def _error_of(made: FlowMap, V0: float, omega0: float) -> tuple[float, float]:
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
-        return 0.0, 0.0
-    out = np.full((OUTPUTS, times.size), np.nan)
-    nothing = np.empty((0, 2)), np.empty(0)
-    _, _, _, true_onset, _ = integrate(
-        alpha, kappa, mu, 1.0, j, V0, omega0, times, _SAMPLE_RTOL, 0.0, 1_000_000, out, *nothing
-    )
-    difference = np.abs(found.out[:, 0] - out[:4])
+        return 0.0, 0.0, 0.0
+    scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
+    rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
+    loss_loop(*scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
+    out, true_onset = rolled[:, 0], info[0, 3]
+    difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[0]), np.abs(out[1]))
     path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
-    speeds, paths = float((difference[:2] / speed).max()), float((difference[2:] / path).max())
+    energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
+    errors = [(difference[:2] / speed).max(), (difference[2:4] / path).max(), difference[4:].max(initial=0.0) / energy]
     if onset > 0.0:
-        speeds = max(speeds, abs(onset - true_onset) / (onset + stiff_time))
-    return (speeds if math.isfinite(speeds) else math.inf), (paths if math.isfinite(paths) else math.inf)
+        errors[0] = max(errors[0], abs(onset - true_onset) / (onset + stiff_time))
+    return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
 
 
 @dataclass(frozen=True)

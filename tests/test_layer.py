@@ -1,0 +1,84 @@
+"""The boundary layer behind the onset of stick: against the printed equations, and what it spares."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import viscoroll as vr
+from viscoroll.scene import PAPER_STARTS
+from viscoroll.validation.direct_motion import roll_direct
+
+PAPER = vr.PAPER_SECTION_5_ROUNDED
+
+
+def layer_times(scene: vr.Scene, start: tuple[float, float], count: int) -> np.ndarray:
+    """Times from stick onset over twelve e-folds of omega - V."""
+    motion = vr.roll(scene, *start, [1e-2], rtol=1e-12)
+    V = vr.roll(scene, *start, [motion.onset_time], rtol=1e-12).V[0]
+    rate = scene.gamma * (1.0 + 1.0 / scene.j) * 4.0 * scene.kappa / abs(V)
+    return motion.onset_time + np.geomspace(0.02, 12.0, count) / rate
+
+
+@pytest.mark.parametrize("ic", PAPER_STARTS)
+def test_outputs_inside_the_layer(ic):
+    """V, omega and the creep ratio between onset and the slow manifold, by scipy on the printed equations."""
+    t = layer_times(PAPER, PAPER_STARTS[ic], 15)
+    exact = roll_direct(PAPER, *PAPER_STARTS[ic], t)
+    motion = vr.roll(PAPER, *PAPER_STARTS[ic], t, rtol=1e-10)
+    np.testing.assert_allclose(motion.V, exact.V, rtol=tol.DIRECT_MOTION)
+    np.testing.assert_allclose(motion.omega, exact.omega, rtol=tol.DIRECT_MOTION)
+    np.testing.assert_allclose(motion.delta, exact.omega / exact.V - 1.0, rtol=0.0, atol=tol.DIRECT_MOTION)
+
+
+@pytest.mark.parametrize("ic", PAPER_STARTS)
+def test_outputs_do_not_move_the_motion(ic):
+    """Where outputs fall inside the layer has no say in what comes after it."""
+    end = 2e-3
+    inside = layer_times(PAPER, PAPER_STARTS[ic], 40)
+    many = vr.roll(PAPER, *PAPER_STARTS[ic], [*inside, end])
+    assert many.V[-1] == vr.roll(PAPER, *PAPER_STARTS[ic], [end]).V[0]
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-12])
+@pytest.mark.parametrize("ic", PAPER_STARTS)
+def test_outputs_on_the_onset_and_just_behind(ic, rtol):
+    """Graded nodes have no slope at the left end, where a time is looked for."""
+    onset = vr.roll(PAPER, *PAPER_STARTS[ic], [1e-3], rtol=rtol).onset_time
+    t = onset * (1.0 + np.array([0.0, 2e-16, 1e-15, 1e-13, 1e-11, 1e-9, 1e-2]))
+    motion = vr.roll(PAPER, *PAPER_STARTS[ic], t, rtol=rtol)
+    # the speeds change by a few thousandths a per cent of the time, so not at all over 1e-9 of it
+    np.testing.assert_allclose(motion.V[:6], motion.V[0], rtol=1e-8)
+    np.testing.assert_allclose(motion.omega[:6], motion.omega[0], rtol=1e-8)
+    assert np.all(np.isfinite(motion.delta))
+    assert np.all(np.isfinite(motion.x))
+
+
+@pytest.mark.parametrize("ic", PAPER_STARTS)
+def test_the_layer_is_not_stepped_through(ic):
+    """Steps of an explicit method are at most three e-folds long: sixteen e-folds to 1e-7 and their start took 20."""
+    start = PAPER_STARTS[ic]
+    t = layer_times(PAPER, start, 2)
+    before, behind = (vr.roll(PAPER, *start, [when], rtol=1e-6).steps for when in (t[0], t[1]))
+    assert behind - before <= 12
+
+
+@pytest.mark.parametrize("share", [-0.9, 0.0, 0.1, 0.9])
+def test_a_layer_from_inside_partial_slip(share):
+    """Starts with delta of either sign, one that reaches delta = 0 soon and one on it."""
+    star = vr.contact(PAPER, 1.0, delta=0.0, fields="delta_star").delta_star
+    start, t = (1.0, 1.0 + share * star), np.array([1e-6, 3e-6, 1e-5, 4e-4])
+    exact = roll_direct(PAPER, *start, t)
+    motion = vr.roll(PAPER, *start, t, rtol=1e-10)
+    np.testing.assert_allclose(motion.V, exact.V, rtol=tol.DIRECT_MOTION)
+    np.testing.assert_allclose(motion.omega, exact.omega, rtol=tol.DIRECT_MOTION)
+
+
+def test_rest_inside_the_layer():
+    """A threshold that is passed within the layer is located there."""
+    t = layer_times(PAPER, PAPER_STARTS["IC1"], 3)
+    passed = vr.roll(PAPER, *PAPER_STARTS["IC1"], [t[1]], rtol=1e-10)
+    threshold = max(abs(passed.V[0]), abs(passed.omega[0]))
+    rested = vr.roll(PAPER, *PAPER_STARTS["IC1"], [1e-2], rtol=1e-10, rest=threshold)
+    assert rested.rest_time == pytest.approx(t[1], rel=1e-8)
