@@ -31,11 +31,6 @@ SCENES = {
 }
 #: a motion with several changes of regime takes some hundred
 STEPS = 2000
-#: Known and reported by their status, not yet cured.
-LONG_SLIDE = pytest.mark.xfail(
-    strict=True,
-    reason="fast spin at M(V) = 2 mu: the explicit method of full slip takes too many steps, or too small ones",
-)
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -146,14 +141,8 @@ def test_refused(start, text, method):
     assert text in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("name", "speed"),
-    [
-        pytest.param(name, speed, marks=[LONG_SLIDE] if name.startswith("return") and speed > 1e3 else [])
-        for name in ("paper", "elastic", "return of slip, -0.5")
-        for speed in (2e-300, 1e-150, 1e-10, 1e10, 1e50, 1e99)
-    ],
-)
+@pytest.mark.parametrize("speed", [2e-300, 1e-150, 1e-10, 1e10, 1e50, 1e99])
+@pytest.mark.parametrize("name", ["paper", "elastic", "return of slip, -0.5"])
 def test_speeds_of_any_size(name, speed):
     """All directions in the plane, from sliding to rest."""
     scene = SCENES[name]

@@ -195,16 +195,12 @@ def test_slip_that_returns_in_passing():
         assert abs(motion.V[0] / best.V[0] - 1.0) <= tol.GRAZING_CONDITION * rtol
 
 
-@pytest.mark.xfail(strict=True, reason="the angle is held to rtol of itself, while omega = V (1 + delta) cancels")
 @pytest.mark.filterwarnings("ignore:roll")
 def test_start_without_rotation_inside_the_stick_zone_at_the_tightest_tolerance():
     scene, V0, omega0, end = INSIDE
     assert vr.roll(scene, V0, omega0, [end], rtol=1e-12, max_steps=2000).status == vr.MotionStatus.DONE
 
 
-@pytest.mark.xfail(
-    strict=True, reason="distance is held to rtol of the way of an interval of the slow manifold, not so far"
-)
 def test_distance_early_in_an_interval_of_the_slow_manifold():
     scene, V0, omega0, end = ROLLING
     t = [1e-3 * end]

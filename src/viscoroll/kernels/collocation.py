@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import legendre
 
-from .arrays import fill
 from .jit import kernel
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
@@ -52,28 +51,41 @@ def polynomial(t, powers, row):
 
 @kernel
 def integral_terms(values, half, powers, row):
-    """Coefficients of the integral from -1 of the interpolant of all nodes, over t in [-1, 1] scaled by ``half``."""
-    fill(0.0, powers[row])
+    """Coefficients for :func:`rise_at` of the integral of the interpolant of all nodes, scaled by ``half``."""
     for k in range(N + 1):
         total = 0.0
         for i in range(N + 1):
             total += TO_POWERS[k, i] * values[i]
         powers[row, k + 1] = total * half / (k + 1.0)
-    powers[row, 0] = -polynomial(-1.0, powers, row)
+    # of the quotient by 1 + t: near the left end the integral itself would be a difference of large terms
+    quotient = 0.0
+    for k in range(N + 1, 0, -1):
+        term = powers[row, k]
+        powers[row, k] = quotient
+        quotient = term - quotient
+    powers[row, 0] = quotient
 
 
 @kernel
-def place(value, t, powers, row):
-    """t in [-1, 1] where the rising polynomial in this row has this value, by Newton's iteration from t."""
+def rise_at(v, powers, row):
+    """The integral in this row from the left end to v = 1 + t."""
+    return v * polynomial(v - 1.0, powers, row)
+
+
+@kernel
+def place(value, v, powers, row):
+    """v = 1 + t in [0, 2] where the rising integral in this row has this value, by Newton's iteration from v."""
     for _ in range(20):
-        reached = slope = 0.0
+        t = v - 1.0
+        quotient = slope = 0.0
         for k in range(powers.shape[1] - 1, -1, -1):
-            slope = reached + t * slope
-            reached = powers[row, k] + t * reached
+            slope = quotient + t * slope
+            quotient = powers[row, k] + t * quotient
+        reached = v * quotient
         if reached == value:
             break
-        change = (value - reached) / slope
-        t = min(max(t + change, -1.0), 1.0)
-        if abs(change) <= 1e-9:
+        change = (value - reached) / (quotient + v * slope)
+        v = min(max(v + change, 0.0), 2.0)
+        if abs(change) <= 1e-9 * v:
             break
-    return t
+    return v

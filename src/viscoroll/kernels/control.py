@@ -69,10 +69,23 @@ def error_norm(regime, u, new, share, error, K, travelled, rtol, par):
         worst = _SLIDING * abs(error[0]) * per_s / sliding_scale(K[12, 2], new[1], par)
     else:
         worst = max(abs(error[0]), creep_weight(share) * abs(error[1]) * np.exp(-new[0]))
-    for m in range(2, 4):
-        if error[m] != 0.0:
-            worst = max(worst, abs(error[m]) / (travelled[m - 2] + abs(new[m] - u[m])))
+    X = travelled[0] + abs(new[2] - u[2])
+    angle = travelled[1] + abs(new[3] - u[3])
+    if error[2] != 0.0:
+        worst = max(worst, abs(error[2]) / X)
+    if error[3] != 0.0:  # where omega starts from 0 it is a small difference of V and the slip
+        worst = max(worst, abs(error[3]) / max(X, angle))
     return worst / (SHARE * rtol)
+
+
+@kernel
+def path_error(X, X_off, angle, angle_off, travelled, early):
+    """Relative error of the distance and of the angle over an interval with these rises and mismatches at its start.
+
+    Outputs early in the interval lie where only the share ``early`` of its way is added to what was travelled.
+    """
+    way = travelled[0] + early * abs(X)
+    return max(X_off / way, angle_off / max(way, travelled[1] + early * abs(angle)))
 
 
 @kernel

@@ -11,12 +11,12 @@ import numpy as np
 
 from .arrays import copy
 from .explicit import explicit_dense_terms, explicit_step, slope_at
-from .full_slip import onset, onset_slope, sliding_speed
+from .full_slip import held_step, held_terms, onset, onset_slope, sliding_speed
 from .jit import kernel
 from .partial_slip import partial_speeds, signed_D
 from .stepper import FULL, PARTIAL, REST, dense, dense_terms, stiff_step
 
-EXPLICIT, STIFF = range(2)
+EXPLICIT, STIFF, HELD = range(3)
 NO_EVENT, STICK, SLIP, REVERSAL, AT_REST = range(5)
 _LOCATE_CAP = 80
 #: how close to the event the dense output is searched, and the share of a step its slope there is taken over
@@ -62,6 +62,9 @@ def advance(method, regime, u, slope, h, sigma, par, K, new, error):
     if method == EXPLICIT:
         copy(slope, K[0])
         explicit_step(regime, u, h, sigma, par, K, new, error)
+    elif method == HELD:
+        copy(slope, K[0])
+        held_step(u, h, par, slope, new, error)
     else:
         stiff_step(u, h, par, K, new, error)
     return slope_at(regime, new, sigma, par, K[12])
@@ -72,6 +75,8 @@ def interpolant(method, regime, u, new, h, sigma, par, K, terms):
     """Coefficients of the dense output of the step just taken."""
     if method == EXPLICIT:
         explicit_dense_terms(regime, u, new, h, sigma, par, K, terms)
+    elif method == HELD:
+        held_terms(u, new, h, K, terms)
     else:
         dense_terms(K, terms)
 

@@ -15,6 +15,10 @@ from .jit import kernel
 from .law import contact_length, generator_slopes, generators, moment_factor
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
+#: slip, over the change of slip in a unit of time, from which on it is asked whether V is held; share of rtol by which
+#: V may still be off; steps of Newton's iteration, its difference quotient, and its last step
+_LONG, _HELD, _NEWTON, _DIFFERENCE, _FOUND = 100.0, 0.1, 30, 1e-5, 1e-13
+
 
 @kernel
 def _moment(V, par):
@@ -117,3 +121,50 @@ def sliding_scale(V, w, par):
     omega = (V - w) / j
     largest = max(abs(V), abs(omega))
     return max(1e-3 * largest, min(largest, abs(V + j * omega) / (1.0 + j)))
+
+
+@kernel
+def held(u, slope, sigma, rtol, par):
+    """Whether rolling resistance holds V against the traction, M(V) = 2 mu; u and its slope are then put there.
+
+    From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
+    """
+    _, c, kappa, mu, j = par
+    V, omega = slope[2], slope[3]
+    if not (sigma > 0.0 and omega - V > _LONG * mu * (1.0 + 1.0 / j)):
+        return False
+    # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
+    s, change = 4.0 * kappa * mu / c, np.inf
+    for _ in range(_NEWTON):
+        rise, _, reached, _ = sliding_rhs(s, u[1], sigma, par)
+        further, _, _, _ = sliding_rhs(s * (1.0 + _DIFFERENCE), u[1], sigma, par)
+        change = rise * _DIFFERENCE * s / (rise - further)
+        if not (further < rise and change < s):
+            return False
+        s += change
+        if abs(change) <= _FOUND * s:
+            break
+    if not abs(change) <= _FOUND * s or abs(V - reached) > _HELD * rtol * sliding_scale(V, u[1], par):
+        return False
+    u[0] = s
+    _, slope[1], slope[2], slope[3] = sliding_rhs(s, u[1], sigma, par)
+    slope[0] = 0.0
+    return True
+
+
+@kernel
+def held_step(u, h, par, slope, new, error):
+    """Full slip at constant V: w is linear in time, the angle quadratic."""
+    new[0], new[1], new[2] = u[0], u[1] + h * slope[1], u[2] + h * slope[2]
+    new[3] = u[3] + h * (slope[3] - 0.5 * h * slope[1] / par[4])
+    for m in range(4):
+        error[m] = 0.0
+
+
+@kernel
+def held_terms(u, new, h, K, terms):
+    """Coefficients of the dense output of :func:`held_step`: the parabola."""
+    for m in range(4):
+        terms[0, m] = h * K[0, m] - (new[m] - u[m])
+        for row in range(1, 6):
+            terms[row, m] = 0.0

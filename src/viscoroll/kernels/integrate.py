@@ -23,9 +23,9 @@ from .control import (
     slip_share,
 )  # fmt: skip
 from .dop853 import EXTENDED
-from .events import AT_REST, EXPLICIT, NO_EVENT, SLIP, STICK, STIFF, advance, first_event, speeds
+from .events import AT_REST, EXPLICIT, HELD, NO_EVENT, SLIP, STICK, STIFF, advance, first_event, speeds
 from .explicit import rhs, slope_at
-from .full_slip import onset, onset_slope, stick_limit
+from .full_slip import held, onset, onset_slope, stick_limit
 from .jit import kernel
 from .law import OK, generator_slopes, stick_length
 from .layer import ROWS
@@ -197,6 +197,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             relaxation = slope_at(regime, u, sigma, par, slope)
             share = slip_share(u, par)
             continue
+        if regime == FULL and par[1] > 0.0 and held(u, slope, sigma, rtol, par):
+            method, h = HELD, tau_end - tau
         length = min(h, reach(u, slope)) if regime == FULL else h
         if not length > 0.0:
             status = STEP_TOO_SMALL

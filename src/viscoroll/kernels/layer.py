@@ -145,6 +145,6 @@ def layer_rise(row, half, nodes):
 
 @kernel
 def layer_dense_terms(half, nodes, powers):
-    """Coefficients in t in [-1, 1] of the rises since the left end: tau, X, angle - X, y."""
+    """Coefficients for ``rise_at`` of tau, X, angle - X, y."""
     for row, source in enumerate((D_TAU, D_X, D_TURN, D_Y)):
         integral_terms(nodes[source], half, powers, row)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .collocation import N, place, polynomial
-from .control import SHARE, creep_weight
+from .collocation import N, place, rise_at
+from .control import SHARE, creep_weight, path_error
 from .jit import kernel
 from .layer import (
     D_TAU,
@@ -53,22 +53,22 @@ def panel_error(length, rtol, travelled, nodes):
     X, X_off = layer_rise(D_X, half, nodes)
     turn, turn_off = layer_rise(D_TURN, half, nodes)
     rate = abs(nodes[D_Y, N] / nodes[D_TAU, N])
-    error = max(y_off, tau_off * rate, X_off / (travelled[0] + X), turn_off / (travelled[1] + abs(X + turn)))
+    error = max(y_off, tau_off * rate, path_error(X, X_off, X + turn, turn_off, travelled, _OVERSTATED))
     return _OVERSTATED * error / (SHARE * rtol)
 
 
 @kernel
 def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, par, gamma, offset, out):
     """Outputs within the panel; the next column."""
-    t = -1.0
+    v = 0.0
     while at < tau_out.size and tau_out[at] <= tau + rise:
         since = tau_out[at] - tau
-        t = place(since, max(t, 2.0 * max(since / rise, 0.0) ** (1.0 / power) - 1.0), powers, 0)
-        y, X = u[0] + polynomial(t, powers, 3), polynomial(t, powers, 1)
-        V, delta = creep_speeds(y, slow_creep(y, slow)[0] + e * np.exp(-length * (0.5 * (1.0 + t)) ** power), par)
+        v = place(since, max(v, 2.0 * max(since / rise, 0.0) ** (1.0 / power)), powers, 0)
+        y, X = u[0] + rise_at(v, powers, 3), rise_at(v, powers, 1)
+        V, delta = creep_speeds(y, slow_creep(y, slow)[0] + e * np.exp(-length * (0.5 * v) ** power), par)
         put(out, at, direction, PARTIAL, V, V * (1.0 + delta), delta,
             offset[0] + direction * (u[2] + X),
-            offset[1] + direction * (u[3] + X + polynomial(t, powers, 2)), gamma)  # fmt: skip
+            offset[1] + direction * (u[3] + X + rise_at(v, powers, 2)), gamma)  # fmt: skip
         at += 1
     return at
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import copy, fill
-from .collocation import INTEGRAL, NODES, TO_POWERS, TO_START, N, integral_terms, polynomial
+from .collocation import INTEGRAL, NODES, TO_POWERS, TO_START, N, integral_terms, polynomial, rise_at
 from .jit import kernel
 from .partial_slip import partial_rates
 
@@ -176,7 +176,7 @@ def slow_quadratures(length, values):
 
 @kernel(allocates=True)
 def slow_dense_terms(y, length, values, powers):
-    """Coefficients in t in [-1, 1]: tau, X and angle - X as integrals from -1, ln V + y and delta/V."""
+    """Coefficients in t in [-1, 1]: tau, X and angle - X for ``rise_at``, ln V + y and delta/V."""
     half = 0.5 * length
     integrands = np.empty((3, N + 1))
     fill(0.0, powers[3])
@@ -193,8 +193,8 @@ def slow_dense_terms(y, length, values, powers):
 
 
 @kernel
-def slow_state(t, length, powers):
-    """(V, delta, X and angle since the left end) at t."""
-    V = np.exp(polynomial(t, powers, 3) - 0.5 * length * (1.0 + t))
-    X = polynomial(t, powers, 1)
-    return V, V * polynomial(t, powers, 4), X, X + polynomial(t, powers, 2)
+def slow_state(v, length, powers):
+    """(V, delta, X and angle since the left end) at v = 1 + t."""
+    V = np.exp(polynomial(v - 1.0, powers, 3) - 0.5 * length * v)
+    X = rise_at(v, powers, 1)
+    return V, V * polynomial(v - 1.0, powers, 4), X, X + rise_at(v, powers, 2)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import copy
-from .collocation import NODES, SLOPES, N, place, polynomial
-from .control import SHARE, creep_weight, slip_share
+from .collocation import NODES, SLOPES, N, place, rise_at
+from .control import SHARE, creep_weight, path_error, slip_share
 from .jit import kernel
 from .motion_output import put
 from .slow import (
@@ -41,7 +41,7 @@ def attempt(u, length, rtol, travelled, values, matrix, right, par):
         return np.inf, np.inf, 0.0, 0.0, 0.0
     rest = abs(project(values))
     tau, X, angle, tau_off, X_off, turn_off = slow_quadratures(length, values)
-    error = max(tau_off * values[0, 1], X_off / (travelled[0] + X), turn_off / (travelled[1] + abs(angle)))
+    error = max(tau_off * values[0, 1], path_error(X, X_off, angle, turn_off, travelled, _OVERSTATED))
     per = 1.0 / (SHARE * rtol)
     offset_error = rest * max(creep_weight(slip_share(u, par)) * np.exp(-u[0]), values[0, 8])
     return _OVERSTATED * error * per, offset_error * per, tau, X, angle
@@ -78,11 +78,11 @@ def _fastest(values):
 @kernel
 def slow_outputs(tau_out, at, tau, rise, u, length, direction, powers, par, gamma, offset, out):
     """Outputs within the interval; the next column."""
-    t = -1.0
+    v = 0.0
     while at < tau_out.size and tau_out[at] <= tau + rise:
         since = tau_out[at] - tau
-        t = place(since, max(t, 2.0 * since / rise - 1.0), powers, 0)
-        V, delta, X, angle = slow_state(t, length, powers)
+        v = place(since, max(v, 2.0 * since / rise), powers, 0)
+        V, delta, X, angle = slow_state(v, length, powers)
         put(out, at, direction, PARTIAL, V, V * (1.0 + delta), delta,
             offset[0] + direction * (u[2] + X), offset[1] + direction * (u[3] + angle), gamma)  # fmt: skip
         at += 1
@@ -94,7 +94,7 @@ def note_nodes(tau, powers, gamma, step_ends, ends):
     """Times of the nodes among the ends of steps; how many there are now."""
     for i in range(1, N + 1):
         if ends < step_ends.size:
-            step_ends[ends] = (tau + polynomial(NODES[i], powers, 0)) / gamma
+            step_ends[ends] = (tau + rise_at(1.0 + NODES[i], powers, 0)) / gamma
             ends += 1
     return ends
 
