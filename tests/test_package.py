@@ -9,6 +9,7 @@ import os
 import shutil
 import subprocess
 import sys
+import warnings
 import zipfile
 from pathlib import Path
 
@@ -221,7 +222,12 @@ def test_a_damaged_file_is_replaced(cache, kind, damage):
     """The value is right, and the time after that it comes from the cache again."""
     for path in files(cache, kind):
         path.write_bytes(damage(path.read_bytes()))
-    fresh()
+    jit._note_cache_trouble.cache_clear()
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        fresh()
+    # an index may also have become one of another version of numba, which is no damage
+    assert kind == ".nbi" or "cache of compiled kernels is damaged" in str(notes[0].message)
     fresh()
     assert fresh() == 1
 
@@ -289,7 +295,7 @@ print(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))
     for hits in (0, 1):
         again = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
         assert again.stdout == f"0.4463899658965345 {hits}\n", again.stderr
-        assert again.stderr == ""
+        assert again.stderr.count("RuntimeWarning: the cache of compiled kernels is damaged") == 1 - hits
 
 
 def test_a_process_without_a_cache_folder(tmp_path):
@@ -298,7 +304,7 @@ def test_a_process_without_a_cache_folder(tmp_path):
     code = "from viscoroll.kernels.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
     done = run(code, VISCOROLL_CACHE_DIR=str(obstacle))
     assert done.stdout == "0.4463899658965345\n", done.stderr
-    assert done.stderr.count("compiled kernels are not cached") == 1
+    assert done.stderr.count("RuntimeWarning: compiled kernels are not cached") == 1
 
 
 @pytest.mark.parametrize("name", ["law.py", "ratios.npy", "jit.py"])

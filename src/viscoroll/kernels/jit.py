@@ -44,13 +44,10 @@ def sources_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-@lru_cache(maxsize=1)
-def _note_cache_trouble(reason: str) -> None:
-    warnings.warn(
-        f"compiled kernels are not cached ({reason}); they are compiled anew instead",
-        RuntimeWarning,
-        stacklevel=2,
-    )
+@lru_cache(maxsize=2)
+def _note_cache_trouble(trouble: str) -> None:
+    """Once for each kind of trouble."""
+    warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
 
 class _Locator(caching.UserProvidedCacheLocator):
@@ -98,14 +95,17 @@ class _Cache(caching.FunctionCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)
+        except OSError:  # cannot be read: saving will say so
+            return None
         except Exception:  # any damage: compile again, save_overload then replaces the files
+            _note_cache_trouble(f"the cache of compiled kernels is damaged ({self._impl.locator.get_cache_path()})")
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:
             super().save_overload(sig, data)
         except OSError as error:
-            _note_cache_trouble(str(error))
+            _note_cache_trouble(f"compiled kernels are not cached ({error})")
         except Exception:  # a damaged index: start a new one
             self._cache_file.flush()
             super().save_overload(sig, data)
