@@ -37,7 +37,7 @@ design = "DESIGN"
 t = { low = 0.0, high = 3e-3, count = 3 }
 rtol = 1e-6
 block = 512
-summaries = ["V", "omega", "x", "distance", "translation", "rotation", "lost", "onset_time"]
+summaries = ["V", "omega", "x", "distance", "translation", "rotation", "lost", "slip_loss", "rolling_loss", "onset_time"]
 """
 CYLINDER = """
 [cylinder]
@@ -241,6 +241,9 @@ def test_energy_only_falls(read):
     assert (np.diff(lost, axis=0) > 0.0).all()
     shares = [QUANTITIES[name].values(motions, 1) for name in ("translation", "rotation", "lost")]
     assert np.abs(np.sum(shares, axis=0) - 1.0).max() < tol.MOMENT
+    parts = [QUANTITIES[name].values(motions, 1) for name in ("slip_loss", "rolling_loss")]
+    assert np.min(parts[0]) >= 0.0  # rolling resistance gains from a spin against the motion
+    assert np.abs(np.sum(parts, axis=0) - shares[2]).max() < tol.MOMENT
 
 
 # --- what is refused, and at which line ---

@@ -32,6 +32,11 @@ def _rotation(motions: Ensemble, k: int) -> NDArray:
     return motions.scene.j * motions.omega[:, k] ** 2 / _start_energy(motions)  # type: ignore[index]
 
 
+def _loss(name: str) -> Callable[[Ensemble, int], NDArray]:
+    """Losses are over m (R/T_epsilon)^2, of which the kinetic energy has a half."""
+    return lambda motions, k: 2.0 * getattr(motions, name)[:, k] / _start_energy(motions)
+
+
 def _start_energy(motions: Ensemble) -> NDArray:
     """Twice the kinetic energy at the start; NaN for those at rest, which have no shares."""
     energy = motions.V0**2 + motions.scene.j * motions.omega0**2
@@ -50,6 +55,10 @@ QUANTITIES = {
     "lost": Quantity(
         "share of the initial kinetic energy lost to slip and rolling resistance", ("V", "omega"),
         lambda motions, k: 1.0 - _translation(motions, k) - _rotation(motions, k),
+    ),
+    "slip_loss": Quantity("share of the initial kinetic energy lost in slip", ("slip_loss",), _loss("slip_loss")),
+    "rolling_loss": Quantity(
+        "share of the initial kinetic energy lost in rolling", ("rolling_loss",), _loss("rolling_loss")
     ),
     "onset_time": Quantity(
         "time of the first change from full to partial slip", (), lambda motions, k: motions.onset_time, False
