@@ -332,7 +332,7 @@ def test_roll_says_how_an_unfinished_motion_ended(run, monkeypatch):
     import viscoroll.motion
 
     roll = viscoroll.motion.roll
-    monkeypatch.setattr(viscoroll.motion, "roll", lambda *args, **options: roll(*args, **options, max_steps=20))
+    monkeypatch.setattr(viscoroll.motion, "roll", lambda *args, **options: roll(*args, **options, max_steps=5))
     out = run("roll", *START, "--times", "0,3e-3")
     assert "ended: the step limit was reached first" in out
     assert "not reached" in out

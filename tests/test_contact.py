@@ -445,3 +445,12 @@ def test_a_state_is_the_same_bits_in_any_company():
     for i in range(300):
         alone = vr.contact(vr.Scene(alpha[i], scene.kappa[i], 0.3), V[i], delta=delta[i])
         assert all(getattr(together, name)[i] == getattr(alone, name) for name in FIELDS), i
+
+
+def test_a_stick_zone_that_rounds_to_nothing():
+    """F(zeta) - d is below 0 by a rounding of zeta = 3.6e15, while |delta| is below delta_star: eta is 0."""
+    scene = vr.Scene(alpha=117726.85190886419, kappa=590140.0176455299, mu=122614.17601092247)
+    state = vr.contact(scene, 2.3857438251867764e-22, delta=0.1038856647106511)
+    assert not state.full_slip
+    assert state.beta == 0.0
+    assert state.Q == scene.mu

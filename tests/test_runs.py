@@ -37,7 +37,9 @@ design = "DESIGN"
 t = { low = 0.0, high = 3e-3, count = 3 }
 rtol = 1e-6
 block = 512
-summaries = ["V", "omega", "x", "distance", "translation", "rotation", "lost", "slip_loss", "rolling_loss", "onset_time"]
+summaries = [
+  "V", "omega", "x", "distance", "translation", "rotation", "lost", "slip_loss", "rolling_loss", "onset_time",
+]
 """
 CYLINDER = """
 [cylinder]

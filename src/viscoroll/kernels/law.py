@@ -282,7 +282,9 @@ def root_step(eta, y, slopes, low, high):
 
 @kernel
 def root_of_F(y, guess, alpha, c):
-    """F(eta) = y > 0 by Halley's iteration: (eta, g, h, status); y - c/2 <= eta <= y."""
+    """F(eta) = y by Halley's iteration: (eta, g, h, status); y - c/2 <= eta <= y, and 0 where y rounds to below it."""
+    if y <= 0.0:
+        return 0.0, 0.0, 0.0, OK
     low, high = root_bracket(y, c)
     eta = guess
     g, h = 0.0, 0.0

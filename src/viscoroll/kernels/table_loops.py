@@ -1,6 +1,6 @@
 """The contact law over the grids of the tables: root solves at every node, nothing else.
 
-Both loops run over pairs of the two outer axes, so that the contact length is solved once a
+Both loops run over pairs of the two outer axes; that of the atlas solves the contact length once a
 pair; ``start`` and ``stop`` cut the flattened pairs into blocks for the threads.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, ROWS, UNSOLVED, M, Q, contact_state, stick
+from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
 from .jit import kernel
 from .law import OK, contact_solution, moment_of, near_length
 
@@ -52,14 +52,14 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
     need = (True, True, True, False)
-    state = np.empty(len(ROWS))
+    rows = np.array([LAM, EPSILON, M, DELTA_STAR, BETA, Q])
+    kappas, mus, out = np.full(1, kappa), np.full(1, mu), np.empty((rows.size, delta.size))
     worst = OK
     for i in range(start, stop):
-        v, a = V[i // alpha.size], alpha[i % alpha.size]
-        for n in range(delta.size):
-            status = contact_state(a, kappa, mu, v, delta[n], False, need, state)
-            worst = max(worst, status)
-            volume[0, i, n], volume[1, i, n] = state[BETA], state[Q]
-        plane[0, i], plane[1, i] = state[LAM], state[EPSILON]
-        plane[2, i], plane[3, i] = state[M], state[DELTA_STAR]
+        v, a = i // alpha.size, i % alpha.size
+        status = contact_loop(alpha[a : a + 1], kappas, mus, V[v : v + 1], delta, False, need, rows, out, 0, delta.size)
+        worst = max(worst, status)
+        for m in range(plane.shape[0]):
+            plane[m, i] = out[m, 0]
+        volume[:, i] = out[plane.shape[0] :]
     return worst
