@@ -276,7 +276,7 @@ REFUSED = [
     ("count = 3 }", "count = 3, step = 1 }", ["line 15", "unknown key 'step'"]),
     ("t = {", "t = [2.0, 1.0] # {", ["line 15", "ascending"]),
     ("rtol = 1e-6", "rtol = 1.0", ["line 16", "rtol"]),
-    ('"onset_time"]', '"onset"]', ["line 18", "onset"]),
+    ('"onset_time"', '"onset"', ["line 18", "onset"]),
     ("block = 512", 'method = "flow"', ["line 17", "scenes differ"]),
     ('preset = "paper-section-5"', 'preset = "paper"', ["line 2", "out of paper-section-5"]),
 ]  # fmt: skip
