@@ -9,8 +9,6 @@ steps and more digits; how far the two differ stands beside it.  Kept in git.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import sys
 import time
@@ -22,6 +20,7 @@ import msgspec
 import numpy as np
 import stage
 import xarray as xr
+from check_values import as_csv
 from random_motions import ChosenMotion, chosen_motion
 from tqdm import tqdm
 
@@ -79,14 +78,6 @@ def check_rows(number: int, motion: ChosenMotion) -> list[dict[str, float]]:
         shared | {"t": when} | {name: float(getattr(fine, name)[i]) for name in OUTPUTS}
         for i, when in enumerate(fine.t)
     ]
-
-
-def as_csv(rows: list[dict[str, float]]) -> str:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def as_dataset(rows: list[dict[str, float]], motions: int) -> xr.Dataset:

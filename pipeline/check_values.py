@@ -82,6 +82,7 @@ def check_row(state: tuple[float, ...]) -> dict[str, float]:
 
 
 def as_csv(rows: list[dict[str, float]]) -> str:
+    """Rows under the names of their columns."""
     text = io.StringIO()
     writer = csv.DictWriter(text, rows[0], lineterminator="\n")
     writer.writeheader()
