@@ -91,7 +91,7 @@ fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECOND
 mutate: setup ## plant defects in the kernels and see which the tests notice (about an hour)
 	$(RUN) pipeline/mutate.py
 
-torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 20 minutes)
+torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 25 minutes)
 	$(RUN) pipeline/torture.py --config $(CONFIG)
 	$(RUN) pipeline/document.py
 

@@ -14,19 +14,21 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from torture_damage import row
 from tqdm import tqdm
 
 from viscoroll import ViscorollError
 from viscoroll.errors import OutputError
-from viscoroll.runs import Run, read_run, run_ensemble, verify
+from viscoroll.runs import Run, export_netcdf, read_run, run_ensemble, verify
 
 RUN = """
 preset = "paper-section-5"
@@ -66,6 +68,7 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             row("SIGKILL of a dask worker", ensemble.workers(sizes["clusters"])),
             row("SIGKILL of the dask scheduler", ensemble.schedulers(sizes["clusters"])),
             row("ensemble on a full disk", ensemble.full_disks(sizes["full_ensembles"])),
+            row("export of a store to a full disk", ensemble.full_exports(sizes["full_ensembles"])),
             row("one bit of a file of a store flipped", ensemble.damage(sizes["stores"], flip)),
             row("a file of a store truncated", ensemble.damage(sizes["stores"], truncate)),
         ]
@@ -164,6 +167,28 @@ class Ensemble:
             subprocess.run(["umount", str(self.store)], check=True)
             yield outcome
 
+    def full_exports(self, count: int) -> Iterator[str]:
+        """To a tmpfs that is too small: refused, and the file that is there stays; then it is large enough."""
+        restore(self.store, self.expected)
+        disk, whole = self.folder / "disk", self.folder / "whole.nc"
+        disk.mkdir()
+        export_netcdf(self.store, whole)
+        for _ in tqdm(range(count), desc="full exports", delay=1.0, leave=False):
+            room = whole.stat().st_size
+            if not mount(disk, int(self.rng.uniform(0.01, 0.9) * room)):
+                yield "no tmpfs can be had"
+                continue
+            path = disk / "all.nc"
+            path.write_bytes(b"as it was")
+            code = exit_code(export_netcdf, self.store, path)
+            kept = path.read_bytes() == b"as it was" and len(list(disk.iterdir())) == 1
+            subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=True)
+            again = exit_code(export_netcdf, self.store, path)
+            same = again == 0 and all(map(xr.Dataset.identical, datasets(path), datasets(whole)))
+            subprocess.run(["umount", str(disk)], check=True)
+            ended = f"exit code {code}, " + ("the file damaged" if not kept else f"then {again}")
+            yield "unharmed" if code == 2 and kept and same else ended
+
     def damage(self, count: int, change: Any) -> Iterator[str]:
         """Of any file: it must be found, and the same command must put it right."""
         names = sorted(self.expected)
@@ -185,11 +210,16 @@ class Ensemble:
 
 
 def child(run: Run, store: Path) -> int:
-    """Exit code of a run in a process of its own: 2 for an error of the package, 1 for any other."""
+    """Exit code of a run in a process of its own."""
+    return exit_code(partial(run_ensemble, threads=THREADS), run, store)
+
+
+def exit_code(do: Callable, *arguments: Any) -> int:
+    """Of a call in a process of its own: 2 for an error of the package, 1 for any other."""
 
     def work() -> None:
         try:
-            run_ensemble(run, store, threads=THREADS)
+            do(*arguments)
         except OutputError:
             os._exit(2)
 
@@ -202,6 +232,11 @@ def child(run: Run, store: Path) -> int:
 def content(store: Path) -> dict[str, bytes]:
     """Every file of a store."""
     return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
+def datasets(path: Path) -> list[xr.Dataset]:
+    """The summaries and the motions of an exported file."""
+    return [xr.load_dataset(path, group=group, engine="h5netcdf") for group in (None, "motions")]
 
 
 def restore(store: Path, files: dict[str, bytes]) -> None:

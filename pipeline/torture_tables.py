@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import os
 import resource
+import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tabulate import build_all
 from torture_damage import Damage, edit, flip, in_child, row, truncate, unsealed
 from tqdm import tqdm
 
@@ -71,36 +74,55 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def kills(count: int, folder: Path, rng: np.random.Generator) -> list[dict[str, Any]]:
-    """SIGKILL the stage that builds the tables, at any moment and in its writes; they must be as they were, or new."""
+    """SIGKILL the command of `make tables`, at any moment and in its writes; the tables must be as they were, or new.
+
+    A smaller configuration, so that a command takes seconds; as many at a time as there are cores.
+    """
     folder.mkdir()
+    whole = folder / "whole"
+    start_tabulate(whole).wait()
+    expected = {path.name: values_hash(path) for path in whole.glob("[!.]*.nc")}
+    cores = os.cpu_count() or 1
+    with ThreadPoolExecutor(cores) as pool:
+        begin = time.perf_counter()
+        list(pool.map(lambda n: start_tabulate(folder / f"timed-{n}").wait(), range(cores)))
+        seconds = time.perf_counter() - begin
+
+        def killed(seed: int, in_write: bool) -> str:
+            own, draw = folder / str(seed), np.random.default_rng(seed)
+            shutil.copytree(whole, own)
+            while not kill_once(own, draw.choice(list(expected)) if in_write else None, seconds, draw):
+                pass  # it had ended before
+            outcome = "unharmed" if survived(own, expected) else "damaged"
+            shutil.rmtree(own)
+            return outcome
+
+        ways = {"SIGKILL of `make tables`": False, "SIGKILL of `make tables` while it writes a table": True}
+        result = []
+        for done, in_write in ways.items():
+            outcomes = pool.map(partial(killed, in_write=in_write), rng.integers(1 << 62, size=count).tolist())
+            result.append(row(done, list(tqdm(outcomes, desc=done, total=count, delay=1.0, leave=False))))
+    return result
+
+
+def start_tabulate(folder: Path) -> subprocess.Popen:
+    """What `make tables` starts, in a group of processes of its own."""
+    folder.mkdir(exist_ok=True)
     config = folder / "run.toml"
     config.write_text(CONFIG, encoding="utf-8")
-    build_all(config, folder)  # what is compiled is compiled
-    begin = time.perf_counter()
-    build_all(config, folder)
-    seconds = time.perf_counter() - begin
-    expected = {path.name: values_hash(path) for path in folder.glob("[!.]*.nc")}
-    found: dict[str, list[str]] = {"SIGKILL while `make tables` builds": [], "SIGKILL while it writes a table": []}
-    for (done, outcomes), in_write in zip(found.items(), (False, True), strict=True):
-        for _ in tqdm(range(count), desc=done, delay=1.0, leave=False):
-            while not kill_once(config, folder, rng.choice(list(expected)) if in_write else None, seconds, rng):
-                pass  # it had ended before
-            outcomes.append("unharmed" if survived(folder, expected) else "damaged")
-    return [row(done, outcomes) for done, outcomes in found.items()]
+    command = [sys.executable, HERE / "tabulate.py", "--config", config, "--tables", folder, "-o", folder]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
 
-def kill_once(config: Path, folder: Path, written: str | None, seconds: float, rng: np.random.Generator) -> bool:
+def kill_once(folder: Path, written: str | None, seconds: float, rng: np.random.Generator) -> bool:
     """Kill a build within so many seconds from its start, or from when it begins to write that file."""
-    process = get_context("fork").Process(target=build_all, args=(config, folder))
-    process.start()
-    while written is not None and process.is_alive() and not any(folder.glob(f".*.tmp-{written}")):
+    process = start_tabulate(folder)
+    while written is not None and process.poll() is None and not any(folder.glob(f".*.tmp-{written}")):
         time.sleep(2e-4)
     time.sleep(rng.uniform(0.0, seconds if written is None else WRITE))
-    process.kill()
-    process.join()
-    for left in folder.glob(".*.tmp-*"):
-        left.unlink()
-    return process.exitcode == -signal.SIGKILL
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    return process.wait() == -signal.SIGKILL
 
 
 def survived(folder: Path, expected: dict[str, str]) -> bool:

@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -14,7 +15,9 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
+from viscoroll import cli
 from viscoroll.reference import MissingDependencyError, contact_precise
+from viscoroll.runs import read_run
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -49,6 +52,37 @@ def test_howto_scene_files_are_read(tmp_path):
     for text in blocks(ROOT / "docs/howto.md", "toml"):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         assert isinstance(read_scene(tmp_path / "scene.toml"), vr.Scene)
+
+
+def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):
+    """Every command and snippet in its order, in a folder that holds the examples, made as small as a test."""
+    (tmp_path / "docs/examples").mkdir(parents=True)
+    for example in (ROOT / "docs/examples").glob("*.toml"):
+        text = example.read_text(encoding="utf-8").replace("n = 20_000", "n = 200")
+        (tmp_path / "docs/examples" / example.name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    for page in (ROOT / "docs/ensembles.md", ROOT / "docs/sensitivity.md"):
+        for language, code in re.findall(r"^```(sh|python)\n(.*?)^```$", page.read_text(encoding="utf-8"), re.S | re.M):
+            if language == "python":
+                exec(compile(code.replace("n=4096", "n=64"), page.name, "exec"), {})
+                continue
+            for line in code.splitlines():
+                command, *words = shlex.split(line, comments=True)
+                if command == "viscoroll" and "--cluster" not in words:
+                    assert cli.main(words + ["-n", "64"] * (words[0] == "sensitivity")) == 0, line
+    assert "mm" in capsys.readouterr().out
+    made = {path.name for path in tmp_path.iterdir()}
+    assert made == {"docs", "results.zarr", "results.png", "results.nc", "sensitivity.png", "sensitivity.nc"}
+
+
+def test_forms_of_an_input_are_read(tmp_path):
+    page = (ROOT / "docs/ensembles.md").read_text(encoding="utf-8")
+    (tmp_path / "measured.csv").write_text("friction\n0.1\n0.2\n")
+    for form in re.findall(r"^mu = .*$", page, re.M):
+        text = f'preset = "paper-section-5"\n[scene]\n{form}\n[start]\nV0 = 1.0\nomega0 = 0.0\n[run]\nn = 1\nt = 1.0'
+        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+        inputs = read_run(tmp_path / "run.toml").inputs
+        assert "mu" in {*inputs.fixed, *inputs.uncertain}
 
 
 def test_table_snippets_parse():

@@ -17,7 +17,18 @@ from viscoroll.runs import draws, estimate, read_run, roll_inputs
 from viscoroll.runs.evaluate import block_inputs, roll_block, scene_of
 from viscoroll.runs.inputs import LARGEST, SMALLEST, Distribution, Inputs
 from viscoroll.runs.quantities import QUANTITIES
-from viscoroll.runs.summaries import bin_edges, bin_of, histogram, lower_edge, merged, quantiles, summarise
+from viscoroll.runs.store import columns_of
+from viscoroll.runs.summaries import (
+    bin_edges,
+    bin_of,
+    histogram,
+    lower_edge,
+    merged,
+    quantiles,
+    summarise,
+    summary_dataset,
+)  # fmt: skip
+from viscoroll.runs.units import scales
 
 ANY = {"distribution": "uniform", "loc": -2.0, "scale": 4.0}
 FULL = """
@@ -51,11 +62,11 @@ T_epsilon = 10.7
 T_sigma = { distribution = "uniform", loc = 0.5, scale = 1.0 }
 mu = { distribution = "uniform", loc = 0.1, scale = 0.2 }
 [start]
-V0 = 1.5
-omega0 = 0.5
+V0 = 0.014
+omega0 = 0.05
 [run]
 n = 100
-t = 3e-3
+t = 0.03
 """
 
 
@@ -187,6 +198,118 @@ def test_a_run_of_one_motion(read):
     assert np.array_equal(motions.V[:, 0], [vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3)
 
 
+# --- a cylinder in SI units ---
+
+SI = """
+[cylinder]
+R = { distribution = "uniform", loc = 0.08, scale = 0.04 }
+m = 35.5
+E = 2.3e5
+nu = 0.49
+T_epsilon = { distribution = "uniform", loc = 9.0, scale = 3.0 }
+T_sigma = 0.97
+mu = 0.2
+[start]
+V0 = { distribution = "uniform", loc = -0.02, scale = 0.04 }
+omega0 = { distribution = "norm", loc = 0.05, scale = 0.1 }
+[run]
+n = 20
+t = [1e-4, 2e-3, 0.03]
+rtol = 1e-10
+keep = "all"
+fields = ["V", "omega", "x", "angle", "delta", "regime", "slip_loss", "rolling_loss"]
+summaries = ["V", "omega", "x", "distance", "angle", "delta", "translation", "lost", "slip_loss", "onset_time"]
+"""
+ONE = SI.replace('{ distribution = "uniform", loc = 0.08, scale = 0.04 }', "0.1").replace(
+    '{ distribution = "uniform", loc = 9.0, scale = 3.0 }', "10.7"
+)
+
+
+def by_hand(run, values, i):
+    """(cylinder, motion) of a drawn input, by way of :class:`viscoroll.Cylinder`."""
+    own = {name: value[i] if np.ndim(value) else value for name, value in values.items()}
+    V0, omega0 = own.pop("V0"), own.pop("omega0")
+    cylinder, settings = vr.Cylinder(**own), run.settings
+    rest = None if settings.rest is None else cylinder.V_from_si(settings.rest)
+    return cylinder, vr.ensemble(
+        cylinder.scene(), cylinder.V_from_si(V0), cylinder.omega_from_si(omega0), cylinder.t_from_si(run.t),
+        rtol=settings.rtol, rest=rest, fields=settings.fields,
+    )  # fmt: skip
+
+
+def test_motions_in_si_units_are_those_of_the_cylinder(read):
+    """Each with its own R and T_epsilon, and so with another unit of time."""
+    run = read(SI)
+    values, motions = roll_block(run, 0)
+    columns = columns_of(run, values, motions)
+    for i in range(20):
+        cylinder, one = by_hand(run, values, i)
+        energy = cylinder.m * (cylinder.R / cylinder.T_epsilon) ** 2
+        expected = {
+            "V": cylinder.V_to_si(one.V), "omega": cylinder.omega_to_si(one.omega), "x": cylinder.x_to_si(one.x),
+            "angle": one.angle, "delta": one.delta, "regime": one.regime,
+            "slip_loss": energy * one.slip_loss, "rolling_loss": energy * one.rolling_loss,
+            "onset_time": cylinder.t_to_si(one.onset_time),
+        }  # fmt: skip
+        for name, value in expected.items():
+            size = np.nanmax(np.abs(value))
+            assert np.allclose(columns[name][i], value[0], rtol=0.0, atol=tol.SI_UNITS * size, equal_nan=True), name
+    assert np.ptp(motions.regime[:, 1]) > 0  # the times tell something
+
+
+def test_summaries_in_si_units(read):
+    run = read(SI)
+    values, motions = roll_block(run, 0)
+    columns, total = columns_of(run, values, motions), summarise(motions, run.settings.summaries, scales(values))
+    for name in ("V", "omega", "x", "angle", "delta"):
+        assert total.histograms[name][2].low == columns[name][:, 2].min()
+    assert total.histograms["distance"][2].high == np.abs(columns["x"][:, 2]).max()
+    start = 0.5 * 35.5 * (values["V0"] ** 2 + 0.5 * (values["R"] * values["omega0"]) ** 2)
+    assert total.histograms["slip_loss"][2].high == pytest.approx((columns["slip_loss"][:, 2] / start).max())
+    assert total.histograms["lost"][2].high == pytest.approx(
+        ((columns["slip_loss"] + columns["rolling_loss"])[:, 2] / start).max(), rel=1e-8
+    )
+    found = summary_dataset(total, run.t, (0.5,), run.si)
+    units = {name: found[f"{name}_mean"].attrs["units"] for name in run.settings.summaries}
+    assert units == {
+        "V": "m s-1", "omega": "rad s-1", "x": "m", "distance": "m", "angle": "rad", "onset_time": "s",
+        "delta": "1", "translation": "1", "lost": "1", "slip_loss": "1",
+    }  # fmt: skip
+    assert found.t.attrs["units"] == "s"
+    assert found.V_bin_low.attrs["units"] == "m s-1"
+    assert "T_epsilon" not in found.V_mean.attrs["long_name"]
+
+
+def test_a_cylinder_from_its_flow_map(read):
+    """The map is made for dimensionless speeds, the threshold of rest is one."""
+    run = read(ONE.replace("n = 20", "n = 3000\nrest = 1e-3\nmethod = 'flow'").replace("1e-10", "1e-7"))
+    values, motions = roll_block(run, 0)
+    assert motions.flow.mean() > 0.5
+    assert np.isfinite(motions.rest_time).sum() > 100
+    for i in range(5):
+        cylinder, one = by_hand(run, values, i)
+        V = columns_of(run, values, motions)["V"][i]
+        assert np.allclose(V, cylinder.V_to_si(one.V[0]), rtol=0.0, atol=1e-7 * abs(values["V0"][i]), equal_nan=True)
+        assert motions.rest_time[i] == pytest.approx(cylinder.t_to_si(one.rest_time[0]), rel=1e-6, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("V0 = {", "V0 = '3 m/s' # {", ["line 11", "plain number, in m/s"]),
+        ("omega0 = {", "omega0 = '3 rpm' # {", ["line 12", "plain number, in rad/s"]),
+        ("V0 = {", "v0 = {", ["line 11", "did you mean 'V0'?"]),
+        ("n = 20", "rest = 0.01\nn = 20", ["line 14", "R or T_epsilon is uncertain"]),
+        ("t = [", "t = '3 s' # [", ["line 15", "str"]),
+    ],
+)  # fmt: skip
+def test_refused_in_si_units(read, old, new, words):
+    with pytest.raises(vr.ConfigError) as caught:
+        read(SI.replace(old, new))
+    for word in words:
+        assert word in str(caught.value), caught.value
+
+
 # --- summaries ---
 
 
@@ -224,7 +347,7 @@ def test_moments_and_quantiles(size):
 def test_merged_summaries_are_those_of_all(read):
     run = read(FULL.replace("DESIGN", "sobol"))
     blocks = [roll_block(run, block) for block in range(run.blocks)]
-    total = merged(summarise(motions, run.settings.summaries) for _, motions in blocks)
+    total = merged(summarise(motions, run.settings.summaries, {}) for _, motions in blocks)
     assert sum(total.statuses.values()) == run.settings.n
     for name in run.settings.summaries:
         for k, one in enumerate(total.histograms[name]):

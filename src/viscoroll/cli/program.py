@@ -37,7 +37,8 @@ def parser() -> Parser:
     program = Parser(
         prog="viscoroll",
         description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
-        "material.  Everything is dimensionless but the [cylinder] section of a scene file (SI).",
+        "material.  Everything is dimensionless but the [cylinder] section of a scene file, and a run file with one\n"
+        "(all SI).",
         epilog="example:\n  viscoroll roll --preset paper-section-5 --ic IC1 --t-end 3e-3",
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")

@@ -106,6 +106,9 @@ def _sheet(summary: xr.Dataset) -> Sheet:
     counts = zip(summary["status"].values, summary["ended"].values, strict=True)
     heading += [f"{count} motions {MOTION_STATUS[MotionStatus(code)]}" for code, count in counts if count]
     names = [str(name).removesuffix("_mean") for name in summary if str(name).endswith("_mean")]
+    units = {name: summary[f"{name}_mean"].attrs["units"] for name in names} | {"t": summary["t"].attrs["units"]}
+    if summary["t"].attrs["units"] != "1":
+        heading.append("in SI units: " + ", ".join(f"{name} {unit}" for name, unit in units.items() if unit != "1"))
     size = {name: summary[f"{name}_mean"].size for name in names}
     shown = [f"{t:.10g}" for t in summary["t"].values]
     times = {name: shown if summary[f"{name}_mean"].ndim else [""] for name in names}

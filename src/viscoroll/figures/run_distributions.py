@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..symbols import SYMBOLS, label
-from .style import THIN, new_figure
+from .style import THIN, labelled, new_figure, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,8 +36,8 @@ def run_distributions(summaries: xr.Dataset) -> Figure:
     return figure
 
 
-def _label(name: str) -> str:
-    return label(name) if name in SYMBOLS else name.replace("_", " ")
+def _label(summaries: xr.Dataset, name: str) -> str:
+    return labelled(name, summaries[f"{name}_mean"].attrs["units"])
 
 
 def _bands(axes: Any, summaries: xr.Dataset, name: str) -> None:
@@ -52,7 +51,7 @@ def _bands(axes: Any, summaries: xr.Dataset, name: str) -> None:
         middle = levels.size // 2
         axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
     axes.axhline(0.0, **THIN)
-    axes.set(xlabel=label("t"), ylabel=_label(name), xlim=(t[0], t[-1]))
+    axes.set(xlabel=labelled("t", summaries["t"].attrs["units"]), ylabel=_label(summaries, name), xlim=(t[0], t[-1]))
     axes.legend(frameon=False, fontsize="small")
 
 
@@ -60,7 +59,7 @@ def _levels(axes: Any, summaries: xr.Dataset, name: str) -> None:
     """The quantiles of a quantity that has one value a motion."""
     values = summaries[f"{name}_quantiles"].values.ravel()
     axes.plot(values, summaries["quantile"].values, "o-", color="black")
-    axes.set(xlabel=_label(name), ylabel="share of motions below", ylim=(0.0, 1.0))
+    axes.set(xlabel=_label(summaries, name), ylabel="share of motions below", ylim=(0.0, 1.0))
 
 
 def _bars(axes: Any, summaries: xr.Dataset, name: str) -> None:
@@ -71,8 +70,9 @@ def _bars(axes: Any, summaries: xr.Dataset, name: str) -> None:
     edges, bars = even_bars(low, high, counts)
     axes.stairs(bars, edges, fill=True, color="0.6")
     outside = int(counts.sum() - round(bars.sum()))
-    at = "" if summaries[f"{name}_mean"].ndim == 0 else f" at t = {summaries['t'].values[-1]:g}"
-    axes.set(xlabel=_label(name) + at, ylabel=f"motions, of {counts.sum()}")
+    t = summaries["t"]
+    at = with_unit(f" at t = {t.values[-1]:g}", t.attrs["units"]) if summaries[f"{name}_mean"].ndim else ""
+    axes.set(xlabel=_label(summaries, name) + at, ylabel=f"motions, of {counts.sum()}")
     if outside:
         axes.set_title(f"{outside} more beyond the ends", fontsize="small")
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..symbols import SYMBOLS, label
-from .style import THIN, new_figure
+from ..symbols import label
+from .style import THIN, labelled, new_figure, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,7 +39,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     size = (max(6.4, 3.2 * columns), 0.6 + 2.6 * rows)
     figure, grid = new_figure(title, rows, columns, size, squeeze=False, sharey=True)
     for axes, (text, values) in zip(grid.flat, shown):
-        _panel(axes, [_STARTS.get(name) or _label(name) for name in inputs], values, order)
+        _panel(axes, [_STARTS.get(name) or labelled(name) for name in inputs], values, order)
         axes.set_title(text, fontsize="small")
     for axes in grid.flat[len(shown) :]:
         axes.set_axis_off()
@@ -54,11 +54,11 @@ def _at_last_time(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArra
     keys = [*_BARS, *(f"{key}_conf" for key in _BARS)]
     values = {key: indices[f"{name}_{key}"].values for key in keys}
     if values["S1"].ndim == 1:
-        return _label(name), values
+        return labelled(name), values
     last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
-    return f"{_label(name)} at {label('t')} = {indices['t'].values[last]:g}", {
-        key: v[last] for key, v in values.items()
-    }
+    t = indices["t"]
+    time = with_unit(f"{label('t')} = {t.values[last]:g}", t.attrs["units"])
+    return f"{labelled(name)} at {time}", {key: v[last] for key, v in values.items()}
 
 
 def _panel(axes: Any, inputs: list[str], values: dict[str, NDArray], order: NDArray) -> None:
@@ -70,7 +70,3 @@ def _panel(axes: Any, inputs: list[str], values: dict[str, NDArray], order: NDAr
         )  # fmt: skip
     axes.axhline(0.0, **THIN)
     axes.set_xticks(at, inputs)
-
-
-def _label(name: str) -> str:
-    return label(name) if name in SYMBOLS else name.replace("_", " ")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from ..scene import Scene
-from ..symbols import SYMBOLS
+from ..symbols import SYMBOLS, label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,6 +47,16 @@ def number(value: float, digits: int = 4) -> str:
         return mantissa
     power = f"10^{{{int(exponent)}}}"
     return power if mantissa == "1" else rf"{mantissa}\times {power}"
+
+
+def labelled(name: str, units: str = "1") -> str:
+    """Axis label of a quantity of a run: its symbol, or its name in words, and its unit if it has one."""
+    return with_unit(label(name) if name in SYMBOLS else name.replace("_", " "), units, ", ")
+
+
+def with_unit(text: str, units: str, between: str = " ") -> str:
+    """Text, and behind it a unit like "m s-1", but for numbers ("1")."""
+    return text if units == "1" else text + between + re.sub(r"(-\d)", r"$^{\1}$", units)
 
 
 def scaled(name: str, exponent: int) -> str:

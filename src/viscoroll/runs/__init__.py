@@ -1,6 +1,6 @@
 """Ensembles from a run file: uncertain inputs -> blocks -> a results store that survives any end.
 
-Read in this order: :mod:`runfile` (with :mod:`sources` and :mod:`inputs`), :mod:`draws`,
+Read in this order: :mod:`runfile` (with :mod:`sources`, :mod:`inputs` and :mod:`units`), :mod:`draws`,
 :mod:`evaluate`, :mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and
 :mod:`zarr_files`), :mod:`engine`, then :mod:`estimate`, :mod:`verify` and :mod:`export`.
 """

@@ -15,6 +15,7 @@ from .records import Record, encoded
 from .runfile import Run
 from .store import columns_of
 from .summaries import summarise
+from .units import scales
 
 #: motions of the trial, mapped and integrated: some tenths of a second
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
@@ -52,7 +53,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     roll_block(replace(run, settings=msgspec.structs.replace(run.settings, block=min(trial, 16))), 0)  # compiles
     begun = time.perf_counter()
     values, motions = roll_block(few, 0)
-    summary = summarise(motions, run.settings.summaries)
+    summary = summarise(motions, run.settings.summaries, scales(values))
     chunks = zarr_files.chunks(columns_of(run, values, motions), 0, trial, trial) if run.settings.keep == "all" else {}
     seconds = time.perf_counter() - begun
     record = len(encoded(Record("", {}, summary=summary)))

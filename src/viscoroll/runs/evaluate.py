@@ -13,7 +13,8 @@ from ..motion.batch import Ensemble
 from ..scene import Scene, scene_from_si
 from . import draws
 from .runfile import Run
-from .sources import CYLINDER, SCENE
+from .sources import CYLINDER, SCENE, START
+from .units import are_si, dimensionless
 
 
 def block_inputs(run: Run, block: int) -> dict[str, Any]:
@@ -28,17 +29,21 @@ def block_inputs(run: Run, block: int) -> dict[str, Any]:
 
 def scene_of(values: Mapping[str, Any]) -> Scene:
     """The scene, or the scenes, of inputs; raises ParameterError where one is out of range."""
-    if "R" in values:
+    if are_si(values):
         return scene_from_si(**{name: values[name] for name in (*CYLINDER, "plane")})
     return Scene(**{name: values[name] for name in SCENE})
 
 
 def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) -> Ensemble:
-    """Motions from inputs: one where all are numbers."""
+    """Dimensionless motions from inputs, over seconds where these are in SI units; one where all are numbers."""
     motion_count = max((np.size(value) for value in values.values()), default=1)
+    scene = scene_of(values)
+    if are_si(values):
+        scene = scene.replace(gamma=scene.gamma / values["T_epsilon"])
+    V0, omega0 = (_column(dimensionless(values, name), motion_count) for name in START)
     return ensemble(
-        scene_of(values), _column(values["V0"], motion_count), _column(values["omega0"], motion_count), run.t,
-        method=run.method, rtol=run.settings.rtol, rest=run.settings.rest, fields=run.fields,
+        scene, V0, omega0, run.t,
+        method=run.method, rtol=run.settings.rtol, rest=run.rest, fields=run.fields,
         speed=run.fastest if run.method == "flow" else None, threads=threads,
     )  # fmt: skip
 

@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
+import os
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ..errors import TableError
 from ..files import replacing
 from .store import MOTIONS
-from .verify import open_summaries
+from .verify import open_summaries, verify
+
+#: most that deflate makes of incompressible bytes, and room for a chunk in the index and for the head of an array
+_LARGER, _ENTRY, _HEAD = 1.002, 512, 1 << 16
 
 
 def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None:
     """Write a finished store as netCDF-4: summaries at the root, all motions in the group "motions".
 
-    Memory does not grow with the number of motions.
+    Memory does not grow with the number of motions.  While it is written, the file takes the room of its
+    content uncompressed, which is reserved first.
 
     Raises
     ------
     TableError
-        There is no finished store, or its summaries are damaged.
+        There is no finished store, or anything in it is damaged.
     OutputError
-        The file cannot be written.
+        The file cannot be written, or there is no room for it.
     """
-    summaries = open_summaries(store)
+    summaries, verdict = open_summaries(store), verify(store)
+    if not verdict.ok:
+        raise TableError(store, "; ".join(str(verdict).splitlines()[-2:]))
     with replacing(path) as temporary:
         temporary.write_bytes(bytes(summaries.to_netcdf(engine="h5netcdf")))
         if (Path(store) / MOTIONS).is_dir():
@@ -35,9 +43,10 @@ def _append_motions(store: Path, path: Path) -> None:
     import zarr
 
     source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
+    arrays = dict(source.arrays())
+    _reserve(path, sum(map(_room, arrays.values())) + _HEAD)
     with h5netcdf.File(path, "a") as file:
         target = file.create_group(MOTIONS)
-        arrays = dict(source.arrays())
         target.attrs.update(dict(source.attrs))
         target.dimensions = {"motion": arrays["status"].shape[0], "t": arrays["t"].shape[0]}
         for name, array in arrays.items():
@@ -50,3 +59,20 @@ def _append_motions(store: Path, path: Path) -> None:
             variable.attrs.update(attrs)
             for start in range(0, array.shape[0], array.chunks[0]):
                 variable[start : start + array.chunks[0]] = array[start : start + array.chunks[0]]
+
+
+def _room(array: Any) -> int:
+    """Bytes that an array takes at most, whatever its values."""
+    chunk = array.dtype.itemsize
+    for length in array.chunks:
+        chunk *= length
+    return array.nchunks * int(_LARGER * chunk + _ENTRY) + _HEAD
+
+
+def _reserve(path: Path, room: int) -> None:
+    """Lengthen a file: HDF5 2.0 may crash on a full disk, so it must not meet one.  It cuts off what it leaves."""
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        os.posix_fallocate(descriptor, path.stat().st_size, room)
+    finally:
+        os.close(descriptor)

@@ -79,6 +79,11 @@ class Inputs:
         """Names of the inputs that are not one number."""
         return (*self.random, *(name for sample in self.joint.values() for name in sample.columns))
 
+    @property
+    def si(self) -> bool:
+        """Whether they are those of a cylinder, in SI units."""
+        return "R" in (*self.fixed, *self.uncertain)
+
     def values(self, points: NDArray[np.float64]) -> dict[str, Any]:
         """Every input at ``points`` (dimensions, n) in (0, 1): a number, or an array (n,)."""
         rows = dict(zip(self.dimensions, points, strict=True))

@@ -1,23 +1,37 @@
-"""What can be summarised of motions: values over (motion, t), or one a motion."""
+"""What can be summarised of motions: values over (motion, t), or one a motion; in SI units where the run is."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.batch import Ensemble
+from .units import SI
 
 
 class Quantity(NamedTuple):
-    """``values(motions, k)`` at output time k, or for all times if not ``over_time``."""
+    """``values(motions, k)`` at output time k, or for all times if not ``over_time``.
 
-    long_name: str
+    They are in the unit of the column ``like``, or mere numbers; a run of a scene has them over ``over``.
+    """
+
+    name: str
     fields: tuple[str, ...]
     values: Callable[[Ensemble, int], NDArray]
+    like: str = ""
+    over: str = ""
     over_time: bool = True
+
+    def long_name(self, si: bool) -> str:
+        """What it is."""
+        return self.name if si else f"{self.name} {self.over}".rstrip()
+
+    def units(self, si: bool) -> str:
+        """Its unit."""
+        return SI[self.like].units if si and self.like else "1"
 
 
 def _field(name: str) -> Callable[[Ensemble, int], NDArray]:
@@ -44,11 +58,11 @@ def _start_energy(motions: Ensemble) -> NDArray:
 
 
 QUANTITIES = {
-    "V": Quantity("velocity of the axis times T_epsilon/R", ("V",), _field("V")),
-    "omega": Quantity("angular velocity times T_epsilon", ("omega",), _field("omega")),
-    "x": Quantity("displacement of the axis over R", ("x",), _field("x")),
-    "distance": Quantity("distance from the start over R", ("x",), lambda motions, k: np.abs(motions.x[:, k])),  # type: ignore[index]
-    "angle": Quantity("angle turned, radians", ("angle",), _field("angle")),
+    "V": Quantity("velocity of the axis", ("V",), _field("V"), "V", "times T_epsilon/R"),
+    "omega": Quantity("angular velocity", ("omega",), _field("omega"), "omega", "times T_epsilon"),
+    "x": Quantity("displacement of the axis", ("x",), _field("x"), "x", "over R"),
+    "distance": Quantity("distance from the start", ("x",), lambda motions, k: np.abs(motions.x[:, k]), "x", "over R"),  # type: ignore[index]
+    "angle": Quantity("angle turned, radians", ("angle",), _field("angle"), "angle"),
     "delta": Quantity("creep ratio (omega - V)/V", ("delta",), _field("delta")),
     "translation": Quantity("share of the initial kinetic energy in translation", ("V",), _translation),
     "rotation": Quantity("share of the initial kinetic energy in rotation", ("omega",), _rotation),
@@ -61,9 +75,18 @@ QUANTITIES = {
         "share of the initial kinetic energy lost in rolling", ("rolling_loss",), _loss("rolling_loss")
     ),
     "onset_time": Quantity(
-        "time of the first change from full to partial slip", (), lambda motions, k: motions.onset_time, False
+        "time of the first change from full to partial slip", (), lambda motions, k: motions.onset_time, "t",
+        over_time=False,
     ),
     "rest_time": Quantity(
-        "time at which the rest threshold was crossed", (), lambda motions, k: motions.rest_time, False
+        "time at which the rest threshold was crossed", (), lambda motions, k: motions.rest_time, "t",
+        over_time=False,
     ),
 }  # fmt: skip
+
+
+def valued(name: str, motions: Ensemble, k: int, scales: Mapping[str, Any]) -> NDArray[np.float64]:
+    """A quantity at output time k, in the units that ``scales`` of :mod:`units` lead to."""
+    quantity = QUANTITIES[name]
+    values = np.asarray(quantity.values(motions, k))
+    return values * scales[quantity.like] if quantity.like in scales else values

@@ -11,7 +11,7 @@
     seed = 7
     t = [1e-3, 2e-3, 3e-3]
 
-All keys: docs/ensembles.md.
+All dimensionless, or all in SI units with [cylinder].  All keys: docs/ensembles.md.
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ from .draws import Design
 from .inputs import Inputs
 from .quantities import QUANTITIES
 from .sources import CYLINDER, SCENE, START, read_inputs
+from .units import dimensionless
 
 #: motions of one scene from which on the flow map is worth its making, as in ``motion/batch.py``
 _FLOW_PAYS = 2000
@@ -73,7 +74,7 @@ class Run:
     text : the file.
     settings : its section [run].
     inputs : what its other sections say of start, scene or cylinder.
-    t : output times.
+    t : output times, dimensionless or, with [cylinder], in seconds.
     digest : SHA-256 of all that the results depend on: settings, inputs, samples.
     """
 
@@ -97,8 +98,19 @@ class Run:
 
     @property
     def fastest(self) -> float:
-        """Speed that the flow map is made for; the few motions beyond are integrated."""
-        return self.inputs.largest(*START)
+        """Dimensionless speed that the flow map is made for; the few motions beyond are integrated."""
+        return max(dimensionless(self.inputs.fixed | {name: self.inputs.largest(name)}, name) for name in START)
+
+    @property
+    def si(self) -> bool:
+        """Whether everything in the file and in the results is in SI units."""
+        return self.inputs.si
+
+    @property
+    def rest(self) -> float | None:
+        """Dimensionless rest threshold."""
+        rest = self.settings.rest
+        return None if rest is None else dimensionless(self.inputs.fixed | {"rest": rest}, "rest")
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -185,6 +197,9 @@ def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.floa
                 raise fault(path, "run", key, problem)
     if settings.method == "flow" and set(inputs.uncertain) - set(START):
         raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' where scenes differ")
+    if settings.rest is not None and inputs.si and {"R", "T_epsilon"} & set(inputs.uncertain):
+        problem = f"rest = {settings.rest!r}: must be left out where R or T_epsilon is uncertain"
+        raise fault(path, "run", "rest", problem)
     if isinstance(settings.t, dict):
         refuse_unknown(path, "run.t", settings.t, ("low", "high", "count", "spacing"))
     try:
@@ -201,6 +216,7 @@ def _digest(settings: RunSection, times: NDArray, *parts: Any) -> str:
     """SHA-256 of what the results depend on; comments and the order of keys are not among it."""
     *described, inputs = parts
     content = [msgspec.to_builtins(settings), times.tolist(), described, _samples(inputs)]
+    content += ["SI"] * inputs.si  # there was a time when speeds and times of a cylinder were dimensionless
     return hashlib.sha256(msgspec.json.encode(_plain(content), order="deterministic")).hexdigest()
 
 

@@ -18,9 +18,10 @@ from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from .evaluate import roll_inputs
 from .inputs import LARGEST, SMALLEST, Inputs
-from .quantities import QUANTITIES
+from .quantities import QUANTITIES, valued
 from .runfile import Run
 from .sources import START
+from .units import attributes, scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,7 +100,7 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
     if inputs.correlated:
         allowed = "left out: Sobol indices are defined for independent inputs only"
         raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
-    scene = "cylinder" if "R" in {*inputs.fixed, *inputs.uncertain} else "scene"
+    scene = "cylinder" if inputs.si else "scene"
     for file, sample in inputs.joint.items():
         if len(sample.columns) > 1:
             places = ", ".join(f"[{'start' if name in START else scene}] {name}" for name in sample.columns)
@@ -137,11 +138,12 @@ def _outcomes(
     status = np.empty(rows, np.int8)
 
     def work(start: int, stop: int) -> None:
-        motions = roll_inputs(run, run.inputs.values(points[start:stop].T), threads=threads)
+        given = run.inputs.values(points[start:stop].T)
+        motions, to_si = roll_inputs(run, given, threads=threads), scales(given)
         status[start:stop] = motions.status
         for name, values in outcomes.items():
             for k, row in enumerate(values):
-                row[start:stop] = QUANTITIES[name].values(motions, k)
+                row[start:stop] = valued(name, motions, k, to_si)
 
     # one block at a time, its motions on all threads: a flow map is then made once
     run_blocks(work, rows, min(_BLOCK, run.block), threads=1, progress="sensitivity" if progress else None)
@@ -183,18 +185,17 @@ def _reason_against(values: NDArray[np.float64], noise: float) -> str:
 def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float64]]) -> xr.Dataset:
     import xarray as xr
 
-    from ..motion.export import attributes
     from .store import about
 
     data: dict[str, xr.Variable] = {}
     for name, indices in found.items():
         dims = ("t", "input") if QUANTITIES[name].over_time else ("input",)
         for (key, text), values in zip(_INDICES.items(), indices, strict=True):
-            long_name = f"{text} of: {QUANTITIES[name].long_name}"
+            long_name = f"{text} of: {QUANTITIES[name].long_name(run.si)}"
             shaped = values if len(dims) == 2 else values[0]
             data[f"{name}_{key}"] = xr.Variable(dims, shaped, {"long_name": long_name, "units": "1"})
     coordinates = {
-        "t": xr.Variable("t", run.t, attributes("t")),
+        "t": xr.Variable("t", run.t, attributes("t", run.si)),
         "input": xr.Variable("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
     provenance = about(run) | {

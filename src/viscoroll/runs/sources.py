@@ -54,7 +54,7 @@ CYLINDER = {
     "g": _positive("m/s^2", default=9.81),
 }
 START = {"V0": Range(-1e100, high=1e100), "omega0": Range(-1e100, high=1e100)}
-RANGES = {"scene": SCENE, "cylinder": CYLINDER, "start": START}
+START_SI = {"V0": START["V0"]._replace(unit="m/s"), "omega0": START["omega0"]._replace(unit="rad/s")}
 _PLANES = ("strain", "stress")
 
 
@@ -184,11 +184,12 @@ def read_inputs(
 ) -> Inputs:
     """Inputs of the sections; ``base`` fills in what they leave out.  Raises ConfigError."""
     reader = _Reader(path)
+    ranges = {"cylinder": CYLINDER, "start": START_SI} if "cylinder" in sections else {"scene": SCENE, "start": START}
     for section, given in sections.items():
         reader.section = section
         others = ("plane",) if section == "cylinder" else ()
-        refuse_unknown(path, section, given, (*RANGES[section], *others))
-        for name, allowed in RANGES[section].items():
+        refuse_unknown(path, section, given, (*ranges[section], *others))
+        for name, allowed in ranges[section].items():
             value = given.get(name, base.get(name, allowed.default))
             if value is None:
                 raise fault(path, "", section, f"[{section}] needs {name}")

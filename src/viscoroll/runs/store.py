@@ -32,6 +32,7 @@ from .evaluate import roll_block, roll_inputs
 from .records import Record, damaged, make_folder, put, read_record, write_record
 from .runfile import Run
 from .summaries import Summary, merged, summarise, summary_dataset
+from .units import attributes, scales
 
 RECORDS, MOTIONS = "records", "motions"
 _EACH = ("onset_time", "rest_time", "status", "flow")
@@ -55,9 +56,7 @@ class Store:
         """
         _refuse_other(self)
         make_folder(self.root / RECORDS)
-        for left_over in self.root.rglob(".*.tmp-*"):  # of processes that were killed
-            with suppress(OSError):
-                left_over.unlink()
+        self._sweep()
         made = Record(identity(self.run), put(self.root, self._metadata()), about(self.run))
         write_record(_path(self.root, "start"), made)
 
@@ -76,16 +75,23 @@ class Store:
             columns = columns_of(self.run, values, motions)
             found = zarr_files.chunks(columns, block, self.run.settings.n, self.run.block)
             files = put(self.root, {f"{MOTIONS}/{name}": content for name, content in found.items()})
-        summary = summarise(motions, self.run.settings.summaries)
+        summary = summarise(motions, self.run.settings.summaries, scales(values))
         write_record(_path(self.root, block), Record(identity(self.run), files, summary=summary))
         return len(motions)
 
     def end(self) -> None:
         """Merge the summaries of all blocks and write them; raises OutputError."""
-        dataset = summary_dataset(merged(self._summaries()), self.run.t, self.run.settings.quantiles)
+        dataset = summary_dataset(merged(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si)
         files = zarr_files.dataset_files(dataset.assign_attrs(about(self.run)))
         files[".zmetadata"] = zarr_files.consolidated(files | self._metadata())
         write_record(_path(self.root, "end"), Record(identity(self.run), put(self.root, files)))
+        self._sweep()
+
+    def _sweep(self) -> None:
+        """Remove what processes that were killed in a write left behind, before this start or, workers, since."""
+        for left_over in self.root.rglob(".*.tmp-*"):
+            with suppress(OSError):
+                left_over.unlink()
 
     def _summaries(self) -> Iterator[Summary]:
         for block in range(self.run.blocks):
@@ -100,7 +106,10 @@ class Store:
             return {}
         values = self.run.inputs.values(np.full((len(self.run.inputs.dimensions), 1), 0.5))
         columns = columns_of(self.run, values, roll_inputs(self.run, values))
-        found = zarr_files.metadata(columns, self.run.settings.n, self.run.block, self.run.t, about(self.run))
+        described = {name: attributes(name, self.run.si) for name in (*columns, "t")}
+        found = zarr_files.metadata(
+            columns, self.run.settings.n, self.run.block, self.run.t, described, about(self.run)
+        )
         return {f"{MOTIONS}/{name}": content for name, content in found.items()}
 
 
@@ -108,6 +117,9 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     """What is kept of every motion."""
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_EACH)}
+    for name, scale in scales(values).items():
+        if name in columns:
+            columns[name] = columns[name] * np.reshape(scale, (-1, 1))
     return columns | {"flow": columns["flow"].astype(np.int8)}
 
 
@@ -124,6 +136,7 @@ def about(run: Run) -> dict[str, str | int]:
         "seed": run.settings.seed,
         "design": run.settings.design,
         "method": run.method,
+        "quantities": "in SI units" if run.si else "dimensionless",
         "run_file": run.text,
     }
 

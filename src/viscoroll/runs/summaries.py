@@ -9,15 +9,16 @@ its bin, that is to 2^-8 of itself (``tests/test_runs.py``).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.batch import Ensemble
-from .quantities import QUANTITIES
+from .quantities import QUANTITIES, valued
+from .units import attributes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,11 +53,11 @@ class Summary(msgspec.Struct):
     mapped: int
 
 
-def summarise(motions: Ensemble, names: Iterable[str]) -> Summary:
-    """Summary of a block."""
+def summarise(motions: Ensemble, names: Iterable[str], scales: Mapping[str, Any]) -> Summary:
+    """Summary of a block; ``scales`` of :mod:`units`."""
     histograms = {
         name: [
-            histogram(np.asarray(QUANTITIES[name].values(motions, k)))
+            histogram(valued(name, motions, k, scales))
             for k in range(motions.t.size if QUANTITIES[name].over_time else 1)
         ]
         for name in names
@@ -153,16 +154,15 @@ def _in_order(one: Histogram, ranks: NDArray[np.int64]) -> NDArray[np.float64]:
     return np.clip(below[at] + share * (above[at] - below[at]), one.low, one.high)
 
 
-def summary_dataset(total: Summary, t: NDArray[np.float64], levels: tuple[float, ...]) -> xr.Dataset:
+def summary_dataset(total: Summary, t: NDArray[np.float64], levels: tuple[float, ...], si: bool) -> xr.Dataset:
     """Moments, quantiles and histograms over t, and counts of how motions ended."""
     import xarray as xr
 
     from ..errors import MOTION_STATUS, MotionStatus
-    from ..motion.export import attributes
 
     data: dict[str, xr.Variable] = {}
     for name, histograms in total.histograms.items():
-        data |= _variables(name, histograms, levels)
+        data |= _variables(name, histograms, levels, si)
     codes = np.array([int(code) for code in MOTION_STATUS], np.int8)
     ended = {
         "long_name": "motions by how they ended", "units": "1", "flag_values": codes,
@@ -172,7 +172,7 @@ def summary_dataset(total: Summary, t: NDArray[np.float64], levels: tuple[float,
     counts = [total.statuses.get(int(code), 0) for code in codes]
     data["ended"] = xr.Variable("status", np.array(counts, np.int64), ended)
     coords = {
-        "t": xr.Variable("t", t, attributes("t")),
+        "t": xr.Variable("t", t, attributes("t", si)),
         "quantile": xr.Variable("quantile", np.array(levels), {"long_name": "share of motions below", "units": "1"}),
         "status": xr.Variable("status", codes, {"long_name": "code of MotionStatus"}),
     }
@@ -180,16 +180,16 @@ def summary_dataset(total: Summary, t: NDArray[np.float64], levels: tuple[float,
     return xr.Dataset(data, coords, {"failed_motions": failed, "motions_from_the_flow_map": total.mapped})
 
 
-def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]) -> dict[str, xr.Variable]:
+def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool) -> dict[str, xr.Variable]:
     """Moments, quantiles, and counts in all bins that some time fills."""
     import xarray as xr
 
-    text = QUANTITIES[name].long_name
+    text, unit = QUANTITIES[name].long_name(si), QUANTITIES[name].units(si)
     over = ("t",) if QUANTITIES[name].over_time else ()
 
-    def variable(dims: tuple[str, ...], values: NDArray, what: str) -> xr.Variable:
+    def variable(dims: tuple[str, ...], values: NDArray, what: str, units: str = unit) -> xr.Variable:
         shaped = values if over else values[..., 0]
-        return xr.Variable(dims, shaped, {"long_name": f"{what} of: {text}", "units": "1"})
+        return xr.Variable(dims, shaped, {"long_name": f"{what} of: {text}", "units": units})
 
     def each(part: str) -> NDArray:
         return np.array([getattr(one, part) if one.count else np.nan for one in histograms], np.float64)
@@ -202,15 +202,15 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
     for k, one in enumerate(histograms):
         counts[np.searchsorted(bins, one.bins), k] = one.counts
     below, above = bin_edges(bins)
-    edge = {"units": "1"}
+    edge = {"units": unit}
     return {
-        f"{name}_counted": variable(over, counted, "motions that have a value"),
+        f"{name}_counted": variable(over, counted, "motions that have a value", "1"),
         f"{name}_mean": variable(over, each("mean"), "mean"),
         f"{name}_std": variable(over, deviation, "standard deviation"),
         f"{name}_min": variable(over, each("low"), "least value"),
         f"{name}_max": variable(over, each("high"), "largest value"),
         f"{name}_quantiles": variable(("quantile", *over), table, "quantiles"),
-        f"{name}_histogram": variable((f"{name}_bin", *over), counts, "motions a bin"),
+        f"{name}_histogram": variable((f"{name}_bin", *over), counts, "motions a bin", "1"),
         f"{name}_bin_low": xr.Variable(f"{name}_bin", below, edge | {"long_name": f"lower edge of a bin of {name}"}),
         f"{name}_bin_high": xr.Variable(f"{name}_bin", above, edge | {"long_name": f"upper edge of a bin of {name}"}),
     }

@@ -12,10 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.export import attributes, column_attributes
-from ..symbols import SYMBOLS
-from .sources import CYLINDER
-
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -23,16 +19,18 @@ _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
 def metadata(
-    columns: Mapping[str, NDArray], count: int, block: int, t: NDArray, about: dict[str, Any]
-) -> dict[str, bytes]:
+    columns: Mapping[str, NDArray], count: int, block: int, t: NDArray, described: dict[str, dict[str, Any]],
+    about: dict[str, Any],
+) -> dict[str, bytes]:  # fmt: skip
     """The group of all motions without its chunks; ``columns`` show names, types and dimensions."""
     import zarr
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=about)
     for name, values in columns.items():
-        _create(group, name, values, count, block)
-    group.create_array("t", data=t, attributes=attributes("t") | {"_ARRAY_DIMENSIONS": ["t"]})
+        _create(group, name, values, count, block, described[name])
+    # with zarr's own fill value, 0, xarray would take t = 0 for missing
+    group.create_array("t", data=t, fill_value=np.nan, attributes=described["t"] | {"_ARRAY_DIMENSIONS": ["t"]})
     return _as_bytes(files)
 
 
@@ -43,7 +41,7 @@ def chunks(columns: Mapping[str, NDArray], number: int, count: int, block: int) 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2)
     for name, values in columns.items():
-        _create(group, name, values, count, block)[number * block : number * block + values.shape[0]] = values
+        _create(group, name, values, count, block, {})[number * block : number * block + values.shape[0]] = values
     return {key: content for key, content in _as_bytes(files).items() if key.rpartition("/")[2] not in _METADATA}
 
 
@@ -62,21 +60,13 @@ def consolidated(files: dict[str, bytes]) -> bytes:
     return json.dumps({"metadata": found, "zarr_consolidated_format": 1}, indent=1).encode()
 
 
-def _create(group: Any, name: str, values: NDArray, count: int, block: int) -> Any:
+def _create(group: Any, name: str, values: NDArray, count: int, block: int, described: dict[str, Any]) -> Any:
     dims = ["motion", "t"][: values.ndim]
     return group.create_array(
         name, shape=(count, *values.shape[1:]), chunks=(block, *values.shape[1:]), dtype=values.dtype,
         fill_value=np.nan if values.dtype.kind == "f" else None, config={"write_empty_chunks": True},
-        attributes=_described(name) | {"_ARRAY_DIMENSIONS": dims},
+        attributes=described | {"_ARRAY_DIMENSIONS": dims},
     )  # fmt: skip
-
-
-def _described(name: str) -> dict[str, Any]:
-    """Attributes of a column, as JSON takes them."""
-    if name in CYLINDER and name not in SYMBOLS:
-        return {"long_name": f"{name} of the cylinder", "units": CYLINDER[name].unit}
-    found = column_attributes(name)
-    return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in found.items()}
 
 
 def _as_bytes(files: Mapping[str, Any]) -> dict[str, bytes]:

@@ -1,0 +1,72 @@
+"""SI units of a run with [cylinder]: all that its file says, and all that its results hold.
+
+Its motions are rolled dimensionless, each with its own R and T_epsilon, but for the time: gamma does nothing but
+scale it (Eq. (22)), so that gamma/T_epsilon in place of gamma makes it seconds, the same for every cylinder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..motion import export
+from ..symbols import SYMBOLS
+from .sources import CYLINDER
+
+
+class Unit(NamedTuple):
+    """What a column is in a run in SI units."""
+
+    long_name: str
+    units: str
+
+
+SI = {
+    "t": Unit("time", "s"),
+    "V0": Unit("initial velocity of the axis", "m s-1"),
+    "omega0": Unit("initial angular velocity", "rad s-1"),
+    "V": Unit("velocity of the axis", "m s-1"),
+    "omega": Unit("angular velocity", "rad s-1"),
+    "x": Unit("distance travelled", "m"),
+    "angle": Unit("angle turned", "rad"),
+    "slip_loss": Unit("energy lost in slip since t = 0, per length of the cylinder", "J m-1"),
+    "rolling_loss": Unit("energy lost in rolling since t = 0, per length of the cylinder", "J m-1"),
+    "onset_time": Unit("time of the first change from full to partial slip", "s"),
+    "rest_time": Unit("time at which the rest threshold was crossed", "s"),
+}
+
+
+def are_si(values: Mapping[str, Any]) -> bool:
+    """Whether these inputs are those of a cylinder."""
+    return "R" in values
+
+
+def scales(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Column -> what it is multiplied by to be in SI units; numbers or one a motion; nothing for a scene."""
+    if not are_si(values):
+        return {}
+    speed, spin = values["R"] / values["T_epsilon"], 1.0 / values["T_epsilon"]
+    energy = values["m"] * speed**2
+    # the integrals over time are over seconds already
+    return {
+        "V": speed, "omega": spin, "x": speed, "angle": spin, "slip_loss": energy, "rolling_loss": energy,
+    }  # fmt: skip
+
+
+def dimensionless(values: Mapping[str, Any], name: str) -> Any:
+    """A start speed, or the rest threshold, from inputs in either units."""
+    if not are_si(values):
+        return values[name]
+    return values[name] * (values["T_epsilon"] if name == "omega0" else values["T_epsilon"] / values["R"])
+
+
+def attributes(name: str, si: bool) -> dict[str, Any]:
+    """long_name, units and more of a column, as JSON takes them."""
+    if si and name in SI:
+        return SI[name]._asdict()
+    if name in CYLINDER and name not in SYMBOLS:
+        return {"long_name": f"{name} of the cylinder", "units": CYLINDER[name].unit}
+    found = export.column_attributes(name)
+    return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in found.items()}
