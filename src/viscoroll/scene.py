@@ -21,6 +21,13 @@ def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool
     ParameterError
         If it is not numeric, not finite, or below ``low``.
     """
+    return checked_extent(name, value, low=low, strict=strict)[0]
+
+
+def checked_extent(
+    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False
+) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array."""
     allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
     try:
         given = np.asarray(value)
@@ -29,14 +36,14 @@ def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool
     if given.dtype.kind not in "iuf":
         raise ParameterError(name, f"{value!r:.60}", allowed)
     array = given.astype(np.float64, copy=False)
-    if not array.size:
-        return array
-    smallest, largest = extent(array)
+    smallest, largest = extent(array) if array.size else (0.0, 0.0)
     # a NaN compares false; without one, no mask of the size of the array is needed
-    if not ((smallest > low if strict else smallest >= low) and -math.inf < smallest and largest < math.inf):
+    if array.size and not (
+        (smallest > low if strict else smallest >= low) and -math.inf < smallest and largest < math.inf
+    ):
         bad = ~(np.isfinite(array) & (array > low if strict else array >= low))
         raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
-    return array
+    return array, (smallest, largest)
 
 
 def extent(array: NDArray[np.float64]) -> tuple[float, float]:
