@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .alpha_slice import WORTHWHILE, slice_for
 from .blocks import elements, run_blocks
+from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .scene import Scene, broadcast_shape, checked, checked_extent
+from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")

@@ -14,8 +14,9 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
+from ..checks import checked
 from ..errors import ConvergenceError, ParameterError
-from ..scene import Scene, checked
+from ..scene import Scene
 from .precise import imported
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
