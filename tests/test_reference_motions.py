@@ -155,7 +155,7 @@ def test_picture_of_tolerance_and_error(tmp_path):
     assert picture.read_bytes()[1:4] == b"PNG"
 
 
-# --- what is known not to hold ---
+# --- motions that were hard ---
 
 #: full slip returns, for the stick zone has nearly but not quite room: condition 89 of the last speed
 GRAZING = (
@@ -183,11 +183,11 @@ ROLLING = (
 )  # fmt: skip
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a step over the end of the stick zone: 850 rtol at some rtol, below 30 at most of them"
-)
 def test_slip_that_returns_in_passing():
-    """One rtol in every input, the condition number times rtol, is the bound."""
+    """One rtol in every input, the condition number times rtol, is the bound; measured 16.
+
+    A step over the end of the stick zone, where the law bends, is no better than the one that ends on it.
+    """
     scene, V0, omega0, end = GRAZING
     best = vr.roll(scene, V0, omega0, [end], rtol=1e-12)
     for rtol in np.geomspace(1e-7, 1e-11, 60):

@@ -13,6 +13,11 @@ from .stepper import FULL, PARTIAL
 #: local error per step is kept at this share of rtol
 SHARE = 0.4
 _D_SHARE = 0.04
+#: an error estimate takes the law to be smooth: weight of one over a step that halves the stick zone, or more
+_HALVED = 10.0
+#: a crossing of delta = 0 is let pass where its distance from the end of the step, times the rise, is this share of a
+#: tolerance
+_KINK = 4.0
 #: growth and shrinkage of steps
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 _TREND = (0.5, 1.5)
@@ -40,13 +45,14 @@ def creep_weight(share):
 
 
 @kernel
-def crossing(u, slope, share, new, slope_new, share_new):
+def crossing(u, slope, share, new, slope_new, share_new, rtol):
     """Fraction of a step in partial slip at which delta passes through 0, where Q is C1 only; 1 if it does not.
 
-    By the cubic through values and slopes at both ends; a crossing within 3 % of either end is let pass.
+    By the cubic through values and slopes at both ends.  The slope of D' in D jumps there, by 2 D' F''/F': a stage on
+    the far side at the distance e spoils the step, which rises by D' h, by a tenth of the product of the two.
     """
     rise = share_new - share
-    if not share * share_new < 0.0 or min(abs(share), abs(share_new)) < 0.03 * abs(rise):
+    if not share * share_new < 0.0 or min(abs(share), abs(share_new)) * abs(rise) < _KINK * SHARE * rtol:
         return 1.0
     # slopes of D/zeta over those of the offset: as the rises
     change = new[1] - u[1]
@@ -61,14 +67,16 @@ def crossing(u, slope, share, new, slope_new, share_new):
 
 
 @kernel
-def error_norm(regime, u, new, share, error, K, travelled, rtol, par):
-    """Largest local error over its weight; <= 1 is acceptable.  ``share``: D/zeta at ``new``."""
+def error_norm(regime, u, new, before, share, error, K, travelled, rtol, par):
+    """Largest local error over its weight; <= 1 is acceptable.  D/zeta was ``before`` and is ``share`` at ``new``."""
     if regime == FULL:
         # V rises less than in proportion to s
         per_s = K[12, 2] / new[0] if new[0] != 0.0 else 0.5 / par[2]
         worst = _SLIDING * abs(error[0]) * per_s / sliding_scale(K[12, 2], new[1], par)
     else:
-        worst = max(abs(error[0]), creep_weight(share) * abs(error[1]) * np.exp(-new[0]))
+        # the law has terms of eta ln eta, and how eta goes to 0 decides on the end of stick
+        weight = _HALVED if 1.0 - abs(share) < 0.5 * (1.0 - abs(before)) else 1.0
+        worst = max(abs(error[0]), weight * creep_weight(share) * abs(error[1]) * np.exp(-new[0]))
     X = travelled[0] + abs(new[2] - u[2])
     angle = travelled[1] + abs(new[3] - u[3])
     if error[2] != 0.0:

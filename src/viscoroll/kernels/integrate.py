@@ -215,9 +215,9 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             relaxation_new = advance(method, regime, u, slope, length, sigma, par, K, new, error)
             if regime == PARTIAL:
                 share_new = slip_share(new, par)
-                if method == EXPLICIT and max(abs(share), abs(share_new)) > np.sqrt(SHARE * rtol):
-                    part = crossing(u, length * slope[1], share, new, length * K[12, 1], share_new)
-            size = error_norm(regime, u, new, share_new, error, K, travelled, rtol, par)
+                if method == EXPLICIT:
+                    part = crossing(u, length * slope[1], share, new, length * K[12, 1], share_new, rtol)
+            size = error_norm(regime, u, new, share, share_new, error, K, travelled, rtol, par)
             steps += 1
             if not size <= 1.0 or part < 1.0:
                 rejected += 1
@@ -230,6 +230,13 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             if reached < 0.0:
                 h = 0.5 * length
                 continue
+            if event == SLIP:
+                # the step that was accepted went beyond eta = 0, where the law bends: the one that ends there may be worse
+                size = error_norm(regime, u, new, share, np.sign(share_new), error, K, travelled, rtol, par)
+                if not size <= 1.0:
+                    rejected += 1
+                    h = shorter(reached, size, method, regime)
+                    continue
             rejected = 0
             h = max(wish, next_length(length, size, length_before, size_before, method))
             wish, length_before, size_before = 0.0, length, max(size, 1e-20)
