@@ -15,7 +15,14 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.law import generators
-from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure, shape_enclosure, slope_changes, slopes
+from viscoroll.reference.enclosures import (
+    INPUTS,
+    condition_numbers,
+    contact_enclosure,
+    shape_enclosure,
+    slope_changes,
+    slopes,
+)
 from viscoroll.validation.states import random_states
 from viscoroll.validation.stresses import closures
 
@@ -41,7 +48,7 @@ def slope_errors(
     Each over what four roundings times a condition number exceed 1e-10.  dQ_ddelta and dQ_domega go to zero with
     beta, whose condition is theirs.  dQ_dV depends on eta through A = H'/F', which rises from 0 within eta ~ 1/alpha:
     near the end of stick a relative error in delta, mu or V comes back up to about 2 alpha lam^2 (1 + epsilon)^2 times
-    as large over mu/V, a million times at alpha = 1e6; one ULP of delta can move the exact value by 5e-11.
+    as large over mu/V: more than a million times at alpha = 1e6.
     """
     off = {name: float(abs(arb(getattr(found, name)) - value).upper()) for name, value in exact.items()}
     sizes = {name: scales[name] if name in ("dQ_dV", "dM_dV") else float(abs(exact[name])) for name in exact}
