@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,6 @@ from random_motions import ChosenMotion, chosen_motion
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll import ViscorollError
 from viscoroll.files import write_dataset, write_text
 from viscoroll.reference.motion import PreciseMotion, roll_precise
 
@@ -107,20 +105,5 @@ def work(settings: CheckMotions, folder: Path) -> stage.Outcome:
     return stage.Outcome(files, {"motions": len(motions), "largest difference": max(row["difference"] for row in rows)})
 
 
-def main() -> int:
-    parser = stage.parser(__doc__)
-    parser.add_argument("--folder", type=Path, default=stage.ROOT / "data/reference", help="default data/reference")
-    arguments = parser.parse_args()
-    start = time.perf_counter()
-    try:
-        settings = stage.read_section(arguments.config, "check_motions", CheckMotions)
-        outcome = work(settings, stage.make_folder(arguments.folder))
-        stage.finish("check_motions", time.perf_counter() - start, outcome, arguments.output)
-    except ViscorollError as error:
-        print(f"check_motions: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(stage.run("check_motions", CheckMotions, work, __doc__, stage.ROOT / "data/reference"))

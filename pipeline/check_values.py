@@ -12,7 +12,6 @@ from __future__ import annotations
 import csv
 import io
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,6 @@ import xarray as xr
 from flint import arb
 from tqdm import tqdm
 
-from viscoroll import ViscorollError
 from viscoroll.files import write_dataset, write_text
 from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
 
@@ -111,20 +109,5 @@ def work(settings: CheckValues, folder: Path) -> stage.Outcome:
     return stage.Outcome(files, {"contact states": len(rows)})
 
 
-def main() -> int:
-    parser = stage.parser(__doc__)
-    parser.add_argument("--folder", type=Path, default=stage.ROOT / "data/reference", help="default data/reference")
-    arguments = parser.parse_args()
-    start = time.perf_counter()
-    try:
-        settings = stage.read_section(arguments.config, "check_values", CheckValues)
-        outcome = work(settings, stage.make_folder(arguments.folder))
-        stage.finish("check_values", time.perf_counter() - start, outcome, arguments.output)
-    except ViscorollError as error:
-        print(f"check_values: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(stage.run("check_values", CheckValues, work, __doc__, stage.ROOT / "data/reference"))

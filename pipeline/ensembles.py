@@ -10,8 +10,6 @@ pipeline/document.py puts the numbers into docs/ensembles.md.
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
 import resource
 import sys
@@ -23,15 +21,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from measure import machine, read_sizes, rounded
+from results import RESULTS, machine, parser, read_sizes, told, write_results
 
 import viscoroll as vr
 from viscoroll.blocks import run_blocks, thread_count
-from viscoroll.files import write_text
 from viscoroll.runs import read_run, run_ensemble, verify
 from viscoroll.runs.store import Store
 
-ROOT = Path(__file__).parents[1]
 WHO = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
 START = """
 V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
@@ -60,23 +56,19 @@ block = {block}
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--config", type=Path, default=ROOT / "pipeline/config/production.toml")
-    parser.add_argument("--quick", action="store_true", help="a few motions: does it run?")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/ensembles.json")
-    arguments = parser.parse_args()
-    try:
-        sizes = read_sizes(arguments.config, "ensembles", arguments.quick)
-        with tempfile.TemporaryDirectory() as folder:
-            os.chdir(folder)
-            results = measured(sizes) | {"threads": thread_count(), "machine": machine(), "sizes": sizes}
-        arguments.output.parent.mkdir(parents=True, exist_ok=True)
-        write_text(arguments.output, json.dumps(rounded(results), indent=1, sort_keys=True, ensure_ascii=False) + "\n")
-    except (vr.ViscorollError, OSError) as error:
-        print(f"ensembles: {error}", file=sys.stderr)
-        return 1
-    print(f"{arguments.output}: written; now run pipeline/document.py")
-    return 0
+    arguments = parser(__doc__, RESULTS / "ensembles.json").parse_args()
+    return told("ensembles", lambda: measure(arguments.config, arguments.quick, arguments.output))
+
+
+def measure(config: Path, quick: bool, output: Path) -> None:
+    """All rows, into ``output``."""
+    sizes = read_sizes(config, "ensembles", quick)
+    output = output.resolve()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        results = measured(sizes) | {"threads": thread_count(), "machine": machine(), "sizes": sizes}
+    write_results(output, results)
+    print(f"{output}: written; now run pipeline/document.py")
 
 
 def measured(sizes: dict[str, Any]) -> dict[str, Any]:

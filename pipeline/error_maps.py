@@ -10,19 +10,18 @@ Grid, states a cell and seed are in [error_maps] of the configuration, those of 
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from measure import read_sizes
 from numpy.typing import NDArray
 from proofs_contact import by_slice, one_by_one, relative_error
+from results import RESULTS, parser, read_sizes, told
+from stage import ROOT
 from tqdm import tqdm
 
-from viscoroll import ViscorollError
 from viscoroll.figures import save
 from viscoroll.figures.style import new_figure, number
 from viscoroll.files import write_dataset
@@ -32,7 +31,6 @@ from viscoroll.symbols import SYMBOLS, label
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ROOT = Path(__file__).parents[1]
 BY_ALPHA = ("lam", "epsilon", "delta_star", "M")
 BY_CREEP = ("Q", "beta")
 WAYS = {"one by one": one_by_one, "slice": by_slice}
@@ -137,26 +135,23 @@ def drawn(maps: xr.Dataset) -> Figure:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--config", type=Path, default=ROOT / "pipeline/config/production.toml")
-    parser.add_argument("--quick", action="store_true", help="few cells: the size of a test")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/error-maps.nc")
-    parser.add_argument("--figure", type=Path, default=ROOT / "docs/figures/error-maps.png")
-    arguments = parser.parse_args()
-    try:
-        sizes = read_sizes(arguments.config, "error_maps", arguments.quick)
-        rng = np.random.default_rng(sizes["seed"])
-        maps = xr.merge([over_alpha(sizes, rng), over_creep(sizes, rng)], combine_attrs="no_conflicts")
-        maps.attrs |= {"title": "Relative error of the contact law in double precision, largest in a cell"}
-        for path in (arguments.output, arguments.figure):
-            path.parent.mkdir(parents=True, exist_ok=True)
-        write_dataset(maps, arguments.output)
-        save(drawn(maps), arguments.figure)
-    except (ViscorollError, OSError) as error:
-        print(f"error_maps: {error}", file=sys.stderr)
-        return 2
-    print(f"{arguments.output}, {arguments.figure}: written")
-    return 0
+    options = parser(__doc__, RESULTS / "error-maps.nc")
+    options.add_argument("--figure", type=Path, default=ROOT / "docs/figures/error-maps.png")
+    arguments = options.parse_args()
+    return told("error_maps", lambda: make(arguments.config, arguments.quick, arguments.output, arguments.figure))
+
+
+def make(config: Path, quick: bool, output: Path, figure: Path) -> None:
+    """The maps and their picture."""
+    sizes = read_sizes(config, "error_maps", quick)
+    rng = np.random.default_rng(sizes["seed"])
+    maps = xr.merge([over_alpha(sizes, rng), over_creep(sizes, rng)], combine_attrs="no_conflicts")
+    maps.attrs |= {"title": "Relative error of the contact law in double precision, largest in a cell"}
+    for path in (output, figure):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    write_dataset(maps, output)
+    save(drawn(maps), figure)
+    print(f"{output}, {figure}: written")
 
 
 if __name__ == "__main__":

@@ -10,23 +10,20 @@ pipeline/document.py puts the tables into docs/accuracy.md.
 
 from __future__ import annotations
 
-import argparse
 import csv
-import json
 import math
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from measure import rounded
 from numpy.typing import NDArray
+from results import RESULTS, parser, told, write_results
 from scipy.optimize import brentq
+from stage import ROOT
 
 import viscoroll as vr
-from viscoroll.files import write_text
 
-ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "data/reference"
 #: friction and kappa of profiles.csv
 PROFILES_MU, PROFILES_KAPPA = 0.2, 29.1
@@ -197,19 +194,15 @@ def rows() -> list[dict[str, Any]]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/independent.json")
-    arguments = parser.parse_args()
-    try:
-        result = {"deviations": rows(), "paper": paper()}
-        arguments.output.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(rounded(result), indent=1, sort_keys=True, ensure_ascii=False)
-        write_text(arguments.output, f"{text}\n")
-    except (vr.ViscorollError, OSError) as error:
-        print(f"independent: {error}", file=sys.stderr)
-        return 2
-    print(f"{arguments.output}: {len(result['deviations'])} deviations, {len(result['paper'])} printed numbers")
-    return 0
+    arguments = parser(__doc__, RESULTS / "independent.json", sizes=False).parse_args()
+    return told("independent", lambda: compare(arguments.output))
+
+
+def compare(output: Path) -> None:
+    """Every comparison, into ``output``."""
+    result = {"deviations": rows(), "paper": paper()}
+    write_results(output, result)
+    print(f"{output}: {len(result['deviations'])} deviations, {len(result['paper'])} printed numbers")
 
 
 if __name__ == "__main__":

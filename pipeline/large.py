@@ -8,19 +8,14 @@ the configuration; 10^8 motions want 8 GB.  pipeline/document.py puts the table 
 
 from __future__ import annotations
 
-import argparse
 import json
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
-from measure import read_sizes, rounded
+from results import RESULTS, parser, read_sizes, told, write_results
 
-from viscoroll import ViscorollError
-from viscoroll.files import write_text
-
-ROOT = Path(__file__).parents[1]
 #: calls on vectors x and y of n elements, or on a grid of n of them; ``alphas`` is a scene with an alpha for each
 CALLS = {
     "one by one": "vr.contact(alphas, x, delta=y, fields='Q')",
@@ -69,21 +64,16 @@ def measured(name: str, count: int) -> dict[str, Any]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--config", type=Path, default=ROOT / "pipeline/config/production.toml")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/large.json")
-    arguments = parser.parse_args()
-    try:
-        sizes = read_sizes(arguments.config, "large", False)
-        rows = [measured(name, sizes["integrated" if name == "integrated" else "elements"]) for name in CALLS]
-        arguments.output.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(rounded({"rows": rows}), indent=1, sort_keys=True, ensure_ascii=False)
-        write_text(arguments.output, f"{text}\n")
-    except (ViscorollError, OSError, subprocess.CalledProcessError) as error:
-        print(f"large: {error}", file=sys.stderr)
-        return 2
-    print(f"{arguments.output}: {len(rows)} calls")
-    return 0
+    arguments = parser(__doc__, RESULTS / "large.json").parse_args()
+    return told("large", lambda: measure(arguments.config, arguments.quick, arguments.output))
+
+
+def measure(config: Path, quick: bool, output: Path) -> None:
+    """All calls, into ``output``."""
+    sizes = read_sizes(config, "large", quick)
+    rows = [measured(name, sizes["integrated" if name == "integrated" else "elements"]) for name in CALLS]
+    write_results(output, {"rows": rows})
+    print(f"{output}: {len(rows)} calls")
 
 
 if __name__ == "__main__":

@@ -10,31 +10,24 @@ this moment: run it with nothing else running.  pipeline/document.py puts the nu
 
 from __future__ import annotations
 
-import argparse
-import datetime
-import json
 import os
-import platform
 import subprocess
 import sys
 import time
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from results import RESULTS, machine, parser, read_sizes, told, write_results
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.errors import ConfigError
-from viscoroll.files import write_text
 from viscoroll.reference import contact_precise
 from viscoroll.validation.states import differences
 from viscoroll.validation.stresses import closures
 
-ROOT = Path(__file__).parents[1]
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 DIGITS = 50
 #: rtol of the motions that the others are held against: the tightest that roll accepts
@@ -44,50 +37,25 @@ LEAST_SPEED = 1e-6 / 1.5
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--config", type=Path, default=ROOT / "pipeline/config/production.toml")
-    parser.add_argument("--quick", action="store_true", help="a few states and motions: does it run?")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "data/results/measured.json")
-    arguments = parser.parse_args()
-    try:
-        sizes = read_sizes(arguments.config, "measure", arguments.quick)
-        os.environ["VISCOROLL_THREADS"] = "1"  # every time is that of one core
-        measured = {
-            "contact_error": contact_errors(sizes),
-            "table_against_direct": table_against_direct(sizes),
-            "stress_closure": stress_closures(sizes),
-            "motion_error": motion_errors(sizes),
-            "time": {**contact_times(sizes), **motion_times(sizes), **process_times(sizes)},
-            "machine": machine(),
-            "sizes": sizes,
-        }
-        arguments.output.parent.mkdir(parents=True, exist_ok=True)
-        write_text(arguments.output, json.dumps(rounded(measured), indent=1, sort_keys=True, ensure_ascii=False) + "\n")
-    except (vr.ViscorollError, OSError) as error:
-        print(f"measure: {error}", file=sys.stderr)
-        return 1
-    print(f"{arguments.output}: written; now run pipeline/document.py")
-    return 0
+    arguments = parser(__doc__, RESULTS / "measured.json").parse_args()
+    return told("measure", lambda: measure(arguments.config, arguments.quick, arguments.output))
 
 
-def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
-    """Section [name] of the configuration, with [name.quick] over it if asked.
-
-    Raises
-    ------
-    ConfigError
-        A file that cannot be read, is not TOML, or lacks the section.
-    """
-    try:
-        section = tomllib.loads(path.read_text(encoding="utf-8"))[name]
-        sizes = section | section["quick"] if quick else section
-        return {key: value for key, value in sizes.items() if key != "quick"}
-    except OSError as error:
-        raise ConfigError(path, f"cannot be read ({error.strerror})") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigError(path, f"is not TOML ({error})") from error
-    except KeyError as error:
-        raise ConfigError(path, f"section [{name}] or its key {error} is missing") from error
+def measure(config: Path, quick: bool, output: Path) -> None:
+    """Everything, into ``output``."""
+    sizes = read_sizes(config, "measure", quick)
+    os.environ["VISCOROLL_THREADS"] = "1"  # every time is that of one core
+    measured = {
+        "contact_error": contact_errors(sizes),
+        "table_against_direct": table_against_direct(sizes),
+        "stress_closure": stress_closures(sizes),
+        "motion_error": motion_errors(sizes),
+        "time": {**contact_times(sizes), **motion_times(sizes), **process_times(sizes)},
+        "machine": machine(),
+        "sizes": sizes,
+    }
+    write_results(output, measured)
+    print(f"{output}: written; now run pipeline/document.py")
 
 
 def random_states(
@@ -256,36 +224,6 @@ def process_times(sizes: dict[str, Any]) -> dict[str, float]:
     bare = seconds("-c", "pass")
     roll = ("-m", "viscoroll", "roll", "--preset", "paper-section-5", "--ic", "IC1", "--t-end", "3e-3")
     return {"bare_python_s": bare, "import_s": seconds("-c", "import viscoroll") - bare, "cli_roll_s": seconds(*roll)}
-
-
-def machine() -> dict[str, Any]:
-    """Where and when, and with what, this was measured."""
-    import numba
-
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        cpu = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        cpu = platform.processor() or platform.machine()
-    return {
-        "cpu": cpu,
-        "cores": len(os.sched_getaffinity(0)),
-        "system": platform.system(),
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "numba": numba.__version__,
-        "viscoroll": vr.__version__,
-        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-    }
-
-
-def rounded(value: Any) -> Any:
-    """Every float to three significant digits: more would be noise in the history."""
-    if isinstance(value, dict):
-        return {str(key): rounded(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [rounded(item) for item in value]
-    return float(f"{value:.3g}") if isinstance(value, float) else value
 
 
 if __name__ == "__main__":

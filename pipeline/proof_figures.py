@@ -5,7 +5,6 @@ python pipeline/proof_figures.py [--results FILE] [-o FILE]
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from pathlib import Path
@@ -13,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from proofs_motion import FACTOR
+from results import RESULTS, parser, told
+from stage import ROOT
 
-from viscoroll import ViscorollError
 from viscoroll.figures import save
 from viscoroll.figures.style import LINES, THIN, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-ROOT = Path(__file__).parents[1]
 #: begin of a claim -> title of its panel; what is below this is drawn there
 PANELS = {
     "V, omega: error over rtol, condition below": rf"$V$, $\omega$, condition below {FACTOR:g}",
@@ -53,17 +52,16 @@ def drawn(rows: list[dict[str, Any]]) -> Figure:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--results", type=Path, default=ROOT / "data/results/proofs.json")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "docs/figures/motion-errors.png")
-    arguments = parser.parse_args()
-    try:
-        save(drawn(json.loads(arguments.results.read_text(encoding="utf-8"))["proofs"]["motion"]), arguments.output)
-    except (ViscorollError, OSError, ValueError, KeyError) as error:
-        print(f"proof_figures: {error!s}", file=sys.stderr)
-        return 2
-    print(f"{arguments.output}: drawn")
-    return 0
+    options = parser(__doc__, ROOT / "docs/figures/motion-errors.png", sizes=False)
+    options.add_argument("--results", type=Path, default=RESULTS / "proofs.json")
+    arguments = options.parse_args()
+    return told("proof_figures", lambda: draw(arguments.results, arguments.output))
+
+
+def draw(results: Path, output: Path) -> None:
+    """The figure of the motion proof."""
+    save(drawn(json.loads(results.read_text(encoding="utf-8"))["proofs"]["motion"]), output)
+    print(f"{output}: drawn")
 
 
 if __name__ == "__main__":

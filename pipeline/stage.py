@@ -40,6 +40,22 @@ class Outcome:
     failed: bool = False
 
 
+def read_toml(path: Path) -> dict[str, Any]:
+    """Content of a TOML file.
+
+    Raises
+    ------
+    ConfigError
+        If it cannot be read or is not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
+    except ValueError as error:  # of tomllib and of UTF-8
+        raise ConfigError(path, f"is not TOML ({error})") from error
+
+
 def read_section(path: Path, name: str, kind: type[T]) -> T:
     """Section [name] of a TOML file as a ``kind``, a struct that forbids unknown fields.
 
@@ -49,12 +65,7 @@ def read_section(path: Path, name: str, kind: type[T]) -> T:
         A file that cannot be read, is not TOML, lacks the section or a key, holds a misspelt key
         or a value of the wrong type.
     """
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
-    except ValueError as error:  # of tomllib and of UTF-8
-        raise ConfigError(path, f"is not TOML ({error})") from error
+    content = read_toml(path)
     if name not in content:
         raise ConfigError(path, f"section [{name}] is missing")
     try:
@@ -107,14 +118,22 @@ def finish(name: str, seconds: float, outcome: Outcome, out: Path) -> None:
         print(f"  {line}: {readable(value)}")
 
 
-def run(name: str, kind: type[T], work: Callable[[T, Path], Outcome], doc: str | None) -> int:
-    """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line."""
-    arguments = parser(doc).parse_args()
+def run(
+    name: str, kind: type[T], work: Callable[[T, Path], Outcome], doc: str | None, folder: Path | None = None
+) -> int:
+    """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line.
+
+    ``work`` writes to --output, or where there is a ``folder`` for what is kept in git, to that or --folder.
+    """
+    options = parser(doc)
+    if folder is not None:
+        options.add_argument("--folder", type=Path, default=folder, help=f"default {shown(folder)}")
+    arguments = options.parse_args()
     try:
         settings = read_section(arguments.config, name, kind)
         out = make_folder(arguments.output)
         start = time.perf_counter()
-        outcome = work(settings, out)
+        outcome = work(settings, out if folder is None else make_folder(arguments.folder))
         finish(name, time.perf_counter() - start, outcome, out)
     except ViscorollError as error:
         print(f"{name}: {error}", file=sys.stderr)

@@ -23,7 +23,7 @@ def folder(tmp_path_factory):
 
 
 def measured(folder: Path, *parts: str) -> list[dict]:
-    result = run(*parts, "--smoke", "-o", str(folder), "--figures", str(folder))
+    result = run(*parts, "--quick", "-o", str(folder), "--figures", str(folder))
     assert result.returncode == 0, result.stdout + result.stderr
     files = [json.loads((folder / f"bench-{part}.json").read_text(encoding="utf-8")) for part in parts]
     assert all({"cpu", "cores", "date", "numba", "python"} <= file["machine"].keys() for file in files)
@@ -81,6 +81,6 @@ def test_refuses_what_it_cannot_do(tmp_path):
     broken = tmp_path / "broken.toml"
     broken.write_text("[bench]\n", encoding="utf-8")
     result = run("law", "--config", str(broken), "-o", str(tmp_path))
-    assert result.returncode == 1
+    assert result.returncode == 2
     assert result.stderr.startswith("benchmark: ")
     assert not list(tmp_path.glob("*.json"))

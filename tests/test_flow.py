@@ -11,7 +11,7 @@ import tolerances as tol
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
 from viscoroll.kernels.flow import SPEEDS, slide
-from viscoroll.motion import flow
+from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, LOSSES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -21,7 +21,7 @@ T = np.linspace(0.0, 3e-3, 16)
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
     """Maps of a test are its own; compiled kernels stay where they are."""
-    monkeypatch.setattr(flow, "_folder", lambda: tmp_path / "maps")
+    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "maps")
     flow._recent.clear()
     yield
     flow._recent.clear()
@@ -281,14 +281,14 @@ def test_kept_on_disk_and_built_once(monkeypatch):
     assert len(calls) == 1
     assert np.array_equal(again.table, first.table)
     assert again.error == first.error
-    (path,) = flow._folder().iterdir()
+    (path,) = flow_store.folder().iterdir()
     assert path.stat().st_size < 3_000_000
 
 
 @pytest.mark.parametrize("damage", ["bit", "truncated", "empty", "other"])
 def test_damaged_file_is_built_again(damage):
     first = flow.flow_map(SCENE, 2.0)
-    (path,) = flow._folder().iterdir()
+    (path,) = flow_store.folder().iterdir()
     content = bytearray(path.read_bytes())
     if damage == "bit":
         content[len(content) // 2] ^= 4
@@ -299,14 +299,14 @@ def test_damaged_file_is_built_again(damage):
     else:
         flow._recent.clear()
         flow.flow_map(SCENE.replace(mu=0.21), 2.0)
-        content = bytearray(next(p for p in flow._folder().iterdir() if p != path).read_bytes())
+        content = bytearray(next(p for p in flow_store.folder().iterdir() if p != path).read_bytes())
     path.write_bytes(content)
     flow._recent.clear()
     with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\); it is built anew"):
         again = flow.flow_map(SCENE, 2.0)
     assert np.array_equal(again.table, first.table)
     flow._recent.clear()
-    assert flow._load(path, first.parameters) is not None
+    assert flow_store.load(path, first.parameters) is not None
 
 
 def test_a_map_in_a_read_only_folder_is_used(monkeypatch):
@@ -324,15 +324,15 @@ def test_a_map_in_a_read_only_folder_is_used(monkeypatch):
 
 def test_a_disk_that_cannot_be_written_is_no_obstacle(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(flow, "_folder", lambda: tmp_path / "file" / "maps")
+    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "file" / "maps")
     assert flow.flow_map(SCENE, 2.0).error < tol.FLOW_SPEED
 
 
 def test_old_maps_are_removed(monkeypatch):
-    monkeypatch.setattr(flow, "_KEPT", 2)
+    monkeypatch.setattr(flow_store, "_KEPT", 2)
     for mu in (0.2, 0.3, 0.4):
         flow.flow_map(SCENE.replace(mu=mu), 2.0)
-    assert len(list(flow._folder().iterdir())) == 2
+    assert len(list(flow_store.folder().iterdir())) == 2
 
 
 def test_distance_is_not_looked_up_unless_asked_for(monkeypatch):

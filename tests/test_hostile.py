@@ -19,7 +19,7 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll import alpha_slice
-from viscoroll.motion import flow
+from viscoroll.motion import flow, flow_store
 
 ROOT = Path(__file__).parents[1]
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -47,7 +47,7 @@ void set(unsigned value) { _mm_setcsr(value); }
 @pytest.fixture
 def cold(tmp_path, monkeypatch):
     """Neither a slice nor a flow map at hand; compiled kernels stay where they are."""
-    monkeypatch.setattr(flow, "_folder", lambda: tmp_path / "maps")
+    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "maps")
     forget()
     yield
     forget()
@@ -127,7 +127,7 @@ usual = register.get()
 test.everything()
 for n, bits in enumerate((0, *test.MODES.values())):
     test.forget()
-    test.flow._folder = lambda: test.Path({str(folder)!r}) / f"maps{{n}}"
+    test.flow_store.folder = lambda: test.Path({str(folder)!r}) / f"maps{{n}}"
     register.set(usual | bits)
     try:
         found = test.everything()
@@ -185,7 +185,7 @@ def test_called_from_several_threads_at_once(cold):
     """The same bits as one call alone, with nothing at hand when they start."""
     expected = everything()
     forget()
-    shutil.rmtree(flow._folder())
+    shutil.rmtree(flow_store.folder())
     together = Barrier(4)
 
     def work(_: int) -> dict[str, np.ndarray]:

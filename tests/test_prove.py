@@ -18,7 +18,7 @@ import xarray as xr
 
 import viscoroll as vr
 from viscoroll.reference import MissingDependencyError, contact_enclosure, contact_precise
-from viscoroll.reference.enclosures import slopes
+from viscoroll.reference.enclosures import INPUTS, slope_changes, slopes
 
 ROOT = Path(__file__).parents[1]
 PIPELINE = ROOT / "pipeline"
@@ -86,6 +86,29 @@ def test_slopes_at_rest_of_slip():
         zip(("alpha", "kappa", "mu", "V", "delta"), map(flint.arb, (11.0, 2.91, 0.2, 1e-12, 1e-14)), strict=True)
     )
     assert float(slopes(given)["dQ_ddelta"]) == pytest.approx(4.0 * 2.91, rel=tol.SPEED_LIMIT)
+
+
+def test_slope_beside_the_end_of_stick_is_as_good_as_its_inputs():
+    """dQ_dV where A = H'/F' rises from 0 within eta ~ 1/alpha: 1e-10, or four roundings times its condition number.
+
+    In the first state neighbouring doubles of delta have exact slopes that differ by 4e-11 of mu/V.
+    """
+    alpha, kappa, mu, V = 818567.6847733351, 0.00013639960282607, 1.0867546107289904e-06, 11466.134198216974
+    scene = vr.Scene(alpha, kappa, mu)
+    star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    creeps = np.array([0.9999999755520173, *(1.0 - np.geomspace(1e-10, 1e-4, 12))]) * star
+    found = vr.contact(scene, V, delta=creeps, fields=(), slopes=True).dQ_dV
+    largest = 0.0
+    for delta, slope in zip(creeps.tolist(), found.tolist(), strict=True):
+        given = dict(zip(INPUTS, map(flint.arb, (alpha, kappa, mu, V, delta)), strict=True))
+        change = slope_changes(given)["dQ_dV"] * V / mu
+        off = float(abs(flint.arb(slope) - slopes(given)["dQ_dV"])) * V / mu
+        assert off <= max(tol.SLOPE_SLIGHT, tol.PROVEN_ROUNDINGS * change), delta
+        largest = max(largest, change)
+    assert tol.PROVEN_ROUNDINGS * largest > tol.SLOPE_SLIGHT  # it is the inputs that do not have the digits
+    given["delta"], above = (flint.arb(float(d)) for d in (creeps[0], np.nextafter(creeps[0], star)))
+    apart = slopes(given)["dQ_dV"] - slopes(given | {"delta": above})["dQ_dV"]
+    assert float(abs(apart)) * V / mu > 0.1 * tol.SLOPE_SLIGHT
 
 
 # --- check values ---

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
+from viscoroll.kernels.bracket import narrowed, secant
 from viscoroll.kernels.direct import (
     direct_contact_length,
     direct_delta_star,
@@ -171,19 +172,12 @@ def locate(which, sticking, u, h, J, sigma, par, atlas, w, K, new):
     for _ in range(_LOCATE_CAP):
         if high - low <= 4e-16 * high or at_high == 0.0:
             break
-        middle = (at_low * high - at_high * low) / (at_low - at_high)
+        middle = secant(low, high, at_low, at_high)
         if not (low < middle < high):
             middle = 0.5 * (low + high)
         step(which, sticking, u, middle, J, sigma, par, atlas, w, K, new)
         value = rates(which, sticking, new[0], new[1], sigma, par, atlas, w)[2]
-        if value > 0.0:
-            low, at_low = middle, value
-            at_high *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            high, at_high = middle, value
-            at_low *= 0.5 if side == -1 else 1.0
-            side = -1
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, middle, value)
     step(which, sticking, u, high, J, sigma, par, atlas, w, K, new)
     return high
 

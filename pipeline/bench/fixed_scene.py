@@ -10,7 +10,7 @@ from tqdm import tqdm
 import viscoroll as vr
 from viscoroll.motion import flow
 
-from .timing import alternating, seconds_of
+from .timing import nanoseconds, rounds, seconds_of
 
 #: error of the integrator that is allowed for, in rtol: see the docstring of viscoroll.roll
 _INTEGRATOR = 30
@@ -40,7 +40,7 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
 
     calls = {name: (lambda given=given: roll(*given)) for name, given in kinds.items()}
     answered = {name: float(call().flow.mean()) for name, call in calls.items()}
-    seconds = alternating(calls | {"load": load}, sizes["repeats"])
+    seconds = rounds(calls | {"load": load}, sizes["repeats"])
     best = vr.ensemble(
         scene, V0[: sizes["exact"]], omega0[: sizes["exact"]], t, method="integrate", rtol=1e-11, fields=("V", "omega")
     )
@@ -49,11 +49,12 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     off = np.maximum(np.abs(found.V[: sizes["exact"]] - best.V), np.abs(found.omega[: sizes["exact"]] - best.omega))
     return {
         "rows": {
-            name: {"ns": 1e9 * seconds[name] / V0.size, "answered": answered[name]} for name in kinds
+            name: nanoseconds(seconds[name], V0.size) | {"answered": answered[name]} for name in kinds
         },
         "error": {"final": float((off / speed)[:, -1].max()), "all_times": float((off / speed).max())},
         "stated_error": made.error, "stated_path_error": made.path_error,
-        "build_s": float(np.median(builds)), "load_s": seconds["load"], "bytes": int(made.table.nbytes),
+        "build_s": float(np.median(builds)), "load_s": float(np.median(seconds["load"])),
+        "bytes": int(made.table.nbytes),
     }  # fmt: skip
 
 

@@ -26,7 +26,7 @@ from viscoroll.kernels.ratios import (
 from viscoroll.reference import contact_precise
 
 from .jit import compiled
-from .timing import alternating
+from .timing import nanoseconds, rounds
 
 FIELDS = ("Q", "M")
 #: states of a block, and the rows of what a block holds
@@ -153,11 +153,11 @@ def law(sizes: dict[str, Any]) -> dict[str, Any]:
         calls[name] = lambda kernel=kernel: kernel(zeta, eta, alpha, scene.kappa, scene.mu, Q, M)
     for call in calls.values():
         call()
-    seconds = alternating(calls, sizes["repeats"])
+    seconds = rounds(calls, sizes["repeats"])
     counts = {name: tried[name][1].size if name in tried else n for name in calls}
     found = {name: _error(calls[name](), *tried[name], sizes["exact_states"]) for name in tried}
     found["explicit_batched"] = found["explicit_scalar"] = _explicit_error(zeta, eta, alpha, scene, sizes)
-    return {name: {"ns": 1e9 * seconds[name] / counts[name], "error": found[name]} for name in calls}
+    return {name: nanoseconds(seconds[name], counts[name]) | {"error": found[name]} for name in calls}
 
 
 def _error(values: Any, scene: vr.Scene, V: NDArray, delta: NDArray, count: int) -> dict[str, float]:

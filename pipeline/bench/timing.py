@@ -35,10 +35,20 @@ def steady_seconds(call: Callable[[], Any]) -> tuple[float, Any]:
     return seconds, result
 
 
-def alternating(calls: dict[Any, Callable[[], Any]], repeats: int) -> dict[Any, float]:
-    """Median seconds of each call: rounds of all of them, so that a slow minute hits all alike."""
+def rounds(calls: dict[Any, Callable[[], Any]], repeats: int) -> dict[Any, list[float]]:
+    """Seconds of each call: rounds of all of them, so that a slow minute hits all alike."""
     seconds: dict[Any, list[float]] = {name: [] for name in calls}
     for _ in range(repeats):
         for name, call in calls.items():
             seconds[name].append(steady_seconds(call)[0])
-    return {name: float(np.median(values)) for name, values in seconds.items()}
+    return seconds
+
+
+def alternating(calls: dict[Any, Callable[[], Any]], repeats: int) -> dict[Any, float]:
+    """Median seconds of each call in :func:`rounds`."""
+    return {name: float(np.median(values)) for name, values in rounds(calls, repeats).items()}
+
+
+def nanoseconds(seconds: list[float], count: int) -> dict[str, float]:
+    """Median and least of what one of ``count`` took: the least is nearest to an idle machine's."""
+    return {"ns": 1e9 * float(np.median(seconds)) / count, "least_ns": 1e9 * min(seconds) / count}

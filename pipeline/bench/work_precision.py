@@ -100,6 +100,7 @@ def _row(entry: dict[str, Any], best: Outcome) -> dict[str, Any]:
         best = Outcome(np.repeat(best.V, motions, axis=0), np.repeat(best.omega, motions, axis=0))
     row = {name: entry[name] for name in ("method", "group", "rtol", "motions", "setup_s")}
     row["us"] = 1e6 * float(np.median(entry["seconds"])) / motions
+    row["least_us"] = 1e6 * min(entry["seconds"]) / motions
     if outcome.evaluations is not None:
         row["evaluations"] = outcome.evaluations / motions
     return row | errors(outcome, best)

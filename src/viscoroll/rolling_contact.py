@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .alpha_slice import WORTHWHILE, slice_for
 from .blocks import elements, run_blocks
+from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .scene import Scene, broadcast_shape, checked
+from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
@@ -120,21 +121,22 @@ def contact(
         "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
         "V": V, creep_name: omega if delta is None else delta,
     }  # fmt: skip
-    arrays = {name: checked(name, value) for name, value in inputs.items()}
+    arrays, extents = {}, {}
+    for name, value in inputs.items():
+        arrays[name], extents[name] = checked_extent(name, value)
     shape = broadcast_shape(**arrays)
-    _refuse_overflow(arrays["kappa"], arrays["V"])
+    if extents["kappa"][1] * max(map(abs, extents["V"])) > _FASTEST:
+        _refuse_overflow(arrays["kappa"], arrays["V"])
     rows = _compute(list(arrays.values()), shape, creep_name == "omega", names, method)
     return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
 
 
 def _refuse_overflow(kappa: NDArray, V: NDArray) -> None:
     """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly: zeta would be 0."""
-    fastest = max(float(V.max(initial=0.0)), -float(V.min(initial=0.0)))
-    if float(kappa.max(initial=0.0)) * fastest > _FASTEST:
-        with np.errstate(over="ignore"):
-            largest = (kappa * np.abs(V)).max(initial=0.0)
-        if largest > _FASTEST:
-            raise ParameterError("kappa |V|", f"{largest:g}", f"at most {_FASTEST:g}")
+    with np.errstate(over="ignore"):
+        largest = (kappa * np.abs(V)).max(initial=0.0)
+    if largest > _FASTEST:
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {_FASTEST:g}")
 
 
 def _field_names(fields: Iterable[str] | None, slopes: bool, method: str) -> tuple[str, ...]:

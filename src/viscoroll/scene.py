@@ -9,55 +9,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .checks import broadcast_shape, checked, number
 from .errors import ParameterError
 from .validity import Validity, contact_reach, judge
-
-
-def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> NDArray[np.float64]:
-    """``value`` as float64, finite and >= ``low`` (> if ``strict``).
-
-    Raises
-    ------
-    ParameterError
-        If it is not numeric, not finite, or below ``low``.
-    """
-    allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
-    try:
-        given = np.asarray(value)
-    except ValueError:  # ragged
-        given = np.asarray(None)
-    if given.dtype.kind not in "iuf":
-        raise ParameterError(name, f"{value!r:.60}", allowed)
-    array = given.astype(np.float64, copy=False)
-    if not array.size:
-        return array
-    smallest, largest = extent(array)
-    # a NaN compares false; without one, no mask of the size of the array is needed
-    if not ((smallest > low if strict else smallest >= low) and -math.inf < smallest and largest < math.inf):
-        bad = ~(np.isfinite(array) & (array > low if strict else array >= low))
-        raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
-    return array
-
-
-def extent(array: NDArray[np.float64]) -> tuple[float, float]:
-    """Least and largest element, both NaN if there is one."""
-    if array.ndim == 0:
-        return float(array), float(array)
-    return float(array.min()), float(array.max())
-
-
-def number(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> float:
-    """As :func:`checked`, and a single number.
-
-    Raises
-    ------
-    ParameterError
-        As there, or for an array.
-    """
-    array = checked(name, value, low=low, strict=strict)
-    if array.ndim:
-        raise ParameterError(name, f"{value!r:.60}", "a single number")
-    return float(array)
 
 
 def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -139,21 +93,6 @@ class Scene:
         return all(np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
 
     __hash__ = None  # type: ignore[assignment]
-
-
-def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
-    """Common shape of the named arrays.
-
-    Raises
-    ------
-    ParameterError
-        Naming the shapes, where they do not broadcast.
-    """
-    try:
-        return np.broadcast_shapes(*(a.shape for a in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
-        raise ParameterError("shapes", shapes, "broadcastable against each other") from None
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .dop853 import E3, STAGES
 from .events import EXPLICIT, STIFF
 from .full_slip import sliding_scale, sliding_speed
 from .jit import kernel
@@ -13,6 +14,11 @@ from .stepper import FULL, PARTIAL
 #: local error per step is kept at this share of rtol
 SHARE = 0.4
 _D_SHARE = 0.04
+#: share of the estimate of order 3 that the error of a step into the bend of the law at eta = 0 can reach
+_BENT = 0.05
+#: a crossing of delta = 0 is let pass where its distance from the end of the step, times the rise, is this share of a
+#: tolerance
+_KINK = 4.0
 #: growth and shrinkage of steps
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 _TREND = (0.5, 1.5)
@@ -40,13 +46,16 @@ def creep_weight(share):
 
 
 @kernel
-def crossing(u, slope, share, new, slope_new, share_new):
+def crossing(u, slope, share, new, slope_new, share_new, rtol):
     """Fraction of a step in partial slip at which delta passes through 0, where Q is C1 only; 1 if it does not.
 
-    By the cubic through values and slopes at both ends; a crossing within 3 % of either end is let pass.
+    By the cubic through values and slopes at both ends.  The slope of D' in D jumps there, by 2 D' F''/F': a stage on
+    the far side at the distance e spoils the step, which rises by D' h, by a tenth of the product of the two at most.
     """
     rise = share_new - share
-    if not share * share_new < 0.0 or min(abs(share), abs(share_new)) < 0.03 * abs(rise):
+    if not share * share_new < 0.0 or abs(share_new) > 1.0:  # beyond 1: a step far too long
+        return 1.0
+    if min(abs(share), abs(share_new)) * abs(rise) < _KINK * SHARE * rtol:
         return 1.0
     # slopes of D/zeta over those of the offset: as the rises
     change = new[1] - u[1]
@@ -58,6 +67,24 @@ def crossing(u, slope, share, new, slope_new, share_new):
         grade = 6.0 * theta * rest + rest * (1.0 - 3.0 * theta) * first + theta * (3.0 * theta - 2.0) * last
         theta -= (value + share / rise) / grade
     return theta if 0.0 < theta < 1.0 else -share / rise
+
+
+@kernel
+def halving(share, share_new, length, new, K, rtol):
+    """Share to try of an explicit step in partial slip that halves the stick zone, where that is too much; else 1.
+
+    The law bends at eta ~ 1/alpha, on which the end of stick depends: of a step that comes there from afar most stages
+    see nothing, and the estimate of order 8 may be small by chance.  That of order 3 is the one to go by.
+    """
+    left, ahead = 1.0 - abs(share), 1.0 - abs(share_new)
+    if not ahead < 0.5 * left:
+        return 1.0
+    third = 0.0
+    for n in range(STAGES):
+        third += E3[n] * K[n, 1]
+    if _BENT * creep_weight(share_new) * abs(length * third) * np.exp(-new[0]) <= SHARE * rtol:
+        return 1.0
+    return max(0.4 * left / (left - ahead), 0.1)
 
 
 @kernel

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import copy
+from .bracket import narrowed, secant
 from .explicit import explicit_dense_terms, explicit_step, slope_at
 from .full_slip import held_step, held_terms, onset, onset_slope, sliding_speed
 from .jit import kernel
@@ -98,23 +99,14 @@ def _root(event, regime, u, new, terms, sigma, par, rest):
     for _ in range(_LOCATE_CAP):
         if high - low <= _NEAR * high or at_high == 0.0:
             break
-        middle = (at_low * high - at_high * low) / (at_low - at_high)
+        middle = secant(low, high, at_low, at_high)
         if not (low < middle < high):
             middle = 0.5 * (low + high)
         value = _value_within(middle, event, regime, u, new, terms, sigma, par, rest)
         if abs(value) <= _NEAR * abs(at_low - at_high):
             high, at_high = middle, value
             break
-        if value > 0.0:
-            low, at_low = middle, value
-            if side == 1:
-                at_high *= 0.5
-            side = 1
-        else:
-            high, at_high = middle, value
-            if side == -1:
-                at_low *= 0.5
-            side = -1
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, middle, value)
     near, far = max(high - _DIFFERENCE, 0.0), min(high + _DIFFERENCE, 1.0)
     before = _value_within(near, event, regime, u, new, terms, sigma, par, rest)
     after = _value_within(far, event, regime, u, new, terms, sigma, par, rest)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import flow_layout as layout
+from .bracket import narrowed, secant
 from .flow import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, SPEEDS, layer_state, slow_creep
 from .jit import kernel
 
@@ -58,17 +59,11 @@ def earlier_entry(V, delta, first, table, par):
             if excess > 0.0:  # nearer to the manifold than any motion of the table
                 return PLUS, v, np.inf, abs(delta - slow) < _NEARLY
             at_high = excess
-        elif excess > 0.0:
-            low, at_low = E, excess
-            at_high *= 0.5 if side == 1 else 1.0
-            side = 1
         else:
-            high, at_high = E, excess
-            at_low *= 0.5 if side == -1 else 1.0
-            side = -1
+            low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, E, excess)
         if abs(excess) < 1e-12 or high - low < 1e-13 * high:
             break
-        E = low + (high - low) * at_low / (at_low - at_high)
+        E = secant(low, high, at_low, at_high)
     a, reached, _, _, _ = layer_state(family, v0, E, first, SPEEDS, table)
     found = abs(v0 * np.exp(a) - v) <= _RESIDUAL * v and abs(reached - delta) <= _RESIDUAL
     return family, v0, E, found

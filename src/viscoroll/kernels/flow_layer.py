@@ -15,12 +15,12 @@ import numpy as np
 
 from . import dop853
 from . import flow_layout as layout
+from .bracket import narrowed, secant
 from .flow import slow_entry, slow_loss, slow_path
 from .flow_fit import BINS, N, bin_of, fit_matrix, node, put, value
 from .jit import kernel
 from .law import contact_length, generator_slopes
-from .partial_slip import slip_differences
-from .slopes import at_contact
+from .partial_slip import branch_rates
 
 _LONGEST = 0.5
 _SPEED_N, _FAST_N = layout.SPEED_COEFFICIENTS, layout.FAST_COEFFICIENTS
@@ -56,26 +56,6 @@ def stiff_rate(V, par):
 
 
 @kernel
-def _rates(y, D, sign, par):
-    """(y', D', V, delta, eta, (omega - V) Q): Eq. (22) in ln zeta and D = sign (zeta - eta), as :mod:`partial_slip`."""
-    alpha, c, kappa, mu, j = par
-    zeta = np.exp(y)
-    g, h, dg, dh, _, _, m, _ = at_contact(zeta, alpha, c)
-    size = sign * D
-    g_eta, h_eta, dg_eta, _ = generator_slopes(zeta - size, alpha, c)
-    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
-    lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
-    V = np.sqrt(lam2) / (2.0 * kappa * zeta)
-    q_over_V = sign * mu * rise_H * lam2 / zeta / V
-    rate = q_over_V - 0.5 * m
-    dy = -rate / (lam2 * (1.0 + h / zeta + dh))
-    d = sign * rise_F
-    dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) / (mu * V) - 2.0 * d * rate
-    delta = mu * V * d
-    return dy, (dd - sign * (dg - dg_eta) * zeta * dy) / (1.0 + dg_eta), V, delta, zeta - size, delta * V * V * q_over_V
-
-
-@kernel
 def _advance(u, h, sign, V0, per_E, par, K, new):
     """One step of length h in E of (y, D, x excess, angle excess, slip loss over V0^2)."""
     for i in range(dop853.STAGES):
@@ -83,10 +63,10 @@ def _advance(u, h, sign, V0, per_E, par, K, new):
         for n in range(i):
             y += h * dop853.A[i, n] * K[n, 0]
             D += h * dop853.A[i, n] * K[n, 1]
-        dy, dD, V, delta, _, power = _rates(y, D, sign, par)
+        dy, dD, V, delta, q_over_V = branch_rates(y, D, sign, par)
         K[i, 0], K[i, 1] = dy * per_E, dD * per_E
         K[i, 2], K[i, 3] = V / V0 - 1.0, V * (1.0 + delta) / V0 - 1.0
-        K[i, 4] = power * per_E / (V0 * V0)
+        K[i, 4] = delta * V * V * q_over_V * per_E / (V0 * V0)
     for m in range(5):
         new[m] = u[m]
         for n in range(dop853.STAGES):
@@ -100,16 +80,9 @@ def _crossing(u, h, sign, V0, per_E, par, K, new):
     for _ in range(60):
         if high - low <= 1e-15 * high or at_high == 0.0:
             break
-        middle = (at_low * high - at_high * low) / (at_low - at_high)
+        middle = secant(low, high, at_low, at_high)
         _advance(u, middle, sign, V0, per_E, par, K, new)
-        if sign * new[1] > 0.0:
-            low, at_low = middle, sign * new[1]
-            at_high *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            high, at_high = middle, sign * new[1]
-            at_low *= 0.5 if side == -1 else 1.0
-            side = -1
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, middle, sign * new[1])
     _advance(u, high, sign, V0, per_E, par, K, new)
     return high
 
@@ -138,12 +111,12 @@ def _roll(V0, entering, sign, low, par, values, crossing):
                 if entering and crossing[0] < 0.0 and sign * new[1] <= 0.0:
                     trial[:] = new
                     crossing[0] = E + _crossing(u, h, sign, V0, 1.0 / rate, par, K, trial)
-                    crossing[1] = np.log(_rates(trial[0], 0.0, sign, par)[2] / V0)
+                    crossing[1] = np.log(branch_rates(trial[0], 0.0, sign, par)[2] / V0)
                     crossing[2:] = trial[2:]
                 u[:] = new
                 E = target if h == target - E else E + h
-            _, _, V, delta, eta, _ = _rates(u[0], u[1], sign, par)
-            if not eta > 0.0:
+            _, _, V, delta, _ = branch_rates(u[0], u[1], sign, par)
+            if not np.exp(u[0]) > sign * u[1]:
                 return E, -1.0, u[2], u[3], u[4]
             values[b, LN_V, n], values[b, SLIP, n] = np.log(V / V0), delta
             values[b, X_EXCESS, n], values[b, ANGLE_EXCESS, n], values[b, LOSS, n] = u[2], u[3], u[4]

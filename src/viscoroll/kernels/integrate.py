@@ -17,6 +17,7 @@ from .control import (
     crossing,
     error_norm,
     first_length,
+    halving,
     next_length,
     reach,
     shorter,
@@ -211,18 +212,21 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             event, length, last = STICK, 0.0, False
             copy(u, new)
         elif length > 0.0:
-            part = 1.0
+            part = half = 1.0
             relaxation_new = advance(method, regime, u, slope, length, sigma, par, K, new, error)
             if regime == PARTIAL:
                 share_new = slip_share(new, par)
-                if method == EXPLICIT and max(abs(share), abs(share_new)) > np.sqrt(SHARE * rtol):
-                    part = crossing(u, length * slope[1], share, new, length * K[12, 1], share_new)
+                if method == EXPLICIT:
+                    part = crossing(u, length * slope[1], share, new, length * K[12, 1], share_new, rtol)
+                    half = halving(share, share_new, length, new, K, rtol)
             size = error_norm(regime, u, new, share_new, error, K, travelled, rtol, par)
             steps += 1
-            if not size <= 1.0 or part < 1.0:
+            if not size <= 1.0 or part < 1.0 or half < 1.0:
                 rejected += 1
-                wish = length if size <= 1.0 else 0.0
-                h = min(part * length, shorter(length, size, method, regime))
+                wish = length if size <= 1.0 and part < 1.0 else 0.0
+                h = min(part, half) * length
+                if half == 1.0:
+                    h = min(h, shorter(length, size, method, regime))
                 continue
             event, reached = first_event(
                 method, regime, u, slope, length, sigma, par, rest, share_new, K, new, error, terms
@@ -230,6 +234,15 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             if reached < 0.0:
                 h = 0.5 * length
                 continue
+            if event == SLIP:
+                # the step that was accepted went beyond eta = 0, where the law bends: this one ends there
+                share_new = np.sign(share_new)
+                size = error_norm(regime, u, new, share_new, error, K, travelled, rtol, par)
+                half = halving(share, share_new, reached, new, K, rtol) if method == EXPLICIT else 1.0
+                if not size <= 1.0 or half < 1.0:
+                    rejected += 1
+                    h = half * reached if half < 1.0 else shorter(reached, size, method, regime)
+                    continue
             rejected = 0
             h = max(wish, next_length(length, size, length_before, size_before, method))
             wish, length_before, size_before = 0.0, length, max(size, 1e-20)

@@ -16,6 +16,7 @@ from .layer import (
     Y,
     decays_throughout,
     layer_dense_terms,
+    layer_node,
     layer_rise,
     layer_solve,
     manifold,
@@ -167,6 +168,7 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
                 renewed = above_manifold(known, slow_creep(known, slow)[0] + e, rtol, slow, work, par)
                 if renewed * e > 0.0:
                     e, left = renewed, np.log(renewed / e) + left
+                    layer_node(0, e, 1.0, nodes, slow, par)
                     continue
             length = next_panel(length, power, size)
             if length >= shortest:

@@ -86,24 +86,31 @@ def partial_rates(y, offset, par):
     _, h, _, dh, _, ddh, m, dm = contact
     D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
     D = D0 + offset
-    dy, dD, V, delta, rate, dy_D, dD_D, delta_D = _rates(zeta, D, contact, par)
+    dy, dD, V, delta, rate, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, par)
     return dy, dD - D0_y * dy, V, delta, rate, dy_D, dD_D - D0_y * dy_D, delta_D, D
 
 
 @kernel(inline=True)
 def creep_rates(y, D, par):
     """(y', D', V, delta) at y = ln zeta and D."""
-    zeta = np.exp(y)
-    dy, dD, V, delta, _, _, _, _ = _rates(zeta, D, at_contact(zeta, par[0], par[1]), par)
+    dy, dD, V, delta, _ = branch_rates(y, D, np.sign(D), par)
     return dy, dD, V, delta
 
 
 @kernel(inline=True)
-def _rates(zeta, D, contact, par):
-    """(y', D', V, delta, V'/V, d(y', D', delta)/dD; that of D' to leading order in V)."""
+def branch_rates(y, D, sign, par):
+    """(y', D', V, delta, Q/V) on the branch of the law with this sign of delta, which goes on through D = 0."""
+    zeta = np.exp(y)
+    dy, dD, V, delta, _, _, _, _, q_over_V = _rates(zeta, D, sign, at_contact(zeta, par[0], par[1]), par)
+    return dy, dD, V, delta, q_over_V
+
+
+@kernel(inline=True)
+def _rates(zeta, D, sign, contact, par):
+    """(y', D', V, delta, V'/V, d(y', D', delta)/dD, Q/V); that of D' to leading order in V."""
     alpha, c, kappa, mu, j = par
     g, h, dg, dh, _, _, m, _ = contact
-    size = abs(D)
+    size = sign * D
     g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, alpha, c)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
     per = 1.0 / zeta
@@ -111,7 +118,6 @@ def _rates(zeta, D, contact, par):
     U = 1.0 + h * per + dh  # H'/(2 zeta)
     lam2, per_V = 1.0 / square, 2.0 * kappa * zeta * np.sqrt(square)
     V = 1.0 / per_V
-    sign = np.sign(D)
     scale = mu * lam2 * per * per_V
     q_over_V = sign * rise_H * scale
     rate = q_over_V - 0.5 * m
@@ -126,7 +132,7 @@ def _rates(zeta, D, contact, par):
     eta = max(zeta - size, 0.0)
     stiffness = 2.0 * scale * per * (eta + h_eta + eta * dh_eta)
     dD_D = -(1.0 + 1.0 / j) * stiffness * (per_V / mu) * per_F
-    return dy, dD, V, mu * V * d, rate, stiffness * per_rise, dD_D, mu * V * slope_F
+    return dy, dD, V, mu * V * d, rate, stiffness * per_rise, dD_D, mu * V * slope_F, q_over_V
 
 
 @kernel

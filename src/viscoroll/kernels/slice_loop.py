@@ -79,8 +79,11 @@ def slice_loop(
         row[rows[n]] = n
     need_length = max(row[LAM], row[ZETA], row[BETA]) >= 0
     worst = OK
+    a = b = to_creep = of_creep = 1.0
     for i in range(start, stop):
-        a, b = kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)]
+        if i == start or kappa.size > 1 or mu.size > 1:
+            a, b = kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)]
+            to_creep, of_creep = 0.5 * b / a, 2.0 * a / b
         v, x = V[min(i, V.size - 1)], creep[min(i, creep.size - 1)]
         u = a * abs(v)
         at = bin_number(u) - first_speed
@@ -90,9 +93,9 @@ def slice_loop(
             L = polynomial_of(speed, at, CREEP, t)
             slip, sign, _ = signed_slip(v, x, creep_is_omega)
             delta = creep_ratio(v, x, slip, creep_is_omega)
-            delta_star = 0.5 * b * L / a
+            delta_star = to_creep * L
             full_slip = abs(delta) >= delta_star
-            D = 2.0 * a * abs(delta) / b
+            D = of_creep * abs(delta)
             w = L - D
             served = full_slip or w >= EDGE * L or not need_stick
         if not served:

@@ -108,16 +108,17 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
     """
     values, matrix, right, powers = work
     tau_end = tau_out[tau_out.size - 1]
-    length, entering = _FIRST, True
+    length, entering, before = _FIRST, True, np.inf
     slow_start(u[0], u[1], values, par)
     relaxation = -values[REACHED, 7]
     while at < tau_out.size and u[0] < far and steps < max_steps:
         length = min(length, _LONGEST, max(1.1 * (tau_end - tau) * values[REACHED, 1], 0.05))
         size, offset_size, rise, X, angle = attempt(u, length, rtol, travelled, values, matrix, right, par)
         steps += 1
-        if size <= 1.0 < offset_size and entering:
+        # what is left of the layer stays as the interval is shortened; what the interval does not resolve falls
+        if size <= 1.0 < offset_size and entering and offset_size > 0.5 * before:
             return LEFT, tau, at, steps, ends, tau + max(np.log(offset_size), 1.0) / relaxation
-        size = max(size, offset_size)
+        size, before = max(size, offset_size), offset_size
         if not size <= 1.0:
             length = next_interval(length, size)
             if length < _SHORTEST or relaxation * length < _STIFF * values[REACHED, 1]:

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..blocks import run_blocks
+from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import flattened
-from ..scene import Scene, broadcast_shape, extent, number
+from ..scene import Scene
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .flow import Answer, FlowMap, ask, flow_map
 

@@ -7,22 +7,17 @@ highest speed, which is the next power of 16 (times a constant) above the speeds
 
 from __future__ import annotations
 
-import hashlib
-import io
 import math
-import warnings
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks
-from ..errors import OutputError
-from ..files import seal, seal_holds, write_bytes
 from ..rolling_contact import flattened
 from ..scene import Scene
+from .flow_store import FlowMap, load, path_of, save
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows
@@ -33,44 +28,12 @@ _MEASURED, _LOSS_EVERY = (0, 1, 2, 3, 6, 7), 4
 #: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
 #: far and to this share of the whole
 _PATH_SHARE = 1e-5
-#: maps kept on disk; the one that was used longest ago goes first
-_KEPT = 64
 #: maps kept in memory, the one used last at the end
 _IN_MEMORY = 4
 _recent: dict[tuple, FlowMap] = {}
 _BLOCK = 1 << 14
 #: octaves that the highest speed is rounded up to
 _OCTAVES = 4
-
-
-@dataclass(frozen=True)
-class FlowMap:
-    """Tables that roll the motions of one scene.
-
-    Attributes
-    ----------
-    parameters : alpha, c, kappa, mu, j.
-    first : kappa V of the slowest stick onset in it is 2**first.
-    table : all tables, see ``kernels/flow_layout.py``.
-    error : stated error of V and omega relative to the larger of the two: four times the worst
-        of 100 motions that the integrator rolled at rtol 1e-11 when the map was built.
-    path_error : the same of distance and angle, relative to the larger of the two so far (and
-        to 1e-5 of that at rest: they are differences of what is left to it).
-    loss_error : the same of the energy lost in slip and in rolling, relative to that at the start.
-    problem : why the scene has no map, or "".
-    """
-
-    parameters: tuple[float, ...]
-    first: int
-    table: NDArray[np.float64]
-    error: float
-    path_error: float
-    loss_error: float
-    problem: str
-
-    def stated_error(self, *, path: bool, loss: bool) -> float:
-        """The largest of the errors of the speeds and, where asked for, of the path and the losses."""
-        return max(self.error, self.path_error if path else 0.0, self.loss_error if loss else 0.0)
 
 
 def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
@@ -92,74 +55,16 @@ def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowM
     key = (*parameters, octave)
     found = _recent.pop(key, None)
     if found is None:
-        path = _path(parameters, octave)
-        found = _load(path, parameters)
+        path = path_of(parameters, octave)
+        found = load(path, parameters)
         if found is None:
             found = build(parameters, octave, threads)
-            _save(found, path)
+            save(found, path)
     _recent[key] = found
     with suppress(StopIteration, RuntimeError, KeyError):  # another thread may be here too: it only costs a map
         while len(_recent) > _IN_MEMORY:
             del _recent[next(iter(_recent))]
     return found
-
-
-def _folder() -> Path:
-    """Where maps are kept: they are worth no more than the kernels that fill and read them."""
-    from ..kernels.jit import cache_root, sources_digest
-
-    return cache_root() / f"flow-{sources_digest()}"
-
-
-def _path(parameters: tuple[float, ...], octave: int) -> Path:
-    name = hashlib.sha256(b"sealed" + np.array([*parameters, octave]).tobytes()).hexdigest()[:20]
-    return _folder() / f"{name}.npz"
-
-
-def _load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
-    try:
-        content = path.read_bytes()
-    except OSError:
-        return None
-    try:
-        found = _parsed(content, parameters)
-    except Exception as error:
-        warnings.warn(f"{path}: flow map is damaged ({error}); it is built anew", RuntimeWarning, stacklevel=2)
-        return None
-    with suppress(OSError):  # a folder that is read-only
-        path.touch()
-    return found
-
-
-def _parsed(content: bytes, parameters: tuple[float, ...]) -> FlowMap:
-    from ..kernels.flow_layout import SIZE
-
-    if not seal_holds(content):
-        raise ValueError("its bytes differ from the SHA-256 at their end")
-    with np.load(io.BytesIO(content)) as data:
-        found = FlowMap(
-            tuple(data["parameters"].tolist()), int(data["first"]), data["table"],
-            float(data["error"]), float(data["path_error"]), float(data["loss_error"]), str(data["problem"]),
-        )  # fmt: skip
-    if found.parameters != parameters or found.table.shape != (SIZE,):
-        raise ValueError("it is that of another scene")
-    return found
-
-
-def _save(made: FlowMap, path: Path) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        content = io.BytesIO()
-        np.savez(
-            content, parameters=made.parameters, first=made.first, table=made.table,
-            error=made.error, path_error=made.path_error, loss_error=made.loss_error, problem=made.problem,
-        )  # fmt: skip
-        write_bytes(path, seal(content.getvalue()))
-        oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
-        for file in oldest[:-_KEPT]:
-            file.unlink()
-    except (OSError, OutputError):
-        pass
 
 
 def build(parameters: tuple[float, ...], octave: int, threads: int | None = None) -> FlowMap:

@@ -14,8 +14,9 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
+from ..checks import checked
 from ..errors import ConvergenceError, ParameterError
-from ..scene import Scene, checked
+from ..scene import Scene
 from .precise import imported
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
@@ -23,6 +24,8 @@ _MOST_BITS = 1 << 14
 _MOST_STEPS = 100
 #: log2 of the relative step of the differences in :func:`condition_numbers` and :func:`slopes`
 _STEP_BITS = 180
+#: and of that in :func:`slope_changes`, which differs differences
+_OUTER_BITS = 80
 
 
 def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: float, bits: int = 100) -> dict[str, Any]:
@@ -91,13 +94,17 @@ def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]
     with flint.ctx.workprec(4 * bits):
         step = flint.arb(2) ** -_STEP_BITS
         for name in INPUTS:
-            # alpha moves up, away from 1, and delta down, away from delta_star
-            moved = enclosed(given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits)
+            moved = enclosed(_moved(given, name, step), bits)
             for field, sum_so_far in total.items():
                 if not base[field].is_zero():
                     change = abs((moved[field] - base[field]) / (base[field] * step))
                     total[field] = sum_so_far + float(change.mid())
     return total
+
+
+def _moved(given: dict[str, Any], name: str, step: Any) -> dict[str, Any]:
+    """One input moved by a relative step: alpha up, away from 1, and delta down, away from delta_star."""
+    return given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}
 
 
 def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
@@ -115,6 +122,21 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
             for name in ("Q", "M") if by == "V" else ("Q",):
                 found[f"d{name}_d{by}"] = (up[name] - down[name]) / (2 * step * given[by])
     return found
+
+
+def slope_changes(given: dict[str, Any], bits: int = 40) -> dict[str, float]:
+    """Sum over the inputs of |d slope/d ln input| for every slope: its change for a relative error of one in each."""
+    flint = _flint()
+    bits += _OUTER_BITS
+    base = slopes(given, bits)
+    total = dict.fromkeys(base, 0.0)
+    with flint.ctx.workprec(4 * (bits + _STEP_BITS)):
+        step = flint.arb(2) ** -_OUTER_BITS
+        for name in INPUTS:
+            moved = slopes(_moved(given, name, step), bits)
+            for slope, sum_so_far in total.items():
+                total[slope] = sum_so_far + float(abs((moved[slope] - base[slope]) / step).mid())
+    return total
 
 
 def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:

@@ -11,8 +11,9 @@ import importlib
 from collections.abc import Callable
 from typing import Any
 
+from ..checks import checked
 from ..errors import ConvergenceError, ParameterError, ViscorollError
-from ..scene import Scene, checked
+from ..scene import Scene
 
 #: Digits that the printed forms may lose: lam^-2 - 1 as V -> 0, lam^2 - 1/alpha as V grows
 #: and as alpha -> 1, 1 - H(eta)/H(zeta) as delta -> 0.

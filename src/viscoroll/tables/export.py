@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import __version__
+from ..checks import checked
 from ..errors import ParameterError
 from ..files import replacing, write_text
-from ..scene import checked
 from ..symbols import PAPER, SYMBOLS
 from . import schema, store
 from .accuracy import SAMPLE, SEED, linear_errors

@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import checked, number
 from ..errors import ParameterError
-from ..scene import checked, number
 
 #: A not-a-knot cubic needs four nodes.
 _MIN_NODES = 4

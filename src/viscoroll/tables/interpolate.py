@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import broadcast_shape, checked
 from ..errors import OutOfTableError, ParameterError
 from ..rolling_contact import Values, flattened
-from ..scene import broadcast_shape, checked
 from . import schema
 from .grid import ATLAS_MAPS
 

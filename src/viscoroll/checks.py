@@ -1,0 +1,79 @@
+"""Numbers that callers give, as float64 or refused by name: finite, in range, of shapes that go together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import ParameterError
+
+
+def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> NDArray[np.float64]:
+    """``value`` as float64, finite and >= ``low`` (> if ``strict``).
+
+    Raises
+    ------
+    ParameterError
+        If it is not numeric, not finite, or below ``low``.
+    """
+    return checked_extent(name, value, low=low, strict=strict)[0]
+
+
+def checked_extent(
+    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False
+) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array."""
+    allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
+    try:
+        given = np.asarray(value)
+    except ValueError:  # ragged
+        given = np.asarray(None)
+    if given.dtype.kind not in "iuf":
+        raise ParameterError(name, f"{value!r:.60}", allowed)
+    array = given.astype(np.float64, copy=False)
+    smallest, largest = extent(array) if array.size else (0.0, 0.0)
+    # a NaN compares false; without one, no mask of the size of the array is needed
+    if array.size and not (
+        (smallest > low if strict else smallest >= low) and -math.inf < smallest and largest < math.inf
+    ):
+        bad = ~(np.isfinite(array) & (array > low if strict else array >= low))
+        raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
+    return array, (smallest, largest)
+
+
+def extent(array: NDArray[np.float64]) -> tuple[float, float]:
+    """Least and largest element, both NaN if there is one."""
+    if array.ndim == 0:
+        return float(array), float(array)
+    return float(array.min()), float(array.max())
+
+
+def number(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> float:
+    """As :func:`checked`, and a single number.
+
+    Raises
+    ------
+    ParameterError
+        As there, or for an array.
+    """
+    array = checked(name, value, low=low, strict=strict)
+    if array.ndim:
+        raise ParameterError(name, f"{value!r:.60}", "a single number")
+    return float(array)
+
+
+def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
+    """Common shape of the named arrays.
+
+    Raises
+    ------
+    ParameterError
+        Naming the shapes, where they do not broadcast.
+    """
+    try:
+        return np.broadcast_shapes(*(a.shape for a in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise ParameterError("shapes", shapes, "broadcastable against each other") from None
