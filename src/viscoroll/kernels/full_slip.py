@@ -14,6 +14,12 @@ from .law import contact_length, generator_slopes, generators, moment_factor
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 
+#: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.31, for alpha -> infinity
+_HOLDS = 0.16
+#: steps of Newton's iteration, its difference quotient, and its last step
+_NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
+
+
 @kernel
 def _moment(V, par):
     """M(V), odd in V, without its slope."""
@@ -101,15 +107,23 @@ def sliding_scale(V, w, par):
 
 
 @kernel
-def standstill(low, high, sigma, par):
-    """s between these two, in any order, at which rolling resistance holds V against the traction, M(V) = 2 mu."""
-    _, before, _, _, _ = sliding(low, sigma, par)
-    while True:
-        middle = 0.5 * low + 0.5 * high
-        if middle == low or middle == high:
-            return middle
-        _, rate, _, _, _ = sliding(middle, sigma, par)
-        if rate * before > 0.0:
-            low = middle
-        else:
-            high = middle
+def standstill(par):
+    """The least s at which rolling resistance holds V against the traction, M(V) = 2 mu; NaN if there is none.
+
+    From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
+    """
+    _, c, kappa, mu, _ = par
+    if not kappa * mu < _HOLDS:
+        return np.nan
+    # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
+    s = 4.0 * kappa * mu / c
+    for _ in range(_NEWTON):
+        _, rate, _, _, _ = sliding(s, 1.0, par)
+        _, further, _, _, _ = sliding(s * (1.0 + _DIFFERENCE), 1.0, par)
+        change = rate * _DIFFERENCE * s / (rate - further)
+        if not (further < rate and change < s):
+            return np.nan
+        s += change
+        if abs(change) <= _FOUND * s:
+            return s
+    return np.nan

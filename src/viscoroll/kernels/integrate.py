@@ -45,6 +45,8 @@ _MOST_REJECTIONS = 60
 _STIFF_FROM = 4.0
 #: speeds below this count as 0 beside others, and as already rolling among themselves
 _TINY = 1e-150
+#: least 1/zeta at which stick begins
+_LEAST = 1e-300
 #: beyond this zeta (kappa V < 1e-17) the slow motion is exponential to rounding
 _COAST = 1e17
 
@@ -89,7 +91,8 @@ def switch(event, regime, direction, sigma, u, par, offset):
         u[2 + m] = 0.0
     j = par[4]
     if event == STICK:
-        u[0] = -np.log(u[0])
+        # both speeds may end at once, to rounding
+        u[0] = -np.log(max(u[0], _LEAST))
         u[1] = sigma * np.exp(u[0]) - slow_D(u[0], par)[0]
         return PARTIAL, direction, sigma
     if event == SLIP:

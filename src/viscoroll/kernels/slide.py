@@ -20,15 +20,17 @@ from .events import STICK
 from .full_slip import edge_of_stick, sliding
 from .jit import kernel
 
-#: rows of the values at the nodes: tau', I' and Z' (over the length), V, slip less stick limit, the larger speed
-D_TAU, D_I, D_Z, V, SLIP, SPEED = range(6)
-SLIDE_ROWS = 6
-#: rows of the interpolants of tau, I, Z, and of the function of an event
-TAU, LOST, LOST_WAY, EVENT = range(4)
+#: rows of the values at the nodes: tau', I' and Z' (over the length), V, slip less stick limit, the larger speed, Z/tau
+D_TAU, D_I, D_Z, V, SLIP, SPEED, MEAN = range(7)
+SLIDE_ROWS = 7
+#: rows of the interpolants of tau, I, Z/tau (Z itself would lose its digits early), and of the function of an event
+TAU, LOST, MEAN_LOST, EVENT = range(4)
 #: beyond this length V has changed by so much that its change is good for the time
 _LONG = 0.5
 #: iterations to find an event, and a step after which none is needed
 _MOST_ITERATIONS, _LAST = 100, 1e-9
+#: rounding of an extrapolation to the left end
+_ROUNDING = 1e-14
 #: a parabola that falls below this share of the lowest node is looked into
 _DIP = 0.5
 
@@ -43,16 +45,16 @@ def s_at(v, panel):
 
 @kernel
 def slide_rates(panel, sigma, par, nodes):
-    """Fill tau', I', V and the stick limit; the first node whose V' is not of the sign it has at the start, else 0."""
+    """Fill tau', I', V and the stick limit; whether V' keeps its sign."""
     s, pole, length, _, _, _ = panel
     for i in range(N + 1):
         at, _ = s_at(1.0 + NODES[i], panel)
         speed, rate, per_s, half_M, limit = sliding(at, sigma, par)
         per = (s - pole) * np.exp(0.5 * length * (1.0 + NODES[i])) * per_s / rate
         if not per * length > 0.0:
-            return i
+            return False
         nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = per, half_M * per, speed, limit
-    return 0
+    return True
 
 
 @kernel
@@ -100,25 +102,38 @@ def slide_sums(panel, sigma, par, nodes):
         nodes[D_Z, i] = I * nodes[D_TAU, i]
         nodes[SLIP, i] = _slip(tau, I, panel, sigma, par) - nodes[SLIP, i]
         nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, par)
+        nodes[MEAN, i] = half / tau
+    nodes[MEAN, 0] = 0.0
+    for i in range(1, N + 1):
+        Z = 0.0
+        for n in range(N):
+            Z += INTEGRALS[i - 1, n] * nodes[D_Z, n + 1]
+        nodes[MEAN, i] *= Z
     return tau
 
 
 @kernel
 def slide_error(length, nodes):
-    """Mismatch of I at the left end, with that of the place there for a given time."""
-    tau_off, I_off, rate = nodes[D_TAU, 0], nodes[D_I, 0], nodes[D_I, 0] / nodes[D_TAU, 0]
+    """Mismatch at the left end of I for a given time, beyond rounding.
+
+    An error of the time alone moves I by M/2 times as much, and so cancels where V stands almost still.
+    """
+    first, last = nodes[D_I, 0] / nodes[D_TAU, 0], nodes[D_I, N] / nodes[D_TAU, N]
+    tau_off, I_off, largest = nodes[D_TAU, 0], nodes[D_I, 0], abs(nodes[D_I, 0])
     for i in range(1, N + 1):
         tau_off -= TO_START[i - 1] * nodes[D_TAU, i]
         I_off -= TO_START[i - 1] * nodes[D_I, i]
-        rate = max(rate, nodes[D_I, i] / nodes[D_TAU, i])
-    return abs(length) * (abs(I_off) + rate * abs(tau_off))
+        largest = max(largest, abs(nodes[D_I, i]))
+    off = max(abs(I_off - first * tau_off), abs(I_off - last * tau_off))
+    return abs(length) * max(off - _ROUNDING * largest, 0.0)
 
 
 @kernel
 def slide_terms(length, nodes, powers):
-    """Coefficients for ``rise_at`` of tau, I and Z."""
-    for row, source in enumerate((D_TAU, D_I, D_Z)):
-        integral_terms(nodes[source], 0.5 * length, powers, row)
+    """Coefficients for ``rise_at`` of tau, I and Z/tau."""
+    integral_terms(nodes[D_TAU], 0.5 * length, powers, TAU)
+    integral_terms(nodes[D_I], 0.5 * length, powers, LOST)
+    rise_terms(nodes[MEAN], powers, MEAN_LOST)
 
 
 @kernel
@@ -133,12 +148,13 @@ def slide_rise(v, panel, sigma, par, powers):
 def slide_state(v, tau, panel, sigma, par, powers):
     """(V, omega, X, angle) at v and at the time tau from the left end."""
     _, _, _, mu, j = par
-    _, _, _, _, speed, omega = panel
-    I, Z, push = rise_at(v, powers, LOST), rise_at(v, powers, LOST_WAY), sigma * mu * tau
-    return (
-        speed + push - I, omega - (push + I) / j,
-        speed * tau + 0.5 * push * tau - Z, omega * tau - (0.5 * push * tau + Z) / j,
-    )  # fmt: skip
+    s, pole, _, _, speed, omega = panel
+    push = sigma * mu * tau
+    gain = push - rise_at(v, powers, LOST)
+    mean = 0.5 * push - rise_at(v, powers, MEAN_LOST)
+    if s == pole:  # V stands still
+        gain = mean = 0.0
+    return speed + gain, omega - (2.0 * push - gain) / j, (speed + mean) * tau, (omega - (push - mean) / j) * tau
 
 
 @kernel

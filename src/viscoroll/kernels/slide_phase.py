@@ -7,7 +7,7 @@ import numpy as np
 from .collocation import N, NODES, place, rise_at
 from .control import SHARE
 from .events import AT_REST, NO_EVENT, REVERSAL, STICK
-from .full_slip import sliding, sliding_scale, standstill
+from .full_slip import sliding, sliding_scale, sliding_speed, standstill
 from .jit import kernel
 from .law import contact_length
 from .motion_output import put
@@ -31,10 +31,10 @@ from .slide import (
 from .slow_phase import next_interval
 from .stepper import FULL
 
-#: longest panel, and the shortest
-_LONGEST, _SHORTEST = 4.0, 1e-9
+#: the first panel at rtol = 1, the longest, and the shortest
+_FIRST, _LONGEST, _SHORTEST = 4.8, 4.0, 1e-9
 #: a mismatch of the integrands at the left end overstates the error of their interpolants
-_OVERSTATED = 0.05
+_OVERSTATED = 0.01
 #: errors of V weigh more than its share of the speeds says: what is left of V + j omega at onset may be small
 _SLIDING = 150.0
 #: how much beyond the place that is expected for its end a panel goes
@@ -46,9 +46,13 @@ _HELD = 0.1
 
 
 @kernel
-def nearest_pole(par):
-    """The pole where V' = 0 is not ahead."""
+def choose_pole(s, sigma, par):
+    """The pole of the panels from s on."""
     _, c, kappa, mu, _ = par
+    standing = standstill(par) if sigma > 0.0 else np.nan
+    # beyond a second such speed V rises
+    if (standing - s) * sliding(s, sigma, par)[1] >= 0.0:
+        return standing
     return -1.0 if 4.0 * kappa * mu >= c else -4.0 * kappa * mu / c
 
 
@@ -71,7 +75,7 @@ def aim(here, omega, s, pole, left, sigma, par):
         return length, s + (s - pole) * np.expm1(length)
     ahead = V + rate * duration
     if ahead <= 0.0:
-        return np.log(-pole / (s - pole)), 0.0
+        return -np.log1p(-s / pole), 0.0
     change = rate * duration * _BEYOND
     end = s + change / per_s
     if abs(change) > _NEAR * V:
@@ -130,18 +134,23 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
     """Slide from u to an event, or until outputs end.  Returns (event, tau, next column, steps, ends noted)."""
     _, _, _, mu, j = par
     tau_end = tau_out[tau_out.size - 1]
-    longest, pole = _LONGEST, nearest_pole(par)
+    longest, pole = min(_FIRST * rtol ** (1.0 / (N + 1.0)), _LONGEST), choose_pole(u[0], sigma, par)
     while at < tau_out.size and steps < max_steps:
         steps += 1
         s = u[0]
         here = sliding(s, sigma, par)
         speed, rate, per_s, _, _ = here
         omega = (speed - u[1]) / j
-        left = max((tau_end - tau), 0.0)
+        if sigma * (omega - speed) <= 0.0:
+            return STICK, tau, at, steps, ends
+        left = tau_end - tau
         scale = rtol * sliding_scale(speed, u[1], par)
         if rate == 0.0 or (pole > 0.0 and (abs(s - pole) * per_s <= _HELD * scale or rate * (pole - s) <= 0.0)):
-            pole, length, end = s, 1.0, s
-            panel = (s, pole, length, end, speed, omega)
+            # omega may fall by any factor yet: V is put to where it stands
+            u[0] = s = pole if pole > 0.0 else s
+            speed = sliding_speed(s, par)
+            omega, length, end = (speed - u[1]) / j, 1.0, s
+            panel = (s, s, length, end, speed, omega)
             standing = min(_BEYOND * left, 0.5 * j * sigma * (omega - speed) / mu)
             standing_rates(standing, panel, sigma, par, nodes)
         else:
@@ -153,9 +162,8 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
                 length = np.copysign(longest, length)
                 end = s + (s - pole) * np.expm1(length)
             panel = (s, pole, length, end, speed, omega)
-            turn = slide_rates(panel, sigma, par, nodes)
-            if turn > 0:
-                pole = standstill(s_at(1.0 + NODES[turn - 1], panel)[0], s_at(1.0 + NODES[turn], panel)[0], sigma, par)
+            if not slide_rates(panel, sigma, par, nodes):
+                longest = next_interval(abs(length), np.inf)
                 continue
         rise = slide_sums(panel, sigma, par, nodes)
         scale = rtol * sliding_scale(nodes[V, N], u[1] + 2.0 * sigma * mu * rise, par)
