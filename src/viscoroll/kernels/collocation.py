@@ -57,7 +57,25 @@ def integral_terms(values, half, powers, row):
         for i in range(N + 1):
             total += TO_POWERS[k, i] * values[i]
         powers[row, k + 1] = total * half / (k + 1.0)
-    # of the quotient by 1 + t: near the left end the integral itself would be a difference of large terms
+    _divide(powers, row)
+
+
+@kernel
+def rise_terms(values, powers, row):
+    """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
+    powers[row, N + 1] = 0.0
+    for k in range(1, N + 1):
+        total = 0.0
+        for i in range(N + 1):
+            total += TO_POWERS[k, i] * values[i]
+        powers[row, k] = total
+    _divide(powers, row)
+
+
+@kernel
+def _divide(powers, row):
+    """Divide by 1 + t a polynomial of degree N + 1 that vanishes at t = -1, whatever its first coefficient:
+    near the left end it would itself be a difference of large terms."""
     quotient = 0.0
     for k in range(N + 1, 0, -1):
         term = powers[row, k]

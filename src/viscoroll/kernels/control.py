@@ -6,10 +6,8 @@ import numpy as np
 
 from .dop853 import E3, STAGES
 from .events import EXPLICIT, STIFF
-from .full_slip import sliding_scale, sliding_speed
 from .jit import kernel
 from .partial_slip import partial_rates, signed_D
-from .stepper import FULL, PARTIAL
 
 #: local error per step is kept at this share of rtol
 SHARE = 0.4
@@ -22,10 +20,6 @@ _KINK = 4.0
 #: growth and shrinkage of steps
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 _TREND = (0.5, 1.5)
-#: kappa V below which M(V) is smooth on the scale of V
-_BEND = 0.05
-#: errors of V in full slip weigh more: what is left of V + j omega at onset may be small
-_SLIDING = 150.0
 
 
 @kernel
@@ -88,14 +82,9 @@ def halving(share, share_new, length, new, K, rtol):
 
 
 @kernel
-def error_norm(regime, u, new, share, error, K, travelled, rtol, par):
-    """Largest local error over its weight; <= 1 is acceptable.  ``share``: D/zeta at ``new``."""
-    if regime == FULL:
-        # V rises less than in proportion to s
-        per_s = K[12, 2] / new[0] if new[0] != 0.0 else 0.5 / par[2]
-        worst = _SLIDING * abs(error[0]) * per_s / sliding_scale(K[12, 2], new[1], par)
-    else:
-        worst = max(abs(error[0]), creep_weight(share) * abs(error[1]) * np.exp(-new[0]))
+def error_norm(u, new, share, error, travelled, rtol):
+    """Largest local error of a step over its weight; <= 1 is acceptable.  ``share``: D/zeta at ``new``."""
+    worst = max(abs(error[0]), creep_weight(share) * abs(error[1]) * np.exp(-new[0]))
     X = travelled[0] + abs(new[2] - u[2])
     angle = travelled[1] + abs(new[3] - u[3])
     if error[2] != 0.0:
@@ -116,14 +105,8 @@ def path_error(X, X_off, angle, angle_off, travelled, early):
 
 
 @kernel
-def first_length(regime, u, rtol, par):
-    """Length of the first step in a regime."""
-    if regime == FULL:
-        _, _, kappa, mu, j = par
-        V = sliding_speed(u[0], par)
-        length = 0.5 * abs((V - u[1]) / j - V) / (mu * (1.0 + 1.0 / j)) + 1e-300
-        # M(V) bends at kappa V of order 1: from rest, step first to where that begins
-        return length if kappa * V > _BEND else min(length, _BEND / (kappa * mu))
+def first_length(u, rtol, par):
+    """Length of the first step in partial slip."""
     # where the stick zone is small the law bends on the scale eta ~ 1/alpha, however large zeta
     _, drift, _, _, _, _, relaxation, _, D = partial_rates(u[0], u[1], par)
     eta = np.exp(u[0]) - abs(D)
@@ -133,15 +116,14 @@ def first_length(regime, u, rtol, par):
 
 
 @kernel
-def shorter(length, error, method, regime):
+def shorter(length, error, method):
     """Step length after one that was rejected with this error."""
     if not error < 1e300:
         return length * _SHRINK
     if error <= 1.0:
         return length
-    order = 5.0 if method == STIFF else 8.0
-    if method == EXPLICIT and regime == PARTIAL:
-        order = 3.0  # most often a step into the bend of the law at eta = 0
+    # with the explicit method most often a step into the bend of the law at eta = 0
+    order = 5.0 if method == STIFF else 3.0
     return length * max(_SHRINK, _SAFETY * error ** (-1.0 / order))
 
 
@@ -155,12 +137,3 @@ def next_length(length, error, length_before, error_before, method):
         trend = length / length_before * (error_before / error) ** (1.0 / order)
         factor *= min(max(trend, _TREND[0]), _TREND[1])
     return length * max(_SHRINK, min(_GROW, factor))
-
-
-@kernel
-def reach(u, slope):
-    """Longest step in full slip: V may not fall below the bend of M(V) in one step, which the error
-    estimate would not see, nor through 0, where M(V) has a kink, but by rounding."""
-    if slope[0] >= 0.0:
-        return np.inf
-    return (0.7 if u[0] > 2.0 * _BEND else 1.0 + 1e-9) * u[0] / -slope[0]

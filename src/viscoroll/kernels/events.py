@@ -1,4 +1,4 @@
-"""Events of a motion: their functions, and their location to rounding.
+"""Events of a motion; those of steps in partial slip: their functions, and their location to rounding.
 
 An event is located on the dense output first, then by repeating the step with that length,
 corrected once or twice, until its own end lies on the event: the located state is as accurate
@@ -12,12 +12,12 @@ import numpy as np
 from .arrays import copy
 from .bracket import narrowed, secant
 from .explicit import explicit_dense_terms, explicit_step, slope_at
-from .full_slip import held_step, held_terms, onset, onset_slope, sliding_speed
+from .full_slip import sliding_speed
 from .jit import kernel
 from .partial_slip import partial_speeds, signed_D
-from .stepper import FULL, PARTIAL, REST, dense, dense_terms, stiff_step
+from .stepper import PARTIAL, REST, dense, dense_terms, stiff_step
 
-EXPLICIT, STIFF, HELD = range(3)
+EXPLICIT, STIFF = range(2)
 NO_EVENT, STICK, SLIP, REVERSAL, AT_REST = range(5)
 _LOCATE_CAP = 80
 #: how close to the event the dense output is searched, and the share of a step its slope there is taken over
@@ -45,56 +45,47 @@ def speeds(regime, u0, u1, par):
 
 
 @kernel
-def event_value(event, regime, u0, u1, sigma, par, rest):
+def event_value(event, u0, u1, par, rest):
     """Positive before the event, negative after it."""
-    if event == REVERSAL:
-        return u0
-    if event == STICK:
-        return onset(u0, u1, sigma, par)
     if event == SLIP:
         return 1.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)
-    V, omega, _ = speeds(regime, u0, u1, par)
-    return max(abs(V), abs(omega)) - rest
+    V, delta = partial_speeds(u0, u1, par)
+    return V * max(1.0, abs(1.0 + delta)) - rest
 
 
 @kernel
-def advance(method, regime, u, slope, h, sigma, par, K, new, error):
+def advance(method, u, slope, h, par, K, new, error):
     """One step by the method, with the slope at its end in K[12]; the rate at which the offset relaxes there."""
     if method == EXPLICIT:
         copy(slope, K[0])
-        explicit_step(regime, u, h, sigma, par, K, new, error)
-    elif method == HELD:
-        copy(slope, K[0])
-        held_step(u, h, par, slope, new, error)
+        explicit_step(u, h, par, K, new, error)
     else:
         stiff_step(u, h, par, K, new, error)
-    return slope_at(regime, new, sigma, par, K[12])
+    return slope_at(new, par, K[12])
 
 
 @kernel
-def interpolant(method, regime, u, new, h, sigma, par, K, terms):
+def interpolant(method, u, new, h, par, K, terms):
     """Coefficients of the dense output of the step just taken."""
     if method == EXPLICIT:
-        explicit_dense_terms(regime, u, new, h, sigma, par, K, terms)
-    elif method == HELD:
-        held_terms(u, new, h, K, terms)
+        explicit_dense_terms(u, new, h, par, K, terms)
     else:
         dense_terms(K, terms)
 
 
 @kernel
-def _value_within(theta, event, regime, u, new, terms, sigma, par, rest):
+def _value_within(theta, event, u, new, terms, par, rest):
     """Event value at the fraction theta of the step, by its dense output."""
     u0, u1 = dense(theta, u, new, terms, 0), dense(theta, u, new, terms, 1)
-    return event_value(event, regime, u0, u1, sigma, par, rest)
+    return event_value(event, u0, u1, par, rest)
 
 
 @kernel
-def _root(event, regime, u, new, terms, sigma, par, rest):
+def _root(event, u, new, terms, par, rest):
     """(theta, d value/d theta) where the dense output meets the event, by the Illinois method."""
     low, high = 0.0, 1.0
-    at_low = event_value(event, regime, u[0], u[1], sigma, par, rest)
-    at_high = event_value(event, regime, new[0], new[1], sigma, par, rest)
+    at_low = event_value(event, u[0], u[1], par, rest)
+    at_high = event_value(event, new[0], new[1], par, rest)
     side = 0
     for _ in range(_LOCATE_CAP):
         if high - low <= _NEAR * high or at_high == 0.0:
@@ -102,69 +93,46 @@ def _root(event, regime, u, new, terms, sigma, par, rest):
         middle = secant(low, high, at_low, at_high)
         if not (low < middle < high):
             middle = 0.5 * (low + high)
-        value = _value_within(middle, event, regime, u, new, terms, sigma, par, rest)
+        value = _value_within(middle, event, u, new, terms, par, rest)
         if abs(value) <= _NEAR * abs(at_low - at_high):
             high, at_high = middle, value
             break
         low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, middle, value)
     near, far = max(high - _DIFFERENCE, 0.0), min(high + _DIFFERENCE, 1.0)
-    before = _value_within(near, event, regime, u, new, terms, sigma, par, rest)
-    after = _value_within(far, event, regime, u, new, terms, sigma, par, rest)
+    before = _value_within(near, event, u, new, terms, par, rest)
+    after = _value_within(far, event, u, new, terms, par, rest)
     return high, (after - before) / (far - near)
 
 
 @kernel
-def locate(event, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms):
+def locate(event, method, u, slope, h, par, rest, K, new, error, terms):
     """Length of the step whose end lies on the event; fills ``new``."""
-    interpolant(method, regime, u, new, h, sigma, par, K, terms)
-    theta, fall = _root(event, regime, u, new, terms, sigma, par, rest)
+    interpolant(method, u, new, h, par, K, terms)
+    theta, fall = _root(event, u, new, terms, par, rest)
     length = theta * h
     for _ in range(_CORRECTIONS):
-        advance(method, regime, u, slope, length, sigma, par, K, new, error)
-        change = event_value(event, regime, new[0], new[1], sigma, par, rest) * h / fall
+        advance(method, u, slope, length, par, K, new, error)
+        change = event_value(event, new[0], new[1], par, rest) * h / fall
         if not abs(change) > _ROUNDING * length:
             return length
         length = min(max(length - change, 0.0), h)
         if abs(change) <= _LAST * length:
             break
-    advance(method, regime, u, slope, length, sigma, par, K, new, error)
+    advance(method, u, slope, length, par, K, new, error)
     return length
 
 
 @kernel
-def first_event(method, regime, u, slope, h, sigma, par, rest, share, K, new, error, terms):
-    """(event, length): the first event within the step, if any, with ``new`` on it.
+def first_event(method, u, slope, h, par, rest, share, K, new, error, terms):
+    """(event, length): the first event within the step in partial slip, if any, with ``new`` on it.
 
     ``share`` is D/zeta at the end of the step; the stick zone has gone where it exceeds 1.
     """
     event = NO_EVENT
-    if regime == FULL:
-        if new[0] <= 0.0:
-            h = locate(REVERSAL, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
-            event = REVERSAL
-            new[0] = 0.0
-        if onset(new[0], new[1], sigma, par) < 0.0:
-            h = locate(STICK, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
-            event = STICK
-        elif event == NO_EVENT and dips(u, new, h, slope[0], K[12, 0], sigma, par):
-            return STICK, -1.0
-    elif abs(share) > 1.0 + _ROUNDING:
-        h = locate(SLIP, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
+    if abs(share) > 1.0 + _ROUNDING:
+        h = locate(SLIP, method, u, slope, h, par, rest, K, new, error, terms)
         event = SLIP
-    if rest > 0.0 and event_value(AT_REST, regime, new[0], new[1], sigma, par, rest) < 0.0:
-        h = locate(AT_REST, method, regime, u, slope, h, sigma, par, rest, K, new, error, terms)
+    if rest > 0.0 and event_value(AT_REST, new[0], new[1], par, rest) < 0.0:
+        h = locate(AT_REST, method, u, slope, h, par, rest, K, new, error, terms)
         event = AT_REST
     return event, h
-
-
-@kernel
-def dips(u, new, h, ds, ds_new, sigma, par):
-    """Whether the onset function may have gone below zero and back within the step."""
-    after = onset_slope(new[0], ds_new, sigma, par)
-    if after <= 0.0:
-        return False
-    before = onset_slope(u[0], ds, sigma, par)
-    if before >= 0.0:
-        return False
-    lowest = onset(u[0], u[1], sigma, par) + 0.5 * before * h * before / (before - after)
-    return lowest < 0.0

@@ -1,10 +1,8 @@
-"""Right-hand side and onset function of Eq. (22) in full slip.
+"""The law in full slip, Eq. (22).
 
 With sigma = sign(omega - V) fixed, Q = sigma mu, so w = V - j omega is exactly linear in
 tau = gamma t and V' = sigma mu - M(V)/2 stands alone.  The unknown in place of V is
-s = 1/zeta with the sign of V, in which the law is explicit: V = s lam/(2 kappa).  The onset
-function is the signed sigma (omega - V) - delta_star |V|: positive in full slip, through zero
-where stick begins; |omega - V| alone could step over the narrow stick band without a change of sign.
+s = 1/zeta, in which the law is explicit: V = s lam/(2 kappa), in a frame where V >= 0.
 """
 
 from __future__ import annotations
@@ -15,9 +13,11 @@ from .jit import kernel
 from .law import contact_length, generator_slopes, generators, moment_factor
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
-#: slip, over the change of slip in a unit of time, from which on it is asked whether V is held; share of rtol by which
-#: V may still be off; steps of Newton's iteration, its difference quotient, and its last step
-_LONG, _HELD, _NEWTON, _DIFFERENCE, _FOUND = 100.0, 0.1, 30, 1e-5, 1e-13
+
+#: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.31, for alpha -> infinity
+_HOLDS = 0.16
+#: steps of Newton's iteration, its difference quotient, and its last step
+_NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
 
 
 @kernel
@@ -41,14 +41,14 @@ def full_rhs(V, w, sigma, par):
 
 
 @kernel
-def sliding_rhs(s, w, sigma, par):
-    """(s', w', V, omega) with w = V - j omega."""
-    alpha, c, kappa, mu, j = par
+def sliding(s, sigma, par):
+    """(V, V', dV/ds, M/2, delta_star V) at s >= 0."""
+    alpha, c, kappa, mu, _ = par
     if c == 0.0:
-        V = s / (2.0 * kappa)
-        return 2.0 * kappa * sigma * mu, 2.0 * sigma * mu, V, (V - w) / j
-    size = abs(s)
-    zeta = 1.0 / size
+        per_s = 0.5 / kappa
+        V = per_s * s
+        return V, sigma * mu, per_s, 0.0, mu * per_s * V
+    zeta = 1.0 / np.float64(s)
     x = alpha * zeta
     r, rc = ratio_r(x)
     k, kc = ratio_k(zeta)
@@ -57,21 +57,29 @@ def sliding_rhs(s, w, sigma, par):
     whole = 1.0 / (1.0 + p)
     h = c * whole * r
     dh = c * whole * whole * (alpha * slope_r(x, r, rc) - r * r * dk)
-    square = 1.0 + 2.0 * h * size  # 1/lam^2
-    root = np.sqrt(square)
-    V = 0.5 * s / (kappa * root)
-    rate = sigma * mu - 0.5 * V * c * whole * (ratio_i2(x, r) / square + p)
+    square = 1.0 + 2.0 * h * s  # 1/lam^2
+    half_lam = 0.5 / (kappa * np.sqrt(square))
+    V = s * half_lam
+    half_M = 0.5 * V * c * whole * (ratio_i2(x, r) / square + p)
     # dV/ds = lam^3 U/(2 kappa), U = H'/(2 zeta)
-    return rate * (2.0 * kappa * square * root / (1.0 + h * size + dh)), 2.0 * sigma * mu, V, (V - w) / j
+    per_s = half_lam * (1.0 + h * s + dh) / square
+    return V, sigma * mu - half_M, per_s, half_M, mu * half_lam * (1.0 + c * whole * p * s) * V
 
 
 @kernel
 def sliding_speed(s, par):
-    """V at s."""
-    alpha, c, kappa, _, _ = par
-    size = abs(s)
-    _, h = generators(1.0 / size, alpha, c)
-    return 0.5 * s / (kappa * np.sqrt(1.0 + 2.0 * h * size))
+    """V at s >= 0."""
+    return edge_of_stick(s, par)[0]
+
+
+@kernel
+def edge_of_stick(s, par):
+    """(V, delta_star V) at s >= 0; the stick band is |omega - V| < delta_star V."""
+    alpha, c, kappa, mu, _ = par
+    g, h = generators(1.0 / np.float64(s), alpha, c)
+    half_lam = 0.5 / (kappa * np.sqrt(1.0 + 2.0 * h * s))
+    V = s * half_lam
+    return V, mu * half_lam * (1.0 + g * s) * V
 
 
 @kernel
@@ -87,31 +95,6 @@ def stick_limit(V, par):
 
 
 @kernel
-def onset(s, w, sigma, par):
-    """sigma (omega - V) - delta_star |V|."""
-    alpha, c, kappa, mu, j = par
-    size = abs(s)
-    g, h = generators(1.0 / size, alpha, c)
-    lam = 1.0 / np.sqrt(1.0 + 2.0 * h * size)
-    V = 0.5 * s * lam / kappa
-    return sigma * ((V - w) / j - V) - 0.5 * mu * lam * (1.0 + g * size) / kappa * abs(V)
-
-
-@kernel
-def onset_slope(s, ds, sigma, par):
-    """Rate of change of the onset function in time tau, for V > 0, given s'."""
-    alpha, c, kappa, mu, j = par
-    g, h, dg, dh = generator_slopes(1.0 / s, alpha, c)
-    lam2 = 1.0 / (1.0 + 2.0 * h * s)
-    lam = np.sqrt(lam2)
-    U = 1.0 + h * s + dh
-    dV = 0.5 * lam2 * lam * U * ds / kappa
-    # d(mu V^2 F)/dV = 2 mu V (F - H F'/H')
-    limit_slope = mu * lam * (1.0 + g * s - 0.5 * (1.0 + dg) / (lam2 * U)) / kappa
-    return sigma * ((dV - 2.0 * sigma * mu) / j - dV) - limit_slope * dV
-
-
-@kernel
 def sliding_scale(V, w, par):
     """Speed that errors of V are measured by: the speed expected at onset, within bounds.
 
@@ -124,47 +107,23 @@ def sliding_scale(V, w, par):
 
 
 @kernel
-def held(u, slope, sigma, rtol, par):
-    """Whether rolling resistance holds V against the traction, M(V) = 2 mu; u and its slope are then put there.
+def standstill(par):
+    """The least s at which rolling resistance holds V against the traction, M(V) = 2 mu; NaN if there is none.
 
     From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
     """
-    _, c, kappa, mu, j = par
-    V, omega = slope[2], slope[3]
-    if not (sigma > 0.0 and omega - V > _LONG * mu * (1.0 + 1.0 / j)):
-        return False
+    _, c, kappa, mu, _ = par
+    if not kappa * mu < _HOLDS:
+        return np.nan
     # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
-    s, change = 4.0 * kappa * mu / c, np.inf
+    s = 4.0 * kappa * mu / c
     for _ in range(_NEWTON):
-        rise, _, reached, _ = sliding_rhs(s, u[1], sigma, par)
-        further, _, _, _ = sliding_rhs(s * (1.0 + _DIFFERENCE), u[1], sigma, par)
-        change = rise * _DIFFERENCE * s / (rise - further)
-        if not (further < rise and change < s):
-            return False
+        _, rate, _, _, _ = sliding(s, 1.0, par)
+        _, further, _, _, _ = sliding(s * (1.0 + _DIFFERENCE), 1.0, par)
+        change = rate * _DIFFERENCE * s / (rate - further)
+        if not (further < rate and change < s):
+            return np.nan
         s += change
         if abs(change) <= _FOUND * s:
-            break
-    if not abs(change) <= _FOUND * s or abs(V - reached) > _HELD * rtol * sliding_scale(V, u[1], par):
-        return False
-    u[0] = s
-    _, slope[1], slope[2], slope[3] = sliding_rhs(s, u[1], sigma, par)
-    slope[0] = 0.0
-    return True
-
-
-@kernel
-def held_step(u, h, par, slope, new, error):
-    """Full slip at constant V: w is linear in time, the angle quadratic."""
-    new[0], new[1], new[2] = u[0], u[1] + h * slope[1], u[2] + h * slope[2]
-    new[3] = u[3] + h * (slope[3] - 0.5 * h * slope[1] / par[4])
-    for m in range(4):
-        error[m] = 0.0
-
-
-@kernel
-def held_terms(u, new, h, K, terms):
-    """Coefficients of the dense output of :func:`held_step`: the parabola."""
-    for m in range(4):
-        terms[0, m] = h * K[0, m] - (new[m] - u[m])
-        for row in range(1, 6):
-            terms[row, m] = 0.0
+            return s
+    return np.nan

@@ -1,8 +1,8 @@
 """One motion from start to end: regimes as state, step-size control, switches, output.
 
 The regime changes only at a located event (:mod:`events`); nothing re-tests it between.
-Partial slip is entered through its boundary layer (:mod:`layer_phase`) and left for the slow
-manifold (:mod:`slow_phase`); steps are for full slip, and where one of the two gives up.
+Full slip is :mod:`slide_phase`.  Partial slip is entered through its boundary layer (:mod:`layer_phase`)
+and left for the slow manifold (:mod:`slow_phase`); steps are for where one of these two gives up.
 """
 
 from __future__ import annotations
@@ -19,20 +19,21 @@ from .control import (
     first_length,
     halving,
     next_length,
-    reach,
     shorter,
     slip_share,
 )  # fmt: skip
 from .dop853 import EXTENDED
-from .events import AT_REST, EXPLICIT, HELD, NO_EVENT, SLIP, STICK, STIFF, advance, first_event, speeds
-from .explicit import rhs, slope_at
-from .full_slip import held, onset, onset_slope, stick_limit
+from .events import AT_REST, EXPLICIT, NO_EVENT, SLIP, STICK, STIFF, advance, first_event, speeds
+from .explicit import slope_at
+from .full_slip import stick_limit
 from .jit import kernel
 from .law import OK, generator_slopes, stick_length
 from .layer import ROWS
 from .layer_phase import layer_phase
 from .motion_output import at_rest, coast, put, write_outputs
 from .partial_slip import signed_D, slow_D
+from .slide import SLIDE_ROWS
+from .slide_phase import slide_phase
 from .slow import COLUMNS
 from .slow_phase import SLOW_REST, slow_phase
 from .stepper import FULL, PARTIAL, REST
@@ -45,6 +46,8 @@ _MOST_REJECTIONS = 60
 _STIFF_FROM = 4.0
 #: speeds below this count as 0 beside others, and as already rolling among themselves
 _TINY = 1e-150
+#: least 1/zeta at which stick begins
+_LEAST = 1e-300
 #: beyond this zeta (kappa V < 1e-17) the slow motion is exponential to rounding
 _COAST = 1e17
 
@@ -89,7 +92,8 @@ def switch(event, regime, direction, sigma, u, par, offset):
         u[2 + m] = 0.0
     j = par[4]
     if event == STICK:
-        u[0] = -np.log(u[0])
+        # both speeds may end at once, to rounding
+        u[0] = -np.log(max(u[0], _LEAST))
         u[1] = sigma * np.exp(u[0]) - slow_D(u[0], par)[0]
         return PARTIAL, direction, sigma
     if event == SLIP:
@@ -110,13 +114,6 @@ def settled(u, slope, share, relaxation, rtol):
     if abs(slope[1]) <= 5.0 * slope[0] * abs(u[1]):
         return True
     return abs(slope[1]) * creep_weight(share) * np.exp(-u[0]) <= 10.0 * SHARE * rtol * relaxation
-
-
-@kernel
-def sticks_at_once(u, sigma, par):
-    """Whether full slip starts on the edge of the stick band and moves into it."""
-    ds, _, _, _ = rhs(FULL, u[0], u[1], sigma, par)
-    return onset(u[0], u[1], sigma, par) <= 0.0 and onset_slope(u[0], ds, sigma, par) < 0.0
 
 
 @kernel
@@ -145,7 +142,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
     u, new, error, K, terms = np.zeros(4), np.zeros(4), np.zeros(4), np.zeros((EXTENDED, 4)), np.zeros((6, 4))
     slope, offset, travelled = np.zeros(4), np.zeros(2), np.zeros(2)
     work = np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2))
-    nodes, slow = np.empty((ROWS, N + 1)), np.empty(N + 2)
+    nodes, slow = np.empty((max(ROWS, SLIDE_ROWS), N + 1)), np.empty(N + 2)
     steps = turns = at = rejected = ends = 0
     onset_time = rest_time = np.nan
     if max(abs(V0), abs(omega0)) < rest:
@@ -161,13 +158,12 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         _, _, delta = speeds(regime, u[0], u[1], par)
         put(out, at, 1.0, regime, V0, omega0, delta, 0.0, 0.0, gamma)
         at += 1
-    status, tau, method, entered = DONE, 0.0, EXPLICIT, True
-    relaxation = relaxation_new = slope_at(regime, u, sigma, par, slope)
-    wish = length_before = size_before = 0.0
-    share = share_new = slip_share(u, par) if regime == PARTIAL else 0.0
+    status, tau, method = DONE, 0.0, EXPLICIT
+    wish = length_before = size_before = h = share = relaxation = 0.0
     # alpha = 1: nothing moves on the slow manifold, which both phases need
     layer_ahead, over, try_at = par[1] > 0.0, False, 0.0 if par[1] > 0.0 else np.inf
-    h = first_length(regime, u, rtol, par)
+    if regime == PARTIAL:
+        relaxation, share, h = slope_at(u, par, slope), slip_share(u, par), first_length(u, rtol, par)
     while at < tau_out.size:
         if steps >= max_steps or rejected > _MOST_REJECTIONS:
             status = STEP_LIMIT if steps >= max_steps else STEP_TOO_SMALL
@@ -181,7 +177,7 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
                 u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, max_steps, steps, out,
                 step_ends, ends, work, nodes, slow,
             )  # fmt: skip
-            relaxation = slope_at(regime, u, sigma, par, slope)
+            relaxation = slope_at(u, par, slope)
             share = slip_share(u, par)
             h = max(h, 0.5 / relaxation) if over else h
             continue
@@ -195,92 +191,80 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
                 at_rest(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
                 status, rest_time = RESTED, tau / gamma
                 break
-            relaxation = slope_at(regime, u, sigma, par, slope)
+            relaxation = slope_at(u, par, slope)
             share = slip_share(u, par)
             continue
-        if regime == FULL and par[1] > 0.0 and held(u, slope, sigma, rtol, par):
-            method, h = HELD, tau_end - tau
-        length = min(h, reach(u, slope)) if regime == FULL else h
-        if not length > 0.0:
-            status = STEP_TOO_SMALL
-            break
-        last = length >= tau_end - tau
-        if last:
-            length = tau_end - tau
         event = NO_EVENT
-        if regime == FULL and entered and sticks_at_once(u, sigma, par):
-            event, length, last = STICK, 0.0, False
-            copy(u, new)
-        elif length > 0.0:
+        if regime == FULL:
+            event, tau, at, steps, ends = slide_phase(
+                u, tau, tau_out, at, direction, sigma, par, gamma, offset, travelled, rtol, rest, max_steps, steps,
+                out, step_ends, ends, work[3], nodes,
+            )  # fmt: skip
+            if event == NO_EVENT:
+                rejected = _MOST_REJECTIONS + 1
+                continue
+        else:
+            if not h > 0.0:
+                status = STEP_TOO_SMALL
+                break
+            last, length = h >= tau_end - tau, min(h, tau_end - tau)
             part = half = 1.0
-            relaxation_new = advance(method, regime, u, slope, length, sigma, par, K, new, error)
-            if regime == PARTIAL:
-                share_new = slip_share(new, par)
-                if method == EXPLICIT:
-                    part = crossing(u, length * slope[1], share, new, length * K[12, 1], share_new, rtol)
-                    half = halving(share, share_new, length, new, K, rtol)
-            size = error_norm(regime, u, new, share_new, error, K, travelled, rtol, par)
+            relaxation_new = advance(method, u, slope, length, par, K, new, error)
+            share_new = slip_share(new, par)
+            if method == EXPLICIT:
+                part = crossing(u, length * slope[1], share, new, length * K[12, 1], share_new, rtol)
+                half = halving(share, share_new, length, new, K, rtol)
+            size = error_norm(u, new, share_new, error, travelled, rtol)
             steps += 1
             if not size <= 1.0 or part < 1.0 or half < 1.0:
                 rejected += 1
                 wish = length if size <= 1.0 and part < 1.0 else 0.0
                 h = min(part, half) * length
                 if half == 1.0:
-                    h = min(h, shorter(length, size, method, regime))
+                    h = min(h, shorter(length, size, method))
                 continue
-            event, reached = first_event(
-                method, regime, u, slope, length, sigma, par, rest, share_new, K, new, error, terms
-            )
-            if reached < 0.0:
-                h = 0.5 * length
-                continue
+            event, reached = first_event(method, u, slope, length, par, rest, share_new, K, new, error, terms)
             if event == SLIP:
                 # the step that was accepted went beyond eta = 0, where the law bends: this one ends there
                 share_new = np.sign(share_new)
-                size = error_norm(regime, u, new, share_new, error, K, travelled, rtol, par)
+                size = error_norm(u, new, share_new, error, travelled, rtol)
                 half = halving(share, share_new, reached, new, K, rtol) if method == EXPLICIT else 1.0
                 if not size <= 1.0 or half < 1.0:
                     rejected += 1
-                    h = half * reached if half < 1.0 else shorter(reached, size, method, regime)
+                    h = half * reached if half < 1.0 else shorter(reached, size, method)
                     continue
             rejected = 0
             h = max(wish, next_length(length, size, length_before, size_before, method))
             wish, length_before, size_before = 0.0, length, max(size, 1e-20)
-            length, last = reached, last and event == NO_EVENT
-        at = write_outputs(
-            tau_out, at, tau, length, last, method, regime, direction, sigma, u, new, slope, K, terms, par, gamma,
-            offset, out,
-        )  # fmt: skip
-        for m in range(2):
-            travelled[m] += abs(new[2 + m] - u[2 + m])
-        copy(new, u)
-        tau += length
-        if ends < step_ends.size:
-            step_ends[ends] = tau / gamma
-            ends += 1
+            length = reached
+            at = write_outputs(
+                tau_out, at, tau, length, last and event == NO_EVENT, method, direction, u, new, slope, K, terms,
+                par, gamma, offset, out,
+            )  # fmt: skip
+            for m in range(2):
+                travelled[m] += abs(new[2 + m] - u[2 + m])
+            copy(new, u)
+            tau += length
+            if ends < step_ends.size:
+                step_ends[ends] = tau / gamma
+                ends += 1
+            if event == NO_EVENT:
+                copy(K[12], slope)
+                relaxation, share = relaxation_new, share_new
+                method = STIFF if h * relaxation > (_STIFF_FROM if method == EXPLICIT else 1.0) else EXPLICIT
+                continue
         if event == AT_REST:
             at_rest(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
             status, rest_time = RESTED, tau / gamma
             break
-        entered = event != NO_EVENT and not (event == STICK and length == 0.0)
-        if event == NO_EVENT:
-            copy(K[12], slope)
-            relaxation, share = relaxation_new, share_new
-            if regime == PARTIAL:
-                method = STIFF if h * relaxation > (_STIFF_FROM if method == EXPLICIT else 1.0) else EXPLICIT
-            continue
-        layer_ahead = par[1] > 0.0
         regime, direction, sigma = switch(event, regime, direction, sigma, u, par, offset)
-        copy(u, new)
-        method = EXPLICIT
-        relaxation = slope_at(regime, u, sigma, par, slope)
-        share = slip_share(u, par) if regime == PARTIAL else 0.0
-        h = first_length(regime, u, rtol, par)
-        wish = length_before = 0.0
         if event == STICK or event == SLIP:
             if turns < switches.shape[0]:
                 switches[turns, 0], switches[turns, 1] = tau / gamma, regime
             turns += 1
-            if event == STICK and np.isnan(onset_time):
+        if event == STICK:
+            if np.isnan(onset_time):
                 onset_time = tau / gamma
+            layer_ahead, method, wish, length_before = par[1] > 0.0, EXPLICIT, 0.0, 0.0
+            relaxation, share, h = slope_at(u, par, slope), slip_share(u, par), first_length(u, rtol, par)
     return status, steps, turns, onset_time, rest_time

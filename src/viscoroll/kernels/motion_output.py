@@ -24,30 +24,30 @@ def put(out, column, direction, regime, V, omega, delta, X, angle, gamma):
 
 @kernel(allocates=True)
 def write_outputs(
-    tau_out, at, tau, h, last, method, regime, direction, sigma, old, new, slope, K, terms, par, gamma, offset, out
+    tau_out, at, tau, h, last, method, direction, old, new, slope, K, terms, par, gamma, offset, out
 ):
-    """Outputs that fall within the step (or, if ``last``, on its end); returns the next column.
+    """Outputs that fall within the step in partial slip (or, if ``last``, on its end); returns the next column.
 
     In the boundary layer steps are long beside its time: there each output is a step of its own.
     """
     if at >= tau_out.size or not (last or tau_out[at] < tau + h):
         return at
-    stepped = method == EXPLICIT and regime == PARTIAL
+    stepped = method == EXPLICIT
     point, error = np.empty(4), np.empty(4)
     if h > 0.0 and not stepped:
-        interpolant(method, regime, old, new, h, sigma, par, K, terms)
+        interpolant(method, old, new, h, par, K, terms)
     while at < tau_out.size and (last or tau_out[at] < tau + h):
         theta = min((tau_out[at] - tau) / h, 1.0) if h > 0.0 else 1.0
         if theta == 1.0:
             copy(new, point)
         elif stepped:
             copy(slope, K[0])
-            explicit_step(regime, old, theta * h, sigma, par, K, point, error)
+            explicit_step(old, theta * h, par, K, point, error)
         else:
             for m in range(4):
                 point[m] = dense(theta, old, new, terms, m)
-        V, omega, delta = speeds(regime, point[0], point[1], par)
-        put(out, at, direction, regime, V, omega, delta,
+        V, omega, delta = speeds(PARTIAL, point[0], point[1], par)
+        put(out, at, direction, PARTIAL, V, omega, delta,
             offset[0] + direction * point[2], offset[1] + direction * point[3], gamma)  # fmt: skip
         at += 1
     return at
