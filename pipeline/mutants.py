@@ -68,8 +68,10 @@ SLICE = [
 ]  # fmt: skip
 MOTION = [
     ("full_slip.py", "return sigma * mu - 0.5 * _moment(V, par), 2.0 * sigma * mu, V, (V - w) / j", "return sigma * mu - 0.5 * _moment(V, par), sigma * mu, V, (V - w) / j", _MOTION),
-    ("full_slip.py", "rate = sigma * mu - 0.5 * V * c", "rate = sigma * mu + 0.5 * V * c", _MOTION),
-    ("full_slip.py", "return sigma * ((V - w) / j - V) - 0.5 * mu", "return sigma * ((V - w) / j - V) - 0.49 * mu", _MOTION),
+    ("full_slip.py", "return V, sigma * mu - half_M, per_s", "return V, sigma * mu + half_M, per_s", _MOTION),
+    ("full_slip.py", "return V, mu * half_lam * (1.0 + g * s) * V", "return V, 0.98 * mu * half_lam * (1.0 + g * s) * V", _MOTION),
+    ("slide.py", "- sigma * (1.0 / j - 1.0) * I", "+ sigma * (1.0 / j - 1.0) * I", _MOTION),
+    ("slide.py", "(omega - (push - mean) / j) * tau", "(omega - push / j) * tau", _MOTION),
     ("partial_slip.py", "factor = -(1.0 - j) / (8.0", "factor = (1.0 - j) / (8.0", _MOTION),
     ("partial_slip.py", "rate = q_over_V - 0.5 * m\n", "rate = q_over_V - 0.5 * m * (1.0 + 1e-6)\n", _MOTION),
     ("partial_slip.py", "0.5 * m) * (per_V / mu) - 2.0 * d * rate", "0.5 * m) * (per_V / mu)", _MOTION),

@@ -51,9 +51,7 @@ def test_the_first_instants():
     np.testing.assert_allclose(rises.x[:3], 0.5 * PAPER.gamma * PAPER.mu * t**2, rtol=1e-6)
     turns = vr.roll(PAPER, 1.0, 0.0, [*t, 1e-4])
     M = vr.contact(PAPER, 1.0, omega=0.0, fields="M").M
-    np.testing.assert_allclose(
-        turns.angle[:3], 0.5 * PAPER.gamma / PAPER.j * (PAPER.mu - 0.5 * M) * t**2, rtol=1e-6
-    )
+    np.testing.assert_allclose(turns.angle[:3], 0.5 * PAPER.gamma / PAPER.j * (PAPER.mu - 0.5 * M) * t**2, rtol=1e-6)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -107,7 +105,7 @@ def test_a_usual_slide_is_one_or_two_panels(ic):
 
 
 def test_a_slip_that_nearly_ends_is_noticed():
-    """Friction closes the slip, resistance widens it again: the first onset jumps where the slip just touches the limit."""
+    """Friction closes the slip, resistance widens it again: onset jumps where slip just touches its limit."""
 
     def early(omega0: float, rtol: float) -> bool:
         return vr.roll(WIDENING, 2.0, omega0, [1e-2], rtol=rtol).onset_time < 5e-3

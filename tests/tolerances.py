@@ -151,7 +151,7 @@ MANIFOLD = 0.02
 RETURN_TIME = 3e-9
 
 # --- full slip (test_slide.py) ---
-#: Closed forms of the elastic cylinder, over the speed and the duration: nothing is integrated but the place on a panel.
+#: Closed forms of the elastic cylinder, over the speed and the duration: roundings.
 SLIDE = 1e-14
 
 # --- sampling.py (test_ensemble.py) ---

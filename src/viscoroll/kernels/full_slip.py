@@ -13,7 +13,6 @@ from .jit import kernel
 from .law import contact_length, generator_slopes, generators, moment_factor
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
-
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.31, for alpha -> infinity
 _HOLDS = 0.16
 #: steps of Newton's iteration, its difference quotient, and its last step

@@ -42,6 +42,8 @@ DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 
 #: rejected steps in a row
 _MOST_REJECTIONS = 60
+#: share of a step below which slip returns at once, and how often that is looked at closer
+_AT_ONCE, _MOST_RETRIES = 1e-3, 6
 #: step times relaxation rate beyond which the implicit method is cheaper
 _STIFF_FROM = 4.0
 #: speeds below this count as 0 beside others, and as already rolling among themselves
@@ -224,6 +226,11 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
                     h = min(h, shorter(length, size, method))
                 continue
             event, reached = first_event(method, u, slope, length, par, rest, share_new, K, new, error, terms)
+            if event == SLIP and reached < _AT_ONCE * length and rejected < _MOST_RETRIES:
+                # |D| = zeta at the start may be taken for the end of a stick zone that is shorter than the step
+                rejected += 1
+                h = 0.1 * length
+                continue
             if event == SLIP:
                 # the step that was accepted went beyond eta = 0, where the law bends: this one ends there
                 share_new = np.sign(share_new)

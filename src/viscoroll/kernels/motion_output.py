@@ -23,9 +23,7 @@ def put(out, column, direction, regime, V, omega, delta, X, angle, gamma):
 
 
 @kernel(allocates=True)
-def write_outputs(
-    tau_out, at, tau, h, last, method, direction, old, new, slope, K, terms, par, gamma, offset, out
-):
+def write_outputs(tau_out, at, tau, h, last, method, direction, old, new, slope, K, terms, par, gamma, offset, out):
     """Outputs that fall within the step in partial slip (or, if ``last``, on its end); returns the next column.
 
     In the boundary layer steps are long beside its time: there each output is a step of its own.

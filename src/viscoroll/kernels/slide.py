@@ -102,7 +102,7 @@ def slide_sums(panel, sigma, par, nodes):
         nodes[D_Z, i] = I * nodes[D_TAU, i]
         nodes[SLIP, i] = _slip(tau, I, panel, sigma, par) - nodes[SLIP, i]
         nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, par)
-        nodes[MEAN, i] = half / tau
+        nodes[MEAN, i] = half / tau if tau > 0.0 else 0.0
     nodes[MEAN, 0] = 0.0
     for i in range(1, N + 1):
         Z = 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .collocation import N, NODES, place, rise_at
+from .collocation import NODES, N, place, rise_at
 from .control import SHARE
 from .events import AT_REST, NO_EVENT, REVERSAL, STICK
 from .full_slip import sliding, sliding_scale, sliding_speed, standstill
@@ -129,6 +129,30 @@ def slide_outputs(tau_out, at, tau, end, closed, panel, direction, sigma, powers
 
 
 @kernel
+def stand(u, left, sigma, par, nodes):
+    """The panel on which V stands still until the slip has gone, or for the time ``left``, with its rates filled in."""
+    _, _, _, mu, j = par
+    # the spin may fall by any factor yet, so V is that where it stands
+    V = sliding_speed(u[0], par)
+    omega = (V - u[1]) / j
+    panel = (u[0], u[0], 1.0, u[0], V, omega)
+    standing_rates(min(_BEYOND * left, 0.5 * j * sigma * (omega - V) / mu), panel, sigma, par, nodes)
+    return panel
+
+
+@kernel
+def slide_on(u, v, rise, travelled, panel, sigma, par, powers):
+    """Put u at v, after the time ``rise``."""
+    _, _, X, angle = slide_state(v, rise, panel, sigma, par, powers)
+    u[0] = s_at(v, panel)[0]
+    u[1] += 2.0 * sigma * par[3] * rise
+    u[2] += X
+    u[3] += angle
+    travelled[0] += abs(X)
+    travelled[1] += abs(angle)
+
+
+@kernel
 def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, travelled, rtol, rest, max_steps, steps,
                 out, step_ends, ends, powers, nodes):  # fmt: skip
     """Slide from u to an event, or until outputs end.  Returns (event, tau, next column, steps, ends noted)."""
@@ -143,52 +167,41 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
         omega = (speed - u[1]) / j
         if sigma * (omega - speed) <= 0.0:
             return STICK, tau, at, steps, ends
-        left = tau_end - tau
         scale = rtol * sliding_scale(speed, u[1], par)
         if rate == 0.0 or (pole > 0.0 and (abs(s - pole) * per_s <= _HELD * scale or rate * (pole - s) <= 0.0)):
-            # omega may fall by any factor yet: V is put to where it stands
-            u[0] = s = pole if pole > 0.0 else s
-            speed = sliding_speed(s, par)
-            omega, length, end = (speed - u[1]) / j, 1.0, s
-            panel = (s, s, length, end, speed, omega)
-            standing = min(_BEYOND * left, 0.5 * j * sigma * (omega - speed) / mu)
-            standing_rates(standing, panel, sigma, par, nodes)
+            u[0] = pole if pole > 0.0 else s
+            panel = stand(u, tau_end - tau, sigma, par, nodes)
         else:
-            length, end = aim(here, omega, s, pole, left, sigma, par)
-            if pole > 0.0:
-                length = -min(-length, np.log(abs(s - pole) * per_s / (0.5 * _HELD * scale)))
-                end = s + (s - pole) * np.expm1(length)
-            if abs(length) > longest:
-                length = np.copysign(longest, length)
+            length, end = aim(here, omega, s, pole, tau_end - tau, sigma, par)
+            most = min(longest, np.log(abs(s - pole) * per_s / (0.5 * _HELD * scale)) if pole > 0.0 else longest)
+            if abs(length) > most:
+                length = np.copysign(most, length)
                 end = s + (s - pole) * np.expm1(length)
             panel = (s, pole, length, end, speed, omega)
             if not slide_rates(panel, sigma, par, nodes):
                 longest = next_interval(abs(length), np.inf)
                 continue
+        length = abs(panel[2])
         rise = slide_sums(panel, sigma, par, nodes)
         scale = rtol * sliding_scale(nodes[V, N], u[1] + 2.0 * sigma * mu * rise, par)
         size = _SLIDING * _OVERSTATED * slide_error(length, nodes) / (SHARE * scale)
         if not size <= 1.0:
-            longest = next_interval(abs(length), size)
+            longest = next_interval(length, size)
             if longest < _SHORTEST:
                 break
             continue
-        longest = min(_LONGEST, next_interval(abs(length), size))
-        slide_terms(length, nodes, powers)
+        longest = min(_LONGEST, next_interval(length, size))
+        slide_terms(panel[2], nodes, powers)
         event, v = panel_event(panel, sigma, par, rest, nodes, powers)
         rise = slide_rise(v, panel, sigma, par, powers)[2] if v > 0.0 else 0.0
-        if event == NO_EVENT and end == 0.0:
+        if event == NO_EVENT and panel[3] == 0.0:
             event = REVERSAL
+        if tau + rise > tau_end:
+            event = NO_EVENT
         at = slide_outputs(tau_out, at, tau, rise, event == NO_EVENT, panel, direction, sigma, powers, u, par, gamma,
                            offset, out)  # fmt: skip
         ends = note_panel(tau, rise, v, powers, gamma, step_ends, ends)
-        _, _, X, angle = slide_state(v, rise, panel, sigma, par, powers)
-        u[0] = s_at(v, panel)[0]
-        u[1] += 2.0 * sigma * mu * rise
-        u[2] += X
-        u[3] += angle
-        travelled[0] += abs(X)
-        travelled[1] += abs(angle)
+        slide_on(u, v, rise, travelled, panel, sigma, par, powers)
         tau += rise
         if event != NO_EVENT:
             return event, tau, at, steps, ends
