@@ -7,6 +7,7 @@ import numpy as np
 from .arrays import copy
 from .collocation import NODES, SLOPES, N, place, rise_at
 from .control import SHARE, creep_weight, path_error, slip_share
+from .events import AT_REST, NO_EVENT
 from .jit import kernel
 from .motion_output import put
 from .slow import (
@@ -21,7 +22,6 @@ from .slow import (
 )  # fmt: skip
 from .stepper import PARTIAL
 
-FINISHED, LEFT, SLOW_REST = range(3)
 #: first, longest and shortest interval in ln zeta
 _FIRST, _LONGEST, _SHORTEST = 0.5, 2.5, 0.02
 #: relaxation over an interval, in e-folds, below which it is no business of this module
@@ -104,7 +104,7 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
                out, step_ends, ends, work):  # fmt: skip
     """Follow the slow manifold from u until outputs end, zeta exceeds exp(far), or an interval fails.
 
-    Returns (outcome, tau, next column, steps, ends noted, time to try again).
+    Returns (event, tau, next column, steps, ends noted, time to try again).
     """
     values, matrix, right, powers = work
     tau_end = tau_out[tau_out.size - 1]
@@ -117,12 +117,12 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
         steps += 1
         # what is left of the layer stays as the interval is shortened; what the interval does not resolve falls
         if size <= 1.0 < offset_size and entering and offset_size > 0.5 * before:
-            return LEFT, tau, at, steps, ends, tau + max(np.log(offset_size), 1.0) / relaxation
+            return NO_EVENT, tau, at, steps, ends, tau + max(np.log(offset_size), 1.0) / relaxation
         size, before = max(size, offset_size), offset_size
         if not size <= 1.0:
             length = next_interval(length, size)
             if length < _SHORTEST or relaxation * length < _STIFF * values[REACHED, 1]:
-                return LEFT, tau, at, steps, ends, tau + _STIFF / relaxation
+                return NO_EVENT, tau, at, steps, ends, tau + _STIFF / relaxation
             continue
         entering = False
         ahead = next_interval(length, size)
@@ -142,8 +142,8 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
         travelled[1] += abs(angle)
         tau += rise
         if rested:
-            return SLOW_REST, tau, at, steps, ends, tau
+            return AT_REST, tau, at, steps, ends, tau
         copy(values[N], values[REACHED])
         relaxation = -values[REACHED, 7]
         length = ahead
-    return FINISHED, tau, at, steps, ends, tau
+    return NO_EVENT, tau, at, steps, ends, tau
