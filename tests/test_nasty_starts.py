@@ -10,7 +10,7 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
-from viscoroll.motion import flow
+from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -38,7 +38,7 @@ def own_cache(tmp_path_factory):
     """Maps of this file are its own; compiled kernels stay where they are."""
     patch = pytest.MonkeyPatch()
     folder = tmp_path_factory.mktemp("maps")
-    patch.setattr(flow, "_folder", lambda: folder)
+    patch.setattr(flow_store, "folder", lambda: folder)
     flow._recent.clear()
     yield
     patch.undo()
