@@ -42,7 +42,8 @@ def s_at(v, panel):
     """(s, s - pole) at v = 1 + t; ``panel`` = (s, pole, length, s at the end, V, omega)."""
     s, pole, length, end, _, _ = panel
     rise = (s - pole) * np.expm1(0.5 * length * v)
-    return end if v == 2.0 else max(s + rise, 0.0), s - pole + rise
+    # abs: rounded downward, 0 - 0 is -0
+    return end if v == 2.0 else abs(max(s + rise, 0.0)), s - pole + rise
 
 
 @kernel

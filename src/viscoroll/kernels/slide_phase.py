@@ -180,6 +180,8 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
             panel = (s, pole, length, end, speed, omega)
             if not slide_rates(panel, sigma, par, nodes):
                 longest = next_interval(abs(length), np.inf)
+                if longest < _SHORTEST:
+                    break
                 continue
         length = abs(panel[2])
         rise = slide_sums(panel, sigma, par, nodes)
