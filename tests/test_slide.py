@@ -85,6 +85,20 @@ def test_outputs_do_not_move_the_motion(name, rtol):
     assert (many.V[-1], many.x[-1], many.steps) == (one.V[0], one.x[0], one.steps)
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+def test_the_way_while_v_comes_to_stand(rtol):
+    """Near M(V) = 2 mu the time depends on the last digits of V: what is integrated over it may not."""
+    scene, V0, omega0 = PAPER.replace(mu=0.005), 0.3, 10.0
+    t = vr.roll(scene, V0, omega0, [1.0], rtol=1e-9).onset_time * np.linspace(0.1, 0.99, 60)
+    motion, exact = vr.roll(scene, V0, omega0, t, rtol=rtol), vr.roll(scene, V0, omega0, t, rtol=1e-9)
+    np.testing.assert_allclose(motion.x, exact.x, rtol=max(rtol, 1e-9))
+    # the distance is the integral of V, which stands still from the middle on
+    late = t > 0.5 * t[-1]
+    np.testing.assert_allclose(
+        np.diff(motion.x[late]), motion.V[late][1:] * np.diff(t[late]), rtol=max(10 * rtol, 1e-7)
+    )
+
+
 @pytest.mark.parametrize("spin", [1e1, 1e3, 1e6, 1e9])
 def test_a_held_cylinder_takes_no_steps(spin):
     """M(V) = 2 mu: V stands still however long, then slip ends; the spin falls linearly."""

@@ -20,11 +20,13 @@ from .events import STICK
 from .full_slip import edge_of_stick, sliding
 from .jit import kernel
 
-#: rows of the values at the nodes: tau', I' and Z' (over the length), V, slip less stick limit, the larger speed, Z/tau
-D_TAU, D_I, D_Z, V, SLIP, SPEED, MEAN = range(7)
+#: rows of the values at the nodes: tau' and I' (over the length), the slope and the mean over time of what V gains
+#: beside the traction (all that it gains, where V comes to stand: there that is a small difference), V, slip less
+#: stick limit, the larger speed
+D_TAU, D_I, D_WAY, V, SLIP, SPEED, MEAN_GAIN = range(7)
 SLIDE_ROWS = 7
-#: rows of the interpolants of tau, I, Z/tau (Z itself would lose its digits early), and of the function of an event
-TAU, LOST, MEAN_LOST, EVENT = range(4)
+#: rows of the interpolants: tau, I, the mean gain (its integral would lose digits early), the function of an event
+TAU, LOST, MEAN, EVENT = range(4)
 #: beyond this length V has changed by so much that its change is good for the time
 _LONG = 0.5
 #: iterations to find an event, and a step after which none is needed
@@ -40,7 +42,8 @@ def s_at(v, panel):
     """(s, s - pole) at v = 1 + t; ``panel`` = (s, pole, length, s at the end, V, omega)."""
     s, pole, length, end, _, _ = panel
     rise = (s - pole) * np.expm1(0.5 * length * v)
-    return end if v == 2.0 else max(s + rise, 0.0), s - pole + rise
+    # abs: rounded downward, 0 - 0 is -0
+    return end if v == 2.0 else abs(max(s + rise, 0.0)), s - pole + rise
 
 
 @kernel
@@ -89,7 +92,7 @@ def _time(speed, I, tau, panel, sigma, par):
 def slide_sums(panel, sigma, par, nodes):
     """Fill the other rows; the rise of tau."""
     half, tau = 0.5 * panel[2], 0.0
-    nodes[D_Z, 0] = 0.0
+    nodes[D_WAY, 0] = 0.0
     nodes[SLIP, 0] = _slip(0.0, 0.0, panel, sigma, par) - nodes[SLIP, 0]
     nodes[SPEED, 0] = _fastest(nodes[V, 0], 0.0, 0.0, panel, sigma, par)
     for i in range(1, N + 1):
@@ -99,16 +102,16 @@ def slide_sums(panel, sigma, par, nodes):
             I += INTEGRALS[i - 1, n] * nodes[D_I, n + 1]
         I *= half
         tau = _time(nodes[V, i], I, half * tau, panel, sigma, par)
-        nodes[D_Z, i] = I * nodes[D_TAU, i]
+        nodes[D_WAY, i] = ((sigma * par[3] * tau if panel[1] > 0.0 else 0.0) - I) * nodes[D_TAU, i]
         nodes[SLIP, i] = _slip(tau, I, panel, sigma, par) - nodes[SLIP, i]
         nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, par)
-        nodes[MEAN, i] = half / tau if tau > 0.0 else 0.0
-    nodes[MEAN, 0] = 0.0
+        nodes[MEAN_GAIN, i] = half / tau if tau > 0.0 else 0.0
+    nodes[MEAN_GAIN, 0] = 0.0
     for i in range(1, N + 1):
-        Z = 0.0
+        way = 0.0
         for n in range(N):
-            Z += INTEGRALS[i - 1, n] * nodes[D_Z, n + 1]
-        nodes[MEAN, i] *= Z
+            way += INTEGRALS[i - 1, n] * nodes[D_WAY, n + 1]
+        nodes[MEAN_GAIN, i] *= way
     return tau
 
 
@@ -130,10 +133,10 @@ def slide_error(length, nodes):
 
 @kernel
 def slide_terms(length, nodes, powers):
-    """Coefficients for ``rise_at`` of tau, I and Z/tau."""
+    """Coefficients for ``rise_at`` of tau, I and the mean gain."""
     integral_terms(nodes[D_TAU], 0.5 * length, powers, TAU)
     integral_terms(nodes[D_I], 0.5 * length, powers, LOST)
-    rise_terms(nodes[MEAN], powers, MEAN_LOST)
+    rise_terms(nodes[MEAN_GAIN], powers, MEAN)
 
 
 @kernel
@@ -151,7 +154,7 @@ def slide_state(v, tau, panel, sigma, par, powers):
     s, pole, _, _, speed, omega = panel
     push = sigma * mu * tau
     gain = push - rise_at(v, powers, LOST)
-    mean = 0.5 * push - rise_at(v, powers, MEAN_LOST)
+    mean = (0.5 * push if pole <= 0.0 else 0.0) + rise_at(v, powers, MEAN)
     if s == pole:  # V stands still
         gain = mean = 0.0
     return speed + gain, omega - (2.0 * push - gain) / j, (speed + mean) * tau, (omega - (push - mean) / j) * tau

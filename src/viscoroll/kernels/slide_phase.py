@@ -34,7 +34,7 @@ from .stepper import FULL
 #: the first panel at rtol = 1, the longest, and the shortest
 _FIRST, _LONGEST, _SHORTEST = 4.8, 4.0, 1e-9
 #: a mismatch of the integrands at the left end overstates the error of their interpolants
-_OVERSTATED = 0.01
+_OVERSTATED = 0.03
 #: errors of V weigh more than its share of the speeds says: what is left of V + j omega at onset may be small
 _SLIDING = 150.0
 #: how much beyond the place that is expected for its end a panel goes
@@ -180,6 +180,8 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
             panel = (s, pole, length, end, speed, omega)
             if not slide_rates(panel, sigma, par, nodes):
                 longest = next_interval(abs(length), np.inf)
+                if longest < _SHORTEST:
+                    break
                 continue
         length = abs(panel[2])
         rise = slide_sums(panel, sigma, par, nodes)
