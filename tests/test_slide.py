@@ -7,6 +7,7 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
+from viscoroll.kernels.full_slip import HOLDS
 from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED
@@ -142,3 +143,12 @@ def test_rest_while_sliding():
     threshold = max(abs(passed.V[0]), abs(passed.omega[0]))
     rested = vr.roll(scene, *start, [1.0], rtol=1e-10, rest=threshold)
     assert rested.rest_time == pytest.approx(8e-4, rel=1e-8)
+
+
+def test_largest_rolling_resistance():
+    """kappa M grows with alpha at every speed, to 0.30905 at most: with more friction nothing holds V."""
+    V = np.geomspace(1e-4, 1e6, 4001)
+    alphas = (*np.geomspace(1.0001, 1e12, 60), 1e300)
+    M = np.array([vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas])
+    assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
+    assert 0.3090 < M.max() < 0.3091 < 2.0 * HOLDS

@@ -13,8 +13,8 @@ from .jit import kernel
 from .law import contact_length, generator_slopes, generators, moment_factor
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
-#: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.31, for alpha -> infinity
-_HOLDS = 0.16
+#: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
+HOLDS = 0.16
 #: steps of Newton's iteration, its difference quotient, and its last step
 _NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
 
@@ -112,7 +112,7 @@ def standstill(par):
     From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
     """
     _, c, kappa, mu, _ = par
-    if not kappa * mu < _HOLDS:
+    if not kappa * mu < HOLDS:
         return np.nan
     # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
     s = 4.0 * kappa * mu / c
