@@ -96,7 +96,7 @@ def plant(mutant: Mutant, path: Path) -> None:
 
 def run(tree: Path, tests: str, timeout: float) -> tuple[str, str]:
     """(killed, crashed, timed out or survived; the first failing test)."""
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "--tb=no", "-p", "no:cacheprovider", tests]
+    command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no", "-p", "no:cacheprovider", tests]
     environment = os.environ | {"PYTHONPATH": str(tree / "src"), "VISCOROLL_CACHE_DIR": str(tree / "cache")}
     try:
         done = subprocess.run(
