@@ -160,7 +160,7 @@ def test_measure_runs_and_document_reads_it(tmp_path):
 def test_measure_refuses_a_configuration_without_its_section(tmp_path):
     (tmp_path / "empty.toml").write_text("", encoding="utf-8")
     result = run("pipeline/measure.py", "--config", str(tmp_path / "empty.toml"), "-o", str(tmp_path / "out.json"))
-    assert result.returncode == 1
+    assert result.returncode == 2
     assert "[measure]" in result.stderr
     assert not (tmp_path / "out.json").exists()
 

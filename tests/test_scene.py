@@ -201,3 +201,28 @@ def test_cylinders_beyond_the_doubles(changed, field):
     )
     with pytest.raises(vr.ParameterError, match=field):
         cylinder.scene()
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"alpha": 1.1e12}, "alpha"), ({"alpha": [11.0, 1e20]}, "alpha"), ({"mu": 1e-200, "kappa": 1e150}, "mu/kappa"),
+        ({"mu": [0.2, 1e200], "kappa": 1e-150}, "mu/kappa"),
+    ],
+)  # fmt: skip
+def test_parameters_beyond_the_range_of_the_law(changes, named):
+    """From alpha of some 1e18 on roots did not converge or were NaN; delta_star was 0 or infinite."""
+    with pytest.raises(vr.ParameterError, match=f"{named} = "):
+        vr.PAPER_SECTION_5.replace(**changes)
+
+
+def test_law_at_the_ends_of_its_range():
+    """Finite at the highest alpha; where alpha zeta is large, nearly the law at a thousandth of it."""
+    V = np.geomspace(1e-6, 1e6, 101)
+    found = [vr.contact(vr.Scene(alpha, 2.9, 0.2), V, delta=0.0) for alpha in (1e9, 1e12)]
+    for name in ("lam", "epsilon", "delta_star", "M"):
+        near, far = (getattr(each, name) for each in found)
+        assert np.isfinite(far).all()
+        np.testing.assert_allclose(near[V <= 1.0], far[V <= 1.0], rtol=1e-7)
+    low = vr.contact(vr.Scene(1e12, 1e-145, 1e-145 * 1e-140), 1.0, delta=0.0)
+    assert np.isfinite([low.delta_star, low.M]).all()

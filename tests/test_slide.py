@@ -148,7 +148,7 @@ def test_rest_while_sliding():
 def test_largest_rolling_resistance():
     """kappa M grows with alpha at every speed, to 0.30905 at most: with more friction nothing holds V."""
     V = np.geomspace(1e-4, 1e6, 4001)
-    alphas = (*np.geomspace(1.0001, 1e12, 60), 1e300)
+    alphas = np.geomspace(1.0001, 1e12, 60)
     M = np.array([vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas])
     assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
     assert 0.3090 < M.max() < 0.3091 < 2.0 * HOLDS

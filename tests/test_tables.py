@@ -514,17 +514,20 @@ def test_a_seal_is_no_obstacle_to_other_programs(saved: Path, literal: xr.Datase
 def test_bit_flips_are_never_silent(saved: Path, literal: xr.Dataset) -> None:
     """A flipped bit is refused, or lies where it changes nothing."""
     content = saved.read_bytes()
-    expected, refused = store.content_hash(literal), 0
+    expected, refused = store.content_hash(literal), {"sealed": 0, "without": 0}
     for position in np.random.default_rng(3).integers(0, len(content) * 8, 40):
         damaged = bytearray(content)
         damaged[position // 8] ^= 1 << (position % 8)
         saved.write_bytes(damaged)
-        for read in (partial(vr.tables.load, saved), partial(store.read, bytes(damaged), saved, verify=True)):
+        bare = partial(store.read, bytes(damaged), saved, verify=True)
+        for way, read in (("sealed", partial(vr.tables.load, saved)), ("without", bare)):
             try:
                 assert store.content_hash(read()) == expected
             except vr.TableError:
-                refused += 1
-    assert refused > 60
+                refused[way] += 1
+    # without the seal, some 20: the others lie in what HDF5 leaves unused, more or less with the length of the texts
+    assert refused["sealed"] == 40
+    assert refused["without"] >= 10
 
 
 def test_edited_content_is_refused_unless_asked(saved: Path) -> None:

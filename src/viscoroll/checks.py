@@ -10,22 +10,25 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import ParameterError
 
 
-def checked(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> NDArray[np.float64]:
-    """``value`` as float64, finite and >= ``low`` (> if ``strict``).
+def checked(
+    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
+) -> NDArray[np.float64]:
+    """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``.
 
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, or below ``low``.
+        If it is not numeric, not finite, below ``low`` or above ``high``.
     """
-    return checked_extent(name, value, low=low, strict=strict)[0]
+    return checked_extent(name, value, low=low, strict=strict, high=high)[0]
 
 
 def checked_extent(
-    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False
+    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
     """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array."""
     allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
+    allowed += "" if high == math.inf else f", <= {high:g}"
     try:
         given = np.asarray(value)
     except ValueError:  # ragged
@@ -35,10 +38,9 @@ def checked_extent(
     array = given.astype(np.float64, copy=False)
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
     # a NaN compares false; without one, no mask of the size of the array is needed
-    if array.size and not (
-        (smallest > low if strict else smallest >= low) and -math.inf < smallest and largest < math.inf
-    ):
-        bad = ~(np.isfinite(array) & (array > low if strict else array >= low))
+    above = smallest > low if strict else smallest >= low
+    if array.size and not (above and -math.inf < smallest and largest < math.inf and largest <= high):
+        bad = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
         raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
     return array, (smallest, largest)
 

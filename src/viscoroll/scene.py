@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import broadcast_shape, checked, number
+from .checks import broadcast_shape, checked, checked_extent, number
 from .errors import ParameterError
 from .validity import Validity, contact_reach, judge
 
@@ -22,6 +22,12 @@ def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
     return array
 
 
+#: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
+HIGHEST_ALPHA = 1e12
+#: of mu/kappa, in which delta_star is measured
+RATIO_RANGE = (1e-290, 1e290)
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Dimensionless parameters of the rolling cylinder (Eqs. (4) and Sect. 3.1).
@@ -30,7 +36,7 @@ class Scene:
 
     Parameters
     ----------
-    alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic).
+    alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic) and <= 1e12.
     kappa : R/l0 = sqrt(E' R/(32 P)), radius over contact length at rest, > 0;
         the half-space theory asks for kappa >> 1.
     mu : coefficient of friction, > 0.
@@ -50,11 +56,16 @@ class Scene:
     j: Any = 0.5
 
     def __post_init__(self) -> None:
-        arrays = {
-            "alpha": checked("alpha", self.alpha, low=1.0),
-            **{n: checked(n, getattr(self, n), low=0.0, strict=True) for n in ("kappa", "mu", "gamma", "j")},
-        }
+        arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
+        extents = {}
+        for name in ("kappa", "mu", "gamma", "j"):
+            arrays[name], extents[name] = checked_extent(name, getattr(self, name), low=0.0, strict=True)
         broadcast_shape(**arrays)
+        if arrays["mu"].size and arrays["kappa"].size:
+            low, high = RATIO_RANGE
+            (least_mu, most_mu), (least_kappa, most_kappa) = extents["mu"], extents["kappa"]
+            if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
+                _refuse_ratio(arrays["mu"], arrays["kappa"])
         for name, array in arrays.items():
             object.__setattr__(self, name, _frozen(array))
 
@@ -93,6 +104,16 @@ class Scene:
         return all(np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
 
     __hash__ = None  # type: ignore[assignment]
+
+
+def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
+    """Raise ParameterError where mu/kappa, and with it delta_star, leaves the range of doubles, or nearly."""
+    low, high = RATIO_RANGE
+    with np.errstate(over="ignore", under="ignore"):
+        ratio = np.asarray(mu / kappa)
+    wrong = ratio[~((low <= ratio) & (ratio <= high))]
+    if wrong.size:
+        raise ParameterError("mu/kappa", f"{wrong.flat[0]:g}", f"in [{low:g}, {high:g}]")
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:

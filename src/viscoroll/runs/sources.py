@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConfigError
+from ..scene import HIGHEST_ALPHA
 from ..sections import fault, hint, refuse_unknown
 from .inputs import Distribution, Inputs, Joint
 
@@ -36,7 +37,7 @@ def _positive(unit: str = "1", default: float | None = None) -> Range:
 
 
 SCENE = {
-    "alpha": Range(1.0),
+    "alpha": Range(1.0, high=HIGHEST_ALPHA),
     "kappa": _positive(),
     "mu": _positive(),
     "gamma": _positive(default=1.0),

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import checked, number
 from ..errors import ParameterError
+from ..scene import HIGHEST_ALPHA
 
 #: A not-a-knot cubic needs four nodes.
 _MIN_NODES = 4
@@ -109,7 +110,7 @@ class AtlasGrid:
             if not isinstance(value, Iterable) or len(tuple(value)) != length:
                 raise ParameterError(name, f"{value!r:.60}", f"{length} numbers")
             object.__setattr__(self, name, tuple(value))
-        checked("alpha", self.alpha, low=1.0)
+        checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)
         checked("allowed", self.allowed, low=0.0, strict=True)
         if any(not isinstance(n, int) or n < _MIN_NODES for n in self.nodes) or np.prod(self.nodes) > _MAX_NODES:
             raise ParameterError("nodes", self.nodes, f"integers >= {_MIN_NODES}, at most {_MAX_NODES} nodes in all")
@@ -156,7 +157,11 @@ class LiteralGrid:
             if value.ndim:
                 raise ParameterError(name, value, "a single number: a table holds one kappa and one mu")
             object.__setattr__(self, name, float(value))
-        bounds: dict[str, dict[str, Any]] = {"V": {"low": 0.0, "strict": True}, "delta": {}, "alpha": {"low": 1.0}}
+        bounds: dict[str, dict[str, Any]] = {
+            "V": {"low": 0.0, "strict": True},
+            "delta": {},
+            "alpha": {"low": 1.0, "high": HIGHEST_ALPHA},
+        }
         for name, bound in bounds.items():
             axis = np.atleast_1d(checked(name, getattr(self, name), **bound)).copy()
             if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
