@@ -22,7 +22,7 @@ LAW = [
     ("law.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
     ("law.py", "dp = dr * k + r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", "dp = dr * k - r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", _LAW),
     ("law.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _LAW),
-    ("law.py", "return D, (1.0 + ratio) * D\n", "return D, ratio * D\n", _MOTION),
+    ("law.py", "return D, (1.0 + ratio) * D\n", "return D, ratio * D\n", _LAW),
     ("law.py", "return zeta - d, d, (2.0 - d / zeta) * d, OK", "return zeta - d, 0.5 * d, (2.0 - d / zeta) * d, OK", _MOTION),
     ("law.py", "slope_zh += GAUSS_W[n] * (h + z * dh)", "slope_zh += GAUSS_W[n] * (h + zeta * dh)", _LAW),
     ("law.py", "0.11846344252809454, 0.23931433524968324, 0.28444444444444444", "0.11846344264655800, 0.23931433524968324, 0.28444444444444444", _LAW),

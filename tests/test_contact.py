@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
+from viscoroll.kernels.law import differences
 from viscoroll.rolling_contact import FIELDS, SLOPES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -454,3 +455,12 @@ def test_a_stick_zone_that_rounds_to_nothing():
     assert not state.full_slip
     assert state.beta == 0.0
     assert state.Q == scene.mu
+
+
+def test_differences_of_an_elastic_contact():
+    """alpha = 1: F(z) = z, H(z) = z^2, of neighbours too."""
+    for zeta, share in ((3.0, 0.5), (1e-3, 1e-6), (1e8, 1e-12)):
+        D = share * zeta
+        rise_F, rise_H = differences(zeta, zeta - D, D, 1.0, 0.0)
+        assert rise_F == D
+        assert rise_H == pytest.approx((2.0 - share) * D, rel=tol.CONTACT)
