@@ -171,7 +171,7 @@ def test_mirror_and_gamma():
 def test_same_bits_for_any_number_of_threads():
     V0, omega0 = starts(40_000, 6, SCENE)
     one, two = (vr.ensemble(SCENE, V0, omega0, T[1:3], threads=n) for n in (1, 2))
-    assert one.flow.mean() > 0.999
+    assert one.flow.mean() > 0.998
     assert np.array_equal(one.V, two.V)
     assert np.array_equal(one.x, two.x)
 
@@ -341,3 +341,20 @@ def test_distance_is_not_looked_up_unless_asked_for(monkeypatch):
     assert built.stated_error(path=False, loss=False) == built.error
     assert built.stated_error(path=True, loss=False) == max(built.error, built.path_error)
     assert built.stated_error(path=True, loss=True) == max(built.error, built.path_error, built.loss_error)
+
+
+def test_hardly_any_speed_left_at_onset():
+    """Errors of sliding weigh as many times more as V has fallen: by 5,000 they would exceed what the map states."""
+    scene = vr.Scene(79.7, 7.3, 0.165, 1.0, 1.48)
+    V0 = np.random.default_rng(5).uniform(0.5, 2.0, 4000)
+    t = [12.0]
+    # about the spin with which nothing is left
+    spins = -V0 * np.linspace(0.55, 0.65, 4000)
+    found = vr.ensemble(scene, V0, spins, t, method="flow", fields=("V", "omega"))
+    left = np.abs(found.V[:, 0]) / V0
+    few = np.argsort(left)[:400]
+    best = vr.ensemble(scene, V0[few], spins[few], t, method="integrate", rtol=1e-12, fields=("V", "omega"))
+    off = np.abs(found.V[few] / best.V - 1.0)[found.flow[few]]
+    assert found.flow.mean() > 0.99
+    assert not found.flow[few].all()
+    assert off.max() <= found.flow_error

@@ -152,3 +152,13 @@ def test_largest_rolling_resistance():
     M = np.array([vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas])
     assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
     assert 0.3090 < M.max() < 0.3091 < 2.0 * HOLDS
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 3e-4, 1e-4])
+def test_slip_that_returns_for_a_moment(rtol):
+    """Slip that closes again within a twentieth of a panel went stick, slip, stick, at one instant and for ever."""
+    scene = vr.Scene(183.26278143994915, 0.9568722484878621, 0.02453309847747956, 1.0, 0.2541193764896803)
+    for V0, omega0 in ((-0.13833785132889842, -0.5685100589509053), (-0.25199780617340695, -1.4371188714508967)):
+        best = vr.roll(scene, V0, omega0, [6.30500104], rtol=1e-10)
+        motion = vr.roll(scene, V0, omega0, [6.30500104], rtol=rtol, max_steps=1000)
+        assert motion.V[0] == pytest.approx(best.V[0], rel=tol.MOTION_RTOL * rtol)

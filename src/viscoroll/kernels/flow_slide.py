@@ -8,7 +8,7 @@ import numpy as np
 
 from . import flow_layout as layout
 from .flow_fit import BINS, HALF, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
-from .full_slip import full_rhs, stick_limit
+from .full_slip import sliding_rate, stick_limit
 from .jit import kernel
 
 _LOW = layout.LOW
@@ -28,7 +28,7 @@ def slide_table(sign, par, table):
         half = 0.5 * width(b, _LOW) / kappa
         for n in range(N):
             V = node(b, n, _LOW) / kappa
-            acceleration = full_rhs(sign * V, 0.0, 1.0, par)[0]
+            acceleration = sliding_rate(sign * V, 1.0, par)
             if not acceleration > 0.0:
                 return False
             pace[0, n] = half / acceleration

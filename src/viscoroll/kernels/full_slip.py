@@ -33,10 +33,9 @@ def _moment(V, par):
 
 
 @kernel
-def full_rhs(V, w, sigma, par):
-    """(V', w', V, omega) with w = V - j omega."""
-    mu, j = par[3], par[4]
-    return sigma * mu - 0.5 * _moment(V, par), 2.0 * sigma * mu, V, (V - w) / j
+def sliding_rate(V, sigma, par):
+    """V' at V of either sign."""
+    return sigma * par[3] - 0.5 * _moment(V, par)
 
 
 @kernel

@@ -41,6 +41,8 @@ _SLIDING = 150.0
 _BEYOND = 1.05
 #: change of V over V up to which s changes in proportion
 _NEAR = 0.1
+#: slip less its limit, over the speeds, at which a start is on the edge; halvings of a panel searched for an opening
+_ON_EDGE, _HALVINGS = 1e-12, 40
 #: share of rtol by which V may still be off where it is taken to stand still
 _HELD = 0.1
 
@@ -90,6 +92,17 @@ def aim(here, omega, s, pole, left, sigma, par):
 
 
 @kernel
+def opening(high, panel, sigma, par, rest, powers):
+    """v before ``high`` at which slip that starts on its limit is beyond it, if only for a moment; 0 if nowhere."""
+    v = high
+    for _ in range(_HALVINGS):
+        v *= 0.5
+        if event_at(STICK, v, panel, sigma, par, rest, powers) > 0.0:
+            return v
+    return 0.0
+
+
+@kernel
 def panel_event(panel, sigma, par, rest, nodes, powers):
     """(event, v): the first event on the panel, else none and its end."""
     event, low, high = NO_EVENT, 0.0, 2.0
@@ -104,8 +117,10 @@ def panel_event(panel, sigma, par, rest, nodes, powers):
         event, high = STICK, v
         for i in range(1, N):
             low = 1.0 + NODES[i] if 1.0 + NODES[i] < v else low
-    if event == STICK and low == 0.0 and nodes[SLIP, 0] <= 0.0:
-        return STICK, 0.0
+    if event == STICK and low == 0.0 and nodes[SLIP, 0] <= _ON_EDGE * nodes[SPEED, 0]:
+        low = opening(high, panel, sigma, par, rest, powers)
+        if low == 0.0:
+            return STICK, 0.0
     v = locate_slide(event, low, high, panel, sigma, par, rest, nodes, powers)
     if event == STICK and rest > 0.0 and event_at(AT_REST, v, panel, sigma, par, rest, powers) < 0.0:
         return AT_REST, locate_slide(AT_REST, low, v, panel, sigma, par, rest, nodes, powers)
