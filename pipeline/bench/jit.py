@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numba
 
-from viscoroll.kernels.jit import CONTRACT, cache_root, sources_digest
+from viscoroll.kernels.jit import cache_root, sources_digest
 
 PIPELINE = Path(__file__).parents[1]
 
@@ -22,5 +22,5 @@ def _digest() -> str:
 # numba's own cache looks at the file of a function only, not at what it calls: another folder for each state of both
 numba.config.CACHE_DIR = str(cache_root() / f"bench-{_digest()}")
 
-#: decorator: the numerical freedom of the package's kernels
-compiled = numba.njit(nogil=True, error_model="numpy", fastmath=CONTRACT, cache=True)
+#: decorator: as the package's kernels, and what may be fused is, which those forgo
+compiled = numba.njit(nogil=True, error_model="numpy", fastmath={"contract"}, cache=True)

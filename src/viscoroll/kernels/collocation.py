@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import legendre
 
+from .fma import fma
 from .jit import kernel
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
@@ -45,7 +46,7 @@ def polynomial(t, powers, row):
     """Polynomial with the coefficients ``powers[row]``."""
     total = 0.0
     for k in range(powers.shape[1] - 1, -1, -1):
-        total = powers[row, k] + t * total
+        total = fma(t, total, powers[row, k])
     return total
 
 

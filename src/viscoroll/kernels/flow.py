@@ -12,6 +12,7 @@ import numpy as np
 
 from . import flow_layout as layout
 from .flow_fit import MANTISSA, ONE, bits_and_offset, polynomial
+from .fma import fma
 from .jit import kernel
 from .law import GAUSS_W, GAUSS_X
 
@@ -204,7 +205,7 @@ def _layer_value(table, at, t, s):
     """Polynomial in t (speed at onset) and s (stiff time)."""
     total = 0.0
     for k in range(layout.SPEED_COEFFICIENTS - 1, -1, -1):
-        total = polynomial(table, at + k * layout.FAST_COEFFICIENTS, s) + t * total
+        total = fma(t, total, polynomial(table, at + k * layout.FAST_COEFFICIENTS, s))
     return total
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from . import flow_layout as layout
+from .fma import fma, septic
 from .jit import kernel
 
 N = layout.COEFFICIENTS
@@ -91,10 +92,9 @@ def width(b, low):
 @kernel(inline=True)
 def polynomial(coefficients, at, t):
     """Polynomial whose coefficients start at ``at``."""
-    t2 = t * t
-    low = (coefficients[at] + t * coefficients[at + 1]) + t2 * (coefficients[at + 2] + t * coefficients[at + 3])
-    high = (coefficients[at + 4] + t * coefficients[at + 5]) + t2 * (coefficients[at + 6] + t * coefficients[at + 7])
-    return low + (t2 * t2) * high
+    low = (coefficients[at], coefficients[at + 1], coefficients[at + 2], coefficients[at + 3])
+    high = (coefficients[at + 4], coefficients[at + 5], coefficients[at + 6], coefficients[at + 7])
+    return septic(t, *low, *high)
 
 
 @kernel
@@ -109,7 +109,7 @@ def slope(table, b, column, t):
     p = table[b, column]
     total = 0.0
     for n in range(N - 1, 0, -1):
-        total = n * p[n] + t * total
+        total = fma(t, total, n * p[n])
     return total
 
 

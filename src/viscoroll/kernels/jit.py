@@ -23,8 +23,6 @@ import numba
 from numba.core import caching
 
 HERE = Path(__file__).parent
-#: Numerical freedom granted to LLVM: fused multiply-add, nothing that moves a NaN or a sum.
-CONTRACT = {"contract"}
 
 
 def cache_root() -> Path:
@@ -114,6 +112,9 @@ class _Cache(caching.FunctionCache):
 def kernel(function: Callable | None = None, *, inline: bool = False, allocates: bool = False) -> Callable:
     """Compile ``function`` with numba, lazily, cached on disk (see the module docstring).
 
+    LLVM is granted no numerical freedom: a result then depends on the source alone, not on what
+    was compiled together (see :mod:`fma`).
+
     ``inline`` is for the few short functions at the bottom of every loop: a call of a numba
     function costs as much as a polynomial, and LLVM by itself does not always spare it.
     ``allocates`` says that arrays are made or assigned as a whole.  Without it no references are
@@ -121,9 +122,7 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     """
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)
-    compiled = numba.njit(
-        function, fastmath=CONTRACT, error_model="numpy", nogil=True, forceinline=inline, _nrt=allocates
-    )
+    compiled = numba.njit(function, error_model="numpy", nogil=True, forceinline=inline, _nrt=allocates)
     if not numba.config.DISABLE_JIT:
         compiled._cache = _Cache(function)
     return compiled

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
 
 from . import ratio_layout as layout
+from .fma import fma, septic
 from .jit import kernel
 
 TABLE = np.load(Path(__file__).with_name("ratios.npy"))
@@ -97,10 +98,8 @@ def bin_offset(x):
 @kernel
 def polynomial(row, t):
     """Polynomial of degree 8 with the coefficients ``row``."""
-    t2 = t * t
-    low = (row[1] + t * row[2]) + t2 * (row[3] + t * row[4])
-    high = (row[5] + t * row[6]) + t2 * (row[7] + t * row[8])
-    return row[0] + t * (low + (t2 * t2) * high)
+    rest = septic(t, row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
+    return fma(t, rest, row[0])
 
 
 @kernel(inline=True)

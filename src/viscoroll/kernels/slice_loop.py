@@ -29,6 +29,7 @@ from .contact_loop import (
     creep_ratio,
     signed_slip,
 )
+from .fma import fma, septic
 from .jit import kernel
 from .law import CLOSE, GAUSS_W, GAUSS_X, OK
 from .ratios import bin_number, bin_offset
@@ -41,10 +42,9 @@ EDGE = 2.0**-20
 @kernel(inline=True)
 def polynomial_of(table, at, f, t):
     """Function ``f`` in bin ``at`` (indexed in full: a view of a row would cost more than the polynomial)."""
-    t2 = t * t
-    low = (table[at, f, 1] + t * table[at, f, 2]) + t2 * (table[at, f, 3] + t * table[at, f, 4])
-    high = (table[at, f, 5] + t * table[at, f, 6]) + t2 * (table[at, f, 7] + t * table[at, f, 8])
-    return table[at, f, 0] + t * (low + (t2 * t2) * high)
+    low = (table[at, f, 1], table[at, f, 2], table[at, f, 3], table[at, f, 4])
+    high = (table[at, f, 5], table[at, f, 6], table[at, f, 7], table[at, f, 8])
+    return fma(t, septic(t, *low, *high), table[at, f, 0])
 
 
 @kernel(inline=True)
