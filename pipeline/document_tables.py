@@ -140,7 +140,7 @@ def proofs(m: dict[str, Any]) -> str:
                 number(row["worst"]),
                 number(row["mean"]),
             )
-            for row in m["proofs"]["proofs"][name]
+            for row in m["proofs"]["parts"][name]
         )
         parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst', 'mean'), rows)}")
     return "\n".join(parts)

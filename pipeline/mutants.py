@@ -47,6 +47,7 @@ LAW = [
     ("ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),
     ("ratios.py", "K_LEAST = 2.0**-30\n", "K_LEAST = 2.0**-20\n", _RATIOS),
     ("ratios.py", "r_complement * (1.0 + r) - r * per_x", "r_complement * (1.0 - r) - r * per_x", _LAW),
+    ("fma.py", "fma(t, c5, c4)", "fma(t, c4, c5)", _RATIOS),
     ("lockstep.py", "small_step(lam, new)", "small_step(lam, lam)", _LAW),
     ("lockstep.py", "small_step(z, new)", "small_step(z, z)", _LAW),
 ]  # fmt: skip
@@ -77,6 +78,7 @@ MOTION = [
     ("partial_slip.py", "0.5 * m) * (per_V / mu) - 2.0 * d * rate", "0.5 * m) * (per_V / mu)", _MOTION),
     ("events.py", "return 1.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)", "return 2.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)", _MOTION),
     ("slide_phase.py", "event = REVERSAL\n", "event = STICK\n", "tests/test_slide.py"),
+    ("collocation.py", "total = fma(t, total, powers[row, k])", "total = fma(t, total, powers[row, k] * (1.0 + 1e-7))", _MOTION),
     ("slow.py", "return half * tau, half * X, half * (X + turn)", "return half * tau, half * X, half * (X - turn)", _MOTION),
     ("layer.py", "creep_rates(y, S + e, par)", "creep_rates(y, S - e, par)", "tests/test_layer.py"),
     ("losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/test_ensemble.py"),

@@ -9,7 +9,6 @@ where a bound is exceeded.  pipeline/document.py puts the table into docs/accura
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 
@@ -18,7 +17,7 @@ import proofs_motion
 import proofs_ratios
 import proofs_shape
 import proofs_slopes
-from results import RESULTS, parser, read_sizes, told, write_results
+from results import RESULTS, parser, read_sizes, run_parts, told, write_results
 
 #: name -> function of the sizes that returns rows of claim, domain, bound, worst, points, where
 PROOFS = {
@@ -31,8 +30,7 @@ PROOFS = {
 
 
 def main() -> int:
-    options = parser(__doc__, RESULTS / "proofs.json")
-    options.add_argument("--only", choices=PROOFS, help="renew one proof in a file that has the others")
+    options = parser(__doc__, RESULTS / "proofs.json", parts=PROOFS)
     arguments = options.parse_args()
     return told("prove", lambda: prove(arguments.config, arguments.quick, arguments.only, arguments.output))
 
@@ -40,10 +38,8 @@ def main() -> int:
 def prove(config: Path, quick: bool, only: str | None, output: Path) -> int:
     """All proofs or one, into ``output``; 1 if a row lies beyond its bound."""
     sizes = read_sizes(config, "prove", quick)
-    proofs = {name: PROOFS[name](sizes) for name in ([only] if only else PROOFS)}
-    if only:
-        proofs = json.loads(output.read_text(encoding="utf-8"))["proofs"] | proofs
-    write_results(output, {"proofs": proofs, "sizes": sizes})
+    proofs = run_parts(PROOFS, sizes, only, output)
+    write_results(output, {"parts": proofs, "sizes": sizes})
     broken = [row for rows in proofs.values() for row in rows if not row["worst"] <= row["bound"]]
     for row in broken:
         print(

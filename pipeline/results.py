@@ -10,7 +10,7 @@ import os
 import platform
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,14 +25,26 @@ from viscoroll.files import write_text
 RESULTS = ROOT / "data/results"
 
 
-def parser(doc: str | None, output: Path, *, sizes: bool = True) -> argparse.ArgumentParser:
-    """-o, and where there are sizes to choose, --config and --quick."""
+#: name -> what measures that part of a stage: rows, from the sizes
+Parts = Mapping[str, Callable[[dict[str, Any]], list[dict[str, Any]]]]
+
+
+def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | None = None) -> argparse.ArgumentParser:
+    """-o; where there are sizes to choose, --config and --quick; where there are parts, --only."""
     result = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawTextHelpFormatter)
     if sizes:
         result.add_argument("--config", type=Path, default=CONFIG, help="TOML file with the sizes")
         result.add_argument("--quick", action="store_true", help="the sizes of a test: does it run?")
+    if parts:
+        result.add_argument("--only", choices=parts, help="renew one part in a file that has the others")
     result.add_argument("-o", "--output", type=Path, default=output)
     return result
+
+
+def run_parts(parts: Parts, sizes: dict[str, Any], only: str | None, output: Path) -> dict[str, list[dict[str, Any]]]:
+    """Rows of all parts; with ``only``, of that one beside those of the others that ``output`` has."""
+    known = json.loads(output.read_text(encoding="utf-8"))["parts"] if only and output.exists() else {}
+    return known | {name: rows(sizes) for name, rows in parts.items() if only in (None, name)}
 
 
 def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:

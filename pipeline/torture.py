@@ -10,21 +10,20 @@ anything was wrong.  pipeline/document.py puts the table into docs/design.md.
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 
+import torture_cache
 import torture_ensembles
 import torture_tables
-from results import RESULTS, machine, parser, read_sizes, told, write_results
+from results import RESULTS, machine, parser, read_sizes, run_parts, told, write_results
 
 #: name -> function of the sizes that returns rows of done, tried, refused, unharmed, wrong, slowest_s, peak_mb
-PARTS = {"tables": torture_tables.rows, "ensembles": torture_ensembles.rows}
+PARTS = {"tables": torture_tables.rows, "ensembles": torture_ensembles.rows, "cache": torture_cache.rows}
 
 
 def main() -> int:
-    options = parser(__doc__, RESULTS / "torture.json")
-    options.add_argument("--only", choices=PARTS, help="one part; the others stay as they are")
+    options = parser(__doc__, RESULTS / "torture.json", parts=PARTS)
     arguments = options.parse_args()
     return told("torture", lambda: torture(arguments.config, arguments.quick, arguments.only, arguments.output))
 
@@ -32,13 +31,12 @@ def main() -> int:
 def torture(config: Path, quick: bool, only: str | None, output: Path) -> int:
     """All parts or one, into ``output``; 1 if anything went wrong."""
     sizes = read_sizes(config, "torture", quick)
-    done = {name: rows(sizes) for name, rows in PARTS.items() if only in (None, name)}
-    known = json.loads(output.read_text(encoding="utf-8"))["parts"] if output.exists() and only else {}
-    write_results(output, {"parts": known | done, "sizes": sizes, "machine": machine()})
-    wrong = [row for rows in done.values() for row in rows if row["wrong"]]
+    parts = run_parts(PARTS, sizes, only, output)
+    write_results(output, {"parts": parts, "sizes": sizes, "machine": machine()})
+    wrong = [row for rows in parts.values() for row in rows if row["wrong"]]
     for row in wrong:
         print(f"torture: {row['done']}: {row['wrong']} of {row['tried']} wrong: {row['how']}", file=sys.stderr)
-    print(f"{output}: {sum(map(len, done.values()))} rows, {len(wrong)} with something wrong")
+    print(f"{output}: {sum(map(len, parts.values()))} rows, {len(wrong)} with something wrong")
     return 1 if wrong else 0
 
 

@@ -172,7 +172,7 @@ def quick(tmp_path_factory):
     output = tmp_path_factory.mktemp("prove") / "proofs.json"
     result = run(str(PIPELINE / "prove.py"), "--quick", "-o", str(output))
     assert result.returncode in (0, 1), result.stderr
-    return json.loads(output.read_text(encoding="utf-8"))["proofs"]
+    return json.loads(output.read_text(encoding="utf-8"))["parts"]
 
 
 def test_quick_proofs_hold(quick):
@@ -181,7 +181,7 @@ def test_quick_proofs_hold(quick):
 
 
 def test_committed_proofs_are_of_the_same_claims(quick):
-    committed = json.loads((ROOT / "data/results/proofs.json").read_text(encoding="utf-8"))["proofs"]
+    committed = json.loads((ROOT / "data/results/proofs.json").read_text(encoding="utf-8"))["parts"]
     for name, rows in quick.items():
         held = [(row["claim"], row["bound"]) for row in committed[name]]
         assert all((row["claim"], row["bound"]) in held for row in rows)

@@ -57,11 +57,13 @@ def folder() -> Path:
 
 
 def path_of(parameters: tuple[float, ...], octave: int) -> Path:
+    """File of the map for kappa V < 2**octave at stick onset."""
     name = hashlib.sha256(b"sealed" + np.array([*parameters, octave]).tobytes()).hexdigest()[:20]
     return folder() / f"{name}.npz"
 
 
 def load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
+    """The map in a file; None if there is none, or after a warning, none that is whole."""
     try:
         content = path.read_bytes()
     except OSError:
@@ -92,6 +94,7 @@ def _parsed(content: bytes, parameters: tuple[float, ...]) -> FlowMap:
 
 
 def save(made: FlowMap, path: Path) -> None:
+    """Keep a map, sealed; where it cannot be written it is built anew next time."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         content = io.BytesIO()
