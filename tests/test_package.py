@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import importlib
 import inspect
 import os
 import shutil
@@ -313,6 +314,20 @@ def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, 
     with (copy / name).open("ab") as file:
         file.write(b" ")
     assert digest() != before
+
+
+def test_bits_cannot_follow_the_history_of_the_cache():
+    """No kernel is granted numerical freedom: what LLVM makes of that depends on what is compiled together."""
+    if numba.config.DISABLE_JIT:
+        pytest.skip("compilation is off")
+    kernels = [
+        each
+        for path in jit.HERE.glob("[!_]*.py")
+        for each in vars(importlib.import_module(f"viscoroll.kernels.{path.stem}")).values()
+        if hasattr(each, "targetoptions")
+    ]
+    assert len(kernels) > 100
+    assert not any(kernel.targetoptions.get("fastmath") for kernel in kernels)
 
 
 def test_cache_folder_follows_the_environment(monkeypatch):

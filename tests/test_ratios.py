@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from viscoroll.kernels import ratio_layout as layout
+from viscoroll.kernels.fma import septic
 from viscoroll.kernels.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 DIGITS = 40
@@ -203,3 +204,11 @@ def test_a_nan_stays_one():
     """It must not be taken for the number of a bin: that reads beyond the table."""
     nan = float("nan")
     assert np.isnan([*ratio_r(nan), *ratio_k(nan), ratio_i2(nan, nan)]).all()
+
+
+def test_polynomials_are_summed_with_one_rounding_a_term():
+    """(1 + u)^2 - 1 - 2 u = u^2, which two roundings would lose; and powers of two, which no rounding touches."""
+    t, u = 1.0 + 2.0**-30, 2.0**-30
+    assert septic(t, -1.0 - 2.0**-29, t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) == u * u
+    powers = 2.0 ** np.arange(8)
+    assert septic(2.0, *powers) == np.sum(powers * 2.0 ** np.arange(8))
