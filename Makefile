@@ -47,6 +47,7 @@ out/index.html: pipeline/summary.py out/validation.nc out/motions.nc out/ensembl
 bench: setup $(TABLES) ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(RUN) pipeline/benchmark.py --config $(CONFIG)
+	$(RUN) pipeline/document.py
 
 numbers: setup $(TABLES) ## measure again what README and docs state, and put it there (about 10 minutes)
 	$(RUN) pipeline/measure.py --config $(CONFIG)

@@ -4,7 +4,7 @@
 
 Contact states over the whole domain of the law and along its edges, each value the double nearest to a
 certified enclosure (viscoroll.reference.contact_enclosure), and the condition numbers of the values:
-the relative error that one of 1 in each input makes.  Motions are not among them yet.
+the relative error that one of 1 in each input makes.  Motions: pipeline/check_motions.py.
 """
 
 from __future__ import annotations

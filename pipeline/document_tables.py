@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import ensembles_report
+from results import rows_of, table
 
 _NAMES = {
     "lam": "λ", "epsilon": "ε", "delta_star": "δ*", "beta": "β, times 1 − s", "Q": "Q", "M": "M",
 }  # fmt: skip
-
-
-def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A Markdown table."""
-    head = list(head)
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def number(value: float, digits: int = 2) -> str:
@@ -36,8 +30,12 @@ def headline(m: dict[str, Any]) -> str:
         ),
         ("motion IC1-IC3 at rtol 1e-8: V and ω, down to 1e-6", number(motion["speed"])),
         ("motion IC1-IC3 at rtol 1e-8: onset of stick", number(motion["onset"])),
-        ("`contact()`, Q and M in arrays, a state", f"{number(time['contact_an_alpha_each_ns'])} ns"),
+        ("`contact()`, Q and M in arrays at one alpha, a state", f"{number(time['contact_one_alpha_ns'])} ns"),
         ("the same by root solves of the printed equations", f"{number(time['contact_direct_ns'])} ns"),
+        (
+            "`contact()`, Q and M in arrays with an alpha each, a state",
+            f"{number(time['contact_an_alpha_each_ns'])} ns",
+        ),
         ("`roll()`, one motion (rtol 1e-6; 1e-8)", _pair(time, "roll")),
         ("`ensemble()`, a motion, integrated (rtol 1e-6; 1e-8)", _pair(time, "ensemble")),
         ("`ensemble()` of one scene, a motion, from the flow map", f"{number(time['flow_us'])} µs"),
@@ -140,7 +138,7 @@ def proofs(m: dict[str, Any]) -> str:
                 number(row["worst"]),
                 number(row["mean"]),
             )
-            for row in m["proofs"]["parts"][name]
+            for row in m["proofs"]["parts"][name]["rows"]
         )
         parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst', 'mean'), rows)}")
     return "\n".join(parts)
@@ -210,8 +208,7 @@ def torture(m: dict[str, Any]) -> str:
             *(f"{row[key]:,}" for key in ("tried", "refused", "unharmed", "wrong")),
             *("" if row[key] is None else number(row[key]) for key in ("slowest_s", "peak_mb")),
         )
-        for part in m["torture"]["parts"].values()
-        for row in part
+        for row in rows_of(m["torture"]["parts"])
     )
     return table(head, rows)
 

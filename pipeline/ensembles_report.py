@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from results import table
+
 #: the large run: motions, machines, and motions a block by how they are rolled
 MOTIONS, MACHINES = 10**11, 100
 BLOCKS_OF = {"one scene, from its flow map": 4_000_000, "seven uncertain inputs, integrated": 1_000_000}
-
-
-def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
-    lines = [head, tuple("---" for _ in head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def rates(m: dict[str, Any]) -> str:

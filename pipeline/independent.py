@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from results import RESULTS, parser, told, write_results
+from results import RESULTS, machine, parser, told, write_results
 from scipy.optimize import brentq
 from stage import ROOT
 
@@ -200,7 +200,7 @@ def main() -> int:
 
 def compare(output: Path) -> None:
     """Every comparison, into ``output``."""
-    result = {"deviations": rows(), "paper": paper()}
+    result = {"deviations": rows(), "paper": paper(), "machine": machine()}
     write_results(output, result)
     print(f"{output}: {len(result['deviations'])} deviations, {len(result['paper'])} printed numbers")
 

@@ -1,6 +1,6 @@
 """Memory that large calls need beside their input and their result -> data/results/large.json (kept in git).
 
-    python pipeline/large.py [--config FILE] [-o FILE]
+    python pipeline/large.py [--config FILE] [--quick] [-o FILE]
 
 Each call runs in a process of its own, whose peak is read from the system.  Numbers of elements are in [large] of
 the configuration; 10^8 motions want 8 GB.  pipeline/document.py puts the table into docs/accuracy.md.
@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from results import RESULTS, parser, read_sizes, told, write_results
+from results import RESULTS, machine, parser, read_sizes, told, write_results
 
 #: calls on vectors x and y of n elements, or on a grid of n of them; ``alphas`` is a scene with an alpha for each
 CALLS = {
@@ -72,7 +72,7 @@ def measure(config: Path, quick: bool, output: Path) -> None:
     """All calls, into ``output``."""
     sizes = read_sizes(config, "large", quick)
     rows = [measured(name, sizes["integrated" if name == "integrated" else "elements"]) for name in CALLS]
-    write_results(output, {"rows": rows})
+    write_results(output, {"rows": rows, "machine": machine()})
     print(f"{output}: {len(rows)} calls")
 
 

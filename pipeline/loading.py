@@ -21,6 +21,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import stage
+from results import machine
 
 import viscoroll as vr
 from viscoroll import ViscorollError, tables
@@ -111,6 +112,7 @@ def work(settings: Loading, source: Path, folder: Path, results: Path) -> stage.
     write_rows(files[1], [check_row(state, stated) for state in settings.paper])
     steps = {name: float(value) for name, value in spline_steps(atlas, *settings.atlas[0]).items()}
     record = {"points": settings.points, "errors": errors, "state": settings.atlas[0], "steps": steps}
+    record["machine"] = machine()
     write_text(files[2], json.dumps(record, indent=1) + "\n")
     headline = {f"{way}: {name}": error for way, found in errors.items() for name, error in found.items()}
     return stage.Outcome(files, headline)

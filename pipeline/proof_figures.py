@@ -60,7 +60,7 @@ def main() -> int:
 
 def draw(results: Path, output: Path) -> None:
     """The figure of the motion proof."""
-    save(drawn(json.loads(results.read_text(encoding="utf-8"))["parts"]["motion"]), output)
+    save(drawn(json.loads(results.read_text(encoding="utf-8"))["parts"]["motion"]["rows"]), output)
     print(f"{output}: drawn")
 
 

@@ -32,7 +32,7 @@ _SHIFT = 8.0 * 2.0**-53
 _FIELDS = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 
 
-def slope_scales(kappa: float, mu: float, V: float, alpha: float, delta_star: float) -> dict[str, float]:
+def slope_scales(mu: float, V: float, alpha: float, delta_star: float) -> dict[str, float]:
     """What a slope may be measured by: a change of Q by mu as V or delta changes by all of itself; c for M."""
     return {
         "dQ_dV": mu / V, "dQ_ddelta": mu / delta_star, "dQ_domega": mu / (V * delta_star),
@@ -81,7 +81,7 @@ def slope_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
         exact, condition = slopes(given), condition_numbers(given)["beta"]
         with flint.ctx.workprec(200):
             exact["dQ_domega"] = exact["dQ_ddelta"] / V
-            scales = slope_scales(kappa, mu, V, alpha, delta_star)
+            scales = slope_scales(mu, V, alpha, delta_star)
             errors = slope_errors(found, exact, scales, condition)
         if errors["dQ_dV"] > SLOPE:
             errors["dQ_dV"] /= allowance(given, scales["dQ_dV"])
@@ -97,7 +97,7 @@ def jump_rows(rng: np.random.Generator) -> list[dict[str, Any]]:
     for alpha in (1.0001, 1.5, 11.0, 1e3, 1e6):
         for kappa, mu, V, delta in at_edges("one by one", alpha, rng):
             state = contact("one by one", alpha, kappa, mu, V, delta, (*_FIELDS, "delta_star"))
-            for name, scale in slope_scales(kappa, mu, V, alpha, state.delta_star).items():
+            for name, scale in slope_scales(mu, V, alpha, state.delta_star).items():
                 steps = np.abs(np.diff(getattr(state, name)))
                 size = np.broadcast_to(scale, np.shape(getattr(state, name)))[..., 1:]
                 claims[name].add(steps / size, f"alpha = {alpha!r}")

@@ -2,9 +2,9 @@
 
     python pipeline/prove.py [--config FILE] [--quick] [--only PROOF] [-o FILE]
 
-Each proof is a list of rows: the claim, its domain, the bound, the worst that was found, and where.
-Sizes and seeds are in [prove] of the configuration, those of --quick in [prove.quick].  Exit code 1
-where a bound is exceeded.  pipeline/document.py puts the table into docs/accuracy.md.
+Each proof holds its sizes, the machine, and rows: the claim, its domain, the bound, the worst that was
+found, and where.  Sizes and seeds are in [prove] of the configuration, those of --quick in [prove.quick].
+Exit code 1 where a bound is exceeded.  pipeline/document.py puts the table into docs/accuracy.md.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import proofs_motion
 import proofs_ratios
 import proofs_shape
 import proofs_slopes
-from results import RESULTS, parser, read_sizes, run_parts, told, write_results
+from results import RESULTS, parser, read_sizes, rows_of, run_parts, told, write_results
 
 #: name -> function of the sizes that returns rows of claim, domain, bound, worst, points, where
 PROOFS = {
@@ -39,13 +39,14 @@ def prove(config: Path, quick: bool, only: str | None, output: Path) -> int:
     """All proofs or one, into ``output``; 1 if a row lies beyond its bound."""
     sizes = read_sizes(config, "prove", quick)
     proofs = run_parts(PROOFS, sizes, only, output)
-    write_results(output, {"parts": proofs, "sizes": sizes})
-    broken = [row for rows in proofs.values() for row in rows if not row["worst"] <= row["bound"]]
+    write_results(output, {"parts": proofs})
+    rows = rows_of(proofs)
+    broken = [row for row in rows if not row["worst"] <= row["bound"]]
     for row in broken:
         print(
             f"prove: {row['claim']}: {row['worst']:.3g} exceeds {row['bound']:.3g} at {row['where']}", file=sys.stderr
         )
-    print(f"{output}: {sum(map(len, proofs.values()))} rows, {len(broken)} beyond their bound")
+    print(f"{output}: {len(rows)} rows, {len(broken)} beyond their bound")
     return 1 if broken else 0
 
 

@@ -10,7 +10,7 @@ import os
 import platform
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -41,10 +41,25 @@ def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | 
     return result
 
 
-def run_parts(parts: Parts, sizes: dict[str, Any], only: str | None, output: Path) -> dict[str, list[dict[str, Any]]]:
-    """Rows of all parts; with ``only``, of that one beside those of the others that ``output`` has."""
+def run_parts(parts: Parts, sizes: dict[str, Any], only: str | None, output: Path) -> dict[str, dict[str, Any]]:
+    """Rows, sizes and machine of every part; with ``only``, of that one beside the others that ``output`` has."""
     known = json.loads(output.read_text(encoding="utf-8"))["parts"] if only and output.exists() else {}
-    return known | {name: rows(sizes) for name, rows in parts.items() if only in (None, name)}
+    return known | {
+        name: {"rows": rows(sizes), "sizes": sizes, "machine": machine()}
+        for name, rows in parts.items()
+        if only in (None, name)
+    }
+
+
+def rows_of(parts: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of all parts, one part after the other."""
+    return [row for part in parts.values() for row in part["rows"]]
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A Markdown table."""
+    head = list(head)
+    return "".join("| " + " | ".join(line) + " |\n" for line in (head, ["---"] * len(head), *rows))
 
 
 def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
@@ -93,8 +108,10 @@ def told(name: str, work: Callable[[], int | None]) -> int:
 
 
 def machine() -> dict[str, Any]:
-    """Where and when, and with what, this was measured."""
+    """Where and when, and with what, this was measured; ``kernels`` is the hash of their sources."""
     import numba
+
+    from viscoroll.kernels.jit import sources_digest
 
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
@@ -109,5 +126,6 @@ def machine() -> dict[str, Any]:
         "numpy": np.__version__,
         "numba": numba.__version__,
         "viscoroll": vr.__version__,
+        "kernels": sources_digest(),
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
     }

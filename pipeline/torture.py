@@ -2,10 +2,10 @@
 
     python pipeline/torture.py [--config FILE] [--quick] [--only PART] [-o FILE]
 
-Each part is a list of rows: what was done, how often, and how often the file was refused, was unharmed,
-or was wrong: other values without a word, an error that is not the package's own, a crash.  Sizes and
-seeds are in [torture] of the configuration, those of --quick in [torture.quick].  Exit code 1 if
-anything was wrong.  pipeline/document.py puts the table into docs/design.md.
+Each part holds its sizes, the machine, and rows: what was done, how often, and how often the file was
+refused, was unharmed, or was wrong: other values without a word, an error that is not the package's own,
+a crash.  Sizes and seeds are in [torture] of the configuration, those of --quick in [torture.quick].
+Exit code 1 if anything was wrong.  pipeline/document.py puts the table into docs/design.md.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 import torture_cache
 import torture_ensembles
 import torture_tables
-from results import RESULTS, machine, parser, read_sizes, run_parts, told, write_results
+from results import RESULTS, parser, read_sizes, rows_of, run_parts, told, write_results
 
 #: name -> function of the sizes that returns rows of done, tried, refused, unharmed, wrong, slowest_s, peak_mb
 PARTS = {"tables": torture_tables.rows, "ensembles": torture_ensembles.rows, "cache": torture_cache.rows}
@@ -32,11 +32,12 @@ def torture(config: Path, quick: bool, only: str | None, output: Path) -> int:
     """All parts or one, into ``output``; 1 if anything went wrong."""
     sizes = read_sizes(config, "torture", quick)
     parts = run_parts(PARTS, sizes, only, output)
-    write_results(output, {"parts": parts, "sizes": sizes, "machine": machine()})
-    wrong = [row for rows in parts.values() for row in rows if row["wrong"]]
+    write_results(output, {"parts": parts})
+    rows = rows_of(parts)
+    wrong = [row for row in rows if row["wrong"]]
     for row in wrong:
         print(f"torture: {row['done']}: {row['wrong']} of {row['tried']} wrong: {row['how']}", file=sys.stderr)
-    print(f"{output}: {sum(map(len, parts.values()))} rows, {len(wrong)} with something wrong")
+    print(f"{output}: {len(rows)} rows, {len(wrong)} with something wrong")
     return 1 if wrong else 0
 
 

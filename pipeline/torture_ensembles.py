@@ -150,7 +150,7 @@ class Ensemble:
                 process.wait()
 
     def full_disks(self, count: int) -> Iterator[str]:
-        """On a tmpfs of any size where one can be had, else with files limited in size."""
+        """On a tmpfs of any size; where none can be had, that is the outcome, and counts as wrong."""
         size = sum(map(len, self.expected.values()))
         for _ in tqdm(range(count), desc="full disks", delay=1.0, leave=False):
             shutil.rmtree(self.store, ignore_errors=True)

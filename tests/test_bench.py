@@ -76,6 +76,12 @@ def test_law_tables_and_the_rest(folder):
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
 
 
+def test_committed_error_of_the_map_is_below_the_stated_one():
+    fixed = json.loads((ROOT / "data/results/bench-fixed-scene.json").read_text(encoding="utf-8"))["measured"]
+    assert fixed["error"]["all_times"] <= fixed["stated_error"]
+    assert fixed["not_in_map"] < tol.BENCH_NOT_IN_MAP * fixed["compared"]
+
+
 def test_refuses_what_it_cannot_do(tmp_path):
     assert "unknown part speed" in run("speed").stderr
     broken = tmp_path / "broken.toml"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import threading
 
 import numpy as np
 import pytest
 
 import viscoroll as vr
-from viscoroll.blocks import elements, run_blocks
+from viscoroll.blocks import elements, run_blocks, thread_count
 
 GRID = np.arange(60.0).reshape(4, 5, 3)
 ARRAYS = {
@@ -44,6 +45,18 @@ def test_a_grid_of_two_axes_is_as_the_grid_written_out():
     written_out = vr.contact(scene, *np.meshgrid(V, delta, indexing="ij")).as_dict()
     for name, values in axes.items():
         assert np.array_equal(values, written_out[name], equal_nan=True), name
+
+
+def test_a_number_of_threads_that_is_none(monkeypatch):
+    start = (vr.PAPER_SECTION_5, [1.0, 2.0], 0.5, 1e-5)
+    for threads in ("2", 1.5, True):
+        with pytest.raises(vr.ParameterError, match=f"threads = {threads!r}: must be a whole number"):
+            vr.ensemble(*start, threads=threads)
+    monkeypatch.setenv("VISCOROLL_THREADS", "two")
+    with pytest.raises(vr.ParameterError, match="VISCOROLL_THREADS = 'two': must be a whole number"):
+        vr.ensemble(*start)
+    monkeypatch.setenv("VISCOROLL_THREADS", "")
+    assert thread_count() == len(os.sched_getaffinity(0))
 
 
 def test_blocks_after_an_error_are_not_begun():

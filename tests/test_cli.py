@@ -202,6 +202,13 @@ def test_unwritable_output(refuse, here, argv, name):
     assert name in refuse(*argv, "-o", name)
 
 
+@pytest.mark.parametrize("name", [300 * "a" + ".csv", 300 * "a" + "/a.csv"])
+def test_too_long_a_name_is_what_is_at_fault(refuse, name):
+    assert re.search(
+        r"argument -o: 'aaa[^ ]*: cannot be a file \(File name too long\)", refuse("roll", *START, "-o", name)
+    )
+
+
 @pytest.mark.parametrize("suffix", ["txt", "csv", "nc"])
 def test_failed_write_leaves_the_old_file(refuse, here, monkeypatch, suffix):
     def full(*_):
@@ -310,6 +317,14 @@ def test_roll_text(run):
     assert f"ended: {motion.message}" in out
     assert f"20 of {motion.t.size} output times are shown" in out
     assert len(out.splitlines()) < 30
+
+
+def test_a_single_time_is_that_time(run, here):
+    """Not an end time, of which --t-end makes the times of the steps taken."""
+    run("roll", *PRESET, "--ic", "IC1", "--times", "1e-3", "-o", "one.csv")
+    (row,) = csv.DictReader(io.StringIO((here / "one.csv").read_text()))
+    assert float(row["t"]) == 1e-3
+    assert float(row["V"]) == vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]
 
 
 def test_roll_csv_and_netcdf_hold_the_same_bits(run, here):

@@ -120,6 +120,8 @@ def test_grids_of_a_file(toml):
         ("[tables.paper]\nV = { low = 1, high = 2 }", ["[tables.paper.V]", "missing", "`count`"]),
         ("[tables.paper]\nV = { low = 0, high = 2, count = 3, spacing = 'log' }", ["[tables.paper]", "low = 0"]),
         ("[tables.paper]\ndelta = [0.1, 0.0]", ["[tables.paper]", "delta", "increasing"]),
+        ("[tables.paper]\nkappa = 1e200\nmu = 1e-200", ["[tables.paper]", "mu/kappa"]),
+        ("[tables.paper]\nkappa = 1e308\nmu = 1e200", ["[tables.paper]", "kappa |V| = inf", "at most 1e+300"]),
     ],
 )
 def test_refused_grids(toml, content, words):

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 import viscoroll as vr
 from viscoroll.kernels.law import differences
+from viscoroll.reference import contact_enclosure
 from viscoroll.rolling_contact import FIELDS, SLOPES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -249,6 +250,18 @@ def test_at_rest(alpha, method):
     assert limit.beta == pytest.approx(0.75, rel=tol.SPEED_LIMIT)
     assert limit.Q == pytest.approx(MU * (1.0 - 0.75**2), rel=tol.SPEED_LIMIT)
     assert vr.contact(scene, 0.0, delta=-2.0 * star, method=method).Q == -MU
+
+
+@pytest.mark.parametrize("V", [1e-300, -1e-200, 1e-20, 1e145, -1e290])
+def test_moment_at_extreme_speeds(V):
+    """M = (1 - 1/alpha) V as V -> 0, and against ball arithmetic where V or zeta squared leave the range of doubles."""
+    state = vr.contact(SCENE, V, delta=0.0, slopes=True)
+    exact = float(contact_enclosure(SCENE.alpha, KAPPA, MU, abs(V), 0.0)["M"])
+    assert state.M == pytest.approx(math.copysign(exact, V), rel=tol.CONTACT)
+    c = (SCENE.alpha - 1.0) / SCENE.alpha
+    if abs(V) < 1.0:
+        assert exact == pytest.approx(c * abs(V), rel=tol.CONTACT)
+        assert state.dM_dV == pytest.approx(c, rel=tol.CONTACT)
 
 
 @pytest.mark.parametrize("V", [5e-324, 1e-300, 1e-12, 1e12, 1e150])

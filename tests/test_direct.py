@@ -107,7 +107,7 @@ def test_stick_and_traction_against_the_explicit_law(alpha):
             delta_star, rel=tol.DIRECT_LENGTH, abs=0.0
         )
         for s in CREEPS:
-            eta, D, status_0 = law.stick_length(zeta_0, F, s * F, alpha, c)
+            eta, D, status_0 = law.stick_length(zeta_0, s * F, alpha, c)
             beta, status = direct.direct_stick(s * delta_star, KAPPA, MU, lam, epsilon, zeta, alpha)
             assert status == status_0 == direct.OK
             assert abs(beta - eta / zeta_0) <= tol.DIRECT_STICK

@@ -172,8 +172,24 @@ def test_scalars_broadcast():
     assert vr.ensemble(mus, 1.5, 0.5, T).V.shape == (4, 7)
 
 
-def test_no_motions():
-    assert vr.ensemble(SCENE, [], [], T).V.shape == (0, 7)
+@pytest.mark.parametrize("start", [([], []), ([], 2.0), (2.0, [])])
+@pytest.mark.parametrize("method", ["auto", "flow", "integrate"])
+def test_no_motions(start, method):
+    """The flow map once rolled one motion that nobody asked for."""
+    none = vr.ensemble(SCENE, *start, T, method=method, rtol=1e-6, fields=FIELDS)
+    assert none.V.shape == none.regime.shape == (0, 7)
+    assert len(none) == none.flow.size == none.V0.size == 0
+    with pytest.raises(vr.ParameterError, match="motions = 0: must be at least one"):
+        none.summary()
+
+
+def test_a_regime_that_was_not_reached_is_no_full_slip():
+    tiny = vr.ensemble(SCENE, 1.5, 0.5, T, fields="regime", max_steps=8)
+    assert np.isnan(tiny.regime[0, -1])
+    regime = tiny.to_xarray().regime
+    assert regime.values[0, -1] == -1
+    meanings = dict(zip(regime.flag_values.tolist(), regime.flag_meanings.split(), strict=True))
+    assert meanings == {-1: "not_reached", 0: "full_slip", 1: "partial_slip", 2: "rest"}
 
 
 def test_status_and_messages():
@@ -310,6 +326,16 @@ def test_constants_alone():
         ({"V0": math.nan}, "V0 = nan: must be a finite number or a frozen scipy.stats distribution"),
         ({"V0": "fast"}, "V0 = fast"),
         ({"V0": [1.0, 2.0]}, "V0 = [1.0, 2.0]"),
+        ({"V0": None}, "V0 = None"),
+        ({"V0": {}}, "V0 = {}"),
+        ({"V0": 1j}, "V0 = 1j"),
+        ({"V0": True}, "V0 = True"),
+        ({"V0": stats.uniform([0.0, 1.0], 1.0)}, "V0 = <scipy"),
+        ({"V0": stats.norm(0.0, -1.0)}, "V0 = <scipy"),
+        ({"V0": stats.gamma}, "V0 = <scipy"),
+        ({"V0": stats.norm(0.0, 1e308), "n": 64}, "inf: must be a finite number"),
+        ({"n": True}, "n = True: must be a whole number >= 1"),
+        ({"n": 2**30 + 1, "design": "sobol"}, "n = 1073741825: must be at most 2^30 for design 'sobol'"),
     ],
 )
 def test_bad_sampling(change, text):

@@ -170,6 +170,10 @@ def test_linear_error_of_a_table_with_one_node():
         ("t.nc", {"alpha": 5.0}, "alpha = 5: must be one that the table holds: 1, 3, 11"),
         ("t.nc", {"alpha": [1.0, 3.1]}, "alpha = 3.1: must be one that the table holds"),
         ("t.nc", {"alpha": np.nan}, "alpha"),
+        ("t.csv", {"format": "csv", "alpha": []}, "alpha = an array of shape (0,): must be one alpha or a vector"),
+        ("t.txt", {"format": "modelica", "alpha": []}, "alpha = an array of shape (0,)"),
+        ("t.mat", {"format": "matlab", "alpha": []}, "alpha = an array of shape (0,)"),
+        ("t.nc", {"alpha": [[1.0, 3.0]]}, "alpha = an array of shape (1, 2)"),
         ("t.txt", {"format": "modelica"}, "alpha = 1, 3, 11: must be one of these alone"),
     ],
 )

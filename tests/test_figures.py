@@ -16,7 +16,19 @@ from matplotlib.figure import Figure
 
 import viscoroll as vr
 from viscoroll.errors import OutputError
-from viscoroll.figures import FIGURES, figure_2, figure_3, figure_5, figure_6, figure_7, phase_portrait, save
+from viscoroll.figures import (
+    FIGURES,
+    figure_2,
+    figure_3,
+    figure_5,
+    figure_6,
+    figure_7,
+    phase_portrait,
+    run_distributions,
+    save,
+)
+from viscoroll.figures.run_distributions import even_bars
+from viscoroll.runs import open_summaries, read_run, run_ensemble
 from viscoroll.tables import AtlasGrid
 
 ROOT = Path(__file__).parents[1]
@@ -75,6 +87,36 @@ def test_lines_differ_without_colour(drawn, name):
     labelled = [one for one in drawn[name].axes[0].get_lines() if not one.get_label().startswith("_")]
     styles = {(str(one._unscaled_dash_pattern), str(one.get_marker())) for one in labelled}
     assert len(styles) == len(labelled)
+
+
+def test_even_bars_of_what_lies_close_together():
+    """Motions at rest fill one bin, from 0 to the next bin's denormal edge: one bar that shows."""
+    edges, bars = even_bars(np.array([0.0]), np.array([8.7e-311]), np.array([50]))
+    assert edges.tolist() == [-0.5, 0.5]
+    assert bars.tolist() == [50]
+    edges, bars = even_bars(np.array([-1.7e308, 1.7e308]), np.array([-1.6e308, np.inf]), np.array([1, 1]))
+    assert np.isfinite(edges).all()
+    assert np.isfinite(bars).all()
+
+
+@pytest.mark.parametrize(
+    ("start", "wanted", "empty"),
+    [
+        ("V0 = 2.0\nomega0 = 0.0", '["V", "onset_time", "rest_time"]', {"onset_time", "rest_time"}),
+        ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', set()),
+        ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', {"delta"}),
+    ],
+    ids=["none has stuck", "all at rest", "infinite delta"],
+)
+def test_a_run_without_values(tmp_path, start, wanted, empty):
+    """A panel without values says so; all values at one point are one bar."""
+    text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
+    (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+    run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / "run.zarr", threads=1)
+    figure = run_distributions(open_summaries(tmp_path / "run.zarr"))
+    titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
+    assert {name for name, title in titles.items() if title == "no values"} == empty
+    save(figure, tmp_path / "run.png")
 
 
 def test_figure_2_shows_the_limits():

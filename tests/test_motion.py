@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
+from viscoroll.kernels.partial_slip import creep_speeds, slow_D
+from viscoroll.motion import single
 from viscoroll.scene import PAPER_STARTS
 
 SECTION_5 = Path(__file__).parents[1] / "data" / "reference" / "section5.csv"
@@ -240,6 +243,18 @@ def test_slow_manifold():
 # --- regimes ---
 
 
+@pytest.mark.parametrize("j", [0.5, 1.5])
+@pytest.mark.parametrize("zeta", [1e4, 1e6])
+def test_slow_manifold_to_leading_order(j, zeta):
+    """V'/V = omega'/omega on it, so that (1 + 1/j) Q = -(1/j - 1) M/2; what is left out is of order 1/zeta."""
+    alpha, kappa, mu = ROUNDED.alpha, ROUNDED.kappa, ROUNDED.mu
+    par = np.array([alpha, (alpha - 1.0) / alpha, kappa, mu, j])
+    y = math.log(zeta)
+    V, delta = creep_speeds(y, slow_D(y, par)[0], par)
+    state = vr.contact(ROUNDED, V, delta=delta)
+    assert (1.0 + 1.0 / j) * state.Q == pytest.approx(-(1.0 / j - 1.0) * 0.5 * state.M, rel=5.0 / zeta)
+
+
 def test_slip_returns():
     """Theory, Sect. 3: the stick zone vanishes again, V crosses zero while sliding, a second stick follows."""
     motion = vr.roll(RETURNING, 1.0, 1.0, [1.0e-3, 2.33325e-3, 4e-3], rtol=1e-12)
@@ -253,6 +268,24 @@ def test_slip_returns():
     assert motion.omega[1] == pytest.approx(-0.0248, abs=5e-5)
     assert motion.V[2] < 0.0
     assert motion.omega[2] < 0.0
+
+
+def test_outputs_end_where_slip_returns():
+    """Nothing but rounding is left of the motion behind the switch: it must not stick and slip there for ever."""
+    returned = vr.roll(RETURNING, 1.0, 1.0, [2e-3], rtol=1e-12).switches[0].t
+    for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8):
+        motion = vr.roll(RETURNING, 1.0, 1.0, [returned * (1.0 + shift)], rtol=1e-12)
+        assert motion.status == vr.MotionStatus.DONE
+        assert motion.steps < 500
+        assert len(motion.switches) <= 1
+        edge = vr.contact(RETURNING, motion.V, omega=motion.omega)
+        assert abs(edge.delta) == pytest.approx(edge.delta_star, rel=max(tol.RETURN_TIME, 1e2 * abs(shift)))
+
+
+def test_nothing_crosses_a_threshold_that_is_not_there():
+    for method in ("flow", "integrate"):
+        assert np.isnan(vr.ensemble(ROUNDED, [0.0], [0.0], [0.0, 1.0], method=method).rest_time[0])
+    assert np.isnan(vr.roll(ROUNDED, 0.0, 0.0, [0.0, 1.0]).rest_time)
 
 
 @pytest.mark.parametrize(("excess", "returns"), [(1e-2, 0), (2e-3, 0), (0.0, 1), (-1e-4, 1), (-2e-3, 1), (-5e-2, 1)])
@@ -528,6 +561,33 @@ def test_step_limit_is_reported():
     assert motion.regime[1] == -1
 
 
+@pytest.mark.filterwarnings("ignore:roll")
+def test_contact_along_a_motion_that_ended_early():
+    """NaN where it did not arrive; elsewhere the same bits as of the motion up to there."""
+    motion = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 2e-6, 1.0], max_steps=5)
+    reached = motion.regime >= 0
+    assert reached.tolist() == [True, True, False]
+    found, expected = motion.contact(), motion.at([1e-6, 2e-6]).contact()
+    for name, values in found.as_dict().items():
+        assert np.array_equal(values[reached], getattr(expected, name)), name
+        assert values.dtype == getattr(expected, name).dtype
+        assert not values[2] if name == "full_slip" else np.isnan(values[2]), name
+
+
+def test_a_high_step_limit_takes_no_memory():
+    """Output on the steps taken is the same whatever the limit, also where the first room for them is too small."""
+    motion = vr.roll(ROUNDED, 1.5, 0.5, 5e-3, rtol=1e-12)
+    tracemalloc.start()
+    for room in (single._STEPS, 10):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(single, "_STEPS", room)
+            assert np.array_equal(vr.roll(ROUNDED, 1.5, 0.5, 5e-3, rtol=1e-12, max_steps=10_000_000).t, motion.t)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert motion.t.size > 40
+    assert most < 10_000_000  # bytes; a double a step would be 80 MB
+
+
 BAD_CALLS = {
     "V0 nan": (math.nan, 0.5, 1e-3, {}, "V0 = nan: must be a finite number"),
     "omega0 inf": (1.0, math.inf, 1e-3, {}, "omega0 = inf: must be a finite number"),
@@ -545,6 +605,7 @@ BAD_CALLS = {
     "rtol nan": (1.0, 0.5, 1e-3, {"rtol": math.nan}, "rtol = nan"),
     "rest": (1.0, 0.5, 1e-3, {"rest": 0.0}, "rest = 0.0: must be finite and > 0"),
     "max_steps": (1.0, 0.5, 1e-3, {"max_steps": 0}, "max_steps = 0: must be a whole number >= 1"),
+    "max_steps huge": (1.0, 0.5, 1e-3, {"max_steps": 10**30}, "must be a whole number >= 1, <= 10000000"),
 }
 
 

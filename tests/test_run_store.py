@@ -347,6 +347,7 @@ def test_command(run_file, tmp_path, whole, capsys):
     assert main(["ensemble", "export", str(store), "-o", str(tmp_path / "all.nc")]) == 0
     assert main(["plot", str(store), "-o", str(tmp_path / "run.png")]) == 0
     assert (tmp_path / "run.png").stat().st_size > 10_000
+    assert main(["plot", f"{store}/", "-o", str(tmp_path / "slash.png")]) == 0
     (store / "motions/x/3.0").write_bytes(b"")
     assert main(["ensemble", "verify", str(store)]) == 1
     assert "motions/x/3.0" in capsys.readouterr().out
@@ -360,6 +361,10 @@ def test_command(run_file, tmp_path, whole, capsys):
         (["RUN", "-o", "all.nc"], "a folder STORE.zarr"),
         (["RUN", "RUN", "-o", "s.zarr"], "one run file"),
         (["RUN", "-o", "s.zarr", "--cluster", "far"], "'local' or 'tcp://host:port'"),
+        (["RUN", "-o", "s.zarr", "--cluster", "tcp://"], "cluster = 'tcp://': must be 'local' or 'tcp://host:port'"),
+        (["RUN", "-o", "s.zarr", "--cluster", "tcp://localhost:abc"], "'local' or 'tcp://host:port'"),
+        (["RUN", "-o", "s.zarr", "--cluster", "tcp://[::1"], "'local' or 'tcp://host:port'"),
+        (["RUN", "-o", "s.zarr", "--times", "1,2"], "t = [1.0, 2.0]: must be left out: the run file says it"),
         (["verify"], "verify STORE.zarr"),
         (["verify", "no.zarr"], "no results store"),
         (["--dry-run", "-n", "3"], "given with a run file only"),

@@ -13,10 +13,12 @@ from scipy import stats
 from scipy.stats import qmc
 
 import viscoroll as vr
+from viscoroll.motion.batch import FLOW_PAYS
 from viscoroll.runs import draws, estimate, read_run, roll_inputs
 from viscoroll.runs.evaluate import block_inputs, roll_block, scene_of
 from viscoroll.runs.inputs import LARGEST, SMALLEST, Distribution, Inputs
 from viscoroll.runs.quantities import QUANTITIES
+from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.store import columns_of
 from viscoroll.runs.summaries import (
     bin_edges,
@@ -161,6 +163,18 @@ def test_columns_of_a_file_share_their_row(read, tmp_path, suffix):
     assert set(values["m"]) == {30.0, 40.0, 50.0}
 
 
+def test_a_file_by_two_names_is_one_file(read, tmp_path):
+    """Also by way of a link; its columns share their row, and cannot be told apart by Sobol indices."""
+    (tmp_path / "link.csv").symlink_to("sample.csv")
+    for other in ("./sample.csv", "link.csv", str(tmp_path / "sample.csv")):
+        run = read(CYLINDER.replace('"sample.csv", column = "modulus"', f'"{other}", column = "modulus"'))
+        assert run.inputs.dimensions == ("T_sigma", "mu", "sample.csv")
+        values = block_inputs(run, 0)
+        assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
+        with pytest.raises(vr.ParameterError, match=r"m, \[cylinder\] E = rows of sample.csv"):
+            sobol_indices(run, 16)
+
+
 def test_a_drawn_cylinder_is_that_cylinder(read):
     values = block_inputs(read(CYLINDER), 0)
     scene = scene_of(values)
@@ -185,11 +199,23 @@ def test_blocks_are_rolled_as_an_ensemble(read, design):
 def test_bits_do_not_depend_on_how_a_run_is_cut(read):
     """The flow map is chosen by the run: a block of slow starts does not get a finer one."""
     text = FULL[: FULL.index("[scene]")] + FULL[FULL.index("[start]") :].replace("[correlation]\nV0.mu = 0.7\n", "")
-    run = read(text.replace("DESIGN", "sobol"))
+    run = read(text.replace("DESIGN", "sobol").replace("n = 3000", f"n = {FLOW_PAYS}"))
     assert run.method == "flow"
     values, motions = roll_block(run, 0)
     few = {name: value[3:4] if np.ndim(value) else value for name, value in values.items()}
     assert roll_inputs(run, few).V[0, 1] == motions.V[3, 1]
+
+
+def test_more_times_than_a_block_has_bytes_for(read):
+    run = read(FULL.replace("DESIGN", "random").replace("count = 3", "count = 3_000_000").replace("block = 512", ""))
+    assert run.block == 1
+
+
+def test_the_flow_map_of_motions_at_rest(read):
+    """There is none: they are integrated, as by an ensemble."""
+    run = read('preset = "paper-section-5"\n[start]\nV0 = 0.0\nomega0 = 0.0\n[run]\nn = 2\nt = 1e-3\nmethod = "flow"')
+    _, motions = roll_block(run, 0)
+    assert motions.V.tolist() == [[0.0], [0.0]]
 
 
 def test_a_run_of_one_motion(read):
@@ -402,6 +428,12 @@ REFUSED = [
     ('"onset_time"', '"onset"', ["line 18", "onset"]),
     ("block = 512", 'method = "flow"', ["line 17", "scenes differ"]),
     ('preset = "paper-section-5"', 'preset = "paper"', ["line 2", "out of paper-section-5"]),
+    ("V0.mu = 0.7", "V0.mu = 0.0\nmu.V0 = 0.9", ["[correlation]", "V0.mu = 0.0: must be that of mu.V0 = 0.9"]),
+    ("[0.05, 0.6]", "[0.05, nan]", ["line 4", "truncate = [0.05, nan]", "must be [low, high]"]),
+    ("[0.05, 0.6]", "[false, true]", ["line 4", "truncate = [False, True]", "must be [low, high]"]),
+    ('"norm", scale = 0.5', '"norm", scale = 0.0', ["line 8", "does not allow these parameters"]),
+    ('"norm", scale = 0.5', '"uniform", loc = 1e308, scale = 1e308', ["line 8", "reaches from", "truncate"]),
+    ("low = 0.0, high = 3e-3", "low = -1e308, high = 1e308", ["line 15", "high = 1e+308: must be less than"]),
 ]  # fmt: skip
 
 
@@ -413,6 +445,25 @@ def test_refused(read, old, new, words):
         read(text)
     for word in words:
         assert word in str(caught.value), caught.value
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"norm", scale = 0.5', '"dweibull", c = 1e-3', "omega0 = "),
+        ("j = 0.4", 'j = { distribution = "uniform", loc = 1e308, scale = 1e308 }', "j = inf"),
+    ],
+)
+def test_draws_that_overflow_are_refused_without_a_warning(read, old, new, words):
+    run = read(FULL.replace("DESIGN", "random").replace(old, new))
+    with pytest.raises(vr.ParameterError, match=words):
+        roll_block(run, 0)
+
+
+def test_a_run_that_summarises_nothing(read):
+    text = FULL[: FULL.index("summaries")].replace("DESIGN", "random") + "summaries = []"
+    with pytest.raises(vr.ConfigError, match=r"line 18: \[run\] summaries = \[\]: must name at least one quantity"):
+        read(text)
 
 
 def test_a_retardation_time_that_may_be_too_short(read):

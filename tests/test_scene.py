@@ -56,6 +56,16 @@ def test_presets():
     assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 
+def test_single_precision_given_is_computed_in_double():
+    single = {name: np.float32(value) for name, value in SI.items()}
+    double = {name: float(value) for name, value in single.items()}
+    cylinder = vr.Cylinder(**single)
+    assert cylinder == vr.Cylinder(**double)
+    assert all(type(getattr(cylinder, name)) is float for name in SI)
+    assert cylinder.scene() == vr.Cylinder(**double).scene()
+    assert cylinder.E_prime == vr.Cylinder(**double).E_prime
+
+
 @pytest.mark.parametrize("value", [1.7, -0.3, 0.0, np.array([1.0, -2.0])])
 def test_round_trips_to_SI(value):
     cylinder = vr.Cylinder(**SI)

@@ -36,7 +36,21 @@ for name in ("contact_loop", "motion_loop", "flow_loop"):
 import numpy as np
 import viscoroll as vr
 """
-RATIOS = "'ratio_r', 'ratio_k', 'ratio_i2'"
+#: kernel that a scene may do without -> a call that needs it
+CALLS = {
+    **dict.fromkeys(
+        ("ratio_i2", "place_r", "place_k", "place_i2", "piece_of", "i2_from", "stick", "differences"),
+        "vr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.001)",
+    ),
+    **dict.fromkeys(
+        (
+            "ratio_r", "ratio_k", "contact_length", "sliding", "slide_phase", "layer_phase", "slow_phase", "slow_D",
+            "creep_rates",
+        ),
+        "vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-4, 3e-3])",
+    ),
+}  # fmt: skip
+RATIOS = ("ratio_r", "ratio_k", "ratio_i2", "place_r", "place_k", "place_i2", "piece_of")
 
 
 def run(code: str, **environment: str) -> None:
@@ -47,9 +61,16 @@ def run(code: str, **environment: str) -> None:
     assert result.returncode == 0, result.stderr
 
 
-def plain(code: str) -> None:
-    """Run with kernels as plain Python functions."""
-    run(_FORBID + textwrap.dedent(code), NUMBA_DISABLE_JIT="1")
+def plain(code: str, *forbidden: str) -> None:
+    """Run with kernels as plain Python functions; those named must not be called."""
+    run(f"{_FORBID}\nforbid{forbidden}\n{textwrap.dedent(code)}", NUMBA_DISABLE_JIT="1")
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_what_is_forbidden_is_what_is_called(name):
+    """Each of the checks below can fail."""
+    with pytest.raises(AssertionError, match="AssertionError: called"):
+        plain(CALLS[name], name)
 
 
 @pytest.mark.parametrize(
@@ -61,41 +82,32 @@ def plain(code: str) -> None:
     ],
 )
 def test_alpha_1_touches_no_bessel_ratio(call):
-    plain(f"forbid({RATIOS})\nscene = vr.PAPER_SECTION_5.replace(alpha=1.0)\n{call}")
-
-
-def test_the_ratios_are_what_is_forbidden():
-    """The check above can fail."""
-    with pytest.raises(AssertionError, match="called"):
-        plain(f"forbid({RATIOS})\nvr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.001)")
+    plain(f"scene = vr.PAPER_SECTION_5.replace(alpha=1.0)\n{call}", *RATIOS)
 
 
 def test_full_slip_solves_for_no_stick_zone():
-    plain("forbid('stick', 'stick_length', 'differences')\nvr.contact(vr.PAPER_SECTION_5, [0.5, -1.0], delta=1.0)")
+    plain("vr.contact(vr.PAPER_SECTION_5, [0.5, -1.0], delta=1.0)", "stick", "differences")
 
 
 def test_fields_not_asked_for_are_not_computed():
-    plain(
-        """
-        forbid('stick', 'stick_length', 'moment_factor')
-        vr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.001, fields=("lam", "epsilon", "delta_star"))
-        """
-    )
+    call = 'vr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.001, fields=("lam", "epsilon", "delta_star"))'
+    plain(call, "stick", "ratio_i2", "i2_from", "place_i2")
 
 
 def test_a_motion_that_only_slides_knows_no_partial_slip():
-    plain("forbid('partial_rhs', 'partial_jacobian')\nvr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-6, 2e-6], 1e-4)")
+    partial = ("layer_phase", "slow_phase", "slow_D", "creep_rates")
+    plain("vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-6, 2e-6], 1e-4)", *partial)
 
 
 def test_at_rest_nothing_is_integrated():
     plain(
         """
-        forbid('contact_length', 'partial_rhs', 'sliding', 'slide_phase')
         still = vr.ensemble(vr.PAPER_SECTION_5, np.zeros(5), 0.0, [1.0, 2.0], method="integrate")
         below = vr.ensemble(vr.PAPER_SECTION_5, np.full(5, 1e-9), 0.0, [1.0], rest=1e-6, method="integrate")
         assert (still.V == 0.0).all() and (below.regime is None) and (below.steps == 0).all()
-        """
-    )
+        """,
+        "contact_length", "sliding", "slide_phase", "layer_phase", "slow_phase",
+    )  # fmt: skip
 
 
 def test_outputs_after_rest_are_filled_not_integrated():

@@ -10,7 +10,7 @@ import pytest
 import tolerances as tol
 
 from viscoroll.kernels import law
-from viscoroll.kernels.stress import pressure_shape, stress_at, unit_shape
+from viscoroll.kernels.stress import stress_at
 
 KAPPA, MU = 2.91, 0.2
 #: alpha zeta from 5e-5 to 5e5 among them
@@ -48,7 +48,7 @@ def state(alpha: float, kappa_V: float, s: float) -> State:
     lam, _ = law.contact_length(kappa_V, alpha, c)
     zeta = lam / (2.0 * kappa_V)
     g, h = law.generators(zeta, alpha, c)
-    eta = law.stick_length(zeta, zeta + g, s * (zeta + g), alpha, c)[0] if s < 1.0 else 0.0
+    eta = law.stick_length(zeta, s * (zeta + g), alpha, c)[0] if s < 1.0 else 0.0
     h_eta = law.generators(eta, alpha, c)[1]
     Q = MU * (1.0 - eta * (eta + 2 * h_eta) / (zeta * (zeta + 2 * h)))
     M = kappa_V / KAPPA * law.moment_factor(zeta, lam, alpha, c)
@@ -236,13 +236,3 @@ def test_elastic_cylinder_and_rest_are_carter(alpha, zeta, beta):
         p_0, tau_0 = carter(x, beta)
         assert abs(p - p_0) <= tol.STRESS_ELLIPSE * peak
         assert abs(tau - tau_0) <= MU * peak * tol.STRESS_CARTER
-
-
-def test_pressure_shape_is_the_unscaled_shape():
-    alpha, z = 11.0, 2.5
-    c = (alpha - 1.0) / alpha
-    for Y in (-2.4, -1.0, 0.0, 1.25, 2.49):
-        assert pressure_shape(Y, z, alpha, c) == pytest.approx(
-            z * unit_shape(1 - Y / z, 1 + Y / z, z, alpha, c), rel=1e-13
-        )
-    assert pressure_shape(z, z, alpha, c) == pressure_shape(-1.1 * z, z, alpha, c) == 0.0

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .errors import ParameterError
+
 #: blocks in hand, a worker
 _WAITING = 8
 
@@ -46,10 +48,22 @@ def elements(array: NDArray[np.float64], shape: tuple[int, ...]) -> Callable[[in
 
 
 def thread_count(threads: int | None = None) -> int:
-    """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use."""
+    """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use; at least 1.
+
+    Raises
+    ------
+    ParameterError
+        Where either is no whole number.
+    """
     if threads is None:
-        threads = int(os.environ.get("VISCOROLL_THREADS", "0")) or len(os.sched_getaffinity(0))
-    return max(1, threads)
+        asked = os.environ.get("VISCOROLL_THREADS") or "0"
+        try:
+            threads = int(asked) or len(os.sched_getaffinity(0))
+        except ValueError:
+            raise ParameterError("VISCOROLL_THREADS", repr(asked), "a whole number") from None
+    elif isinstance(threads, bool) or not isinstance(threads, (int, np.integer)):
+        raise ParameterError("threads", repr(threads), "a whole number, or None")
+    return max(1, int(threads))
 
 
 def run_blocks(

@@ -65,7 +65,7 @@ class OutputError(FileProblem):
 
 
 class ConfigError(FileProblem):
-    """The TOML file cannot be read as a scene."""
+    """The TOML file cannot be read as what was asked for."""
 
 
 class ConvergenceError(ViscorollError):

@@ -126,12 +126,12 @@ def contact(
         arrays[name], extents[name] = checked_extent(name, value)
     shape = broadcast_shape(**arrays)
     if extents["kappa"][1] * max(map(abs, extents["V"])) > _FASTEST:
-        _refuse_overflow(arrays["kappa"], arrays["V"])
+        refuse_overflow(arrays["kappa"], arrays["V"])
     rows = _compute(list(arrays.values()), shape, creep_name == "omega", names, method)
     return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
 
 
-def _refuse_overflow(kappa: NDArray, V: NDArray) -> None:
+def refuse_overflow(kappa: NDArray, V: NDArray) -> None:
     """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly: zeta would be 0."""
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)

@@ -9,9 +9,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .checks import checked, number
 from .errors import ParameterError
 
 DESIGNS = ("random", "latin", "sobol")
+#: bits of scipy's Sobol sequence, which has no more points
+_SOBOL_BITS = 30
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
 
     Parameters
     ----------
-    n : number of draws, >= 1; powers of two suit "sobol".
+    n : number of draws, >= 1; powers of two suit "sobol", which has at most 2^30.
     seed : whole number >= 0, kept in the result.
     design : "random", "latin" (hypercube) or "sobol" (scrambled), of scipy.stats.qmc.
     **quantities : a number, or a frozen scipy.stats distribution, e.g.
@@ -51,29 +54,45 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
     Raises
     ------
     ParameterError
-        Bad n, seed or design, or a quantity that is neither.
+        Bad n, seed or design, a quantity that is neither, a distribution without a median, a draw that overflows.
+
+    Notes
+    -----
+    The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
+    strata of every quantity, for "sobol" where n is a power of two (``tests/test_ensemble.py``).
     """
     from scipy.stats import qmc
 
-    if not (isinstance(n, (int, np.integer)) and n >= 1):
-        raise ParameterError("n", n, "a whole number >= 1")
-    if not (isinstance(seed, (int, np.integer)) and seed >= 0):
-        raise ParameterError("seed", seed, "a whole number >= 0")
+    for name, value, least in (("n", n, 1), ("seed", seed, 0)):
+        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
+            raise ParameterError(name, value, f"a whole number >= {least}")
     if design not in DESIGNS:
         raise ParameterError("design", repr(design), "out of " + ", ".join(DESIGNS))
-    random = [name for name, value in quantities.items() if hasattr(value, "ppf")]
-    for name, value in quantities.items():
-        if name not in random and not (np.ndim(value) == 0 and np.isreal(value) and np.isfinite(value)):
-            raise ParameterError(name, value, "a finite number or a frozen scipy.stats distribution")
+    if design == "sobol" and n > 1 << _SOBOL_BITS:
+        raise ParameterError("n", n, f"at most 2^{_SOBOL_BITS} for design 'sobol'")
+    random = [name for name, value in quantities.items() if _is_distribution(name, value)]
     generator = np.random.default_rng(seed)
     if design == "random" or not random:
         points = generator.random((n, len(random)))
     elif design == "latin":
         points = qmc.LatinHypercube(len(random), rng=generator).random(n)
     else:
-        points = qmc.Sobol(len(random), rng=generator).random_base2(int(np.ceil(np.log2(n))))[:n]
-    columns = {
-        name: np.asarray(value.ppf(points[:, random.index(name)]) if name in random else np.full(n, float(value)))
-        for name, value in quantities.items()
-    }
+        points = qmc.Sobol(len(random), bits=_SOBOL_BITS, rng=generator).random_base2(int(np.ceil(np.log2(n))))[:n]
+    with np.errstate(all="ignore"):  # what overflows is infinite, and refused
+        drawn = {
+            name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, points.T, strict=True)
+        }
+    columns = {name: drawn[name] if name in drawn else np.full(n, float(value)) for name, value in quantities.items()}
     return Sample(columns, int(seed), design)
+
+
+@np.errstate(all="ignore")  # scipy may overflow on what is refused here
+def _is_distribution(name: str, value: Any) -> bool:
+    """Whether it is a distribution, else a number; raises ParameterError where it is neither."""
+    random = hasattr(value, "ppf")
+    try:
+        number(name, value.ppf(0.5) if random else value)
+    except (TypeError, ValueError):
+        allowed = "a finite number or a frozen scipy.stats distribution"
+        raise ParameterError(name, f"{value!s:.60}", allowed) from None
+    return random

@@ -158,6 +158,11 @@ class Cylinder:
     ------
     ParameterError
         Where a value is not finite or out of range.
+
+    Notes
+    -----
+    ``*_from_si`` and ``*_to_si`` take numbers or arrays and are good to a few roundings
+    (``tests/test_scene.py``).
     """
 
     R: float
@@ -173,8 +178,9 @@ class Cylinder:
 
     def __post_init__(self) -> None:
         for name in ("R", "m", "E", "T_epsilon", "T_sigma", "mu", "j", "g"):
-            number(name, getattr(self, name), low=0.0, strict=True)
-        if not -1.0 < number("nu", self.nu) <= 0.5:
+            object.__setattr__(self, name, number(name, getattr(self, name), low=0.0, strict=True))
+        object.__setattr__(self, "nu", number("nu", self.nu))
+        if not -1.0 < self.nu <= 0.5:
             raise ParameterError("nu", self.nu, "in (-1, 0.5]")
         if self.T_epsilon < self.T_sigma:
             raise ParameterError("T_epsilon", self.T_epsilon, f">= T_sigma = {self.T_sigma}")

@@ -53,6 +53,13 @@ def _part(text: str) -> float | NDArray[np.float64]:
         raise ArgumentTypeError(f"{text!r} must be {NUMBERS}") from None
 
 
+def times(text: str) -> list[float]:
+    """:data:`NUMBERS`, as a list even of one."""
+    import numpy as np
+
+    return np.atleast_1d(numbers(text)).tolist()
+
+
 def distribution(text: str) -> Any:
     """:data:`DISTRIBUTIONS`, as a float or a frozen scipy.stats distribution."""
     name, *rest = text.split(":")
@@ -141,9 +148,9 @@ def add_creep_options(parser: ArgumentParser, value: Callable[[str], Any]) -> No
 
 def add_time_options(parser: ArgumentParser, end: str, required: bool = True) -> None:
     """One of --t-end and --times, and the controls of a motion."""
-    times = parser.add_mutually_exclusive_group(required=required)
-    times.add_argument("--t-end", type=number, dest="t", metavar="T", help=f"end time; {end}")
-    times.add_argument("--times", type=numbers, dest="t", metavar="TIMES", help=f"output times: {NUMBERS}")
+    group = parser.add_mutually_exclusive_group(required=required)
+    group.add_argument("--t-end", type=number, dest="t", metavar="T", help=f"end time; {end}")
+    group.add_argument("--times", type=times, dest="t", metavar="TIMES", help=f"output times: {NUMBERS}")
     parser.add_argument("--rtol", type=number, default=1e-8, help="relative tolerance in [1e-12, 1e-2] (default 1e-8)")
     parser.add_argument("--rest", type=number, help="end a motion where max(|V|, |omega|) falls below this")
 
@@ -154,9 +161,13 @@ def output_path(*suffixes: str) -> Callable[[str], Path]:
     def path(text: str) -> Path:
         if Path(text).suffix not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
-        if not Path(text).parent.is_dir():
+        try:
+            has_folder, is_folder = Path(text).parent.is_dir(), Path(text).is_dir()
+        except (OSError, ValueError) as error:  # too long for the file system, a null byte
+            raise ArgumentTypeError(f"{text!r:.60}: cannot be a file ({getattr(error, 'strerror', error)})") from None
+        if not has_folder:
             raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
-        if Path(text).is_dir() and Path(text).suffix != ".zarr":
+        if is_folder and Path(text).suffix != ".zarr":
             raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
         return Path(text)
 

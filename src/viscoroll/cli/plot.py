@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from pathlib import Path
 from typing import Any
 
 from ..errors import ParameterError
@@ -28,7 +29,7 @@ def add_commands(commands: Any) -> None:
 def _plot(arguments: Namespace) -> int:
     from ..figures import FIGURES, save
 
-    if arguments.what.endswith(".zarr"):
+    if Path(arguments.what).suffix == ".zarr":
         from ..figures import run_distributions
         from ..runs import open_summaries
 

@@ -48,7 +48,7 @@ def run(arguments: Namespace) -> int:
     """Do what the words after ``ensemble`` say."""
     for key, default in _OF_THE_FILE.items():
         if getattr(arguments, key) != default:
-            raise ParameterError(key, getattr(arguments, key), "left out: the run file says it")
+            raise ParameterError(key, f"{getattr(arguments, key)!s:.60}", "left out: the run file says it")
     words = arguments.what
     if words[0] in ("verify", "export"):
         refuse_options(arguments)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 _GREYS = ("0.85", "0.65", "0.45")
 _BARS = 80
+#: what a plot can tell apart, and how far it reaches
+_FINEST, _FARTHEST = 1e-280, 1e300
 
 
 def run_distributions(summaries: xr.Dataset) -> Figure:
@@ -52,7 +54,8 @@ def _bands(axes: Any, summaries: xr.Dataset, name: str) -> None:
         axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
     axes.axhline(0.0, **THIN)
     axes.set(xlabel=labelled("t", summaries["t"].attrs["units"]), ylabel=_label(summaries, name), xlim=(t[0], t[-1]))
-    axes.legend(frameon=False, fontsize="small")
+    if levels.size:
+        axes.legend(frameon=False, fontsize="small")
 
 
 def _levels(axes: Any, summaries: xr.Dataset, name: str) -> None:
@@ -67,22 +70,31 @@ def _bars(axes: Any, summaries: xr.Dataset, name: str) -> None:
     counts = summaries[f"{name}_histogram"].values
     counts = counts[:, -1] if counts.ndim == 2 else counts
     low, high = summaries[f"{name}_bin_low"].values, summaries[f"{name}_bin_high"].values
-    edges, bars = even_bars(low, high, counts)
-    axes.stairs(bars, edges, fill=True, color="0.6")
-    outside = int(counts.sum() - round(bars.sum()))
     t = summaries["t"]
     at = with_unit(f" at t = {t.values[-1]:g}", t.attrs["units"]) if summaries[f"{name}_mean"].ndim else ""
     axes.set(xlabel=_label(summaries, name) + at, ylabel=f"motions, of {counts.sum()}")
+    if not counts.any():
+        axes.set_title("no values", fontsize="small")
+        return
+    edges, bars = even_bars(low, high, counts)
+    axes.stairs(bars, edges, fill=True, color="0.6")
+    outside = int(counts.sum() - round(bars.sum()))
     if outside:
         axes.set_title(f"{outside} more beyond the ends", fontsize="small")
 
 
 def even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
-    """(edges, counts) of even bars: a bin that lies in several is shared out by its width."""
+    """(edges, counts) of even bars: a bin that lies in several is shared out by its width.
+
+    One bar where all lie too close together for a plot, as at rest.
+    """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [1e-3, 1.0 - 1e-3])
     last = min(last, counts.size - 1)
-    edges = np.linspace(low[first], high[last], _BARS + 1)
+    start, end = np.clip([low[first], high[last]], -_FARTHEST, _FARTHEST)
+    if end - start < _FINEST:
+        return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(keepdims=True)
+    edges = np.linspace(start, end, _BARS + 1)
     ends = np.unique(np.concatenate([low, high]))
     below = np.zeros(ends.size)
     below[np.searchsorted(ends, high)] = np.cumsum(counts)

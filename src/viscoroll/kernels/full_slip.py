@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from .jit import kernel
-from .law import contact_length, generator_slopes, generators, moment_factor
+from .law import contact_length, generators, moment_factor
 from .ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
@@ -88,7 +88,7 @@ def stick_limit(V, par):
     kappa_V = kappa * speed
     lam, _ = contact_length(kappa_V, alpha, c)
     zeta = lam / (2.0 * kappa_V)
-    g, _, _, _ = generator_slopes(zeta, alpha, c)
+    g, _ = generators(zeta, alpha, c)
     return 0.5 * mu * lam * (1.0 + g / zeta) / kappa * speed, zeta
 
 

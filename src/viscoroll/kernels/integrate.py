@@ -16,7 +16,7 @@ from .dop853 import EXTENDED
 from .events import AT_REST, NO_EVENT, SLIP, STICK, speeds
 from .full_slip import stick_limit
 from .jit import kernel
-from .law import OK, generator_slopes, stick_length
+from .law import OK, stick_length
 from .layer import ROWS
 from .layer_phase import layer_phase
 from .motion_output import at_rest, coast, put
@@ -63,15 +63,14 @@ def start(V, omega, par, u):
         u[0] = -np.log(2.0 * kappa * (V + j * omega) / (1.0 + j))
         u[1] = 0.0
         return PARTIAL, direction, sigma, OK
-    g, _, _, _ = generator_slopes(zeta, alpha, c)
-    _, D, status = stick_length(zeta, zeta + g, abs(slip) / V / (mu * V), alpha, c)
+    _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), alpha, c)
     u[0] = np.log(zeta)
     u[1] = sigma * D - slow_D(u[0], par)[0]
     return PARTIAL, direction, sigma, status
 
 
 @kernel
-def switch(event, regime, direction, sigma, u, par, offset):
+def switch(event, direction, sigma, u, par, offset):
     """Enter the regime behind an event: (regime, direction, sigma).  ``offset`` keeps x and angle."""
     for m in range(2):
         offset[m] += direction * u[2 + m]
@@ -128,20 +127,20 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
         return NOT_CONVERGED, steps, turns, onset_time, rest_time
     if regime == REST:
         at_rest(out, 0, 0.0, 0.0, gamma)
-        return DONE, steps, turns, onset_time, 0.0
+        return DONE, steps, turns, onset_time, rest_time
     while at < tau_out.size and tau_out[at] == 0.0:
         _, _, delta = speeds(regime, u[0], u[1], par)
         put(out, at, 1.0, regime, V0, omega0, delta, 0.0, 0.0, gamma)
         at += 1
-    status, tau, far = DONE, 0.0, np.log(_COAST)
+    status, tau, far, slipped = DONE, 0.0, np.log(_COAST), False
     # alpha = 1: nothing moves on the slow manifold, which both phases need
     layer_ahead, try_at = par[1] > 0.0, 0.0 if par[1] > 0.0 else np.inf
     while at < tau_out.size:
         event, ready, stuck = NO_EVENT, False, False
         if regime == FULL:
             event, tau, at, steps, ends = slide_phase(
-                u, tau, tau_out, at, direction, sigma, par, gamma, offset, travelled, rtol, rest, max_steps, steps,
-                out, step_ends, ends, work[3], nodes,
+                u, tau, slipped, tau_out, at, direction, sigma, par, gamma, offset, travelled, rtol, rest, max_steps,
+                steps, out, step_ends, ends, work[3], nodes,
             )  # fmt: skip
             stuck = event == NO_EVENT
         elif u[0] >= far:
@@ -173,7 +172,8 @@ def integrate(alpha, kappa, mu, gamma, j, V0, omega0, t_out, rtol, rest, max_ste
             at_rest(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
             status, rest_time = RESTED, tau / gamma
             break
-        regime, direction, sigma = switch(event, regime, direction, sigma, u, par, offset)
+        regime, direction, sigma = switch(event, direction, sigma, u, par, offset)
+        slipped = event == SLIP
         if event == STICK or event == SLIP:
             if turns < switches.shape[0]:
                 switches[turns, 0], switches[turns, 1] = tau / gamma, regime

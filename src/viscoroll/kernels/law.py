@@ -195,7 +195,7 @@ def differences(zeta, eta, D, alpha, c):
 
 
 @kernel
-def stick_length(zeta, F_zeta, d, alpha, c):
+def stick_length(zeta, d, alpha, c):
     """Eq. (10): (eta, D = zeta - eta, status) with F(zeta) - F(eta) = d, 0 <= d < F(zeta)."""
     g, h, dg, _ = generator_slopes(zeta, alpha, c)
     eta, D, _, status = stick_solution(zeta, g, h, dg, d, alpha, c)

@@ -103,8 +103,11 @@ def opening(high, panel, sigma, par, rest, powers):
 
 
 @kernel
-def panel_event(panel, sigma, par, rest, nodes, powers):
-    """(event, v): the first event on the panel, else none and its end."""
+def panel_event(slipped, panel, sigma, par, rest, nodes, powers):
+    """(event, v): the first event on the panel, else none and its end.
+
+    Where the stick zone has just gone (``slipped``), slip that rounding keeps below its limit does not end at once.
+    """
     event, low, high = NO_EVENT, 0.0, 2.0
     for i in range(1, N + 1):
         if nodes[SLIP, i] < 0.0 or nodes[SPEED, i] < rest:
@@ -120,7 +123,7 @@ def panel_event(panel, sigma, par, rest, nodes, powers):
     if event == STICK and low == 0.0 and nodes[SLIP, 0] <= _ON_EDGE * nodes[SPEED, 0]:
         low = opening(high, panel, sigma, par, rest, powers)
         if low == 0.0:
-            return STICK, 0.0
+            return (NO_EVENT, 2.0) if slipped else (STICK, 0.0)
     v = locate_slide(event, low, high, panel, sigma, par, rest, nodes, powers)
     if event == STICK and rest > 0.0 and event_at(AT_REST, v, panel, sigma, par, rest, powers) < 0.0:
         return AT_REST, locate_slide(AT_REST, low, v, panel, sigma, par, rest, nodes, powers)
@@ -168,9 +171,12 @@ def slide_on(u, v, rise, travelled, panel, sigma, par, powers):
 
 
 @kernel
-def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, travelled, rtol, rest, max_steps, steps,
-                out, step_ends, ends, powers, nodes):  # fmt: skip
-    """Slide from u to an event, or until outputs end.  Returns (event, tau, next column, steps, ends noted)."""
+def slide_phase(u, tau, slipped, tau_out, at, direction, sigma, par, gamma, offset, travelled, rtol, rest, max_steps,
+                steps, out, step_ends, ends, powers, nodes):  # fmt: skip
+    """Slide from u to an event, or until outputs end.  Returns (event, tau, next column, steps, ends noted).
+
+    ``slipped``: u is where the stick zone has gone.
+    """
     _, _, _, mu, j = par
     tau_end = tau_out[tau_out.size - 1]
     longest, pole = min(_FIRST * rtol ** (1.0 / (N + 1.0)), _LONGEST), choose_pole(u[0], sigma, par)
@@ -209,7 +215,7 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
             continue
         longest = min(_LONGEST, next_interval(length, size))
         slide_terms(panel[2], nodes, powers)
-        event, v = panel_event(panel, sigma, par, rest, nodes, powers)
+        event, v = panel_event(slipped, panel, sigma, par, rest, nodes, powers)
         rise = slide_rise(v, panel, sigma, par, powers)[2] if v > 0.0 else 0.0
         if event == NO_EVENT and panel[3] == 0.0:
             event = REVERSAL
@@ -220,6 +226,7 @@ def slide_phase(u, tau, tau_out, at, direction, sigma, par, gamma, offset, trave
         ends = note_panel(tau, rise, v, powers, gamma, step_ends, ends)
         slide_on(u, v, rise, travelled, panel, sigma, par, powers)
         tau += rise
+        slipped = False
         if event != NO_EVENT:
             return event, tau, at, steps, ends
     return NO_EVENT, tau, at, steps, ends

@@ -175,7 +175,7 @@ def slow_quadratures(length, values):
 
 
 @kernel(allocates=True)
-def slow_dense_terms(y, length, values, powers):
+def slow_dense_terms(length, values, powers):
     """Coefficients in t in [-1, 1]: tau, X and angle - X for ``rise_at``, ln V + y and delta/V."""
     half = 0.5 * length
     integrands = np.empty((3, N + 1))

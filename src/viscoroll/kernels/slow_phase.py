@@ -76,7 +76,7 @@ def _fastest(values):
 
 
 @kernel
-def slow_outputs(tau_out, at, tau, rise, u, length, direction, powers, par, gamma, offset, out):
+def slow_outputs(tau_out, at, tau, rise, u, length, direction, powers, gamma, offset, out):
     """Outputs within the interval; the next column."""
     v = 0.0
     while at < tau_out.size and tau_out[at] <= tau + rise:
@@ -131,8 +131,8 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
             length, rise, X, angle = to_rest(u, length, rtol, rest, travelled, values, matrix, right, par)
         inside = tau_out[at] <= tau + rise or ends < step_ends.size
         if inside:
-            slow_dense_terms(u[0], length, values, powers)
-            at = slow_outputs(tau_out, at, tau, rise, u, length, direction, powers, par, gamma, offset, out)
+            slow_dense_terms(length, values, powers)
+            at = slow_outputs(tau_out, at, tau, rise, u, length, direction, powers, gamma, offset, out)
             ends = note_nodes(tau, powers, gamma, step_ends, ends)
         u[0] += length
         u[1] = values[N, 0]

@@ -77,12 +77,6 @@ def unit_shape(u, w, z, alpha, c):
 
 
 @kernel
-def pressure_shape(Y, z, alpha, c):
-    """S(Y; z) for finite z."""
-    return z * unit_shape((z - Y) / z, (z + Y) / z, z, alpha, c)
-
-
-@kernel
 def stress_at(x, kappa, mu, lam, epsilon, beta, zeta, alpha, c):
     """(p/E', |tau|/E') at x (unit l0, positive ahead of the axis); zeta = inf at V = 0."""
     y = 2.0 * x / lam

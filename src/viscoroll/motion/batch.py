@@ -25,8 +25,9 @@ FIELDS = STATES + LOSSES
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 #: motions a block: where all are integrated, and where most come from a map
 _BLOCK, _MAPPED_BLOCK = 64, 1 << 14
-#: motions from which on method "auto" takes the flow map: building one takes as long as integrating a thousand
-_FLOW_PAYS = 2000
+#: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
+#: thousand (docs/benchmark.md, "One scene")
+FLOW_PAYS = 4096
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,24 @@ class Ensemble:
         return {MOTION_STATUS[MotionStatus(code)]: int(n) for code, n in zip(codes, counts, strict=True)}
 
     def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
-        """Mean, standard deviation and quantiles over the motions, per output time."""
+        """Mean, standard deviation and quantiles over the motions, per output time.
+
+        Parameters
+        ----------
+        quantiles : in [0, 1].
+
+        Returns
+        -------
+        xarray.Dataset
+            Over (quantile, t), of every field kept but delta and regime, and of onset_time; numpy's
+            values (``tests/test_ensemble.py``).  Outputs that a motion did not reach do not count;
+            the attributes say how many motions ended in which way.
+
+        Raises
+        ------
+        ParameterError
+            If there are no motions.
+        """
         from .export import summary_dataset
 
         return summary_dataset(self, tuple(quantiles))
@@ -117,7 +135,7 @@ def ensemble(
     t : output times, ascending, common to all; one number: the final state only.
     method : "integrate": each motion as :func:`roll` would, bit for bit.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
-        yet.  "auto": "flow" for 2000 motions or more of one scene.  The map stands in only
+        yet.  "auto": "flow" for 4096 motions or more of one scene.  The map stands in only
         where its stated error is at most ``rtol``, and only for the motions that it holds;
         all others are integrated.  The result says which, and the map's error.
     rtol, rest, max_steps : as for :func:`roll`.
@@ -145,6 +163,9 @@ def ensemble(
     hold the sliding cylinder (mu below about M/2), for alpha = 1, and for motions that stick
     at speeds 10^6 times below the highest (``tests/test_flow.py``).
 
+    Nothing is raised where a motion cannot be rolled to the end: its ``status`` says so, its outputs from
+    there on are NaN, and :meth:`Ensemble.messages` counts such motions.
+
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_hostile.py``).
     """
@@ -167,7 +188,7 @@ def ensemble(
     flat = [flattened(array, (count,)) for array in arrays.values()]
     rows = tuple(FIELDS.index(name) for name in names)
     bar = "motions" if progress else None
-    use_map = method == "flow" or (method == "auto" and not scene.shape and count >= _FLOW_PAYS)
+    use_map = method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS)
     chosen = _map_of(scene, flat[5], flat[6], speed, threads) if use_map else None
     error = (
         np.nan if chosen is None else chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))

@@ -10,6 +10,8 @@ from ..errors import ParameterError
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)
+#: a motion takes some hundreds
+MOST_STEPS = 10_000_000
 
 
 def output_times(t: ArrayLike) -> NDArray[np.float64]:
@@ -36,15 +38,15 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     Raises
     ------
     ParameterError
-        rtol outside [1e-12, 1e-2], rest not positive, max_steps < 1.
+        rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
     if not (np.ndim(rtol) == 0 and low <= float(checked("rtol", rtol)) <= high):
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
     if rest is not None and checked("rest", rest, low=0.0, strict=True).ndim:
         raise ParameterError("rest", rest, "one positive number, or None")
-    if not (isinstance(max_steps, (int, np.integer)) and max_steps >= 1):
-        raise ParameterError("max_steps", max_steps, "a whole number >= 1")
+    if not (isinstance(max_steps, (int, np.integer)) and 1 <= max_steps <= MOST_STEPS):
+        raise ParameterError("max_steps", max_steps, f"a whole number >= 1, <= {MOST_STEPS}")
     return float(rtol), 0.0 if rest is None else float(rest), int(max_steps)
 
 

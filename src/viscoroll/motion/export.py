@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..errors import MOTION_STATUS
+from ..errors import MOTION_STATUS, ParameterError
 from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 _REGIME = {
     "long_name": "regime of motion",
-    "flag_values": np.array([0, 1, 2], dtype=np.int8),
-    "flag_meanings": "full_slip partial_slip rest",
+    "flag_values": np.array([-1, 0, 1, 2], dtype=np.int8),
+    "flag_meanings": "not_reached full_slip partial_slip rest",
 }
 _OWN: dict[str, dict[str, Any]] = {
     "regime": _REGIME,
@@ -90,7 +90,8 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
         if getattr(result, name) is not None
     }
     if result.regime is not None:
-        data["regime"] = xr.Variable(dims, result.regime.astype(np.int8), _REGIME)
+        reached = np.where(np.isnan(result.regime), -1, result.regime)
+        data["regime"] = xr.Variable(dims, reached.astype(np.int8), _REGIME)
     for name in _PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
         data[name] = _variable(("motion",) if value.ndim else (), name, value)
@@ -103,6 +104,8 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
 
 def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
+    if not len(result):
+        raise ParameterError("motions", 0, "at least one: a summary is over motions")
     data: dict[str, xr.Variable] = {}
     for name in ("V", "omega", "x", "angle", "slip_loss", "rolling_loss"):
         values = getattr(result, name)

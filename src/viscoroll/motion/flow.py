@@ -214,7 +214,8 @@ def ask(
     from ..kernels.flow_loop import flow_loop
 
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
-    answer = Answer.empty(len(rows), max(V0.size, omega0.size), times.size)
+    count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
+    answer = Answer.empty(len(rows), count, times.size)
     rest_lambda = lambda_at_rest(rest, chosen.table, chosen.parameters) if rest > 0.0 else 0.0
 
     def work(start: int, stop: int) -> None:

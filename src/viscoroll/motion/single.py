@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 REGIMES = ("full slip", "partial slip", "rest")
 _QUANTITIES = ("V", "omega", "x", "angle", "delta")
 _SWITCHES_KEPT = 1000
+#: room for the ends of steps at first
+_STEPS = 1000
 
 
 class Switch(NamedTuple):
@@ -70,15 +72,41 @@ class Motion:
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
         """Contact state (:func:`viscoroll.contact`) along the motion.
 
-        At rest, and where V passes through zero while sliding, the limits V -> 0 stand.
+        At rest, and where V passes through zero while sliding, the limits V -> 0 stand.  At times that the
+        motion did not reach everything is NaN, and ``full_slip`` False.
+
+        Parameters
+        ----------
+        fields, **options : as for :func:`viscoroll.contact`.
+
+        Returns
+        -------
+        Values
+            Each field over t.  The law is exact to rounding: errors are those of V and delta, which beta
+            and Q magnify near full slip (``tests/test_motion.py``).
+
+        Raises
+        ------
+        ParameterError
+            Unknown fields or options out of range.
         """
-        delta, sliding = self.delta, ~np.isfinite(self.delta)
-        if sliding.any():
-            delta = np.where(sliding, np.copysign(1e300, self.delta), self.delta)
-        return contact(self.scene, self.V, delta=delta, fields=fields, **options)
+        reached = self.regime >= 0
+        V, delta = self.V[reached], self.delta[reached]
+        delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
+        found = contact(self.scene, V, delta=delta, fields=fields, **options)
+        return found if reached.all() else Values({k: _with_gaps(v, reached) for k, v in found.as_dict().items()})
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end]; by the continuous output of the methods.
+
+        Parameters
+        ----------
+        t : times, ascending.
+
+        Returns
+        -------
+        Motion
+            As exact between the steps as at their ends (``tests/test_motion.py``).
 
         Raises
         ------
@@ -96,6 +124,13 @@ class Motion:
         from .export import motion_dataset
 
         return motion_dataset(self)
+
+
+def _with_gaps(values: NDArray, reached: NDArray[np.bool_]) -> NDArray:
+    """``values`` where ``reached``, and between them NaN, or False among booleans."""
+    whole = np.full(reached.shape, False if values.dtype == bool else np.nan)
+    whole[reached] = values
+    return whole
 
 
 def roll(
@@ -124,7 +159,7 @@ def roll(
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
         there on V = omega = 0 and x, angle stay; the distance so left out is close to
         (1 + j) V/(gamma c).
-    max_steps : step limit.
+    max_steps : step limit, at most 10^7.
 
     Returns
     -------
@@ -134,6 +169,11 @@ def roll(
     ------
     ParameterError
         NaN, infinite or oversized input, unsorted times, an array where one number belongs.
+
+    Warns
+    -----
+    RuntimeWarning
+        Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
     times = output_times(t)
     inputs = start_speeds(V0, omega0)
@@ -157,11 +197,13 @@ def _step_times(
     from ..kernels.integrate import integrate
     from ..kernels.motion_output import OUTPUTS
 
-    ends = np.full(max_steps, np.nan)
-    integrate(
-        scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, end, rtol, rest, max_steps,
-        np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
-    )  # fmt: skip
+    ends = np.empty(0)
+    while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
+        ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
+        integrate(
+            scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, end, rtol, rest, max_steps,
+            np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
+        )  # fmt: skip
     return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
 

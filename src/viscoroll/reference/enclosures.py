@@ -52,6 +52,11 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
         If python-flint is not installed.
     ConvergenceError
         If 16384 bits do not suffice.
+
+    Notes
+    -----
+    Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
+    most 2^-``bits`` of it (``tests/test_prove.py``).
     """
     scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
     speed, creep = checked("V", V), checked("delta", delta)

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from ..blocks import thread_count
 from ..errors import OutputError, ParameterError, ViscorollError
@@ -23,7 +24,7 @@ from .store import Store, locked
 _AHEAD = 2
 #: how often dask gives a task to another worker when one dies
 _RETRIES = 3
-#: dask's workers give every freed array back to the system, which costs a block a third more time, and watch
+#: dask's workers give every freed array back to the system, which costs a block time, and watch
 #: themselves a hundred times a second; glibc takes no larger second value
 _CALM = {
     "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 2**30,
@@ -37,7 +38,7 @@ def run_ensemble(
     run: Run, path: str | PathLike[str], *, cluster: str | None = None, threads: int | None = None,
     progress: bool = False,
 ) -> int:  # fmt: skip
-    """Work on all blocks that the store does not hold yet, then write the summaries.  Returns how many those were.
+    """Work on all blocks that the store does not hold yet, then write the summaries.
 
     After an end of any kind (a kill, a full disk, a damaged file) the same call goes on: blocks
     that are there are read and compared with their SHA-256, the others are made again.
@@ -51,6 +52,11 @@ def run_ensemble(
     threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the cores available.
     progress : draw a bar with rate and time left.
 
+    Returns
+    -------
+    int
+        How many blocks were made; 0 where the store held all of them.
+
     Raises
     ------
     OutputError
@@ -58,6 +64,11 @@ def run_ensemble(
         the cluster went away.
     ParameterError
         An unknown cluster, dask not installed, or inputs that a motion does not allow.
+
+    Notes
+    -----
+    The files are the same, byte for byte, for any number of threads or workers and after any number
+    of kills (``tests/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
     """
     store = Store(Path(path).absolute(), run)
     with locked(store.root):
@@ -107,7 +118,7 @@ def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Execut
         with ThreadPoolExecutor(thread_count(threads)) as pool:
             yield pool, thread_count(threads), lambda store: store
         return
-    if cluster != "local" and not cluster.startswith(("tcp://", "tls://")):
+    if cluster != "local" and not _is_address(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
     try:
         import distributed
@@ -125,6 +136,15 @@ def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Execut
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
         raise OutputError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
+
+
+def _is_address(text: str) -> bool:
+    """Whether it is tcp://host:port, or the same with tls."""
+    try:
+        parts = urlsplit(text)
+        return parts.scheme in ("tcp", "tls") and bool(parts.hostname) and bool(parts.port)
+    except ValueError:  # a port that is no number
+        return False
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:

@@ -44,7 +44,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) ->
     return ensemble(
         scene, V0, omega0, run.t,
         method=run.method, rtol=run.settings.rtol, rest=run.rest, fields=run.fields,
-        speed=run.fastest if run.method == "flow" else None, threads=threads,
+        speed=run.fastest or None if run.method == "flow" else None, threads=threads,
     )  # fmt: skip
 
 

@@ -22,12 +22,21 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     Memory does not grow with the number of motions.  While it is written, the file takes the room of its
     content uncompressed, which is reserved first.
 
+    Parameters
+    ----------
+    store : folder of the results.
+    path : file to write; a file of that name is replaced when the new one is whole.
+
     Raises
     ------
     TableError
         There is no finished store, or anything in it is damaged.
     OutputError
         The file cannot be written, or there is no room for it.
+
+    Notes
+    -----
+    Values are those of the store, bit for bit (``tests/test_run_store.py``).
     """
     summaries, verdict = open_summaries(store), verify(store)
     if not verdict.ok:

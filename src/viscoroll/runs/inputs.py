@@ -24,6 +24,7 @@ class Distribution:
     low: float
     high: float
 
+    @np.errstate(all="ignore")  # what overflows is infinite, which a motion refuses
     def ppf(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
         """Inverse of the distribution function; from above where that keeps the digits of a cut tail."""
         if (self.low, self.high) == self.law.support():

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from ..config import preset
 from ..errors import ParameterError
-from ..motion.batch import FIELDS
+from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
@@ -38,8 +38,6 @@ from .quantities import QUANTITIES
 from .sources import CYLINDER, SCENE, START, read_inputs
 from .units import dimensionless
 
-#: motions of one scene from which on the flow map is worth its making, as in ``motion/batch.py``
-_FLOW_PAYS = 2000
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
 _SECTIONS = ("preset", "scene", "cylinder", "start", "correlation", "run")
@@ -89,7 +87,7 @@ class Run:
         """How every block is rolled: settled by the run as a whole, so that bits do not depend on blocks."""
         if self.settings.method != "auto":
             return self.settings.method
-        return "flow" if self.one_scene and self.settings.n >= _FLOW_PAYS and self.fastest > 0.0 else "integrate"
+        return "flow" if self.one_scene and self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
 
     @property
     def one_scene(self) -> bool:
@@ -131,8 +129,8 @@ class Run:
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
         most = _MAPPED if self.method == "flow" else _INTEGRATED
-        fits = 1 << (_BYTES // self.bytes_a_motion).bit_length() - 1  # a power of two suits Sobol
-        return min(most, max(fits, 1), self.settings.n)
+        fits = 1 << max(_BYTES // self.bytes_a_motion, 1).bit_length() - 1  # a power of two suits Sobol
+        return min(most, fits, self.settings.n)
 
     @property
     def blocks(self) -> int:
@@ -146,6 +144,15 @@ class Run:
 
 def read_run(path: str | PathLike[str]) -> Run:
     """Read and check a run file.
+
+    Parameters
+    ----------
+    path : TOML file; its keys are in docs/ensembles.md.
+
+    Returns
+    -------
+    Run
+        Everything in it checked; nothing drawn or rolled yet.
 
     Raises
     ------
@@ -195,6 +202,8 @@ def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.floa
             if name not in allowed:
                 problem = f"{key} = ..., {name!r}, ...: must be out of {', '.join(allowed)}"
                 raise fault(path, "run", key, problem)
+    if not settings.summaries:
+        raise fault(path, "run", "summaries", "summaries = []: must name at least one quantity")
     if settings.method == "flow" and set(inputs.uncertain) - set(START):
         raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' where scenes differ")
     if settings.rest is not None and inputs.si and {"R", "T_epsilon"} & set(inputs.uncertain):

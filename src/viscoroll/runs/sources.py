@@ -67,6 +67,8 @@ class _Reader:
         self.fixed: dict[str, Any] = {}
         self.random: dict[str, Distribution] = {}
         self.joint: dict[str, dict[str, NDArray[np.float64]]] = {}
+        #: file -> how it was first written: 'rows.csv' and './rows.csv' share their rows
+        self.files: dict[Path, str] = {}
         self.section = ""
 
     def fault(self, key: str, problem: str) -> ConfigError:
@@ -90,20 +92,21 @@ class _Reader:
         else:
             raise self.fault(name, f"{name} = {value!r:.40}: must be a number, a distribution or a column of a file")
 
+    @np.errstate(all="ignore")  # scipy may overflow on what is refused here
     def distribution(self, name: str, given: dict[str, Any], allowed: Range) -> Distribution:
         """A scipy.stats distribution, perhaps truncated, inside the allowed range."""
         law = self.law(name, given)
         low, high = (float(end) for end in law.support())
         cut = given.get("truncate", [-math.inf, math.inf])
-        if not (isinstance(cut, list) and len(cut) == 2 and all(isinstance(end, (int, float)) for end in cut)):
+        if not (isinstance(cut, list) and len(cut) == 2 and all(map(_is_end, cut))):
             raise self.fault(name, f"{name}: truncate = {cut!r:.40}: must be [low, high]; inf and -inf leave an end")
         low, high = max(low, float(cut[0])), min(high, float(cut[1]))
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
             raise self.fault(name, f"{name}: truncate = {cut!r:.40}: nothing of the distribution is left")
-        if low < allowed.low or high > allowed.high:
+        beyond = [end for end in (low, high) if not allowed.low <= end <= allowed.high]
+        # no design draws an infinite end; a block checks what it draws
+        if beyond and not (name in START and all(map(math.isinf, beyond))):
             bounds = f"{name}: reaches from {low:g} to {high:g}, must be {allowed}"
-            if name in START and max(abs(low), abs(high)) == math.inf:
-                return Distribution(law, low, high)  # no design draws the ends; a block checks what it draws
             raise self.fault(name, f"{bounds}: add truncate = [low, high]")
         return Distribution(law, low, high)
 
@@ -142,10 +145,16 @@ class _Reader:
             raise self.fault(name, f"{name}: column {column!r} of {file} cannot be read ({text:.200})") from error
         if values.size == 0 or not all(map(allowed.holds, (values.min(), values.max()))):
             raise self.fault(name, f"{name}: column {column!r} of {file}: all its values must be {allowed}")
-        others = self.joint.setdefault(file, {})
+        first = self.files.setdefault((self.path.parent / file).resolve(), file)
+        others = self.joint.setdefault(first, {})
         if others and next(iter(others.values())).size != values.size:
             raise self.fault(name, f"{name}: column {column!r} of {file}: other columns have another length")
         others[name] = values
+
+
+def _is_end(value: Any) -> bool:
+    """Whether it is a number, perhaps an infinite one."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
 
 
 def _in(unit: str) -> str:
@@ -226,9 +235,10 @@ def _copula(path: Path, given: dict[str, Any], random: dict[str, Distribution]) 
                 raise fault(path, "correlation", a, problem)
         if a == b or isinstance(value, bool) or not isinstance(value, (int, float)) or not -1.0 < value < 1.0:
             raise fault(path, "correlation", a, f"{a}.{b} = {value!r:.40}: must be two names and a number in (-1, 1)")
+        if pairs.get((b, a), value) != value:
+            problem = f"{a}.{b} = {value!r}: must be that of {b}.{a} = {pairs[b, a]!r:.40}"
+            raise fault(path, "correlation", a, problem)
         n, m = names.index(a), names.index(b)
-        if matrix[n, m] not in (0.0, value):
-            raise fault(path, "correlation", a, f"{a}.{b} = {value!r}: was given another value before")
         matrix[n, m] = matrix[m, n] = value
     try:
         return names, np.linalg.cholesky(matrix) if names else None

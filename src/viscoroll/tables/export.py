@@ -42,7 +42,7 @@ def export(
     Raises
     ------
     ParameterError
-        An unknown format, another ending, an alpha that the table does not hold.
+        An unknown format, another ending, an alpha that the table does not hold, none or a matrix of them.
     OutputError
         If it cannot be written there.
 
@@ -72,9 +72,12 @@ def check_format(format: str, path: str | PathLike[str]) -> None:
 
 def _at_alphas(table: xr.Dataset, wanted: NDArray) -> xr.Dataset:
     """The part of a literal table at the ``wanted`` alphas; says so in its attributes."""
+    wanted = np.atleast_1d(wanted)
+    if wanted.ndim != 1 or not wanted.size:
+        raise ParameterError("alpha", f"an array of shape {wanted.shape}", "one alpha or a vector of them")
     nodes = table["alpha"].values
-    same = np.isclose(np.atleast_1d(wanted)[:, np.newaxis], nodes, rtol=_SAME_ALPHA, atol=0.0)
-    missing = np.atleast_1d(wanted)[~same.any(axis=1)]
+    same = np.isclose(wanted[:, np.newaxis], nodes, rtol=_SAME_ALPHA, atol=0.0)
+    missing = wanted[~same.any(axis=1)]
     if missing.size:
         raise ParameterError("alpha", f"{missing[0]:g}", f"one that the table holds: {_listed(nodes)}")
     part = table.isel(alpha=same.any(axis=0))

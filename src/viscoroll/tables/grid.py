@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import checked, number
 from ..errors import ParameterError
-from ..scene import HIGHEST_ALPHA
+from ..rolling_contact import refuse_overflow
+from ..scene import HIGHEST_ALPHA, Scene
 
 #: A not-a-knot cubic needs four nodes.
 _MIN_NODES = 4
@@ -67,13 +68,16 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     Raises
     ------
     ParameterError
-        An unknown spacing, low >= high, count < 2, or "log" with low <= 0.
+        An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
     """
     if spacing not in ("linear", "log"):
         raise ParameterError("spacing", repr(spacing), "'linear' or 'log'")
     low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
-    if not number("high", high) > low:
+    high = number("high", high)
+    if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
+    if high - low == np.inf:
+        raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
     if not isinstance(count, int) or not 2 <= count <= _MAX_NODES:
         raise ParameterError("count", count, f"an integer in [2, {_MAX_NODES}]")
     return (np.geomspace if spacing == "log" else np.linspace)(low, high, count)
@@ -142,7 +146,8 @@ class LiteralGrid:
     Raises
     ------
     ParameterError
-        Where a value is out of range or an axis does not increase.
+        Where a value is out of range, an axis does not increase, mu/kappa leaves the range of :class:`Scene`
+        or kappa V exceeds 1e300.
     """
 
     kappa: float
@@ -167,6 +172,8 @@ class LiteralGrid:
             if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
                 raise ParameterError(name, f"an array of shape {axis.shape}", "one-dimensional and strictly increasing")
             object.__setattr__(self, name, axis)
+        Scene(self.alpha, self.kappa, self.mu)
+        refuse_overflow(np.asarray(self.kappa), self.V)
         if self.V.size * self.delta.size * self.alpha.size > _MAX_NODES:
             raise ParameterError("V, delta, alpha", "their product", f"at most {_MAX_NODES} nodes in all")
 

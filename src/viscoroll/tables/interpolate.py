@@ -44,6 +44,8 @@ def spline_on_grid(knots: list[NDArray], coefficients: NDArray, axes: list[NDArr
 class Interpolant:
     """A table ready for repeated interpolation; what :func:`interpolate` builds on each call.
 
+    Called with fields and points, it returns and raises what :func:`interpolate` does, with the same errors.
+
     Parameters
     ----------
     table : a Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
@@ -146,9 +148,10 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     Notes
     -----
     Atlas: tensor not-a-knot cubic spline in (ln alpha, ln kappa V, u = 1 - sqrt(1 - s)); the
-    errors are those stored in the table.  Literal tables: linear in V, delta and alpha, what
+    errors are those stored in the table, which a single point may exceed by up to 1.5 times
+    (``tests/test_tables.py``).  Literal tables: linear in V, delta and alpha, what
     other tools do by default; a higher order would ring at the kink |delta| = delta_star,
-    which crosses their cells.  Each call builds the splines anew (about 0.1 s for the atlas);
+    which crosses their cells.  Each call builds the splines anew, which takes most of its time;
     keep an :class:`Interpolant` for repeated calls.
     """
     return Interpolant(table)(fields, **points)

@@ -54,12 +54,21 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     Every array carries Fletcher-32 checksums, the file a SHA-256 over its content and, behind
     its end, one over its bytes.
 
+    Parameters
+    ----------
+    table : a Dataset of :func:`build` or :func:`load`.
+    path : file to write; a file of that name is replaced.
+
     Raises
     ------
     OutputError
         If it cannot be written there; a file of that name is left as it was.
     TableError
         If ``table`` is not a table.
+
+    Notes
+    -----
+    :func:`load` gives back the same values, bit for bit (``tests/test_tables.py``).
     """
     schema.check(table, path)
     stamped = table.copy()
@@ -81,6 +90,11 @@ def load(path: str | PathLike[str], *, verify: bool = True) -> xr.Dataset:
     path : file written by :func:`save`.
     verify : compare bytes and content with the SHA-256s stored in the file; where False, a
         file that has been edited is read nevertheless, but still not one that is no table.
+
+    Returns
+    -------
+    xarray.Dataset
+        The table as it was saved, bit for bit (``tests/test_tables.py``).
 
     Raises
     ------

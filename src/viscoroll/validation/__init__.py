@@ -53,6 +53,11 @@ def validate(
         A table that does not state its errors.
     ConvergenceError
         If a direct solve or the comparison's own integrator gives up.
+
+    Notes
+    -----
+    Each check states the error that it allows; that none passes where the law, the stresses, a table
+    or a scene is wrong is tested in ``tests/test_validation.py``.
     """
     from tqdm import tqdm
 
