@@ -33,7 +33,7 @@ results = []
 """
 #: a program each that fills the cache with kernels of one kind; all of them together give the hash
 _WORK = {
-    "contact": "results += vr.contact(uncertain, V0, omega=omega0, fields=('Q', 'M', 'beta')).values()",
+    "contact": "results += vr.contact(uncertain, V0, omega=omega0, fields=('Q', 'M', 'beta')).as_dict().values()",
     "motions": "e = vr.ensemble(uncertain, V0, omega0, [1e-3, 3e-3], rtol=1e-6); results += [e.V, e.omega, e.steps]",
     "losses": "e = vr.ensemble(uncertain, V0, omega0, [3e-3], rtol=1e-6, fields=['V', 'x', 'slip_loss']); "
     "results += [e.V, e.x, e.slip_loss]",

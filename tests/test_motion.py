@@ -252,7 +252,26 @@ def test_slow_manifold_to_leading_order(j, zeta):
     y = math.log(zeta)
     V, delta = creep_speeds(y, slow_D(y, par)[0], par)
     state = vr.contact(ROUNDED, V, delta=delta)
-    assert (1.0 + 1.0 / j) * state.Q == pytest.approx(-(1.0 / j - 1.0) * 0.5 * state.M, rel=5.0 / zeta)
+    assert (1.0 + 1.0 / j) * state.Q == pytest.approx(-(1.0 / j - 1.0) * 0.5 * state.M, rel=5.0 / zeta, abs=0.0)
+
+
+@pytest.mark.parametrize("share", [-0.9, -0.3, 0.3, 0.9])
+@pytest.mark.parametrize("V0", [1.0, -0.2])
+def test_a_start_inside_the_stick_zone_goes_on_from_there(V0, share):
+    """Creep of either sign relaxes at a rate of about gamma (1 + 1/j) 4 kappa/V, and moves no further at once."""
+    delta = share * vr.contact(ROUNDED, V0, delta=0.0, fields="delta_star").delta_star
+    t = 1e-6 * abs(V0) / (ROUNDED.gamma * (1.0 + 1.0 / ROUNDED.j) * 4.0 * ROUNDED.kappa)
+    motion = vr.roll(ROUNDED, V0, V0 * (1.0 + delta), [0.0, t])
+    assert motion.delta == pytest.approx(delta, rel=1e-5)
+
+
+@pytest.mark.parametrize("share", [-1.3, -1.001, 1.001, 1.3])
+def test_a_start_just_outside_the_stick_zone_slides_first(share):
+    delta = share * vr.contact(ROUNDED, 1.0, delta=0.0, fields="delta_star").delta_star
+    motion = vr.roll(ROUNDED, 1.0, 1.0 + delta, [0.0, 1e-4])
+    assert motion.regime[0] == FULL
+    assert [s.regime for s in motion.switches] == ["partial slip"]
+    assert motion.onset_time > 0.0
 
 
 def test_slip_returns():
