@@ -477,3 +477,10 @@ def test_differences_of_an_elastic_contact():
         rise_F, rise_H = differences(zeta, zeta - D, D, 1.0, 0.0)
         assert rise_F == D
         assert rise_H == pytest.approx((2.0 - share) * D, rel=tol.CONTACT)
+
+
+def test_printed_traction_is_refused_where_it_has_no_digits():
+    """Q by Eq. (15) left [-mu, mu] at kappa V = 1e18; the lengths have no such trouble."""
+    with pytest.raises(vr.ParameterError, match=r"kappa \|V\| = 1e\+13: must be at most 1e\+12"):
+        vr.contact(SCENE, 1e13 / KAPPA, delta=1e-3, method="direct")
+    assert vr.contact(SCENE, 1e13 / KAPPA, delta=1e-3, fields="delta_star", method="direct").delta_star > 0.0

@@ -301,6 +301,18 @@ def test_outputs_end_where_slip_returns():
         assert abs(edge.delta) == pytest.approx(edge.delta_star, rel=max(tol.RETURN_TIME, 1e2 * abs(shift)))
 
 
+@pytest.mark.parametrize("method", ["integrate", "flow"])
+@pytest.mark.parametrize("shift", [-1e-15, -(2.0**-53), 0.0, 2.0**-52, 1e-15, 1e-12])
+@pytest.mark.parametrize("alpha", [1.0, 1.0 + 1e-15])
+def test_outputs_end_where_V_passes_zero(alpha, shift, method):
+    """V = V0 - mu t in full slip of an elastic cylinder; it sticks much later."""
+    scene = vr.Scene(alpha=alpha, kappa=1.0, mu=1.0, gamma=1.0, j=2.0)
+    found = vr.ensemble(scene, 1.0, -257.0, 1.0 + shift, method=method, rtol=1e-3)
+    assert found.status[0] == vr.MotionStatus.DONE
+    assert found.V[0, -1] == pytest.approx(-shift, abs=1e-14)
+    assert found.omega[0, -1] == pytest.approx(-257.0 + 0.5, rel=1e-12)
+
+
 def test_nothing_crosses_a_threshold_that_is_not_there():
     for method in ("flow", "integrate"):
         assert np.isnan(vr.ensemble(ROUNDED, [0.0], [0.0], [0.0, 1.0], method=method).rest_time[0])

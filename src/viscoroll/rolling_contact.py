@@ -24,6 +24,8 @@ _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 _BLOCK = 1 << 15
 _FASTEST = 1e300
+#: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
+_FASTEST_DIRECT = 1e12
 
 
 class Values:
@@ -92,8 +94,8 @@ def contact(
     Raises
     ------
     ParameterError
-        NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega,
-        unknown field or method, shapes that do not broadcast.
+        NaN or infinite input, kappa |V| above 1e300 (for Q by method "direct" above 1e12), both or
+        neither of delta and omega, unknown field or method, shapes that do not broadcast.
     ConvergenceError
         If a solve hits its iteration cap.
 
@@ -125,18 +127,19 @@ def contact(
     for name, value in inputs.items():
         arrays[name], extents[name] = checked_extent(name, value)
     shape = broadcast_shape(**arrays)
-    if extents["kappa"][1] * max(map(abs, extents["V"])) > _FASTEST:
-        refuse_overflow(arrays["kappa"], arrays["V"])
+    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST
+    if extents["kappa"][1] * max(map(abs, extents["V"])) > fastest:
+        refuse_overflow(arrays["kappa"], arrays["V"], fastest)
     rows = _compute(list(arrays.values()), shape, creep_name == "omega", names, method)
     return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
 
 
-def refuse_overflow(kappa: NDArray, V: NDArray) -> None:
-    """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly: zeta would be 0."""
+def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
+    """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly (zeta would be 0), or that given."""
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
-    if largest > _FASTEST:
-        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {_FASTEST:g}")
+    if largest > fastest:
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
 def _field_names(fields: Iterable[str] | None, slopes: bool, method: str) -> tuple[str, ...]:

@@ -43,6 +43,8 @@ _BEYOND = 1.05
 _NEAR = 0.1
 #: slip less its limit, over the speeds, at which a start is on the edge; halvings of a panel searched for an opening
 _ON_EDGE, _HALVINGS = 1e-12, 40
+#: share of the whole time that rounding may leave of it behind an event
+_AT_THE_END = 2.0**-51
 #: share of rtol by which V may still be off where it is taken to stand still
 _HELD = 0.1
 
@@ -188,6 +190,13 @@ def slide_phase(u, tau, slipped, tau_out, at, direction, sigma, par, gamma, offs
         omega = (speed - u[1]) / j
         if sigma * (omega - speed) <= 0.0:
             return STICK, tau, at, steps, ends
+        if tau_end - tau <= _AT_THE_END * tau_end:
+            slip = omega - speed
+            delta = np.copysign(np.inf, slip) if speed == 0.0 else slip / speed
+            for column in range(at, tau_out.size):
+                put(out, column, direction, FULL, speed, omega, delta,
+                    offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)  # fmt: skip
+            return NO_EVENT, tau_end, tau_out.size, steps, ends
         scale = rtol * sliding_scale(speed, u[1], par)
         if rate == 0.0 or (pole > 0.0 and (abs(s - pole) * per_s <= _HELD * scale or rate * (pole - s) <= 0.0)):
             u[0] = pole if pole > 0.0 else s
