@@ -174,7 +174,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     loss_loop(*scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
-    speed = np.maximum(np.abs(out[0]), np.abs(out[1]))
+    speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
     path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
     energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
     errors = [(difference[:2] / speed).max(), (difference[2:4] / path).max(), difference[4:].max(initial=0.0) / energy]
