@@ -363,7 +363,7 @@ def test_hardly_any_speed_left_at_onset():
 def test_a_map_some_of_whose_motions_die_out():
     """Its error is measured at times when V has gone through the subnormals to 0: 0/0 there was no error at all."""
     scene = vr.Scene(alpha=2.0, kappa=1.0, mu=1.0, gamma=1.0, j=1.5)
-    found = vr.ensemble(scene, 1.0, -257.0, 1.0, method="flow")
+    found = vr.ensemble(scene, 1.0, -257.0, 1.0, method="flow", rtol=1e-6)
     assert found.flow.all()
     exact = vr.ensemble(scene, 1.0, -257.0, 1.0, method="integrate", rtol=1e-11)
-    assert found.V[0, 0] == pytest.approx(exact.V[0, 0], rel=1e-8)
+    assert found.omega[0, 0] == pytest.approx(exact.omega[0, 0], rel=found.flow_error)
