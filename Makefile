@@ -8,7 +8,7 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := data/tables/atlas.nc data/tables/paper.nc
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove test fuzz mutate torture check clean interop interop-tools
+.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture check clean interop interop-tools
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -64,6 +64,10 @@ prove: setup ## law and motions against enclosures and extended precision: data/
 	$(RUN) pipeline/independent.py
 	$(RUN) pipeline/large.py --config $(CONFIG)
 	$(RUN) pipeline/document.py
+
+BASE ?= HEAD
+same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
+	$(RUN) pipeline/same.py --base $(BASE)
 
 test: setup ## the whole test suite
 	$(BIN)/pytest -n 2
