@@ -12,8 +12,8 @@ from claim import Claim
 from flint import arb
 from tqdm import tqdm
 
-from viscoroll.kernels import ratio_layout as layout
-from viscoroll.kernels import ratios as kernels
+from viscoroll.kernels.bessel import layout as layout
+from viscoroll.kernels.bessel import ratios as kernels
 from viscoroll.reference import enclosures
 
 #: a polynomial or series to a unit, a product and a logarithm

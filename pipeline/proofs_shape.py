@@ -19,8 +19,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.alpha_slice import WORTHWHILE
-from viscoroll.kernels import ratio_layout as layout
-from viscoroll.kernels.law import generators
+from viscoroll.kernels.bessel import layout as layout
+from viscoroll.kernels.law.law import generators
 
 #: the two ways that contact() takes, and the largest fall allowed: see above
 WAYS = {"one by one": 6.0, "slice": 16.0}

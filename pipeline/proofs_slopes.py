@@ -14,7 +14,7 @@ from proofs_shape import at_edges, contact
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.kernels.law import generators
+from viscoroll.kernels.law.law import generators
 from viscoroll.reference.enclosures import (
     INPUTS,
     condition_numbers,

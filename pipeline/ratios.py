@@ -1,4 +1,4 @@
-"""Stage 0: fit the Bessel ratios -> src/viscoroll/kernels/ratios.npy (kept in git).
+"""Stage 0: fit the Bessel ratios -> src/viscoroll/kernels/bessel/ratios.npy (kept in git).
 
     python pipeline/ratios.py [-o FILE]
 
@@ -17,9 +17,9 @@ import numpy as np
 from tqdm import tqdm
 
 from viscoroll.files import replacing
-from viscoroll.kernels import ratio_layout as layout
+from viscoroll.kernels.bessel import layout as layout
 
-TARGET = Path(__file__).parents[1] / "src/viscoroll/kernels/ratios.npy"
+TARGET = Path(__file__).parents[1] / "src/viscoroll/kernels/bessel/ratios.npy"
 NODES = layout.COEFFICIENTS + 1
 
 

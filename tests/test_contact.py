@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
-from viscoroll.kernels.law import differences
+from viscoroll.kernels.law.law import differences
 from viscoroll.reference import contact_enclosure
 from viscoroll.rolling_contact import FIELDS, SLOPES
 

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 import tolerances as tol
 
-from viscoroll.kernels import direct, law
-from viscoroll.kernels.bessel import ratio_i, ratio_k0k1
-from viscoroll.kernels.ratios import ratio_k, ratio_r
+from viscoroll.kernels.bessel.ratios import ratio_k, ratio_r
+from viscoroll.kernels.law import law
+from viscoroll.kernels.printed import law as direct
+from viscoroll.kernels.printed.bessel import ratio_i, ratio_k0k1
 
 KAPPA, MU = 2.91, 0.2
 ALPHAS = (1.0, 1.0 + 1e-10, 1.0 + 1e-6, 1.01, 1.5, 2.0, 11.0, 100.0, 1e3, 1e4)

@@ -10,7 +10,7 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
-from viscoroll.kernels.flow import SPEEDS, slide
+from viscoroll.kernels.flow.read import SPEEDS, slide
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
 

@@ -271,10 +271,10 @@ def test_arrays_of_any_kind(kind):
 
 
 def test_no_kernel_is_compiled_again_for_another_kind_of_array():
-    from viscoroll.kernels.contact_loop import contact_loop
-    from viscoroll.kernels.flow_loop import flow_loop
-    from viscoroll.kernels.motion_loop import motion_loop
-    from viscoroll.kernels.stress_loop import stress_loop
+    from viscoroll.kernels.flow.loop import flow_loop
+    from viscoroll.kernels.law.contact_loop import contact_loop
+    from viscoroll.kernels.law.stress_loop import stress_loop
+    from viscoroll.kernels.motion.loop import motion_loop
 
     kernels = (contact_loop, stress_loop, motion_loop, flow_loop)
     speeds = np.array([0.5, 1.0, 1.5])

@@ -14,7 +14,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
-from viscoroll.kernels.partial_slip import creep_speeds, slow_D
+from viscoroll.kernels.motion.partial_slip import creep_speeds, slow_D
 from viscoroll.motion import single
 from viscoroll.scene import PAPER_STARTS
 

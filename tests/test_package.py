@@ -20,7 +20,7 @@ import pytest
 from ordinary_user import as_ordinary_user, let_in
 
 import viscoroll as vr
-from viscoroll.kernels import jit
+from viscoroll.kernels.compile import jit
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path(vr.__file__).parent
@@ -93,7 +93,7 @@ def test_every_error_is_a_viscoroll_error():
 
 
 def test_the_table_of_coefficients_ships_small():
-    assert (PACKAGE / "kernels" / "ratios.npy").stat().st_size < 300_000
+    assert (PACKAGE / "kernels/bessel/ratios.npy").stat().st_size < 300_000
     assert (PACKAGE / "py.typed").exists()
 
 
@@ -145,7 +145,7 @@ def test_layers_point_one_way():
 
 
 def test_kernels_import_numpy_and_numba_only():
-    for path in (PACKAGE / "kernels").glob("*.py"):
+    for path in (PACKAGE / "kernels").rglob("*.py"):
         names = set()
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
@@ -278,7 +278,7 @@ def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
 def test_a_process_with_a_damaged_cache(tmp_path):
     """The real thing, end to end: a kernel that calls others, every file of its cache spoilt."""
     code = """
-from viscoroll.kernels.ratios import ratio_r
+from viscoroll.kernels.bessel.ratios import ratio_r
 print(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))
 """
     first = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
@@ -296,13 +296,13 @@ print(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))
 def test_a_process_without_a_cache_folder(tmp_path):
     obstacle = tmp_path / "file"
     obstacle.write_text("in the way")
-    code = "from viscoroll.kernels.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
+    code = "from viscoroll.kernels.bessel.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
     done = run(code, VISCOROLL_CACHE_DIR=str(obstacle))
     assert done.stdout == "0.4463899658965345\n", done.stderr
     assert done.stderr.count("RuntimeWarning: compiled kernels are not cached") == 1
 
 
-@pytest.mark.parametrize("name", ["law.py", "ratios.npy", "jit.py"])
+@pytest.mark.parametrize("name", ["law/law.py", "bessel/ratios.npy", "compile/jit.py"])
 def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, name):
     """numba's own cache would not notice a change in a function called from another module."""
     copy = tmp_path / "kernels"
@@ -322,8 +322,8 @@ def test_bits_cannot_follow_the_history_of_the_cache():
         pytest.skip("compilation is off")
     kernels = [
         each
-        for path in jit.HERE.glob("[!_]*.py")
-        for each in vars(importlib.import_module(f"viscoroll.kernels.{path.stem}")).values()
+        for path in jit.HERE.glob("*/[!_]*.py")
+        for each in vars(importlib.import_module(f"viscoroll.kernels.{path.parent.name}.{path.stem}")).values()
         if hasattr(each, "targetoptions")
     ]
     assert len(kernels) > 100

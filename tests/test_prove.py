@@ -198,7 +198,8 @@ import flint, sys
 import numpy as np
 sys.path.insert(0, sys.argv[1])
 import proofs_ratios
-from viscoroll.kernels import ratio_layout as layout, ratios
+from viscoroll.kernels.bessel import layout
+from viscoroll.kernels.bessel import ratios
 table = ratios._ROWS.reshape(-1)  # the bins come first
 rng, seen, tried = np.random.default_rng(3), 0, 0
 while tried < 60:

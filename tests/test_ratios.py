@@ -14,9 +14,9 @@ import tolerances as tol
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from viscoroll.kernels import ratio_layout as layout
-from viscoroll.kernels.fma import septic
-from viscoroll.kernels.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from viscoroll.kernels.bessel import layout
+from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from viscoroll.kernels.compile.fma import septic
 
 DIGITS = 40
 EXACT: dict[str, Callable] = {

@@ -31,7 +31,7 @@ def forbid(*names):
         assert found, name
         for module in found:
             setattr(module, name, forbidden)
-for name in ("contact_loop", "motion_loop", "flow_loop"):
+for name in ("law.contact_loop", "motion.loop", "flow.loop"):
     import_module("viscoroll.kernels." + name)
 import numpy as np
 import viscoroll as vr
@@ -121,7 +121,8 @@ def test_outputs_after_rest_are_filled_not_integrated():
 def test_the_flow_map_looks_up_no_path_unless_asked():
     plain(
         """
-        from viscoroll.kernels import flow_layout, flow_loop
+        from viscoroll.kernels.flow import layout as flow_layout
+        from viscoroll.kernels.flow import loop as flow_loop
         flow_loop.flow_motion = lambda *a: (needed.append(a[6]), (0, 0.0, 0.0))[1]
         table, out, needed = np.zeros(flow_layout.SIZE), np.empty((1, 1, 1)), []
         one, status, zero = np.ones(1), np.zeros(1, np.int8), np.zeros(1)
@@ -154,9 +155,9 @@ def test_no_table_file_is_read_at_run_time():
 @pytest.mark.parametrize(
     ("call", "absent"),
     [
-        ("contact(scene, 0.5, delta=0.001)", "kernels.integrate kernels.flow kernels.stress kernels.direct"),
-        ("stress(scene, 0.0, 0.5, delta=0.001)", "tables kernels.integrate kernels.flow kernels.direct"),
-        ("roll(scene, 1.5, 0.5, 1e-4)", "tables kernels.flow kernels.stress kernels.slice_loop"),
+        ("contact(scene, 0.5, delta=0.001)", "kernels.motion kernels.flow kernels.law.stress kernels.printed"),
+        ("stress(scene, 0.0, 0.5, delta=0.001)", "tables kernels.motion kernels.flow kernels.printed"),
+        ("roll(scene, 1.5, 0.5, 1e-4)", "tables kernels.flow kernels.law.stress kernels.law.slice_loop"),
     ],
 )
 def test_what_is_not_used_is_not_imported_and_so_not_compiled(call, absent):

@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
-from viscoroll.kernels.full_slip import HOLDS
+from viscoroll.kernels.motion.full_slip import HOLDS
 from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED

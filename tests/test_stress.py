@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import tolerances as tol
 
-from viscoroll.kernels import law
-from viscoroll.kernels.stress import stress_at
+from viscoroll.kernels.law import law
+from viscoroll.kernels.law.stress import stress_at
 
 KAPPA, MU = 2.91, 0.2
 #: alpha zeta from 5e-5 to 5e5 among them

@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.bracket import narrowed, secant
-from viscoroll.kernels.direct import (
+from viscoroll.kernels.law.bracket import narrowed, secant
+from viscoroll.kernels.motion.stepper import GAMMA, STAGES, A, C, dense, dense_terms
+from viscoroll.kernels.printed.law import (
     direct_contact_length,
     direct_delta_star,
     direct_moment,
     direct_stick,
     direct_traction,
 )
-from viscoroll.kernels.stepper import GAMMA, STAGES, A, C, dense, dense_terms
 
 from .jit import compiled
 from .splines import at_2, at_3, basis, scratch, spline

@@ -8,9 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law import generators
-from viscoroll.kernels.partial_slip import slip_differences
-from viscoroll.kernels.ratios import (
+from viscoroll.kernels.bessel.ratios import (
     K_LEAST,
     i2_from,
     k_from,
@@ -23,6 +21,8 @@ from viscoroll.kernels.ratios import (
     ratio_k,
     ratio_r,
 )
+from viscoroll.kernels.law.law import generators
+from viscoroll.kernels.motion.partial_slip import slip_differences
 from viscoroll.reference import contact_precise
 
 from .jit import compiled

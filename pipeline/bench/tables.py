@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.ratios import TABLE, ratio_i2, ratio_k, ratio_r
+from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
 
 from .baseline import Atlas, atlas_law, atlas_splines
 from .jit import compiled

@@ -35,9 +35,9 @@ def slice_for(alpha: float, kappa: NDArray[np.float64], V: NDArray[np.float64], 
 
     None where no state is within its reach.
     """
-    from .kernels.law import contact_length
-    from .kernels.slice_fit import speed_octave, stick_octave
-    from .kernels.slice_loop import EDGE
+    from .kernels.law.law import contact_length
+    from .kernels.law.slice_fit import speed_octave, stick_octave
+    from .kernels.law.slice_loop import EDGE
 
     slow, fast = _speeds_within(kappa, V)
     if slow > fast:
@@ -52,7 +52,7 @@ def slice_for(alpha: float, kappa: NDArray[np.float64], V: NDArray[np.float64], 
 
 def _speeds_within(kappa: NDArray[np.float64], V: NDArray[np.float64]) -> tuple[float, float]:
     """Least and largest kappa |V| that are served; least > largest if there is none."""
-    from .kernels.slice_loop import speed_range
+    from .kernels.law.slice_loop import speed_range
 
     shape = np.broadcast_shapes(kappa.shape, V.shape)
     kappas, speeds = elements(kappa, shape), elements(V, shape)
@@ -69,7 +69,7 @@ def _speeds_within(kappa: NDArray[np.float64], V: NDArray[np.float64]) -> tuple[
 
 def _octaves(fit: Callable, alpha: float, low: float, high: float) -> tuple[NDArray[np.float64], int]:
     """The octaves that hold [low, high] in one table, and the number of its first bin."""
-    from .kernels.ratios import bin_number
+    from .kernels.bessel.ratios import bin_number
 
     first, last = (math.frexp(x)[1] - 1 for x in (low, high))
     # ldexp is exact in any rounding mode that a host program may have set, pow is not

@@ -171,7 +171,7 @@ def _compute(
     arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...], method: str
 ) -> NDArray:
     """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``."""
-    from .kernels.contact_loop import ROWS
+    from .kernels.law.contact_loop import ROWS
 
     wanted = set(names)
     need = (
@@ -201,10 +201,10 @@ def _compute(
 
 def _chosen_loop(arrays: list[NDArray], need: tuple[bool, ...], count: int, method: str) -> tuple[Callable, tuple]:
     """The kernel for a call and the tables that it wants."""
-    from .kernels.contact_loop import contact_loop
+    from .kernels.law.contact_loop import contact_loop
 
     if method == "direct":
-        from .kernels.direct_loop import direct_loop
+        from .kernels.printed.loop import direct_loop
 
         return direct_loop, ()
     alpha, kappa, _, V, _ = arrays
@@ -213,7 +213,7 @@ def _chosen_loop(arrays: list[NDArray], need: tuple[bool, ...], count: int, meth
     if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not need_slopes:
         tables = slice_for(alpha.item(), kappa, V, stick=need_stick)
         if tables is not None:
-            from .kernels.slice_loop import slice_loop
+            from .kernels.law.slice_loop import slice_loop
 
             return slice_loop, tables
     return contact_loop, ()
@@ -259,7 +259,7 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
-    from .kernels.stress_loop import stress_loop
+    from .kernels.law.stress_loop import stress_loop
 
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more

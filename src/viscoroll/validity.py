@@ -49,7 +49,7 @@ class Validity(NamedTuple):
 
 def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
     """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments."""
-    from .kernels.law import contact_length, generators
+    from .kernels.law.law import contact_length, generators
 
     def state(alpha: float, kappa: float, V: float) -> tuple[float, float]:
         c, u = (alpha - 1.0) / alpha, kappa * abs(V)

@@ -1,10 +1,13 @@
 """Scalar numba kernels: numbers in, numbers out; no validation, no I/O, no exceptions.
 
-Read in this order: :mod:`ratios` (the Bessel ratios), :mod:`law` (the contact law, explicit
-in (zeta, eta), and its two inverses), :mod:`slice_fit` (the law at one alpha),
-:mod:`direct` (the same law as the paper prints it), :mod:`stress`, then the motion:
-:mod:`full_slip`, :mod:`slide`, :mod:`partial_slip`, :mod:`layer`, :mod:`slow`, :mod:`explicit`, :mod:`stepper`,
-their four phases in the modules that end in ``_phase``, :mod:`integrate`; its flow map: :mod:`flow_layout`,
-:mod:`flow_slide`, :mod:`flow_slow`, :mod:`flow_layer`, :mod:`flow`, :mod:`flow_inside`.  Array loops over
-them are in the modules that end in ``_loop`` or ``_loops``.
+Rooms, each standing on those before it:
+
+    compile    the decorator, its cache, fused arithmetic
+    bessel     the ratios r = I1/I0, k = K0/K1, i2 = I2/I0
+    law        the contact law, explicit in (zeta, eta), its inverses and slopes, stresses
+    motion     Eq. (22): full slip, the boundary layer, the slow manifold, and what hands a motion from one to the next
+    flow       many motions of one scene: its flow map, filled and read
+    printed    the law as the paper prints it, by root solves: for comparison alone
+
+Loops over arrays are in the modules whose name holds ``loop``.
 """

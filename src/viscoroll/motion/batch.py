@@ -224,7 +224,7 @@ def _integrate_others(
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        from ..kernels.motion_loop import INFO
+        from ..kernels.motion.loop import INFO
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
@@ -247,9 +247,9 @@ def _among(names: tuple[str, ...], *some: str) -> bool:
 def _loop(names: tuple[str, ...]) -> Callable:
     """The kernel that integrates motions to these fields."""
     if not _among(names, *LOSSES):
-        from ..kernels.motion_loop import motion_loop
+        from ..kernels.motion.loop import motion_loop
 
         return motion_loop
-    from ..kernels.loss_loop import loss_loop
+    from ..kernels.motion.loss_loop import loss_loop
 
     return loss_loop

@@ -1,6 +1,6 @@
 """Flow map of one scene: built once, kept on disk, and asked for any number of motions.
 
-The tables are those of :mod:`viscoroll.kernels.flow_layout`.  They depend on alpha, kappa,
+The tables are those of :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa,
 mu and j; gamma only scales time.  A map covers stick onsets at up to 2**20 times below a
 highest speed, which is the next power of 16 (times a constant) above the speeds at hand.
 """
@@ -38,7 +38,7 @@ _OCTAVES = 4
 
 def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
     """(parameters, octave) of the map for a scene and speeds up to ``speed`` > 0."""
-    from ..kernels.flow_layout import OCTAVE_RANGE
+    from ..kernels.flow.layout import OCTAVE_RANGE
 
     parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
@@ -69,7 +69,7 @@ def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowM
 
 def build(parameters: tuple[float, ...], octave: int, threads: int | None = None) -> FlowMap:
     """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
-    from ..kernels.flow_layout import ENTRY_OCTAVES, SIZE
+    from ..kernels.flow.layout import ENTRY_OCTAVES, SIZE
 
     table = np.zeros(SIZE)
     problem = _fill(parameters, octave, table, threads)
@@ -82,8 +82,10 @@ def build(parameters: tuple[float, ...], octave: int, threads: int | None = None
 
 def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
     """Fill the tables; returns what stands against it, or nothing."""
-    from ..kernels import flow_layer, flow_slide, flow_slow
-    from ..kernels.flow_layout import CROSS_MARGIN, views
+    from ..kernels.flow import layer as flow_layer
+    from ..kernels.flow import slide as flow_slide
+    from ..kernels.flow import slow as flow_slow
+    from ..kernels.flow.layout import CROSS_MARGIN, views
 
     _, c, kappa, _, j = parameters
     parts = views(table)
@@ -151,8 +153,8 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
-    from ..kernels.flow_layer import stiff_rate
-    from ..kernels.loss_loop import loss_loop
+    from ..kernels.flow.layer import stiff_rate
+    from ..kernels.motion.loss_loop import loss_loop
 
     alpha, c, kappa, mu, j = made.parameters
     start = np.array([V0]), np.array([omega0])
@@ -209,9 +211,9 @@ def ask(
     chosen: FlowMap, gamma: float, rest: float, V0: NDArray, omega0: NDArray, times: NDArray, rows: tuple[int, ...],
     *, threads: int | None = 1, progress: str | None = None,
 ) -> Answer:  # fmt: skip
-    """Roll motions by a map; ``rows`` as in ``kernels/motion_output.py``, ``rest`` = 0 for none."""
-    from ..kernels.flow import lambda_at_rest
-    from ..kernels.flow_loop import flow_loop
+    """Roll motions by a map; ``rows`` as in ``kernels/motion/output.py``, ``rest`` = 0 for none."""
+    from ..kernels.flow.loop import flow_loop
+    from ..kernels.flow.read import lambda_at_rest
 
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value

@@ -27,7 +27,7 @@ class FlowMap:
     ----------
     parameters : alpha, c, kappa, mu, j.
     first : kappa V of the slowest stick onset in it is 2**first.
-    table : all tables, see ``kernels/flow_layout.py``.
+    table : all tables, see ``kernels/flow/layout.py``.
     error : stated error of V and omega relative to the larger of the two: four times the worst
         of 100 motions that the integrator rolled at rtol 1e-11 when the map was built.
     path_error : the same of distance and angle, relative to the larger of the two so far (and
@@ -51,7 +51,7 @@ class FlowMap:
 
 def folder() -> Path:
     """Where maps are kept: they are worth no more than the kernels that fill and read them."""
-    from ..kernels.jit import cache_root, sources_digest
+    from ..kernels.compile.jit import cache_root, sources_digest
 
     return cache_root() / f"flow-{sources_digest()}"
 
@@ -79,7 +79,7 @@ def load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
 
 
 def _parsed(content: bytes, parameters: tuple[float, ...]) -> FlowMap:
-    from ..kernels.flow_layout import SIZE
+    from ..kernels.flow.layout import SIZE
 
     if not seal_holds(content):
         raise ValueError("its bytes differ from the SHA-256 at their end")

@@ -194,8 +194,8 @@ def _step_times(
     scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int
 ) -> NDArray:
     """0, the ends of the steps and the nodes between them, and the end time."""
-    from ..kernels.integrate import integrate
-    from ..kernels.motion_output import OUTPUTS
+    from ..kernels.motion.integrate import integrate
+    from ..kernels.motion.output import OUTPUTS
 
     ends = np.empty(0)
     while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
@@ -210,8 +210,8 @@ def _step_times(
 def _integrate(
     scene: Scene, V0: float, omega0: float, times: NDArray, end: float, rtol: float, rest: float, max_steps: int
 ) -> Motion:
-    from ..kernels.integrate import integrate
-    from ..kernels.motion_output import OUTPUTS
+    from ..kernels.motion.integrate import integrate
+    from ..kernels.motion.output import OUTPUTS
 
     asked = times if times[-1] == end else np.append(times, end)
     out = np.full((OUTPUTS, asked.size), np.nan)

@@ -98,7 +98,7 @@ def solve_atlas(
     ConvergenceError
         If a solve hits its iteration cap.
     """
-    from ..kernels.table_loops import ATLAS_PLANE, ATLAS_VOLUME, atlas_loop
+    from ..kernels.law.table_loops import ATLAS_PLANE, ATLAS_VOLUME, atlas_loop
 
     alpha, kappa_V, s = axes.values()
     pairs = alpha.size * kappa_V.size
@@ -226,7 +226,7 @@ def solve_literal(
     ConvergenceError
         If a solve hits its iteration cap.
     """
-    from ..kernels.table_loops import LITERAL_PLANE, LITERAL_VOLUME, literal_loop
+    from ..kernels.law.table_loops import LITERAL_PLANE, LITERAL_VOLUME, literal_loop
 
     V, delta, alpha = axes.values()
     pairs = V.size * alpha.size

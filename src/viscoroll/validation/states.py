@@ -14,7 +14,7 @@ from .report import Check
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: Field -> (largest difference allowed, its unit in words).  The table is good to 1e-15 (docs/accuracy.md): these
-#: are roundings of the printed forms, with kernels/direct.py's measured figures times three or four.
+#: are roundings of the printed forms, with kernels/printed/law.py's measured figures times three or four.
 ALLOWED = {
     # a root in [alpha^(-1/2), 1] to 4e-16
     "lam": (2e-15, "relative"),

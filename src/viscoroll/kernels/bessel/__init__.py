@@ -1,0 +1,1 @@
+"""The three Bessel ratios that carry the whole contact law."""

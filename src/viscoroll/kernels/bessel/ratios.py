@@ -1,0 +1,231 @@
+"""The three Bessel ratios that carry the whole contact law, and their slopes.
+
+    r(x) = I1(x)/I0(x)      k(z) = K0(z)/K1(z)      i2(x) = I2(x)/I0(x) = 1 - 2 r(x)/x
+
+Piecewise polynomials indexed by the bits of the argument (:mod:`layout`, no
+logarithm), the power series below them and the asymptotic series above, economized to the
+same degree: every positive double is served by one polynomial, chosen without a branch.
+Relative error at most 2.4 ULP (``pipeline/prove.py``; on the points of
+``tests/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati equations
+
+    r' = 1 - r/x - r^2      k' = k^2 + k/z - 1
+
+and cost no further Bessel function.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.polynomial import Chebyshev, Polynomial
+
+from ..compile.fma import fma, septic
+from ..compile.jit import kernel
+from . import layout
+
+TABLE = np.load(Path(__file__).with_name("ratios.npy"))
+
+_BIN_BITS = 4  # log2(BINS)
+_SHIFT = 52 - _BIN_BITS
+_MANTISSA = (1 << 52) - 1
+_BIN_MASK = ((1 << _BIN_BITS) - 1) << _SHIFT
+_ONE = 1023 << 52
+_HALF_BIN = 1 << (_SHIFT - 1)
+_BINS = TABLE.reshape(-1, layout.COEFFICIENTS)
+
+
+def _origin(index: int) -> int:
+    """Row of a segment's first bin minus the number of that bin."""
+    return layout.segment_start(index) // layout.COEFFICIENTS - ((1023 + layout.SEGMENTS[index].low) << _BIN_BITS)
+
+
+_R_SMALL, _R_LARGE, _K_SMALL, _K_LARGE, _I2 = (_origin(i) for i in range(len(layout.SEGMENTS)))
+
+
+def _r_power_series(terms: int) -> list[float]:
+    """c_n of r(x) = sum c_n x^(2n+1), from the Riccati equation."""
+    c = [0.5]
+    for n in range(1, terms):
+        c.append(-sum(c[i] * c[n - 1 - i] for i in range(n)) / (2 * n + 2))
+    return c
+
+
+def _asymptotic_series(sign: int, terms: int) -> list[float]:
+    """a_n of r (sign = -1) or k (sign = +1) = sum a_n x^-n, from the Riccati equations."""
+    a = [1.0]
+    for n in range(1, terms):
+        products = sum(a[i] * a[n - i] for i in range(1, n))
+        step = (n - 2) * a[-1] if sign < 0 else -n * a[-1]
+        a.append((step - products) / 2)
+    return a
+
+
+_NEAR, _FAR = 0.0625, 64.0
+#: below, k/z goes like a logarithm
+K_LEAST = 2.0**-30
+
+
+def _tail(sign: int) -> np.ndarray:
+    """x (1 - r) or z (1 - k) above 64 as a polynomial in the inverse, economized from the asymptotic series."""
+    series = Polynomial(-np.array(_asymptotic_series(sign, 17))[1:])
+    short = series.convert(domain=[0.0, 1.0 / _FAR], kind=Chebyshev).truncate(layout.COEFFICIENTS)
+    return short.convert(kind=Polynomial, domain=[-1.0, 1.0], window=[-1.0, 1.0]).coef
+
+
+_POWERS = np.array(_r_power_series(layout.COEFFICIENTS + 1))
+#: every polynomial, all of one degree: the bins, then r/x and i2/x^2 in x^2 below them, and the tails above
+_ROWS = np.vstack([_BINS, _POWERS[:-1], -2.0 * _POWERS[1:], _tail(-1), _tail(+1)])
+_R_NEAR, _I2_NEAR, _R_FAR, _K_FAR = range(_BINS.shape[0], _ROWS.shape[0])
+_EULER_GAMMA = 0.57721566490153286061
+_LN2 = 0.69314718055994530942
+
+
+@kernel
+def bin_number(x):
+    """Exponent and leading mantissa bits of x > 0: rises by one from bin to bin."""
+    return np.float64(x).view(np.int64) >> _SHIFT
+
+
+@kernel
+def bin_offset(x):
+    """Mantissa of x less that of the centre of its bin."""
+    bits = np.float64(x).view(np.int64)
+    centre = np.int64((bits & _BIN_MASK) | (_ONE + _HALF_BIN)).view(np.float64)
+    return np.int64((bits & _MANTISSA) | _ONE).view(np.float64) - centre
+
+
+@kernel
+def polynomial(row, t):
+    """Polynomial of degree 8 with the coefficients ``row``."""
+    rest = septic(t, row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
+    return fma(t, rest, row[0])
+
+
+@kernel(inline=True)
+def piece_of(row, t):
+    """Polynomial number ``row`` at t."""
+    return polynomial(_ROWS[row], t)
+
+
+@kernel(inline=True)
+def place_r(x, per_x):
+    """(number, argument) of the polynomial that gives r at x >= 0."""
+    # choices, not branches: those would be mispredicted on scattered arguments
+    near, far = x < _NEAR, not x < _FAR  # a NaN is far: it must not become the number of a bin
+    row = bin_number(x) + (_R_SMALL if x < 2.0 else _R_LARGE)
+    row = _R_NEAR if near else _R_FAR if far else row
+    return row, x * x if near else per_x if far else bin_offset(x)
+
+
+@kernel(inline=True)
+def r_from(piece, x, complement):
+    """r and 1 - r from the value of its polynomial and that over x."""
+    r = x * piece
+    return r if x < 2.0 else 1.0 - complement, 1.0 - r if x < 2.0 else complement
+
+
+@kernel(inline=True)
+def ratio_r(x):
+    """r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy."""
+    row, t = place_r(x, 1.0 / x)
+    piece = piece_of(row, t)
+    return r_from(piece, x, piece / x)
+
+
+@kernel(inline=True)
+def small_k_over_z(z):
+    """k/z for 0 < z < 2^-30."""
+    return _LN2 - _EULER_GAMMA - np.log(z)
+
+
+@kernel(inline=True)
+def place_k(z, per_z):
+    """(number, argument) of the polynomial that gives k at z >= ``K_LEAST``; below, one that does not."""
+    inside = K_LEAST <= z < _FAR
+    row = bin_number(z) + (_K_SMALL if z < 1.0 else _K_LARGE)
+    return row if inside else _K_FAR, bin_offset(z) if inside else per_z
+
+
+@kernel(inline=True)
+def k_from(piece, z, complement):
+    """k and 1 - k from the value of its polynomial and that over z."""
+    k = z * piece
+    return k if z < 1.0 else 1.0 - complement, 1.0 - k if z < 1.0 else complement
+
+
+@kernel(inline=True)
+def small_k(z):
+    """k and 1 - k for 0 <= z < ``K_LEAST``."""
+    k = z * small_k_over_z(z) if z > 0.0 else 0.0
+    return k, 1.0 - k
+
+
+@kernel(inline=True)
+def ratio_k(z):
+    """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
+    if z < K_LEAST:
+        return small_k(z)
+    row, t = place_k(z, 1.0 / z)
+    piece = piece_of(row, t)
+    return k_from(piece, z, piece / z)
+
+
+@kernel(inline=True)
+def place_i2(x):
+    """(number, argument) of the polynomial that gives i2 at 0 <= x < 4; beyond, one that does not."""
+    row = bin_number(x) + _I2
+    inside = _NEAR <= x < 4.0
+    return row if inside else _I2_NEAR, bin_offset(x) if inside else x * x
+
+
+@kernel(inline=True)
+def i2_from(piece, x, r):
+    """i2 from the value of its polynomial, and r(x)."""
+    return x * x * piece if x < 4.0 else 1.0 - 2.0 * r / x
+
+
+@kernel(inline=True)
+def ratio_i2(x, r):
+    """i2 = I2/I0 at x >= 0, given r(x)."""
+    row, t = place_i2(x)
+    return i2_from(piece_of(row, t), x, r)
+
+
+@kernel(inline=True)
+def ratios_and_slopes(z, alpha):
+    """(x = alpha z, r(x), k(z), r', k', 1/x, 1/z) for z > 0, by one division."""
+    x = alpha * z
+    per_x = 1.0 / x
+    per_z = alpha * per_x
+    row, t = place_r(x, per_x)
+    piece = piece_of(row, t)
+    r, r_complement = r_from(piece, x, piece * per_x)
+    if z < K_LEAST:
+        k, k_complement = small_k(z)
+    else:
+        row, t = place_k(z, per_z)
+        piece = piece_of(row, t)
+        k, k_complement = k_from(piece, z, piece * per_z)
+    s, dk = slopes_of(r, r_complement, k, k_complement, per_x, per_z)
+    return x, r, k, s, dk, per_x, per_z
+
+
+@kernel(inline=True)
+def slopes_of(r, r_complement, k, k_complement, per_x, per_z):
+    """(r', k') by the Riccati equations."""
+    return r_complement * (1.0 + r) - r * per_x, k * per_z - k_complement * (1.0 + k)
+
+
+@kernel(inline=True)
+def slope_r(x, r, complement):
+    """r'(x) = (1 - r)(1 + r) - r/x."""
+    if x < 1e-8:
+        return 0.5
+    return complement * (1.0 + r) - r / x
+
+
+@kernel(inline=True)
+def slope_k(z, k, complement):
+    """k'(z) = k/z - (1 - k)(1 + k)."""
+    return k / z - complement * (1.0 + k)

@@ -1,0 +1,148 @@
+"""Polynomials in the bits of a float: nodes, fits, integrals, look-up, inverse.
+
+The nodes of a bin are those of Radau's left rule: they interpolate well, and a stiff
+equation collocated on them from the right end of a bin to the left is solved stably.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ..compile.fma import fma, septic
+from ..compile.jit import kernel
+from . import layout
+
+N = layout.COEFFICIENTS
+BINS = layout.BINS
+HALF = 0.5 / BINS
+_SHIFT = 52 - layout.BIN_BITS
+MANTISSA = (1 << 52) - 1
+_BIN_MASK = (BINS - 1) << _SHIFT
+ONE = 1023 << 52
+_HALF_BIN = 1 << (_SHIFT - 1)
+
+
+def _radau(n: int) -> np.ndarray:
+    """Left Radau nodes on [-1, 1]: -1 and the other zeros of P_(n-1) + P_n."""
+    nodes = legendre.legroots([0.0] * (n - 1) + [1.0, 1.0])
+    nodes[0] = -1.0
+    return np.ascontiguousarray(nodes)
+
+
+def fit_matrix(nodes: np.ndarray, half: float) -> np.ndarray:
+    """Node values -> coefficients in t = half * node."""
+    return np.ascontiguousarray(
+        np.linalg.inv(np.vander(nodes, increasing=True)) / half ** np.arange(nodes.size)[:, None]
+    )
+
+
+def _integrals(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Integrals from -1 to each node, and to 1, of the polynomials that are 1 at one node."""
+    basis = legendre.legvander(nodes, nodes.size - 1)
+    whole = np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(nodes.size)])
+    to_nodes = legendre.legvander(nodes, nodes.size) @ whole.T
+    to_end = legendre.legvander(np.ones(1), nodes.size) @ whole.T
+    inverse = np.linalg.inv(basis)
+    return np.ascontiguousarray(to_nodes @ inverse), np.ascontiguousarray((to_end @ inverse)[0])
+
+
+def _derivative(nodes: np.ndarray) -> np.ndarray:
+    """Values at (1, nodes) -> derivatives at the nodes."""
+    points = np.append(1.0, nodes)
+    basis = legendre.legvander(points, nodes.size)
+    slopes = np.array([legendre.legder(row) for row in np.eye(points.size)])
+    return np.ascontiguousarray(legendre.legvander(nodes, nodes.size - 1) @ slopes.T @ np.linalg.inv(basis))
+
+
+NODES = _radau(N)
+FIT = fit_matrix(NODES, HALF)
+TO_NODES, TO_END = _integrals(NODES)
+DERIVATIVE = _derivative(NODES)
+
+
+@kernel(inline=True)
+def bits_and_offset(x):
+    """(bits of octave and bin, t) of x > 0."""
+    bits = np.float64(x).view(np.int64)
+    centre = np.int64((bits & _BIN_MASK) | (ONE + _HALF_BIN)).view(np.float64)
+    return bits >> _SHIFT, np.int64((bits & MANTISSA) | ONE).view(np.float64) - centre
+
+
+@kernel
+def bin_of(x, low):
+    """(bin, t) of x > 0 in a table whose first octave is [2**low, 2**(low + 1))."""
+    b, t = bits_and_offset(x)
+    return b - (1023 + low) * BINS, t
+
+
+@kernel
+def node(b, n, low):
+    """Index variable at node n of bin b."""
+    octave, part = b // BINS, b % BINS
+    return (1.0 + (part + 0.5 + 0.5 * NODES[n]) / BINS) * 2.0 ** (octave + low)
+
+
+@kernel
+def width(b, low):
+    """Width of bin b in the index variable."""
+    return 2.0 ** (b // BINS + low) / BINS
+
+
+@kernel(inline=True)
+def polynomial(coefficients, at, t):
+    """Polynomial whose coefficients start at ``at``."""
+    low = (coefficients[at], coefficients[at + 1], coefficients[at + 2], coefficients[at + 3])
+    high = (coefficients[at + 4], coefficients[at + 5], coefficients[at + 6], coefficients[at + 7])
+    return septic(t, *low, *high)
+
+
+@kernel
+def value(table, b, column, t):
+    """Column of bin b at t."""
+    return polynomial(table[b, column], 0, t)
+
+
+@kernel
+def slope(table, b, column, t):
+    """Derivative of a column with respect to t."""
+    p = table[b, column]
+    total = 0.0
+    for n in range(N - 1, 0, -1):
+        total = fma(t, total, n * p[n])
+    return total
+
+
+@kernel
+def put(table, b, column, values):
+    """Fit a column of bin b to its values at the nodes."""
+    for k in range(N):
+        total = 0.0
+        for n in range(N):
+            total += FIT[k, n] * values[n]
+        table[b, column, k] = total
+
+
+@kernel
+def find(table, column, target, low):
+    """(index variable, found) where an increasing column takes a value; below the table it is linear."""
+    first, last = 0, table.shape[0] - 1
+    bottom = value(table, 0, column, -HALF)
+    if target < bottom and bottom > 0.0:
+        return target / bottom * 2.0**low, True
+    if not target <= value(table, last, column, HALF):
+        return 2.0 ** (table.shape[0] // BINS + low), False
+    while first < last:
+        middle = (first + last + 1) // 2
+        if value(table, middle, column, -HALF) <= target:
+            first = middle
+        else:
+            last = middle - 1
+    t = 0.0
+    for _ in range(20):
+        change = (target - value(table, first, column, t)) / slope(table, first, column, t)
+        t = max(-HALF, min(HALF, t + change))
+        if abs(change) < 1e-15:
+            break
+    octave, part = first // BINS, first % BINS
+    return (1.0 + (part + 0.5) / BINS + t) * 2.0 ** (octave + low), True

@@ -1,0 +1,279 @@
+"""One state from the flow map of its scene: look-ups instead of integration.
+
+In the frame mirrored so that omega > V, full slip keeps I = w - 2 mu T(V), which gives the
+onset; behind it the boundary layer is a table over (V at onset, E), and what follows is the
+slow manifold, found by its slow logarithm lambda.  ``table`` is the whole map of :mod:`layout` as one
+vector: its parts then cost no more to reach than a constant.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.fma import fma
+from ..compile.jit import kernel
+from ..law.law import GAUSS_W, GAUSS_X
+from . import layout
+from .fit import MANTISSA, ONE, bits_and_offset, polynomial
+
+PLUS, MINUS, CROSS = range(3)
+#: what a motion is asked for: V and omega, also distance and angle, also the energy lost in slip
+SPEEDS, PATH, LOSS = range(3)
+_N = layout.COEFFICIENTS
+LOWEST, HIGHEST = 2.0**layout.LOW, 2.0 ** (layout.HIGH - 2)
+#: stiff rate that stands for a layer that is over
+_NO_LAYER = 1e30
+
+
+def _stride(part: str) -> int:
+    return getattr(layout.SHAPES, part)[1] * _N
+
+
+def _origin(part: str, low: int) -> int:
+    """Position of a part, less that of the bits of its first bin."""
+    return getattr(layout.STARTS, part) - (1023 + low) * layout.BINS * _stride(part)
+
+
+_SLIDE, _ONSET, _SLOW, _ENTRY = _stride("slide_up"), _stride("onset_up"), _stride("slow"), _stride("entry_plus")
+_SLIDE_UP, _SLIDE_DOWN = _origin("slide_up", layout.LOW), _origin("slide_down", layout.LOW)
+_TIME_UP, _TIME_DOWN = _origin("time_up", layout.LOW), _origin("time_down", layout.LOW)
+_ONSET_UP, _ONSET_DOWN = _origin("onset_up", layout.LOW), _origin("onset_down", layout.LOW)
+_SLOW_BY_V, _LATE, _EARLY = _origin("slow", layout.LOW), layout.STARTS.late, _origin("early", 0)
+_ENTRY_PLUS, _ENTRY_MINUS = _origin("entry_plus", 0), _origin("entry_minus", 0)
+_ENTRY_CROSS = _origin("entry_cross", -layout.CROSS_MARGIN)
+LAYER_SKIP = layout.ENTRY_OCTAVES - layout.LAYER_OCTAVES
+_BLOCK = layout.SPEED_COEFFICIENTS * layout.FAST_COEFFICIENTS
+
+
+@kernel(inline=True)
+def slide(V, need, table, par):
+    """(T, X) of sliding from rest to V in the mirrored frame, T with the sign of V."""
+    _, _, kappa, mu, _ = par
+    speed = abs(V)
+    if kappa * speed < LOWEST:
+        return V / mu, 0.5 * V * V / mu
+    b, t = bits_and_offset(kappa * speed)
+    at = b * _SLIDE + (_SLIDE_UP if V > 0.0 else _SLIDE_DOWN)
+    T = polynomial(table, at + layout.T * _N, t)
+    X = polynomial(table, at + layout.X * _N, t) if need >= PATH else 0.0
+    return T if V > 0.0 else -T, X
+
+
+@kernel(inline=True)
+def slides(V, slip, table, par):
+    """Whether |slip| = |omega - V| is that of full slip at V."""
+    _, _, kappa, mu, _ = par
+    speed = abs(V)
+    largest = 0.5 * mu * speed / kappa  # delta_star |V| as V -> 0; delta_star falls from there
+    if V == 0.0 or slip > 1.0001 * largest:
+        return True
+    if kappa * speed < LOWEST:
+        return slip >= largest
+    b, t = bits_and_offset(kappa * speed)
+    return slip >= polynomial(table, b * _SLIDE + _SLIDE_UP + layout.L * _N, t)
+
+
+@kernel(inline=True)
+def speed_after(T, table, par):
+    """V at T in full slip, in the mirrored frame."""
+    _, _, kappa, mu, _ = par
+    x = kappa * mu * abs(T)
+    if x < LOWEST:
+        return mu * T
+    b, t = bits_and_offset(x)
+    if T > 0.0:
+        return polynomial(table, b * _N + _TIME_UP, t)
+    return -polynomial(table, b * _N + _TIME_DOWN, t)
+
+
+@kernel(inline=True)
+def onset_of(I, need, table, par):
+    """(V, T, X) at stick onset in the mirrored frame; V = 0 where the tables do not reach."""
+    x = par[2] * abs(I) / (1.0 + par[4])
+    if not LOWEST <= x < HIGHEST:
+        return 0.0, 0.0, 0.0
+    b, t = bits_and_offset(x)
+    at = b * _ONSET + (_ONSET_UP if I < 0.0 else _ONSET_DOWN)
+    V = polynomial(table, at + layout.ONSET_V * _N, t)
+    T = polynomial(table, at + layout.ONSET_T * _N, t)
+    X = polynomial(table, at + layout.ONSET_X * _N, t) if need >= PATH else 0.0
+    return (V, T, X) if I < 0.0 else (-V, -T, X)
+
+
+@kernel(inline=True)
+def _slow(lam):
+    """(place in the table, t, factor) of lambda on the slow manifold; below the table all falls like exp(lambda)."""
+    if lam >= layout.LATE_HIGH:
+        b, t = bits_and_offset(1.0 + lam)
+        return b * _SLOW + _EARLY, t, 1.0
+    share = 1.0
+    if lam < layout.LATE_LOW:
+        share = np.exp(lam - layout.LATE_LOW)
+        lam = layout.LATE_LOW
+    place = (lam - layout.LATE_LOW) / layout.LATE_WIDTH
+    b = np.int64(place)
+    return b * _SLOW + _LATE, (place - b - 0.5) / layout.BINS, share
+
+
+@kernel(inline=True)
+def slow_state(lam, table):
+    """(V, delta) on the slow manifold at lambda."""
+    at, t, share = _slow(lam)
+    return share * polynomial(table, at + layout.SPEED * _N, t), share * polynomial(table, at + layout.DELTA * _N, t)
+
+
+@kernel
+def slow_path(start, end, rate, table):
+    """(distance, angle) along the slow manifold between two lambda; ``rate`` = c/(1 + j).
+
+    The difference of what is left to rest, or where that cancels the integral of V.
+    """
+    span = start - end
+    if span > 0.25 * max(1.0 + end, 1.0):
+        at, t, share = _slow(start)
+        x, angle = polynomial(table, at + layout.X_TO_GO * _N, t), polynomial(table, at + layout.ANGLE_TO_GO * _N, t)
+        x, angle = share * x, share * angle
+        at, t, share = _slow(end)
+        x -= share * polynomial(table, at + layout.X_TO_GO * _N, t)
+        return x, angle - share * polynomial(table, at + layout.ANGLE_TO_GO * _N, t)
+    x = angle = 0.0
+    for n in range(GAUSS_X.size):
+        V, delta = slow_state(end + span * GAUSS_X[n], table)
+        x += GAUSS_W[n] * V
+        angle += GAUSS_W[n] * V * (1.0 + delta)
+    return x * span / rate, angle * span / rate
+
+
+@kernel
+def slow_loss(lam, table):
+    """Energy still to be lost in slip at lambda on the slow manifold; it falls like V^3 as V -> 0."""
+    at, t, share = _slow(lam)
+    return share**3 * polynomial(table, at + layout.LOSS_TO_GO * _N, t)
+
+
+@kernel
+def slow_creep(v, table):
+    """Delta on the slow manifold at v = kappa V."""
+    b, t = bits_and_offset(v)
+    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.DELTA * _N, t)
+
+
+@kernel
+def slow_entry(v, table):
+    """:func:`entry_state` of a motion on the slow manifold at v = kappa V: no layer is left."""
+    b, t = bits_and_offset(v)
+    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0, 0.0
+
+
+@kernel(inline=True)
+def _entry(family, v, first):
+    """(place in the table, t) of the entry of a family at v = kappa V0."""
+    b, t = bits_and_offset(v)
+    b -= first * layout.BINS
+    return b * _ENTRY + (_ENTRY_PLUS if family == PLUS else _ENTRY_MINUS if family == MINUS else _ENTRY_CROSS), t
+
+
+@kernel(inline=True)
+def entry_state(family, v, first, need, table):
+    """(lambda, k0; distance, angle, slip loss gained on the slow manifold) of a family's entry into partial slip."""
+    at, t = _entry(family, v, first)
+    x = angle = loss = 0.0
+    if need >= PATH:
+        x, angle = polynomial(table, at + layout.ENTRY_X * _N, t), polynomial(table, at + layout.ENTRY_ANGLE * _N, t)
+    if need >= LOSS:
+        loss = polynomial(table, at + layout.ENTRY_LOSS * _N, t)
+    lam, rate = polynomial(table, at + layout.ENTRY_LAMBDA * _N, t), polynomial(table, at + layout.RATE * _N, t)
+    return lam, rate, x, angle, loss
+
+
+@kernel
+def _fast_bin(E, low):
+    """(bin, t) of 0 <= E < 2**E_HIGH in a layer whose first bin is [0, 2**low)."""
+    if E < 2.0**low:
+        return np.int64(0), E * 2.0**-low - 0.5
+    bits = np.float64(E).view(np.int64)
+    m = np.int64((bits & MANTISSA) | ONE).view(np.float64)
+    octave = (bits >> 52) - 1023
+    if octave < 0:
+        return 1 + octave - low, m - 1.5
+    half = np.int64(m >= 1.5)
+    return 1 - low + 2 * octave + half, m - 1.25 - 0.5 * half
+
+
+@kernel
+def _layer_value(table, at, t, s):
+    """Polynomial in t (speed at onset) and s (stiff time)."""
+    total = 0.0
+    for k in range(layout.SPEED_COEFFICIENTS - 1, -1, -1):
+        total = fma(t, total, polynomial(table, at + k * layout.FAST_COEFFICIENTS, s))
+    return total
+
+
+@kernel
+def layer_state(family, v, E, first, need, table):
+    """(ln V/V0, delta, X excess, angle excess, slip loss over V0^2) behind the entry of a family at v = kappa V0."""
+    bits = np.float64(v).view(np.int64)
+    t = np.int64((bits & MANTISSA) | ONE).view(np.float64) - 1.5
+    octave = (bits >> 52) - (1023 + first + LAYER_SKIP)
+    low, bins, start = layout.E_LOW, layout.SHAPES.layer_plus[1], layout.STARTS.layer_plus
+    if family == MINUS:
+        start = layout.STARTS.layer_minus
+    elif family == CROSS:
+        low, bins, start = 0, layout.SHAPES.layer_cross[1], layout.STARTS.layer_cross
+        octave += layout.CROSS_MARGIN
+    b, s = _fast_bin(E, low)
+    at = start + (octave * bins + b) * layout.LAYER_COLUMNS * _BLOCK
+    a, delta = _layer_value(table, at, t, s), _layer_value(table, at + _BLOCK, t, s)
+    x = angle = loss = 0.0
+    if need >= PATH:
+        x, angle = _layer_value(table, at + 2 * _BLOCK, t, s), _layer_value(table, at + 3 * _BLOCK, t, s)
+    if need >= LOSS:
+        loss = _layer_value(table, at + 4 * _BLOCK, t, s)
+    return a, delta, x, angle, loss
+
+
+@kernel
+def layer_speeds(family, v, rate, elapsed, first, need, table, kappa):
+    """(V, delta; distance, angle, slip loss since the entry) within the boundary layer behind an entry."""
+    E = elapsed * rate
+    x = angle = loss = 0.0
+    at, t = _entry(family, v, first)
+    crossing = polynomial(table, at + layout.CROSSING * _N, t)
+    if E > crossing:
+        if need >= PATH:
+            x, angle = (
+                polynomial(table, at + layout.CROSSING_X * _N, t),
+                polynomial(table, at + layout.CROSSING_ANGLE * _N, t),
+            )
+        if need >= LOSS:
+            loss = polynomial(table, at + layout.CROSSING_LOSS * _N, t)
+        v *= np.exp(polynomial(table, at + layout.CROSSING_SPEED * _N, t))
+        family = CROSS
+        at, t = _entry(family, v, first)
+        cross_rate = polynomial(table, at + layout.RATE * _N, t)
+        E, rate = (E - crossing) / rate * cross_rate, cross_rate
+    a, delta, x_excess, angle_excess, share = layer_state(family, v, E, first, need, table)
+    V0 = v / kappa
+    scale = V0 / rate
+    x, angle = x + scale * (E + x_excess), angle + scale * (E + angle_excess)
+    return V0 * np.exp(a), delta, x, angle, loss + share * V0 * V0
+
+
+@kernel
+def served_by_layer(v, first):
+    """Whether the boundary layer behind an entry at v = kappa V is tabulated."""
+    return 2.0 ** (first + LAYER_SKIP) <= v < 2.0 ** (first + layout.ENTRY_OCTAVES)
+
+
+@kernel
+def lambda_at_rest(rest, table, par):
+    """Lambda of the slow manifold where max(|V|, |omega|) falls to ``rest``."""
+    kappa = par[2]
+    V = rest
+    for _ in range(4):
+        v = kappa * V
+        V = rest / (1.0 + max(slow_creep(v, table) if v >= LOWEST else 0.0, 0.0))
+    v = kappa * V
+    if v >= LOWEST:
+        return slow_entry(v, table)[0]
+    return slow_entry(LOWEST, table)[0] + np.log(v / LOWEST)

@@ -1,0 +1,85 @@
+"""Flow map, full slip: V' = mu - M(V)/2 stands alone, so time, distance and onset are
+functions of V; omega > V throughout, V of either sign.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..motion.full_slip import sliding_rate, stick_limit
+from . import layout
+from .fit import BINS, HALF, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
+
+_LOW = layout.LOW
+_T, _X, _I, _L = layout.T, layout.X, layout.I, layout.L
+
+
+@kernel(allocates=True)
+def slide_table(sign, par, table):
+    """Fill ``slide_up`` (sign = 1) or ``slide_down`` (-1); False where V' is not positive or I not monotone."""
+    _, _, kappa, mu, j = par
+    V_low = 2.0**_LOW / kappa
+    T, X, last_I = V_low / mu, 0.5 * V_low * V_low / mu, 0.0
+    pace, rows = np.empty((2, N)), np.empty((4, N))
+    for b in range(table.shape[0]):
+        if b == (layout.HIGH - 2 - layout.LOW) * BINS and not kappa * mu * T < 2.0 ** (layout.HIGH - 1):
+            return False  # nearly held: ``time_up`` would end before the speeds that are served
+        half = 0.5 * width(b, _LOW) / kappa
+        for n in range(N):
+            V = node(b, n, _LOW) / kappa
+            acceleration = sliding_rate(sign * V, 1.0, par)
+            if not acceleration > 0.0:
+                return False
+            pace[0, n] = half / acceleration
+            pace[1, n] = V * pace[0, n]
+        for n in range(N):
+            V = node(b, n, _LOW) / kappa
+            rows[_T, n], rows[_X, n] = T, X
+            for m in range(N):
+                rows[_T, n] += TO_NODES[n, m] * pace[0, m]
+                rows[_X, n] += TO_NODES[n, m] * pace[1, m]
+            rows[_L, n], _ = stick_limit(V, par)
+            rows[_I, n] = 2.0 * mu * rows[_T, n] - V * (1.0 - j) + sign * j * rows[_L, n]
+            if not rows[_I, n] > last_I:
+                return False
+            last_I = rows[_I, n]
+        for n in range(N):
+            T += TO_END[n] * pace[0, n]
+            X += TO_END[n] * pace[1, n]
+        for column in range(4):
+            put(table, b, column, rows[column])
+    return True
+
+
+@kernel(allocates=True)
+def time_table(slide, par, table):
+    """Fill ``time_up`` or ``time_down``: V as a function of T."""
+    _, _, kappa, mu, _ = par
+    values = np.empty(N)
+    for b in range(table.shape[0]):
+        for n in range(N):
+            v, _ = find(slide, _T, node(b, n, _LOW) / (kappa * mu), _LOW)
+            values[n] = v / kappa
+        put(table, b, 0, values)
+
+
+@kernel(allocates=True)
+def onset_table(slide, par, table):
+    """Fill ``onset_up`` or ``onset_down``: V, T and X at onset as functions of I."""
+    _, _, kappa, mu, j = par
+    rows = np.empty((3, N))
+    for b in range(table.shape[0]):
+        for n in range(N):
+            v, _ = find(slide, _I, node(b, n, _LOW) * (1.0 + j) / kappa, _LOW)
+            rows[layout.ONSET_V, n] = v / kappa
+            at, t = bin_of(v, _LOW)
+            if at < 0:
+                rows[layout.ONSET_T, n], rows[layout.ONSET_X, n] = v / (kappa * mu), 0.5 * v * v / (kappa**2 * mu)
+                continue
+            if at >= slide.shape[0]:
+                at, t = slide.shape[0] - 1, HALF
+            rows[layout.ONSET_T, n] = value(slide, at, _T, t)
+            rows[layout.ONSET_X, n] = value(slide, at, _X, t)
+        for column in range(3):
+            put(table, b, column, rows[column])

@@ -1,0 +1,65 @@
+"""The contact law over the grids of the tables: root solves at every node, nothing else.
+
+Both loops run over pairs of the two outer axes; that of the atlas solves the contact length once a
+pair; ``start`` and ``stop`` cut the flattened pairs into blocks for the threads.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
+from .law import OK, contact_solution, moment_of, near_length
+
+#: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.
+ATLAS_PLANE = ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
+ATLAS_VOLUME = ("beta", "Q_over_mu")
+#: Likewise of :func:`literal_loop`.
+LITERAL_PLANE = ("lam", "epsilon", "M", "delta_star")
+LITERAL_VOLUME = ("beta", "Q")
+
+
+@kernel
+def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
+    """Pairs start..stop of (alpha, kappa_V): ``plane`` (4, pairs), ``volume`` (2, pairs, s)."""
+    worst = OK
+    for i in range(start, stop):
+        a, w = alpha[i // kappa_V.size], kappa_V[i % kappa_V.size]
+        c = (a - 1.0) / a
+        lam, zeta, g, h, dg, status = contact_solution(near_length(w, a, c, 1.0 / np.sqrt(a)), w, a, c)
+        worst = max(worst, status)
+        epsilon = g / zeta
+        # mu = kappa = 1 turns V into kappa V, Q into Q/mu, delta_star into kappa delta_star/mu
+        delta_star = 0.5 * lam * (1.0 + epsilon)
+        plane[0, i] = lam
+        plane[1, i] = epsilon
+        plane[2, i] = w * moment_of(zeta, lam, g, h, a, c)
+        plane[3, i] = delta_star
+        for n in range(s.size):
+            if s[n] >= 1.0:
+                volume[0, i, n], volume[1, i, n] = 0.0, 1.0
+                continue
+            _, _, beta, share, status = stick(
+                w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, UNSOLVED, a, c
+            )
+            worst = max(worst, status)
+            volume[0, i, n], volume[1, i, n] = beta, share
+    return worst
+
+
+@kernel(allocates=True)
+def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
+    """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
+    need = (True, True, True, False)
+    rows = np.array([LAM, EPSILON, M, DELTA_STAR, BETA, Q])
+    kappas, mus, out = np.full(1, kappa), np.full(1, mu), np.empty((rows.size, delta.size))
+    worst = OK
+    for i in range(start, stop):
+        v, a = i // alpha.size, i % alpha.size
+        status = contact_loop(alpha[a : a + 1], kappas, mus, V[v : v + 1], delta, False, need, rows, out, 0, delta.size)
+        worst = max(worst, status)
+        for m in range(plane.shape[0]):
+            plane[m, i] = out[m, 0]
+        volume[:, i] = out[plane.shape[0] :]
+    return worst

@@ -1,0 +1,127 @@
+"""The law in full slip, Eq. (22).
+
+With sigma = sign(omega - V) fixed, Q = sigma mu, so w = V - j omega is exactly linear in
+tau = gamma t and V' = sigma mu - M(V)/2 stands alone.  The unknown in place of V is
+s = 1/zeta, in which the law is explicit: V = s lam/(2 kappa), in a frame where V >= 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from ..compile.jit import kernel
+from ..law.law import contact_length, generators, moment_factor
+
+#: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
+HOLDS = 0.16
+#: steps of Newton's iteration, its difference quotient, and its last step
+_NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
+
+
+@kernel
+def _moment(V, par):
+    """M(V), odd in V, without its slope."""
+    alpha, c, kappa, _, _ = par
+    if c == 0.0:
+        return 0.0
+    kappa_V = kappa * abs(V)
+    lam, _ = contact_length(kappa_V, alpha, c)
+    if kappa_V < 1e-17:
+        return c * V
+    return V * moment_factor(lam / (2.0 * kappa_V), lam, alpha, c)
+
+
+@kernel
+def sliding_rate(V, sigma, par):
+    """V' at V of either sign."""
+    return sigma * par[3] - 0.5 * _moment(V, par)
+
+
+@kernel
+def sliding(s, sigma, par):
+    """(V, V', dV/ds, M/2, delta_star V) at s >= 0."""
+    alpha, c, kappa, mu, _ = par
+    if c == 0.0:
+        per_s = 0.5 / kappa
+        V = per_s * s
+        return V, sigma * mu, per_s, 0.0, mu * per_s * V
+    zeta = 1.0 / np.float64(s)
+    x = alpha * zeta
+    r, rc = ratio_r(x)
+    k, kc = ratio_k(zeta)
+    dk = slope_k(zeta, k, kc)
+    p = r * k
+    whole = 1.0 / (1.0 + p)
+    h = c * whole * r
+    dh = c * whole * whole * (alpha * slope_r(x, r, rc) - r * r * dk)
+    square = 1.0 + 2.0 * h * s  # 1/lam^2
+    half_lam = 0.5 / (kappa * np.sqrt(square))
+    V = s * half_lam
+    half_M = 0.5 * V * c * whole * (ratio_i2(x, r) / square + p)
+    # dV/ds = lam^3 U/(2 kappa), U = H'/(2 zeta)
+    per_s = half_lam * (1.0 + h * s + dh) / square
+    return V, sigma * mu - half_M, per_s, half_M, mu * half_lam * (1.0 + c * whole * p * s) * V
+
+
+@kernel
+def sliding_speed(s, par):
+    """V at s >= 0."""
+    return edge_of_stick(s, par)[0]
+
+
+@kernel
+def edge_of_stick(s, par):
+    """(V, delta_star V) at s >= 0; the stick band is |omega - V| < delta_star V."""
+    alpha, c, kappa, mu, _ = par
+    g, h = generators(1.0 / np.float64(s), alpha, c)
+    half_lam = 0.5 / (kappa * np.sqrt(1.0 + 2.0 * h * s))
+    V = s * half_lam
+    return V, mu * half_lam * (1.0 + g * s) * V
+
+
+@kernel
+def stick_limit(V, par):
+    """(delta_star |V|, zeta) at V; the stick band is |omega - V| < delta_star |V|."""
+    alpha, c, kappa, mu, _ = par
+    speed = abs(V)
+    kappa_V = kappa * speed
+    lam, _ = contact_length(kappa_V, alpha, c)
+    zeta = lam / (2.0 * kappa_V)
+    g, _ = generators(zeta, alpha, c)
+    return 0.5 * mu * lam * (1.0 + g / zeta) / kappa * speed, zeta
+
+
+@kernel
+def sliding_scale(V, w, par):
+    """Speed that errors of V are measured by: the speed expected at onset, within bounds.
+
+    Sliding alone would keep V + j omega, so onset lies near V = (V + j omega)/(1 + j).
+    """
+    j = par[4]
+    omega = (V - w) / j
+    largest = max(abs(V), abs(omega))
+    return max(1e-3 * largest, min(largest, abs(V + j * omega) / (1.0 + j)))
+
+
+@kernel
+def standstill(par):
+    """The least s at which rolling resistance holds V against the traction, M(V) = 2 mu; NaN if there is none.
+
+    From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
+    """
+    _, c, kappa, mu, _ = par
+    if not kappa * mu < HOLDS:
+        return np.nan
+    # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
+    s = 4.0 * kappa * mu / c
+    for _ in range(_NEWTON):
+        _, rate, _, _, _ = sliding(s, 1.0, par)
+        _, further, _, _, _ = sliding(s * (1.0 + _DIFFERENCE), 1.0, par)
+        change = rate * _DIFFERENCE * s / (rate - further)
+        if not (further < rate and change < s):
+            return np.nan
+        s += change
+        if abs(change) <= _FOUND * s:
+            return s
+    return np.nan

@@ -1,0 +1,150 @@
+"""The boundary layer behind the onset of stick, beside the slow manifold.
+
+In partial slip D decays to the slow manifold D = S(y), y = ln zeta (:mod:`slow`).  The distance
+e = D - S falls all the while, so that theta = -ln |e| can serve as the independent variable:
+
+    dy/dtheta = y'/m    dtau/dtheta = 1/m    dX/dtheta = V/m    d(angle - X)/dtheta = V delta/m
+    m = -e'/e           e' = D' - S'(y) y'
+
+The stiffness is gone: m is nearly constant over the last e-folds, and y, the only one of these
+that the right-hand sides know, hardly moves.  On a panel in theta they are integrated by
+collocation at the Radau nodes, solved by substitution.  Where eta starts from 0 the law has terms
+of eta ln eta: the nodes of the first panel are graded toward its left end, as powers of the place.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.arrays import fill
+from ..compile.jit import kernel
+from .collocation import INNER_POWERS, INTEGRAL, INTEGRALS, NODES, SMOOTH_SLOPES, TO_START, N, integral_terms
+from .partial_slip import creep_rates
+from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
+
+#: rows of the values at the nodes of a panel: y, and the four right-hand sides
+Y, D_Y, D_TAU, D_X, D_TURN = range(5)
+ROWS = 5
+_MOST_ITERATIONS = 8
+#: the interval in y that the manifold is solved for: so many e-folds at the pace of y on the manifold, and of
+#: that at the start; longest, and shortest
+_LATE, _EARLY, _LONGEST, _SHORTEST = 100.0, 4.0, 0.5, 0.15
+#: relaxation over the rise of y below which there is no manifold to speak of
+_STIFF = 20.0
+
+
+@kernel
+def manifold(y, D, tolerance, values, matrix, right, slow, par):
+    """S around y as powers of t in [-1, 1], in ``slow``, with the ends of its interval behind.  Whether there is one.
+
+    Collocation at nodes 1 ... N alone: no left end, so that nothing of the fast motion enters.
+    """
+    slow_start(y, 0.0, values, par)
+    rise = 1.0 / stiffness(REACHED, values)
+    dy, dD, _, _ = creep_rates(y, D, par)
+    early = _EARLY * dy / dD * (node_D(REACHED, values) - D)
+    left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
+    reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
+    if not 0.0 < rise < 1.0 / _STIFF:
+        return False
+    if not slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, par):
+        return False
+    for i in range(1, N + 1):
+        if not stiffness(i, values) > _STIFF:
+            return False
+    if not sticks_throughout(left, reach, values):
+        return False
+    for k in range(N):
+        slow[k] = 0.0
+        for i in range(N):
+            slow[k] += INNER_POWERS[k, i] * node_D(i + 1, values)
+    slow[N], slow[N + 1] = left, left + reach
+    return True
+
+
+@kernel
+def slow_creep(y, slow):
+    """(S, dS/dy) at y."""
+    per_half = 2.0 / (slow[N + 1] - slow[N])
+    t = (y - slow[N]) * per_half - 1.0
+    S = slope = 0.0
+    for k in range(N - 1, -1, -1):
+        slope = S + t * slope
+        S = slow[k] + t * S
+    return S, slope * per_half
+
+
+@kernel
+def within(y, slow):
+    """Whether the manifold is known at y."""
+    return slow[N] <= y <= slow[N + 1]
+
+
+@kernel
+def layer_node(i, e, weight, nodes, slow, par):
+    """Fill node i from its y; ``weight``: slope of theta there."""
+    y = nodes[Y, i]
+    S, slope = slow_creep(y, slow)
+    dy, dD, V, delta = creep_rates(y, S + e, par)
+    per = -weight * e / (dD - slope * dy)
+    nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = per * dy, per, per * V, per * V * delta
+
+
+@kernel
+def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, par):
+    """Collocate over ``length`` e-folds from node 0, where e is given; returns the length, NaN where it failed.
+
+    With ``to_zero`` the panel ends where D = 0.  ``tolerance`` bounds the remaining error of y.
+    """
+    start = nodes[Y, 0]
+    fill(start, nodes[Y])
+    before = 0.0
+    for iteration in range(_MOST_ITERATIONS):
+        half = 0.5 * length
+        for i in range(1, N + 1):
+            v = 0.5 * (1.0 + NODES[i])
+            graded = v ** (power - 1)
+            layer_node(i, e * np.exp(-length * graded * v), power * graded, nodes, slow, par)
+        change = 0.0
+        for i in range(N):
+            rise = 0.0
+            for n in range(N):
+                rise += INTEGRALS[i, n] * nodes[D_Y, n + 1]
+            y = start + half * rise
+            change = max(change, abs(y - nodes[Y, i + 1]))
+            nodes[Y, i + 1] = y
+        if not (change < 1.0 and within(nodes[Y, N], slow)):
+            return np.nan
+        if to_zero:
+            length = np.log(-e / slow_creep(nodes[Y, N], slow)[0])
+        gain = change / before if iteration > 0 else 0.1
+        if change * gain <= tolerance:
+            return length
+        before = change
+    return np.nan
+
+
+@kernel
+def decays_throughout(nodes):
+    """Whether e falls at all nodes."""
+    slowest = np.inf
+    for i in range(1, N + 1):
+        slowest = min(slowest, nodes[D_TAU, i])
+    return slowest > 0.0
+
+
+@kernel
+def layer_rise(row, half, nodes):
+    """(Rise over the panel, mismatch at its left end) of a row."""
+    rise, off = 0.0, nodes[row, 0]
+    for i in range(N):
+        rise += INTEGRAL[i] * nodes[row, i + 1]
+        off -= TO_START[i] * nodes[row, i + 1]
+    return half * rise, 2.0 * half * abs(off)
+
+
+@kernel
+def layer_dense_terms(half, nodes, powers):
+    """Coefficients for ``rise_at`` of tau, X, angle - X, y."""
+    for row, source in enumerate((D_TAU, D_X, D_TURN, D_Y)):
+        integral_terms(nodes[source], half, powers, row)

@@ -1,0 +1,86 @@
+"""Energy lost since t = 0 in slip and in rolling, of a motion that is integrated.
+
+With the power lost in slip, (omega - V) Q, and in rolling, (V + omega) M/2, Eq. (22) gives
+
+    (V^2 + j omega^2)/2 + int (omega - V) Q dtau + int (V + omega) M/2 dtau = constant, tau = gamma t.
+
+One of the two integrals is thus enough.  In full slip it is mu times the path slipped; in partial slip it is
+no function of the state (``docs/theory.md``), and a Gauss rule over each step of the integrator finds it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..law.contact_loop import ROWS as CONTACT_ROWS
+from ..law.contact_loop import Q, contact_state
+from ..law.law import GAUSS_W, GAUSS_X
+from .integrate import integrate
+from .output import OUTPUTS
+from .stepper import PARTIAL
+
+#: rows that follow those of :mod:`output`, and the number of all
+SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
+_NEED = (True, True, False, False)
+_POINTS = GAUSS_X.size
+
+
+@kernel
+def kinetic_energy_lost(V0, omega0, V, omega, j):
+    """Kinetic energy at the start less that at (V, omega)."""
+    return 0.5 * ((V0 - V) * (V0 + V) + j * (omega0 - omega) * (omega0 + omega))
+
+
+@kernel
+def _slip_power(V, omega, delta, regime, scene, state):
+    """(omega - V) Q >= 0; where slip is partial delta keeps the digits that omega - V has lost."""
+    if regime != PARTIAL:
+        return abs(omega - V) * scene[2]
+    contact_state(scene[0], scene[1], scene[2], V, delta, False, _NEED, state)
+    return delta * V * state[Q]
+
+
+@kernel(allocates=True)
+def _panels(step_ends, t):
+    """0, output times and ends of steps up to the last output, ascending; forgets the ends."""
+    count = 0
+    while count < step_ends.size and (count == 0 or step_ends[count] > 0.0):
+        count += 1
+    edges = np.zeros(1 + t.size + count)
+    edges[1 : 1 + t.size] = t
+    for n in range(count):
+        edges[1 + t.size + n] = min(step_ends[n], t[t.size - 1])
+    step_ends[:count] = 0.0
+    return np.sort(edges)
+
+
+@kernel(allocates=True)
+def add_losses(scene, V0, omega0, t, rtol, rest, max_steps, out, step_ends, losses):
+    """Fill ``losses`` (2, times) of the motion whose outputs and ends of steps are given; ends become 0.
+
+    ``scene`` = (alpha, kappa, mu, gamma, j).  The motion is rolled once more, in the same steps, with output at
+    the points of the rule.
+    """
+    alpha, kappa, mu, gamma, j = scene
+    edges = _panels(step_ends, t)
+    panels = edges.size - 1
+    times = np.empty(panels * _POINTS + 1)
+    for n in range(panels):
+        for k in range(_POINTS):
+            times[n * _POINTS + k] = edges[n] + (edges[n + 1] - edges[n]) * GAUSS_X[k]
+    times[panels * _POINTS] = t[t.size - 1]
+    points = np.full((OUTPUTS, times.size), np.nan)
+    integrate(
+        alpha, kappa, mu, gamma, j, V0, omega0, times, rtol, rest, max_steps, points, np.empty((0, 2)), np.empty(0)
+    )
+    state = np.empty(len(CONTACT_ROWS))
+    lost, n = 0.0, 0
+    for m in range(t.size):
+        while n < panels and edges[n + 1] <= t[m]:
+            for k in range(n * _POINTS, (n + 1) * _POINTS):
+                power = _slip_power(points[0, k], points[1, k], points[4, k], points[5, k], scene, state)
+                lost += gamma * (edges[n + 1] - edges[n]) * GAUSS_W[k - n * _POINTS] * power
+            n += 1
+        losses[0, m] = lost
+        losses[1, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], j) - lost

@@ -1,0 +1,224 @@
+"""Full slip as quadratures over s.
+
+While sigma = sign(omega - V) stays, s' depends on s alone, so that s serves as the independent
+variable.  With I, what rolling resistance has taken of V, and Z, its integral,
+
+    I' = M/2       Z' = I       V = V_a + sigma mu tau - I       X = V_a tau + sigma mu tau^2/2 - Z
+    omega = omega_a - (sigma mu tau + I)/j             angle = omega_a tau - (sigma mu tau^2/2 + Z)/j
+
+only I and Z are to be found, small beside the rest.  On a panel s - pole rises or falls exponentially
+over ``length``.  The law is singular near s = -1, and with small kappa mu V' = 0 lies behind a
+nearer one: that is the pole.  Where M = 2 mu is ahead, the pole is there, and never reached.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .collocation import INTEGRALS, NODES, TO_START, N, integral_terms, polynomial, rise_at, rise_terms
+from .events import STICK
+from .full_slip import edge_of_stick, sliding
+
+#: rows of the values at the nodes: tau' and I' (over the length), the slope and the mean over time of what V gains
+#: beside the traction (all that it gains, where V comes to stand: there that is a small difference), V, slip less
+#: stick limit, the larger speed
+D_TAU, D_I, D_WAY, V, SLIP, SPEED, MEAN_GAIN = range(7)
+SLIDE_ROWS = 7
+#: rows of the interpolants: tau, I, the mean gain (its integral would lose digits early), the function of an event
+TAU, LOST, MEAN, EVENT = range(4)
+#: beyond this length V has changed by so much that its change is good for the time
+_LONG = 0.5
+#: iterations to find an event, and a step after which none is needed
+_MOST_ITERATIONS, _LAST = 100, 1e-9
+#: rounding of an extrapolation to the left end
+_ROUNDING = 1e-14
+#: a parabola that falls below this share of the lowest node is looked into
+_DIP = 0.5
+
+
+@kernel
+def s_at(v, panel):
+    """(s, s - pole) at v = 1 + t; ``panel`` = (s, pole, length, s at the end, V, omega)."""
+    s, pole, length, end, _, _ = panel
+    rise = (s - pole) * np.expm1(0.5 * length * v)
+    # abs: rounded downward, 0 - 0 is -0
+    return end if v == 2.0 else abs(max(s + rise, 0.0)), s - pole + rise
+
+
+@kernel
+def slide_rates(panel, sigma, par, nodes):
+    """Fill tau', I', V and the stick limit; whether V' keeps its sign."""
+    s, pole, length, _, _, _ = panel
+    for i in range(N + 1):
+        at, _ = s_at(1.0 + NODES[i], panel)
+        speed, rate, per_s, half_M, limit = sliding(at, sigma, par)
+        per = (s - pole) * np.exp(0.5 * length * (1.0 + NODES[i])) * per_s / rate
+        if not per * length > 0.0:
+            return False
+        nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = per, half_M * per, speed, limit
+    return True
+
+
+@kernel
+def standing_rates(rise, panel, sigma, par, nodes):
+    """As :func:`slide_rates` where M = 2 mu, for a time: s stays."""
+    speed, _, _, _, limit = sliding(panel[0], sigma, par)
+    for i in range(N + 1):
+        nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = rise, par[3] * rise, speed, limit
+
+
+@kernel
+def _slip(tau, I, panel, sigma, par):
+    """sigma (omega - V)."""
+    _, _, _, mu, j = par
+    _, _, _, _, speed, omega = panel
+    return sigma * (omega - speed) - (1.0 + 1.0 / j) * mu * tau - sigma * (1.0 / j - 1.0) * I
+
+
+@kernel
+def _fastest(speed, tau, I, panel, sigma, par):
+    """max(V, |omega|)."""
+    return max(speed, abs(panel[5] - (sigma * par[3] * tau + I) / par[4]))
+
+
+@kernel
+def _time(speed, I, tau, panel, sigma, par):
+    """tau from the change of V; or, where that is a small difference, as it was found."""
+    return (sigma * (speed - panel[4]) + sigma * I) / par[3] if abs(panel[2]) > _LONG else tau
+
+
+@kernel
+def slide_sums(panel, sigma, par, nodes):
+    """Fill the other rows; the rise of tau."""
+    half, tau = 0.5 * panel[2], 0.0
+    nodes[D_WAY, 0] = 0.0
+    nodes[SLIP, 0] = _slip(0.0, 0.0, panel, sigma, par) - nodes[SLIP, 0]
+    nodes[SPEED, 0] = _fastest(nodes[V, 0], 0.0, 0.0, panel, sigma, par)
+    for i in range(1, N + 1):
+        tau = I = 0.0
+        for n in range(N):
+            tau += INTEGRALS[i - 1, n] * nodes[D_TAU, n + 1]
+            I += INTEGRALS[i - 1, n] * nodes[D_I, n + 1]
+        I *= half
+        tau = _time(nodes[V, i], I, half * tau, panel, sigma, par)
+        nodes[D_WAY, i] = ((sigma * par[3] * tau if panel[1] > 0.0 else 0.0) - I) * nodes[D_TAU, i]
+        nodes[SLIP, i] = _slip(tau, I, panel, sigma, par) - nodes[SLIP, i]
+        nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, par)
+        nodes[MEAN_GAIN, i] = half / tau if tau > 0.0 else 0.0
+    nodes[MEAN_GAIN, 0] = 0.0
+    for i in range(1, N + 1):
+        way = 0.0
+        for n in range(N):
+            way += INTEGRALS[i - 1, n] * nodes[D_WAY, n + 1]
+        nodes[MEAN_GAIN, i] *= way
+    return tau
+
+
+@kernel
+def slide_error(length, nodes):
+    """Mismatch at the left end of I for a given time, beyond rounding.
+
+    An error of the time alone moves I by M/2 times as much, and so cancels where V stands almost still.
+    """
+    first, last = nodes[D_I, 0] / nodes[D_TAU, 0], nodes[D_I, N] / nodes[D_TAU, N]
+    tau_off, I_off, largest = nodes[D_TAU, 0], nodes[D_I, 0], abs(nodes[D_I, 0])
+    for i in range(1, N + 1):
+        tau_off -= TO_START[i - 1] * nodes[D_TAU, i]
+        I_off -= TO_START[i - 1] * nodes[D_I, i]
+        largest = max(largest, abs(nodes[D_I, i]))
+    off = max(abs(I_off - first * tau_off), abs(I_off - last * tau_off))
+    return abs(length) * max(off - _ROUNDING * largest, 0.0)
+
+
+@kernel
+def slide_terms(length, nodes, powers):
+    """Coefficients for ``rise_at`` of tau, I and the mean gain."""
+    integral_terms(nodes[D_TAU], 0.5 * length, powers, TAU)
+    integral_terms(nodes[D_I], 0.5 * length, powers, LOST)
+    rise_terms(nodes[MEAN_GAIN], powers, MEAN)
+
+
+@kernel
+def slide_rise(v, panel, sigma, par, powers):
+    """(V, delta_star V, tau, I) at v."""
+    speed, limit = edge_of_stick(s_at(v, panel)[0], par)
+    I = rise_at(v, powers, LOST)
+    return speed, limit, _time(speed, I, rise_at(v, powers, TAU), panel, sigma, par), I
+
+
+@kernel
+def slide_state(v, tau, panel, sigma, par, powers):
+    """(V, omega, X, angle) at v and at the time tau from the left end."""
+    _, _, _, mu, j = par
+    s, pole, _, _, speed, omega = panel
+    push = sigma * mu * tau
+    gain = push - rise_at(v, powers, LOST)
+    mean = (0.5 * push if pole <= 0.0 else 0.0) + rise_at(v, powers, MEAN)
+    if s == pole:  # V stands still
+        gain = mean = 0.0
+    return speed + gain, omega - (2.0 * push - gain) / j, (speed + mean) * tau, (omega - (push - mean) / j) * tau
+
+
+@kernel
+def event_at(event, v, panel, sigma, par, rest, powers):
+    """Positive before the event, negative after it."""
+    speed, limit, tau, I = slide_rise(v, panel, sigma, par, powers)
+    if event == STICK:
+        return _slip(tau, I, panel, sigma, par) - limit
+    return _fastest(speed, tau, I, panel, sigma, par) - rest
+
+
+@kernel
+def locate_slide(event, low, high, panel, sigma, par, rest, nodes, powers):
+    """v in [low, high] of the event, by Newton's iteration with the slope of the interpolant."""
+    row = SLIP if event == STICK else SPEED
+    level = 0.0 if event == STICK else rest
+    rise_terms(nodes[row], powers, EVENT)
+    start = nodes[row, 0] - level
+    v, exact = 0.5 * (low + high), False
+    for _ in range(_MOST_ITERATIONS):
+        if exact:
+            value = event_at(event, v, panel, sigma, par, rest, powers)
+            low, high = v if value > 0.0 else low, high if value > 0.0 else v
+        else:
+            value = start + rise_at(v, powers, EVENT)
+        new = v - value / _slope(v, powers)
+        inside = low <= new <= high
+        new = new if inside else 0.5 * (low + high)
+        near = abs(new - v) <= _LAST * v
+        v = new
+        if near and exact:
+            break
+        exact = exact or near or not inside
+    return v
+
+
+@kernel
+def _slope(v, powers):
+    """Slope in v of the interpolant in the row of an event."""
+    total = 0.0
+    for k in range(powers.shape[1] - 1, 0, -1):
+        total = k * powers[EVENT, k] + (v - 1.0) * total
+    return polynomial(v - 1.0, powers, EVENT) + v * total
+
+
+@kernel
+def dip(nodes, powers):
+    """v near which the slip is lowest, where it may dip under the stick limit between nodes; NaN if it does not."""
+    i = 0
+    for n in range(1, N + 1):
+        i = n if nodes[SLIP, n] < nodes[SLIP, i] else i
+    if i == N:
+        return np.nan
+    rise_terms(nodes[SLIP], powers, EVENT)
+    v = 1.0 + NODES[i]
+    slope = _slope(v, powers)
+    # the parabola through this node with this slope, and the node that it falls to
+    other = i - 1 if slope > 0.0 and i > 0 else i + 1
+    if i == 0 and slope >= 0.0:
+        return np.nan
+    away = NODES[other] - NODES[i]
+    bend = (nodes[SLIP, other] - nodes[SLIP, i] - slope * away) / (away * away)
+    shift = -0.5 * slope / bend
+    return v + shift if nodes[SLIP, i] + 0.5 * slope * shift < _DIP * nodes[SLIP, i] else np.nan

@@ -1,0 +1,101 @@
+"""The two Bessel ratios once more, by textbook methods that share nothing with ``ratios.npy``.
+
+    ratio_i(x) = I1(x)/I0(x)        ratio_k0k1(z) = K0(z)/K1(z)
+
+This is what the paper's direct method (:mod:`law`) is built on, and an independent check
+of :mod:`bessel.ratios`.  Only ratios occur, so nothing overflows; each step count is fixed by the
+argument before the loop starts, so there is no convergence test to fail.  Against 40 digits
+on 4800 arguments from 5e-324 to 1.8e308: at most 2.7 ULP (``ratio_i``, near 25) and 3.6 ULP
+(``ratio_k0k1``, below 1), in 20 to 200 ns.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compile.jit import kernel
+
+_EULER_GAMMA = 0.57721566490153286061
+_LN2 = 0.69314718055994530942
+#: from here on the 20th term of Hankel's expansion is below 4e-18
+_HANKEL_FROM = 25.0
+
+
+def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
+    """x^-n coefficients of sqrt(2 pi x) e^-x I(x) (sign = -1) or sqrt(2 x/pi) e^x K(x) (sign = +1)."""
+    a = [1.0]
+    for n in range(1, terms + 1):
+        a.append(sign * a[-1] * (4 * order**2 - (2 * n - 1) ** 2) / (8 * n))
+    return a
+
+
+def _temme_k0(terms: int = 10) -> list[list[float]]:
+    """q^n coefficients of I0 and of K0 + (ln(z/2) + gamma) I0, q = z^2/4."""
+    harmonic = [sum(1 / i for i in range(1, n + 1)) for n in range(terms)]
+    plain = [1 / math.factorial(n) ** 2 for n in range(terms)]
+    return [plain, [h * p for h, p in zip(harmonic, plain)]]
+
+
+def _temme_k1(terms: int = 10) -> list[list[float]]:
+    """q^n coefficients of z I1 and of z K1 - 1 - (ln(z/2) + gamma) z I1.
+
+    z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... + 1/n.
+    """
+    i0, k0 = _temme_k0(terms)
+    return [
+        [2 * n * i0[n] for n in range(terms)],
+        [0.0] + [i0[n] - 2 * n * k0[n] for n in range(1, terms)],
+    ]
+
+
+_I0_TAIL, _I1_TAIL = np.array(_hankel(0, -1)), np.array(_hankel(1, -1))
+_K0_TAIL, _K1_TAIL = np.array(_hankel(0, +1)), np.array(_hankel(1, +1))
+_K0_LOG, _K0_REST = np.array(_temme_k0())
+_K1_LOG, _K1_REST = np.array(_temme_k1())
+
+
+@kernel
+def _horner(t, coefficients):
+    total = coefficients[coefficients.size - 1]
+    for n in range(coefficients.size - 2, -1, -1):
+        total = coefficients[n] + t * total
+    return total
+
+
+@kernel
+def ratio_i(x):
+    """r = I1/I0 at x >= 0: Gauss's continued fraction from its tail, Hankel's expansion from 25 on."""
+    if x >= _HANKEL_FROM:
+        u = 1.0 / x
+        return _horner(u, _I1_TAIL) / _horner(u, _I0_TAIL)
+    # I_(n+1)/I_n = x/(2 n + 2 + x I_(n+2)/I_(n+1)): each step damps the error of the start by (I_(n+1)/I_n)^2
+    n = 12 + int(x)
+    tail = x / (n + 0.5 + np.sqrt((n + 1.5) * (n + 1.5) + x * x))
+    for m in range(n, 0, -1):
+        tail = x / (2.0 * m + x * tail)
+    return tail
+
+
+@kernel
+def ratio_k0k1(z):
+    """k = K0/K1 at z >= 0: Temme's series below 1, Steed's CF2 from its tail, Hankel's expansion from 25 on."""
+    if z >= _HANKEL_FROM:
+        u = 1.0 / z
+        return _horner(u, _K0_TAIL) / _horner(u, _K1_TAIL)
+    if z < 1.0:
+        if z == 0.0:
+            return 0.0
+        # ln 2 - ln z and not -ln(z/2): half the smallest double is zero
+        f = (_LN2 - np.log(z)) - _EULER_GAMMA
+        q = 0.25 * z * z
+        k0 = f * _horner(q, _K0_LOG) + _horner(q, _K0_REST)
+        z_k1 = 1.0 + (_horner(q, _K1_REST) - f * _horner(q, _K1_LOG))
+        return z * (k0 / z_k1)
+    # K1/K0 = (z + 1/2 - h)/z with h = (1/4)/(2 (z + 1) - (9/4)/(2 (z + 2) - ...)); error exp(-4 sqrt(2 n z))
+    n = 5 + int(44.0 / z)
+    tail = 0.0
+    for m in range(n, 0, -1):
+        tail = (m - 0.5) * (m - 0.5) / (2.0 * (z + m) - tail)
+    return z / (z + (0.5 - tail))

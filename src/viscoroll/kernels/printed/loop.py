@@ -1,0 +1,73 @@
+"""The contact law as printed, over arrays of states; rows and signs as in contact_loop."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..law.contact_loop import (
+    BETA,
+    DELTA,
+    DELTA_STAR,
+    EPSILON,
+    FULL_SLIP,
+    LAM,
+    ROWS,
+    ZETA,
+    M,
+    Q,
+    creep_ratio,
+    signed_slip,
+)
+from ..law.law import OK
+from .law import direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
+
+
+@kernel
+def direct_state(alpha, kappa, mu, V, creep, creep_is_omega, out):
+    """All rows of one state into ``out``; V = 0 is the limit of Sect. 3.4."""
+    speed = abs(V)
+    slip, sign, direction = signed_slip(V, creep, creep_is_omega)
+    delta = creep_ratio(V, creep, slip, creep_is_omega)
+    status = OK
+    lam, zeta, epsilon = 1.0, np.inf, 0.0
+    out[M] = 0.0
+    if speed > 0.0:
+        lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
+        out[M] = direction * direct_moment(kappa, lam, epsilon, zeta, alpha)
+    delta_star = direct_delta_star(kappa, mu, lam, epsilon)
+    full_slip = abs(delta) >= delta_star
+    out[LAM], out[ZETA], out[EPSILON] = lam, zeta, epsilon
+    out[DELTA_STAR], out[DELTA], out[FULL_SLIP] = delta_star, delta, 1.0 if full_slip else 0.0
+    if full_slip:
+        out[BETA], out[Q] = 0.0, mu * sign
+        return status
+    if speed == 0.0:
+        s = abs(delta) / delta_star
+        out[BETA], out[Q] = 1.0 - s, mu * sign * s * (2.0 - s)
+        return status
+    beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
+    out[BETA] = beta
+    out[Q] = sign * direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
+    return max(status, stick_status)
+
+
+@kernel(allocates=True)
+def direct_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
+    """States start..stop; arguments as of ``contact_loop`` (``need`` is not used)."""
+    state = np.empty(len(ROWS))
+    worst = OK
+    for i in range(start, stop):
+        status = direct_state(
+            alpha[min(i, alpha.size - 1)],
+            kappa[min(i, kappa.size - 1)],
+            mu[min(i, mu.size - 1)],
+            V[min(i, V.size - 1)],
+            creep[min(i, creep.size - 1)],
+            creep_is_omega,
+            state,
+        )
+        worst = max(worst, status)
+        for n in range(rows.size):
+            out[n, i] = state[rows[n]]
+    return worst
