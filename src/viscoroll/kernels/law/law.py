@@ -20,6 +20,7 @@ import numpy as np
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
 from ..compile.jit import kernel
+from ..numerics.nodes import gauss
 
 OK, NOT_CONVERGED = 0, 1
 _MAX_STEPS = 60
@@ -28,10 +29,7 @@ _SLOW, _FAST = 1e-17, 1e-9
 #: a step of Halley's iteration of this relative size leaves an error of its cube
 _CUBED = 3e-6
 #: 5-point Gauss-Legendre rule on [0, 1]
-GAUSS_X = np.array([0.046910077030668004, 0.23076534494715845, 0.5, 0.7692346550528415, 0.953089922969332])
-GAUSS_W = np.array(
-    [0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454]
-)
+GAUSS_X, GAUSS_W = gauss(5)
 #: below this (zeta - eta)/zeta differences of g and h are integrals of their slopes
 CLOSE = 0.1
 #: below this d/F(zeta) zeta - eta starts from the slopes at zeta

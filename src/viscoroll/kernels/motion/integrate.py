@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
 from ..law.law import OK, stick_length
+from ..numerics.arrays import fill
 from .collocation import N
 from .dop853 import EXTENDED
 from .events import AT_REST, NO_EVENT, SLIP, STICK, speeds
