@@ -201,8 +201,8 @@ def _step_times(
     while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
         ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
         integrate(
-            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end, rtol, rest, max_steps,
-            np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
+            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end, rtol, rest,
+            max_steps, np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
         )  # fmt: skip
     return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
