@@ -15,8 +15,12 @@ class Mutant(NamedTuple):
     tests: str
 
 
-_LAW, _RATIOS, _STRESS = "tests/test_contact.py", "tests/test_ratios.py", "tests/test_stress.py"
-_DIRECT, _SLICE, _MOTION = "tests/test_direct.py", "tests/test_alpha_slice.py", "tests/test_motion.py"
+_LAW, _RATIOS, _STRESS = "tests/test_contact.py", "tests/kernels/bessel/test_ratios.py", "tests/test_stress.py"
+_DIRECT, _SLICE, _MOTION = (
+    "tests/kernels/printed/test_direct.py",
+    "tests/test_alpha_slice.py",
+    "tests/motion/test_motion.py",
+)
 
 LAW = [
     ("law/material.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
@@ -68,7 +72,7 @@ SLICE = [
     ("law/slice_loop.py", "EDGE = 2.0**-20\n", "EDGE = 2.0**-2\n", _SLICE),
 ]  # fmt: skip
 MOTION = [
-    ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/test_flow.py"),
+    ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),
     ("motion/full_slip.py", "return V, sigma * mu - half_M, per_s", "return V, sigma * mu + half_M, per_s", _MOTION),
     ("motion/full_slip.py", "return V, mu * half_lam * (1.0 + g * s) * V", "return V, 0.98 * mu * half_lam * (1.0 + g * s) * V", _MOTION),
     ("motion/slide.py", "- sigma * (1.0 / j - 1.0) * I", "+ sigma * (1.0 / j - 1.0) * I", _MOTION),
@@ -77,12 +81,12 @@ MOTION = [
     ("motion/partial_slip.py", "rate = q_over_V - 0.5 * m\n", "rate = q_over_V - 0.5 * m * (1.0 + 1e-6)\n", _MOTION),
     ("motion/partial_slip.py", "0.5 * m) * (per_V / mu) - 2.0 * d * rate", "0.5 * m) * (per_V / mu)", _MOTION),
     ("motion/events.py", "return 1.0 - abs(signed_D(u0, u1, scene)) * np.exp(-u0)", "return 2.0 - abs(signed_D(u0, u1, scene)) * np.exp(-u0)", _MOTION),
-    ("motion/slide_phase.py", "event = REVERSAL\n", "event = STICK\n", "tests/test_slide.py"),
+    ("motion/slide_phase.py", "event = REVERSAL\n", "event = STICK\n", "tests/kernels/motion/test_slide.py"),
     ("motion/collocation.py", "total = fma(t, total, powers[row, k])", "total = fma(t, total, powers[row, k] * (1.0 + 1e-7))", _MOTION),
     ("motion/slow.py", "return half * tau, half * X, half * (X + turn)", "return half * tau, half * X, half * (X - turn)", _MOTION),
-    ("motion/layer.py", "creep_rates(y, S + e, scene)", "creep_rates(y, S - e, scene)", "tests/test_layer.py"),
-    ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/test_ensemble.py"),
-    ("flow/layer.py", "V * (1.0 + delta) / V0 - 1.0", "V * (1.0 - delta) / V0 - 1.0", "tests/test_flow.py"),
+    ("motion/layer.py", "creep_rates(y, S + e, scene)", "creep_rates(y, S - e, scene)", "tests/kernels/motion/test_layer.py"),
+    ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/motion/test_ensemble.py"),
+    ("flow/layer.py", "V * (1.0 + delta) / V0 - 1.0", "V * (1.0 - delta) / V0 - 1.0", "tests/motion/test_flow.py"),
     ("motion/integrate.py", "return FULL, -direction, -sigma\n", "return FULL, -direction, sigma\n", _MOTION),
     ("motion/integrate.py", "u[1] = sigma * D - slow_D(u[0], scene)[0]", "u[1] = D - slow_D(u[0], scene)[0]", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),

@@ -83,7 +83,7 @@ class Motion:
         -------
         Values
             Each field over t.  The law is exact to rounding: errors are those of V and delta, which beta
-            and Q magnify near full slip (``tests/test_motion.py``).
+            and Q magnify near full slip (``tests/motion/test_motion.py``).
 
         Raises
         ------
@@ -106,7 +106,7 @@ class Motion:
         Returns
         -------
         Motion
-            As exact between the steps as at their ends (``tests/test_motion.py``).
+            As exact between the steps as at their ends (``tests/motion/test_motion.py``).
 
         Raises
         ------
@@ -153,7 +153,7 @@ def roll(
     rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
         speed magnifies any earlier error: mostly below rtol, at most 30 rtol on the scenes
-        of ``tests/test_motion.py``; rare motions elsewhere may exceed that a little.
+        of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
     rest : end the motion where max(|V|, |omega|) falls below this.  Nothing stops in
         finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From

@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import math
 import tracemalloc
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from places import DATA
 
 import viscoroll as vr
 from viscoroll.kernels.law.material import Material
@@ -20,7 +20,7 @@ from viscoroll.kernels.motion.records import Scene
 from viscoroll.motion import single
 from viscoroll.scene import PAPER_STARTS
 
-SECTION_5 = Path(__file__).parents[1] / "data" / "reference" / "section5.csv"
+SECTION_5 = DATA / "reference/section5.csv"
 ROUNDED, UNROUNDED = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_SECTION_5
 SCENES = {"rounded": ROUNDED, "unrounded": UNROUNDED}
 #: full slip returns: theory, Sect. 3
