@@ -25,7 +25,7 @@ class FlowMap:
 
     Attributes
     ----------
-    parameters : alpha, c, kappa, mu, j.
+    parameters : alpha, kappa, mu, j.
     first : kappa V of the slowest stick onset in it is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
     error : stated error of V and omega relative to the larger of the two: four times the worst

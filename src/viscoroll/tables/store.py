@@ -68,7 +68,7 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
     Notes
     -----
-    :func:`load` gives back the same values, bit for bit (``tests/test_tables.py``).
+    :func:`load` gives back the same values, bit for bit (``tests/tables/test_tables.py``).
     """
     schema.check(table, path)
     stamped = table.copy()
@@ -94,7 +94,7 @@ def load(path: str | PathLike[str], *, verify: bool = True) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The table as it was saved, bit for bit (``tests/test_tables.py``).
+        The table as it was saved, bit for bit (``tests/tables/test_tables.py``).
 
     Raises
     ------

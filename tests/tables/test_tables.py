@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from places import PIPELINE
 
 import viscoroll as vr
 from viscoroll import files
@@ -28,7 +29,7 @@ ATLAS_GRID = vr.tables.AtlasGrid(nodes=(16, 40, 32), block=(4, 8, 8), allowed=(1
 LITERAL_GRID = vr.tables.LiteralGrid(
     kappa=2.91, mu=0.2, V=np.geomspace(1e-3, 2.0, 21), delta=np.linspace(-0.04, 0.04, 33), alpha=[1.0, 3.0, 11.0]
 )
-TABULATE = Path(__file__).parents[1] / "pipeline/tabulate.py"
+TABULATE = PIPELINE / "tabulate.py"
 
 
 @pytest.fixture(scope="module")
