@@ -51,7 +51,7 @@ class FlowMap:
 
 def folder() -> Path:
     """Where maps are kept: they are worth no more than the kernels that fill and read them."""
-    from ..kernels.compile.jit import cache_root, sources_digest
+    from ..kernels.compile.cache import cache_root, sources_digest
 
     return cache_root() / f"flow-{sources_digest()}"
 
