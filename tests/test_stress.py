@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 import tolerances as tol
 
-from viscoroll.kernels.law import law
+from viscoroll.kernels.law.length import contact_length
+from viscoroll.kernels.law.material import Material, generators, moment_factor
+from viscoroll.kernels.law.stick import stick_length
 from viscoroll.kernels.law.stress import stress_at
 
 KAPPA, MU = 2.91, 0.2
@@ -23,8 +25,7 @@ STATES = [
 
 
 class State(NamedTuple):
-    alpha: float
-    c: float
+    material: Material
     lam: float
     epsilon: float
     beta: float
@@ -33,7 +34,7 @@ class State(NamedTuple):
     M: float
 
     def at(self, x: float, kappa: float = KAPPA) -> tuple[float, float]:
-        return stress_at(x, kappa, MU, self.lam, self.epsilon, self.beta, self.zeta, self.alpha, self.c)
+        return stress_at(x, kappa, MU, self.lam, self.epsilon, self.beta, self.zeta, self.material)
 
     def across(self, low: float, high: float, number: int = 201) -> np.ndarray:
         """Columns x, p, tau between two edge distances in [0, 2] from the rear edge."""
@@ -44,15 +45,15 @@ class State(NamedTuple):
 
 def state(alpha: float, kappa_V: float, s: float) -> State:
     """s = |delta|/delta_star; 1 and above is full slip."""
-    c = (alpha - 1.0) / alpha
-    lam, _ = law.contact_length(kappa_V, alpha, c)
+    material = Material(alpha, (alpha - 1.0) / alpha)
+    lam, _ = contact_length(kappa_V, material)
     zeta = lam / (2.0 * kappa_V)
-    g, h = law.generators(zeta, alpha, c)
-    eta = law.stick_length(zeta, s * (zeta + g), alpha, c)[0] if s < 1.0 else 0.0
-    h_eta = law.generators(eta, alpha, c)[1]
+    g, h = generators(zeta, material)
+    eta = stick_length(zeta, s * (zeta + g), material)[0] if s < 1.0 else 0.0
+    h_eta = generators(eta, material)[1]
     Q = MU * (1.0 - eta * (eta + 2 * h_eta) / (zeta * (zeta + 2 * h)))
-    M = kappa_V / KAPPA * law.moment_factor(zeta, lam, alpha, c)
-    return State(alpha, c, lam, g / zeta, eta / zeta, zeta, Q, M)
+    M = kappa_V / KAPPA * moment_factor(zeta, lam, material)
+    return State(material, lam, g / zeta, eta / zeta, zeta, Q, M)
 
 
 def panels(low: float, high: float, number: int = 26, nodes: int = 12):
@@ -208,11 +209,11 @@ def printed_stress(alpha: float, kappa_V: float, s: float, places: list[float]):
 def test_against_the_printed_integrals(alpha, kappa_V, s):
     with mp.workdps(160):
         (lam, epsilon, beta, zeta), rows = printed_stress(alpha, kappa_V, s, [0.02, 0.3, 0.6, 0.8, 0.97])
-    c = (alpha - 1.0) / alpha
+    material = Material(alpha, (alpha - 1.0) / alpha)
     peak = max(p for _, p, _ in rows)
     assert sum(tau < 0.999 * MU * p for _, p, tau in rows) >= 1  # some of them lie in the stick zone
     for x, p, tau in rows:
-        p_here, tau_here = stress_at(x, KAPPA, MU, lam, epsilon, beta, zeta, alpha, c)
+        p_here, tau_here = stress_at(x, KAPPA, MU, lam, epsilon, beta, zeta, material)
         assert abs(p_here - p) <= tol.STRESS_PRINTED * peak
         assert abs(tau_here - tau) <= tol.STRESS_PRINTED * MU * peak
 
@@ -232,7 +233,7 @@ def carter(x: float, beta: float) -> tuple[float, float]:
 def test_elastic_cylinder_and_rest_are_carter(alpha, zeta, beta):
     peak = 1.0 / (8 * np.pi * KAPPA)
     for x in np.linspace(-0.4999, 0.4999, 41):
-        p, tau = stress_at(x, KAPPA, MU, 1.0, 0.0, beta, zeta, alpha, (alpha - 1.0) / alpha)
+        p, tau = stress_at(x, KAPPA, MU, 1.0, 0.0, beta, zeta, Material(alpha, (alpha - 1.0) / alpha))
         p_0, tau_0 = carter(x, beta)
         assert abs(p - p_0) <= tol.STRESS_ELLIPSE * peak
         assert abs(tau - tau_0) <= MU * peak * tol.STRESS_CARTER

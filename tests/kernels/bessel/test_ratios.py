@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Callable
-from pathlib import Path
 
 import mpmath as mp
 import numpy as np
@@ -13,6 +12,7 @@ import pytest
 import tolerances as tol
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from places import PIPELINE
 
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
@@ -133,7 +133,7 @@ def test_monotone(ratio):
 
 def refit() -> np.ndarray:
     """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
-    source = Path(__file__).parents[1] / "pipeline" / "ratios.py"
+    source = PIPELINE / "ratios.py"
     spec = importlib.util.spec_from_file_location("pipeline_ratios", source)
     assert spec is not None
     assert spec.loader is not None

@@ -5,23 +5,20 @@ from __future__ import annotations
 import importlib
 import json
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
-
-ROOT = Path(__file__).parents[1]
-PIPELINE = str(ROOT / "pipeline")
+from places import PIPELINE, ROOT
 
 
 @pytest.fixture(scope="module")
 def independent():
-    sys.path.insert(0, PIPELINE)
+    sys.path.insert(0, str(PIPELINE))
     try:
         yield importlib.import_module("independent")
     finally:
-        sys.path.remove(PIPELINE)
+        sys.path.remove(str(PIPELINE))
 
 
 def worst(off: dict[str, np.ndarray]) -> dict[str, float]:
