@@ -118,7 +118,7 @@ def _zero(function: Callable[[Any], tuple[Any, Any]], near: float) -> Decimal:
     for kind in (float, float, float, Decimal, Decimal):
         value, slope = function(kind(x))
         x = kind(x) - value / slope
-    return x
+    return round(x, _DIGITS - 4)  # the last digits would tell how this machine takes a cosine
 
 
 def _legendre(n: int, x: Any) -> tuple[Any, Any, Any]:
