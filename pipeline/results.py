@@ -6,7 +6,6 @@ import argparse
 import datetime
 import json
 import math
-import os
 import platform
 import subprocess
 import sys
@@ -18,6 +17,7 @@ import numpy as np
 from stage import CONFIG, ROOT, read_toml
 
 import viscoroll as vr
+from viscoroll.blocks import cores
 from viscoroll.errors import ConfigError, ViscorollError
 from viscoroll.files import write_text
 
@@ -120,7 +120,7 @@ def machine() -> dict[str, Any]:
         cpu = platform.processor() or platform.machine()
     return {
         "cpu": cpu,
-        "cores": len(os.sched_getaffinity(0)),
+        "cores": cores(),
         "system": platform.system(),
         "python": platform.python_version(),
         "numpy": np.__version__,
