@@ -217,8 +217,8 @@ def _integrate(
     out = np.full((OUTPUTS, asked.size), np.nan)
     switches = np.empty((_SWITCHES_KEPT, 2))
     status, steps, turns, onset_time, rest_time = integrate(
-        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked, rtol, rest, max_steps,
-        out, switches, np.empty(0),
+        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked, rtol, rest,
+        max_steps, out, switches, np.empty(0),
     )  # fmt: skip
     rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
     regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]
