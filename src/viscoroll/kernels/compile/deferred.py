@@ -128,7 +128,6 @@ def _pipelines() -> tuple[type, type]:
 
         def finalize(self) -> None:
             for library in below(self):
-                self._reload_init.update(library._reload_init)
                 self._final_module.link_in(alone(library), preserve=True)
             self._linking_libraries = []
             super().finalize()
