@@ -19,6 +19,6 @@ def imported(module: str, package: str, extra: str) -> Any:
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
-        if error.name != module.partition(".")[0]:
+        if str(error.name).partition(".")[0] != module.partition(".")[0]:
             raise  # it is there, and misses something itself
         raise MissingDependencyError(package, extra) from None
