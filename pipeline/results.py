@@ -15,11 +15,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from stage import CONFIG, ROOT, read_toml
 
 import viscoroll as vr
 from viscoroll.errors import ConfigError, ViscorollError
 from viscoroll.files import write_text
+
+from .stage import CONFIG, ROOT, read_toml
 
 #: folder of the results
 RESULTS = ROOT / "data/results"

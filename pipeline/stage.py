@@ -1,7 +1,7 @@
 """What the stages share: options, their section of the configuration, timing, and a record of what they found.
 
 A stage is a function work(settings, out) -> Outcome.  :func:`run` calls it and leaves
-<out>/stages/<name>.json: seconds, files and headline numbers, which pipeline/summary.py reads.
+<out>/stages/<name>.json: seconds, files and headline numbers, which pipeline/demo/summary.py reads.
 """
 
 from __future__ import annotations

@@ -12,16 +12,11 @@ import pytest
 import tolerances as tol
 
 ROOT = Path(__file__).parents[1]
-PIPELINE = str(ROOT / "pipeline")
 
 
 @pytest.fixture(scope="module")
 def independent():
-    sys.path.insert(0, PIPELINE)
-    try:
-        yield importlib.import_module("independent")
-    finally:
-        sys.path.remove(PIPELINE)
+    return importlib.import_module("pipeline.prove.independent")
 
 
 def worst(off: dict[str, np.ndarray]) -> dict[str, float]:

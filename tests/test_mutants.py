@@ -1,8 +1,8 @@
-"""The planted defects (pipeline/mutants.py) still find their place, and their results say what was run."""
+"""The planted defects (pipeline/mutate/mutants.py) still find their place, and their results say what was run."""
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import json
 import subprocess
 import sys
@@ -17,10 +17,7 @@ KERNELS = ROOT / "src/viscoroll/kernels"
 
 
 def mutants() -> list:
-    spec = importlib.util.spec_from_file_location("mutants", ROOT / "pipeline/mutants.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.MUTANTS
+    return importlib.import_module("pipeline.mutate.mutants").MUTANTS
 
 
 @pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: f"{mutant.file}: {mutant.old.strip()[:40]}")
@@ -47,7 +44,9 @@ def test_results_are_of_known_defects():
 def test_fuzzing_without_atheris_says_so():
     """An import that fails, as without the extra."""
     code = "import sys, runpy; sys.modules['atheris'] = None; sys.argv = ['fuzz', 'toml']; "
-    code += f"runpy.run_path({str(ROOT / 'pipeline/fuzz_loaders.py')!r}, run_name='__main__')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    code += "runpy.run_module('pipeline.torture.fuzz_loaders', run_name='__main__')"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
     assert done.returncode == 0, done.stderr
     assert "skipped, atheris is not installed" in done.stdout

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Callable
-from pathlib import Path
 
 import mpmath as mp
 import numpy as np
@@ -133,12 +131,8 @@ def test_monotone(ratio):
 
 def refit() -> np.ndarray:
     """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
-    source = Path(__file__).parents[1] / "pipeline" / "ratios.py"
-    spec = importlib.util.spec_from_file_location("pipeline_ratios", source)
-    assert spec is not None
-    assert spec.loader is not None
-    pipeline = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(pipeline)
+    from pipeline.reference import ratios as pipeline
+
     points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * pipeline.NODES)) for i in range(pipeline.NODES)]
     rows = []
     for segment in layout.SEGMENTS:
