@@ -75,7 +75,7 @@ test: setup ## the whole test suite
 DEBIAN := netcdf-bin libnetcdf-dev octave octave-netcdf r-base-core r-cran-ncdf4
 SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
 interop: interop-tools $(TABLES) ## the tables in C, Octave, R, Node, ncdump and the CF checker, which it installs
-	$(BIN)/pytest -rs tests/test_interop.py
+	$(BIN)/pytest -rs tests/docs/test_interop.py
 
 # What cannot be installed, without a network say, is told here, and its tests are skipped with that reason.
 interop-tools: setup

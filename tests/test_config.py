@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from places import PIPELINE
 
 import viscoroll as vr
 from viscoroll.config import read_grids, read_scene
 
-PRODUCTION = Path(__file__).parents[1] / "pipeline" / "config" / "production.toml"
+PRODUCTION = PIPELINE / "config/production.toml"
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 

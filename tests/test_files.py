@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from ordinary_user import as_ordinary_user, let_in
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll import files
 
-ROOT = Path(__file__).parents[1]
 DATA = xr.Dataset({"V": ("t", np.random.default_rng(1).random(20_000))})
 WRITERS: dict[str, Callable[[Path], object]] = {
     "text": lambda path: files.write_text(path, "new"),

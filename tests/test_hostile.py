@@ -16,12 +16,12 @@ from threading import Barrier
 import numpy as np
 import pytest
 import tolerances as tol
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll import alpha_slice
 from viscoroll.motion import flow, flow_store
 
-ROOT = Path(__file__).parents[1]
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
 GRIDS = (

@@ -18,11 +18,11 @@ from pathlib import Path
 import numba
 import pytest
 from ordinary_user import as_ordinary_user, let_in
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll.kernels.compile import jit
 
-ROOT = Path(__file__).parents[1]
 PACKAGE = Path(vr.__file__).parent
 HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}
 

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from viscoroll.files import write_text
-from viscoroll.kernels.compile.jit import sources_digest
+from viscoroll.kernels.compile.cache import sources_digest
 
 from ..stage import ROOT
 from .mutants import MUTANTS, Mutant

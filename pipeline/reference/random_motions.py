@@ -35,7 +35,7 @@ def chosen_motion(rng: np.random.Generator) -> ChosenMotion:
     """One motion; half of the starts at an edge: V0 = 0, omega0 = 0, pure rolling, V0 + j omega0 = 0.
 
     At alpha = 1 the last would stop both speeds at once and for good, so that no error is relative to
-    anything (tests/test_nasty_starts.py has it); there it is missed by 1e-3.
+    anything (tests/motion/test_nasty_starts.py has it); there it is missed by 1e-3.
     """
     alpha = 1.0 if rng.random() < 0.05 else float(10.0 ** rng.uniform(0.0, 4.0))
     low, high = np.log10([0.5, 0.01, 1e-3]), np.log10([200.0, 3.0, 1e8])

@@ -24,7 +24,7 @@ from tqdm import tqdm
 from viscoroll import ViscorollError, tables
 from viscoroll.errors import OutputError, TableError
 from viscoroll.files import seal_holds
-from viscoroll.tables.store import content_hash
+from viscoroll.tables.content import content_hash
 
 from ..stage import ROOT
 from .damage import Damage, edit, flip, in_child, row, truncate, unsealed

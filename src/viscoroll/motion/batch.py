@@ -92,7 +92,7 @@ class Ensemble:
         -------
         xarray.Dataset
             Over (quantile, t), of every field kept but delta and regime, and of onset_time; numpy's
-            values (``tests/test_ensemble.py``).  Outputs that a motion did not reach do not count;
+            values (``tests/motion/test_ensemble.py``).  Outputs that a motion did not reach do not count;
             the attributes say how many motions ended in which way.
 
         Raises
@@ -161,7 +161,7 @@ def ensemble(
     -----
     The flow map has no entry for scenes in which full slip returns or rolling resistance can
     hold the sliding cylinder (mu below about M/2), for alpha = 1, and for motions that stick
-    at speeds 10^6 times below the highest (``tests/test_flow.py``).
+    at speeds 10^6 times below the highest (``tests/motion/test_flow.py``).
 
     Nothing is raised where a motion cannot be rolled to the end: its ``status`` says so, its outputs from
     there on are NaN, and :meth:`Ensemble.messages` counts such motions.

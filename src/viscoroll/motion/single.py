@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import Values, contact
-from ..scene import Scene
+from ..scene import Scene, kernel_scene
 from .checks import controls, output_times, start_speeds
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class Motion:
         -------
         Values
             Each field over t.  The law is exact to rounding: errors are those of V and delta, which beta
-            and Q magnify near full slip (``tests/test_motion.py``).
+            and Q magnify near full slip (``tests/motion/test_motion.py``).
 
         Raises
         ------
@@ -106,7 +106,7 @@ class Motion:
         Returns
         -------
         Motion
-            As exact between the steps as at their ends (``tests/test_motion.py``).
+            As exact between the steps as at their ends (``tests/motion/test_motion.py``).
 
         Raises
         ------
@@ -153,7 +153,7 @@ def roll(
     rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
         speed magnifies any earlier error: mostly below rtol, at most 30 rtol on the scenes
-        of ``tests/test_motion.py``; rare motions elsewhere may exceed that a little.
+        of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
     rest : end the motion where max(|V|, |omega|) falls below this.  Nothing stops in
         finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
@@ -201,8 +201,8 @@ def _step_times(
     while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
         ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
         integrate(
-            scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, end, rtol, rest, max_steps,
-            np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
+            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end, rtol, rest,
+            max_steps, np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
         )  # fmt: skip
     return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
@@ -217,8 +217,8 @@ def _integrate(
     out = np.full((OUTPUTS, asked.size), np.nan)
     switches = np.empty((_SWITCHES_KEPT, 2))
     status, steps, turns, onset_time, rest_time = integrate(
-        scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, asked, rtol, rest, max_steps,
-        out, switches, np.empty(0),
+        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked, rtol, rest,
+        max_steps, out, switches, np.empty(0),
     )  # fmt: skip
     rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
     regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]

@@ -91,7 +91,8 @@ def roll_precise(
     Notes
     -----
     ``data/reference/check_motions.csv`` states for every motion there how far another choice of nodes and
-    tolerance is from the default one: 1e-17 of max(|V|, |omega|) or less (``tests/test_reference_motions.py``).
+    tolerance is from the default one: 1e-17 of max(|V|, |omega|) or less
+    (``tests/reference/test_reference_motions.py``).
     """
     if V0 == 0.0 and omega0 == 0.0:
         raise ParameterError("V0, omega0", "0, 0", "not both 0")

@@ -72,7 +72,7 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
     Notes
     -----
     Each value to ``digits`` relative digits for alpha - 1 >= 1e-8, kappa V in [1e-8, 1e8] and
-    |delta|/delta_star in [1e-8, 1 - 1e-8] (``tests/test_readme.py`` compares 20 with 50 digits).
+    |delta|/delta_star in [1e-8, 1 - 1e-8] (``tests/docs/test_readme.py`` compares 20 with 50 digits).
     """
     scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
     speed, creep = checked("V", V), checked("delta", delta)

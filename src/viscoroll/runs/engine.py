@@ -68,7 +68,7 @@ def run_ensemble(
     Notes
     -----
     The files are the same, byte for byte, for any number of threads or workers and after any number
-    of kills (``tests/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
+    of kills (``tests/runs/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
     """
     store = Store(Path(path).absolute(), run)
     with locked(store.root):

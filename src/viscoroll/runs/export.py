@@ -36,7 +36,7 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 
     Notes
     -----
-    Values are those of the store, bit for bit (``tests/test_run_store.py``).
+    Values are those of the store, bit for bit (``tests/runs/test_run_store.py``).
     """
     summaries, verdict = open_summaries(store), verify(store)
     if not verdict.ok:

@@ -71,7 +71,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
     Notes
     -----
-    Variance shares known in closed form lie inside the stated intervals (``tests/test_sensitivity.py``).
+    Variance shares known in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
     The bootstrap takes the points for random ones, which are less even: intervals err on the wide side.
     """
     names = _independent(run.inputs)

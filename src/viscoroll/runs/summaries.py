@@ -4,7 +4,7 @@ A bin holds the doubles that share sign, exponent and the first eight bits behin
 to the octave, so each is at most 2^-8 of its value wide, with no range to choose beforehand (as in
 DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019).  Counts are whole numbers, and moments are kept a block and
 merged in the order of blocks.  A quantile lies between the two values beside it, each of which is known to
-its bin, that is to 2^-8 of itself (``tests/test_runs.py``).
+its bin, that is to 2^-8 of itself (``tests/runs/test_runs.py``).
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
     Notes
     -----
-    One flipped bit in any file is found (``tests/test_run_store.py``).
+    One flipped bit in any file is found (``tests/runs/test_run_store.py``).
     """
     root = Path(path)
     start = read_record(root / RECORDS / "start")

@@ -57,7 +57,7 @@ def linear_errors(table: xr.Dataset, at_nodes: Iterable[str] = ()) -> dict[str, 
     -------
     dict
         Field -> the largest over :data:`SAMPLE` random points in random cells.  A single point
-        may exceed it slightly (tests/test_export.py).
+        may exceed it slightly (tests/tables/test_export.py).
     """
     from scipy.interpolate import RegularGridInterpolator
 

@@ -27,7 +27,7 @@ _NEAR_FULL_SLIP = (0.3, 0.1, 0.03, 0.01)
 _ALONG = 128
 _SAMPLE = (
     "tensor product, over the axes, of the middle and a random point of every cell, and points close to s = 1; "
-    f"generator seed {_SEED}; a single point may exceed its block's entry by up to 1.5 times (tests/test_tables.py)"
+    f"generator seed {_SEED}; a single point may exceed its block's entry by up to 1.5 times"
 )
 _NODE_ERROR = "nodes are root solves, error below 1e-12 of the largest value of each field"
 
@@ -66,7 +66,7 @@ def build(
     Notes
     -----
     Nodes are root solves, good to 1e-12 of the largest value of each field; a random point between
-    them is off by no more than 1.5 times what the error maps state (``tests/test_tables.py``).
+    them is off by no more than 1.5 times what the error maps state (``tests/tables/test_tables.py``).
     """
     if isinstance(grid, AtlasGrid):
         return _atlas(grid, threads, progress, command)

@@ -50,7 +50,7 @@ def export(
     -----
     All formats hold the same bits as ``table``.  The errors of linear interpolation that Modelica and MATLAB
     files state are measured when they are written (:func:`viscoroll.tables.accuracy.linear_errors`), and hold
-    within 5 % at other random points (tests/test_export.py).
+    within 5 % at other random points (tests/tables/test_export.py).
     """
     check_format(format, path)
     kind = schema.check(table, "export")

@@ -149,7 +149,7 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     -----
     Atlas: tensor not-a-knot cubic spline in (ln alpha, ln kappa V, u = 1 - sqrt(1 - s)); the
     errors are those stored in the table, which a single point may exceed by up to 1.5 times
-    (``tests/test_tables.py``).  Literal tables: linear in V, delta and alpha, what
+    (``tests/tables/test_tables.py``).  Literal tables: linear in V, delta and alpha, what
     other tools do by default; a higher order would ring at the kink |delta| = delta_star,
     which crosses their cells.  Each call builds the splines anew, which takes most of its time;
     keep an :class:`Interpolant` for repeated calls.

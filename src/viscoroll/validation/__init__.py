@@ -57,7 +57,7 @@ def validate(
     Notes
     -----
     Each check states the error that it allows; that none passes where the law, the stresses, a table
-    or a scene is wrong is tested in ``tests/test_validation.py``.
+    or a scene is wrong is tested in ``tests/validation/test_validation.py``.
     """
     from tqdm import tqdm
 

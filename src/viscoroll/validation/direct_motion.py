@@ -39,7 +39,7 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
     Notes
     -----
     On IC1-IC3 down to |V| = 1e-6 it differs from :func:`viscoroll.roll` at its tightest
-    tolerance by less than 1e-9 of the speed (``tests/test_validation.py``).
+    tolerance by less than 1e-9 of the speed (``tests/validation/test_validation.py``).
     """
     parameters = tuple(float(getattr(scene, name)) for name in ("alpha", "kappa", "mu", "gamma", "j"))
     V, omega = np.full(t.size, np.nan), np.full(t.size, np.nan)

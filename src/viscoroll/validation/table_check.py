@@ -16,7 +16,7 @@ from .report import Check
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Nodes are root solves; the printed form of M rounds at 1e-13 kappa V/100 (tests/test_direct.py).
+#: Nodes are root solves; the printed form of M rounds at 1e-13 kappa V/100 (tests/kernels/printed/test_direct.py).
 NODE_ALLOWED = 2e-12
 #: The stated error is the largest of a sample; twice that bounds a kink anywhere in a cell whose middle was sampled.
 SAMPLE_ALLOWANCE = 2.0

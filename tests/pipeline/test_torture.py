@@ -6,11 +6,10 @@ import json
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).parents[1]
 COMMITTED = json.loads((ROOT / "data/results/torture.json").read_text(encoding="utf-8"))
 #: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
 SLOWEST, MOST_MEMORY = 5.0, 1000.0

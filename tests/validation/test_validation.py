@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll import ParameterError
@@ -20,7 +21,6 @@ from viscoroll.validation.motions import motion_checks
 from viscoroll.validation.states import along_motion_checks, random_state_checks, random_states
 from viscoroll.validation.table_check import check_table
 
-ROOT = Path(__file__).parents[1]
 SMALL = {"states": 2000, "stress_states": 3, "table_points": 300, "times": 20}
 RETURNS = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4)
 

@@ -6,7 +6,6 @@ import csv
 import math
 import subprocess
 import sys
-from pathlib import Path
 
 import flint
 import mpmath as mp
@@ -14,6 +13,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll.reference import MissingDependencyError, roll_precise
@@ -22,7 +22,6 @@ from viscoroll.reference.phases import begin
 from viscoroll.reference.precise import printed_state
 from viscoroll.reference.zones import Law
 
-ROOT = Path(__file__).parents[1]
 CHECK_MOTIONS = ROOT / "data/reference/check_motions.csv"
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 OUTPUTS = ("V", "omega", "x", "angle")

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll import files
@@ -23,7 +24,6 @@ from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble
 from viscoroll.runs.evaluate import roll_block
 from viscoroll.runs.store import Store, locked
 
-ROOT = Path(__file__).parents[1]
 RUN = """
 preset = "paper-section-5"
 [scene]

@@ -5,20 +5,22 @@ from __future__ import annotations
 import csv
 import math
 import tracemalloc
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from places import DATA
 
 import viscoroll as vr
+from viscoroll.kernels.law.material import Material
 from viscoroll.kernels.motion.partial_slip import creep_speeds, slow_D
+from viscoroll.kernels.motion.records import Scene
 from viscoroll.motion import single
 from viscoroll.scene import PAPER_STARTS
 
-SECTION_5 = Path(__file__).parents[1] / "data" / "reference" / "section5.csv"
+SECTION_5 = DATA / "reference/section5.csv"
 ROUNDED, UNROUNDED = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_SECTION_5
 SCENES = {"rounded": ROUNDED, "unrounded": UNROUNDED}
 #: full slip returns: theory, Sect. 3
@@ -248,9 +250,9 @@ def test_slow_manifold():
 def test_slow_manifold_to_leading_order(j, zeta):
     """V'/V = omega'/omega on it, so that (1 + 1/j) Q = -(1/j - 1) M/2; what is left out is of order 1/zeta."""
     alpha, kappa, mu = ROUNDED.alpha, ROUNDED.kappa, ROUNDED.mu
-    par = np.array([alpha, (alpha - 1.0) / alpha, kappa, mu, j])
+    scene = Scene(Material(alpha, (alpha - 1.0) / alpha), kappa, mu, j)
     y = math.log(zeta)
-    V, delta = creep_speeds(y, slow_D(y, par)[0], par)
+    V, delta = creep_speeds(y, slow_D(y, scene)[0], scene)
     state = vr.contact(ROUNDED, V, delta=delta)
     assert (1.0 + 1.0 / j) * state.Q == pytest.approx(-(1.0 / j - 1.0) * 0.5 * state.M, rel=5.0 / zeta, abs=0.0)
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from places import DOCS
 from scipy import stats
 
 import viscoroll as vr
@@ -20,7 +21,6 @@ from viscoroll.figures import sobol_bars
 from viscoroll.runs import read_run
 from viscoroll.runs.sensitivity import sobol_indices
 
-DOCS = Path(__file__).parents[1] / "docs"
 N = 1024
 GAMMA = 1e4
 #: alpha = 1: no rolling resistance, and the cylinder slides up to the last time, so V = V0 + gamma mu t exactly

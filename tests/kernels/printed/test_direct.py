@@ -8,7 +8,9 @@ import pytest
 import tolerances as tol
 
 from viscoroll.kernels.bessel.ratios import ratio_k, ratio_r
-from viscoroll.kernels.law import law
+from viscoroll.kernels.law.length import contact_length
+from viscoroll.kernels.law.material import Material, generators, moment_factor
+from viscoroll.kernels.law.stick import stick_length
 from viscoroll.kernels.printed import law as direct
 from viscoroll.kernels.printed.bessel import ratio_i, ratio_k0k1
 
@@ -80,42 +82,42 @@ def test_textbook_and_tabulated_ratios_agree():
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_contact_length_shift_and_moment_against_the_explicit_law(alpha):
-    c = (alpha - 1.0) / alpha
+    material = Material(alpha, (alpha - 1.0) / alpha)
     for kappa_V in KAPPA_VS:
         lam, zeta, epsilon, status = direct.direct_contact_length(kappa_V, alpha)
-        lam_0, status_0 = law.contact_length(kappa_V, alpha, c)
+        lam_0, status_0 = contact_length(kappa_V, material)
         assert status == status_0 == direct.OK
         zeta_0 = lam_0 / (2.0 * kappa_V)
-        epsilon_0 = law.generators(zeta_0, alpha, c)[0] / zeta_0
+        epsilon_0 = generators(zeta_0, material)[0] / zeta_0
         assert lam == pytest.approx(lam_0, rel=tol.DIRECT_LENGTH, abs=0.0)
         assert zeta == pytest.approx(zeta_0, rel=tol.DIRECT_LENGTH, abs=0.0)
         assert abs(epsilon - epsilon_0) <= tol.DIRECT_SHIFT * max(1.0, epsilon_0)
         moment = direct.direct_moment(KAPPA, lam, epsilon, zeta, alpha)
-        moment_0 = kappa_V / KAPPA * law.moment_factor(zeta_0, lam_0, alpha, c)
+        moment_0 = kappa_V / KAPPA * moment_factor(zeta_0, lam_0, material)
         assert abs(moment - moment_0) * KAPPA <= tol.DIRECT_MOMENT
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_stick_and_traction_against_the_explicit_law(alpha):
-    c = (alpha - 1.0) / alpha
+    material = Material(alpha, (alpha - 1.0) / alpha)
     for kappa_V in KAPPA_VS:
         lam, zeta, epsilon, _ = direct.direct_contact_length(kappa_V, alpha)
-        lam_0, _ = law.contact_length(kappa_V, alpha, c)
+        lam_0, _ = contact_length(kappa_V, material)
         zeta_0 = lam_0 / (2.0 * kappa_V)
-        F = zeta_0 + law.generators(zeta_0, alpha, c)[0]
+        F = zeta_0 + generators(zeta_0, material)[0]
         delta_star = MU * kappa_V / KAPPA * F
         assert direct.direct_delta_star(KAPPA, MU, lam, epsilon) == pytest.approx(
             delta_star, rel=tol.DIRECT_LENGTH, abs=0.0
         )
         for s in CREEPS:
-            eta, D, status_0 = law.stick_length(zeta_0, s * F, alpha, c)
+            eta, D, status_0 = stick_length(zeta_0, s * F, material)
             beta, status = direct.direct_stick(s * delta_star, KAPPA, MU, lam, epsilon, zeta, alpha)
             assert status == status_0 == direct.OK
             assert abs(beta - eta / zeta_0) <= tol.DIRECT_STICK
             Q = direct.direct_traction(beta, s * delta_star, KAPPA, MU, lam, epsilon, zeta)
-            # 1 - H(eta)/H(zeta) in mpmath: independent of how law.py forms the difference
+            # 1 - H(eta)/H(zeta) in mpmath: independent of how the explicit law forms the difference
             with mp.workdps(40):
-                h, h_eta = (mp.mpf(law.generators(z, alpha, c)[1]) for z in (zeta_0, eta))
+                h, h_eta = (mp.mpf(generators(z, material)[1]) for z in (zeta_0, eta))
                 fall = (mp.mpf(zeta_0) + eta) * D + 2 * (zeta_0 * h - eta * h_eta)
                 share = float(fall / (mp.mpf(zeta_0) ** 2 + 2 * zeta_0 * h))
             assert abs(Q / MU - share) <= tol.DIRECT_TRACTION

@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tolerances as tol
+from places import ROOT
 from scipy import io
 
 import viscoroll as vr
 from viscoroll.config import read_grids
 
-ROOT = Path(__file__).parents[1]
 LOADING = ROOT / "docs/loading"
 CONFIG = ROOT / "pipeline/config/production.toml"
 #: Example -> the command before its two folders, and a command that succeeds where all it needs is there.

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 import tolerances as tol
+from places import ROOT
 
-ROOT = Path(__file__).parents[1]
 OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
 
 

@@ -13,13 +13,13 @@ import mpmath
 import numpy as np
 import pytest
 import tolerances as tol
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll import cli
 from viscoroll.reference import MissingDependencyError, contact_precise
 from viscoroll.runs import read_run
 
-ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 

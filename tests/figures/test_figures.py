@@ -13,6 +13,7 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from matplotlib.figure import Figure
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll.errors import OutputError
@@ -31,7 +32,6 @@ from viscoroll.figures.run_distributions import even_bars
 from viscoroll.runs import open_summaries, read_run, run_ensemble
 from viscoroll.tables import AtlasGrid
 
-ROOT = Path(__file__).parents[1]
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {"figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble"}
 _SMALL_ATLAS = AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2))

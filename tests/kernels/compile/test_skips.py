@@ -127,7 +127,7 @@ def test_the_flow_map_looks_up_no_path_unless_asked():
         table, out, needed = np.zeros(flow_layout.SIZE), np.empty((1, 1, 1)), []
         one, status, zero = np.ones(1), np.zeros(1, np.int8), np.zeros(1)
         for row in (0, 2):
-            flow_loop.flow_loop((11.0, 0.9, 2.9, 0.2, 0.5), 1.0, -16, 0.0, 0.0, table, one, one, one, np.array([row]),
+            flow_loop.flow_loop(((11.0, 0.9), 2.9, 0.2, 0.5), 1.0, -16, 0.0, 0.0, table, one, one, one, np.array([row]),
                                 out, status, zero, zero, np.zeros(1, int), 0, 1)
         assert needed == [False, True]
         """

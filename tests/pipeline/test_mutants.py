@@ -6,13 +6,12 @@ import importlib
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
+from places import ROOT
 
-ROOT = Path(__file__).parents[1]
 KERNELS = ROOT / "src/viscoroll/kernels"
 
 

@@ -7,7 +7,6 @@ import json
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import flint
 import mpmath as mp
@@ -15,12 +14,12 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll.reference import MissingDependencyError, contact_enclosure, contact_precise
 from viscoroll.reference.enclosures import INPUTS, slope_changes, slopes
 
-ROOT = Path(__file__).parents[1]
 CHECK_VALUES = ROOT / "data/reference/check_values.csv"
 
 

@@ -1,0 +1,26 @@
+"""Fixtures that tests of several folders share."""
+
+from __future__ import annotations
+
+import pytest
+import xarray as xr
+
+import viscoroll as vr
+from viscoroll.motion import flow, flow_store
+
+
+@pytest.fixture
+def own_maps(tmp_path, monkeypatch):
+    """Flow maps of a test are its own; compiled kernels stay where they are."""
+    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "maps")
+    flow._recent.clear()
+    yield
+    flow._recent.clear()
+
+
+@pytest.fixture(scope="session")
+def small_atlas() -> xr.Dataset:
+    """Quick to build; a test that changes it changes a copy."""
+    return vr.tables.build(
+        vr.tables.AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2))
+    )
