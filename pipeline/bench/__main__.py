@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any
 
 from ..document import bench as report
-from ..results import RESULTS, machine, parser, read_sizes, told, write_results
-from ..stage import ROOT
+from ..results import RESULTS, Results, machine, parser, read_sizes, write_results
+from ..stage import ROOT, told
 
 PARTS = {
     "work-precision": ("work_precision", "work_precision"),
@@ -52,7 +52,7 @@ def main() -> int:
         from .figures import draw
 
         draw(arguments.output, arguments.figures)
-        print(report.headline(arguments.output))
+        print(report.headline(Results(arguments.output)))
 
     os.environ["VISCOROLL_THREADS"] = "1"  # every time is that of one core, where it does not say otherwise
     return told("benchmark", work)

@@ -19,7 +19,8 @@ import matplotlib.pyplot as plt
 
 from viscoroll.files import replacing
 
-from ..document.bench import finished, paper_rows, read
+from ..document.bench import finished, paper_rows
+from ..results import Results
 from ..stage import ROOT
 
 #: line and marker by method: told apart without colour
@@ -120,8 +121,9 @@ FIGURES: dict[str, Callable[[dict[str, Any]], Any]] = {
 def draw(results: Path, folder: Path) -> None:
     """The figures of all parts whose results are there."""
     folder.mkdir(parents=True, exist_ok=True)
+    found = Results(results)
     for part, figure_of in FIGURES.items():
-        if (result := read(results, part)) is not None:
+        if (result := found.found(f"bench-{part}")) is not None:
             figure = figure_of(result)
             name = part if part == "work-precision" else f"bench-{part}"
             with replacing(folder / f"{name}.png") as temporary:

@@ -136,24 +136,22 @@ def show(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
     print(f"Everything on one page: {stage.shown(out / 'index.html')}")
 
 
+def summarise(config: Path, out: Path, print_only: bool) -> None:
+    """Write the page, or print the same in short."""
+    settings = stage.read_section(config, "summary", Summary)
+    found = records(out)
+    tables = {stage.ROOT / name: table_facts(stage.ROOT / name) for name in settings.tables}
+    if print_only:
+        return show(out, found, tables)
+    write_text(out / "index.html", page(out, found, tables))
+    print(f"summary: {stage.shown(out / 'index.html')}")
+
+
 def main() -> int:
     parser = stage.parser(__doc__)
     parser.add_argument("--show", action="store_true", help="print files, errors and times; write nothing")
     arguments = parser.parse_args()
-    out = arguments.output
-    try:
-        settings = stage.read_section(arguments.config, "summary", Summary)
-        found = records(out)
-        tables = {stage.ROOT / name: table_facts(stage.ROOT / name) for name in settings.tables}
-        if arguments.show:
-            show(out, found, tables)
-        else:
-            write_text(out / "index.html", page(out, found, tables))
-            print(f"summary: {stage.shown(out / 'index.html')}")
-    except (vr.ViscorollError, OSError) as error:
-        print(f"summary: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return stage.told("summary", lambda: summarise(arguments.config, arguments.output, arguments.show))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from viscoroll import ViscorollError, tables
+from viscoroll import tables
 from viscoroll.config import read_grids
 
 from .. import stage
@@ -43,19 +43,5 @@ def build_all(config: Path, folder: Path) -> stage.Outcome:
     return outcome
 
 
-def main() -> int:
-    parser = stage.parser(__doc__)
-    parser.add_argument("--tables", type=Path, default=stage.ROOT / "data/tables", help="folder (default data/tables)")
-    arguments = parser.parse_args()
-    start = time.perf_counter()
-    try:
-        outcome = build_all(arguments.config, arguments.tables)
-        stage.finish("tabulate", time.perf_counter() - start, outcome, arguments.output)
-    except ViscorollError as error:
-        print(f"tabulate: {error}", file=sys.stderr)
-        return 2
-    return 1 if outcome.failed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(stage.run("tabulate", None, build_all, __doc__, tables=stage.ROOT / "data/tables"))

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..results import table
+from ..results import Results, table
+from .cells import cell, listed, stated
 
 PAPER_GROUPS = ("IC1", "IC2", "IC3")
 #: share of the motions that a peer may give up and still be compared, on those that it finished
 MOST_FAILED = 0.05
 #: what the ratios are about, best first: the first that a result holds stands for this package
 OWN = ("flow", "table")
-
-
-def read(folder: Path, part: str) -> dict[str, Any] | None:
-    """The results of a part, or None if it was not run."""
-    path = folder / f"bench-{part}.json"
-    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
+_NANOSECONDS = "{ns!t} ns (least {least_ns!t})"
 
 
 def paper_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -59,7 +53,7 @@ def ratios(rows: list[dict[str, Any]], own: str, key: str = "max") -> list[dict[
     return result
 
 
-def comparison(folder: Path) -> list[tuple[str, str, str, str]]:
+def comparison(results: Results) -> list[tuple[str, str, str, str]]:
     """(ratio, method, its us a motion and error, ours) on IC1-IC3, on the random starts, and with own parameters.
 
     A dear peer was tried on fewer of the random motions than this package, whose error is that over all of them.
@@ -71,145 +65,104 @@ def comparison(folder: Path) -> list[tuple[str, str, str, str]]:
     }
     lines = []
     for where, (part, choose) in groups.items():
-        result = read(folder, part)
-        if result is None:
+        if (result := results.found(f"bench-{part}")) is None:
             continue
-        rows, methods = choose(result["measured"]["results"]), result["measured"]["methods"]
+        measured = result["measured"]
+        rows, methods = choose(measured["results"]), measured["methods"]
         own = next((name for name in OWN if name in {row["method"] for row in rows}), None)
         for row in ratios(rows, own) if own else []:
             name = f"{methods[row['method']]['label']}, rtol {row['rtol']:.0e}, {where}"
             name += f" ({row['failed']} of {row['motions']} given up)" if row["failed"] else ""
-            theirs, ours = (
-                f"{row['us']:.3g} µs at {row['max']:.1e}",
-                f"{row['own_us']:.3g} µs at {row['own_error']:.1e}",
-            )
-            lines.append((f"{row['ratio']:.2g}", name, theirs, ours))
+            shown = (cell(each, row) for each in ("{us:.3g} µs at {max:.1e}", "{own_us:.3g} µs at {own_error:.1e}"))
+            lines.append((f"{row['ratio']:.2g}", name, *shown))
     return lines
 
 
-def headline(folder: Path) -> str:
-    """The comparison with every row of every peer, ratios first."""
-    return table(("times faster", "than", "its time and max error", "viscoroll"), comparison(folder))
-
-
-def peers(folder: Path) -> str:
-    """The comparison at the peers' rtol 1e-6."""
-    rows = [row for row in comparison(folder) if "rtol 1e-06" in row[1]]
+def headline(results: Results, at: str = "") -> str:
+    """The comparison with every row of every peer, ratios first; with ``at`` those that name it."""
+    rows = [row for row in comparison(results) if at in row[1]]
     return table(("times faster", "than", "its time and max error", "viscoroll"), rows)
 
 
-def own_parameters(folder: Path) -> str:
+def peers(results: Results) -> str:
+    """The comparison at the peers' rtol 1e-6."""
+    return headline(results, "rtol 1e-06")
+
+
+def own_parameters(results: Results) -> str:
     """Every tolerance of the motions with scenes of their own."""
-    measured = _measured(folder, "own-parameters")
-    rows = [
-        (
-            measured["methods"][row["method"]]["label"], f"{row['rtol']:.0e}",
-            f"{_three(row['us'])} µs (least {_three(row['least_us'])})", f"{row['max']:.1e}", f"{row['p99']:.1e}",
-            str(row["failed"]),
-        )
-        for row in measured["results"]
-    ]  # fmt: skip
-    return table(("method", "rtol", "a motion", "max error", "99th percentile", "given up"), rows)
+    measured = results["bench-own-parameters"]["measured"]
+    columns = {
+        "method": "{label}", "rtol": "{rtol:.0e}", "a motion": "{us!t} µs (least {least_us!t})",
+        "max error": "{max:.1e}", "99th percentile": "{p99:.1e}", "given up": "{failed}",
+    }  # fmt: skip
+    return listed(columns, (row | measured["methods"][row["method"]] for row in measured["results"]))
 
 
-def fixed_scene(folder: Path) -> str:
+def fixed_scene(results: Results) -> str:
     """Motions of one scene by its flow map."""
-    m = _measured(folder, "fixed-scene")
-    rows = [(name, f"{_nanoseconds(row)} a motion") for name, row in m["rows"].items()]
-    rows += [
-        (
-            "largest error of motions from the map, final state; all 30 times",
-            f"{m['error']['final']:.1e}; {m['error']['all_times']:.1e}",
+    m = results["bench-fixed-scene"]["measured"]
+    lines = {name: f"{cell(_NANOSECONDS, row)} a motion" for name, row in m["rows"].items()} | {
+        "largest error of motions from the map, final state; all 30 times": (
+            "{error[final]:.1e}; {error[all_times]:.1e}"
         ),
-        (
-            f"motions of {m['compared']} that the map does not hold and that were integrated; largest error of all",
-            f"{m['not_in_map']}; {m['error']['with_integrated']:.1e}",
+        "motions of {compared} that the map does not hold and that were integrated; largest error of all": (
+            "{not_in_map}; {error[with_integrated]:.1e}"
         ),
-        ("error that the map states", f"{m['stated_error']:.1e} (path {m['stated_path_error']:.1e})"),
-        ("build, with its error measured; load", f"{_three(m['build_s'])} s; {_three(1e3 * m['load_s'])} ms"),
-        ("size", f"{m['bytes'] / 1e6:.2f} MB"),
-    ]
-    return table(("one scene, flow map, one core", "measured"), rows)
+        "error that the map states": "{stated_error:.1e} (path {stated_path_error:.1e})",
+        "build, with its error measured; load": "{build_s!t} s; {load_s!u} ms",
+        "size": f"{m['bytes'] / 1e6:.2f} MB",
+    }
+    return stated(("one scene, flow map, one core", "measured"), lines, m)
 
 
-def agreement(folder: Path) -> str:
+def agreement(results: Results) -> str:
     """Random scenes, flow against integration."""
-    m, sizes = _measured(folder, "agreement"), read(folder, "agreement")["sizes"]
-    rows = [
-        ("random scenes; with a map", f"{len(m['rows'])}; {m['scenes_with_map']}"),
-        ("starts in all", f"{m['starts']}"),
-        (
-            f"scenes within the error stated (and 30 times the integrator's rtol {sizes['rtol']:.0e})",
-            f"{m['within_stated']}",
-        ),
-        ("worst difference, as a share of that", f"{m['worst_share']:.2g}"),
-        ("motions that failed", f"{sum(row['failed'] for row in m['rows'])}"),
-    ]
-    return table(("flow map against integrator", "found"), rows)
+    found = results["bench-agreement"]
+    rows = found["measured"]["rows"]
+    own = {"scenes": len(rows), "failed": sum(row["failed"] for row in rows), "rtol": found["sizes"]["rtol"]}
+    lines = {
+        "random scenes; with a map": "{scenes}; {scenes_with_map}",
+        "starts in all": "{starts}",
+        "scenes within the error stated (and 30 times the integrator's rtol {rtol:.0e})": "{within_stated}",
+        "worst difference, as a share of that": "{worst_share:.2g}",
+        "motions that failed": "{failed}",
+    }
+    return stated(("flow map against integrator", "found"), lines, found["measured"] | own)
 
 
-def law(folder: Path) -> str:
+def law(results: Results) -> str:
     """Time and error of the contact law."""
-    rows = [
-        (_law_name(name), _nanoseconds(row), f"{max(row['error'].values()):.1e}")
-        for name, row in _measured(folder, "law").items()
-    ]
-    return table(("Q and M of a state", "time", "max error against 50 digits"), rows)
+    columns = {"Q and M of a state": "{name}", "time": _NANOSECONDS, "max error against 50 digits": "{worst:.1e}"}
+    rows = (
+        row | {
+            "name": name.replace("explicit_", "explicit in (zeta, eta), ").replace("_", " "),
+            "worst": max(row["error"].values()),
+        }
+        for name, row in results["bench-law"]["measured"].items()
+    )  # fmt: skip
+    return listed(columns, rows)
 
 
-def _law_name(name: str) -> str:
-    return name.replace("explicit_", "explicit in (zeta, eta), ").replace("_", " ")
-
-
-def scaling(folder: Path) -> str:
+def scaling(results: Results) -> str:
     """Time and memory by number of motions."""
-    rows = [
-        (
-            row["method"],
-            f"{row['threads']}",
-            f"{row['motions']:.0e}",
-            f"{_three(row['us'])} µs",
-            f"{row['peak_mb']:.0f} MB",
-        )
-        for row in _measured(folder, "scaling")["rows"]
-    ]
-    return table(("method", "threads", "motions", "a motion", "peak memory"), rows)
+    columns = {
+        "method": "{method}", "threads": "{threads}", "motions": "{motions:.0e}", "a motion": "{us!t} µs",
+        "peak memory": "{peak_mb:.0f} MB",
+    }  # fmt: skip
+    return listed(columns, results["bench-scaling"]["measured"]["rows"])
 
 
-def skips(folder: Path) -> str:
+def skips(results: Results) -> str:
     """What leaving out saves."""
-    rows = [(name, f"{row['ratio']:.3g}") for name, row in _measured(folder, "skips").items()]
-    return table(("left out", "times faster"), rows)
+    rows = ({"name": name} | row for name, row in results["bench-skips"]["measured"].items())
+    return listed({"left out": "{name}", "times faster": "{ratio:.3g}"}, rows)
 
 
-def cold_start(folder: Path) -> str:
+def cold_start(results: Results) -> str:
     """Whole processes."""
-    rows = [
-        (name.replace("_", " "), f"{_three(1e3 * row['over_bare_s'])} ms")
-        for name, row in _measured(folder, "cold-start").items() if name != "bare_python"
-    ]  # fmt: skip
-    return table(("process, kernels cached", "over a bare Python"), rows)
-
-
-def _measured(folder: Path, part: str) -> dict[str, Any]:
-    """Results of a part; a KeyError that names it where it was not run."""
-    result = read(folder, part)
-    if result is None:
-        raise KeyError(f"bench-{part}.json")
-    return result["measured"]
-
-
-def _three(value: float) -> str:
-    return f"{float(f'{value:.3g}'):g}"
-
-
-def _nanoseconds(row: dict[str, Any]) -> str:
-    return f"{_three(row['ns'])} ns (least {_three(row['least_ns'])})"
-
-
-#: tables of this module by the name of their block in the documents
-BLOCKS = {
-    "bench_peers": peers, "bench_all": headline, "bench_fixed_scene": fixed_scene, "bench_own": own_parameters,
-    "bench_agreement": agreement,
-    "bench_law": law, "bench_scaling": scaling, "bench_skips": skips, "bench_cold_start": cold_start,
-}  # fmt: skip
+    rows = (
+        row | {"name": name.replace("_", " ")}
+        for name, row in results["bench-cold-start"]["measured"].items() if name != "bare_python"
+    )  # fmt: skip
+    return listed({"process, kernels cached": "{name}", "over a bare Python": "{over_bare_s!u} ms"}, rows)

@@ -2,82 +2,73 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from ..results import table
+from ..results import Results
+from .cells import cell, listed
 
 #: the large run: motions, machines, and motions a block by how they are rolled
 MOTIONS, MACHINES = 10**11, 100
 BLOCKS_OF = {"one scene, from its flow map": 4_000_000, "seven uncertain inputs, integrated": 1_000_000}
+_ABOUT = (
+    "\nBlocks of {sizes[block]} motions, a 16th of the run where all inputs are uncertain; one output time, "
+    "{threads} threads; {machine[cpu]}, {machine[date]}, by `pipeline/measure/ensembles.py`.  "
+    "Other work on the machine lengthens the seconds, hardly those of the processor.\n"
+    "A store is verified at {verify_mb_per_s:.0f} MB/s.\n"
+)
 
 
-def rates(m: dict[str, Any]) -> str:
+def rates(results: Results) -> str:
     """Time, memory and disk of each run, and the bare loop."""
-    found = m["ensembles"]
+    m = results["ensembles"]
+    columns = {
+        "run": "{name}", "s": "{seconds:.3g}", "s of processor": "{cpu_s:.3g}", "most memory, MB": "{memory}",
+        "disk, MB": "{disk}",
+    }  # fmt: skip
     rows = [
-        (name, f"{row['seconds']:.3g}", f"{row['cpu_s']:.3g}", f"{row['peak_mb']:.0f}", f"{row['stored_mb']:.3g}")
-        for name, row in sorted(found["rows"].items(), key=lambda item: (item[1]["motions"], item[0]))
+        row | {"name": name, "memory": f"{row['peak_mb']:.0f}", "disk": f"{row['stored_mb']:.3g}"}
+        for name, row in sorted(m["rows"].items(), key=lambda item: (item[1]["motions"], item[0]))
     ]
-    loop = found["loop"]
-    rows.append(
-        (
-            f"{loop['motions']} motions of a scene, `ensemble()` alone",
-            f"{loop['seconds']:.3g}",
-            f"{loop['cpu_s']:.3g}",
-            "",
-            "",
-        )
-    )
-    about = found["machine"]
-    return table(("run", "s", "s of processor", "most memory, MB", "disk, MB"), rows) + (
-        f"\nBlocks of {found['sizes']['block']} motions, a 16th of the run where all inputs are uncertain; "
-        f"one output time, {found['threads']} threads; {about['cpu']}, {about['date']}, "
-        "by `pipeline/measure/ensembles.py`.  Other work on the machine lengthens the seconds, "
-        "hardly those of the processor.\n"
-        f"A store is verified at {found['verify_mb_per_s']:.0f} MB/s.\n"
-    )
+    alone = f"{m['loop']['motions']} motions of a scene, `ensemble()` alone"
+    return listed(columns, [*rows, m["loop"] | {"name": alone, "memory": "", "disk": ""}]) + cell(_ABOUT, m)
 
 
-def cluster(m: dict[str, Any]) -> str:
+def cluster(results: Results) -> str:
     """What dask costs."""
-    found = m["ensembles"]["cluster"]
-    rows = [
-        (
-            name,
-            f"{found[f'threads_{key}_a_block']:.3g}",
-            f"{found[f'dask_{key}_a_block']:.3g}",
-            f"{found[f'overhead_{key}']:+.1%}",
-        )
-        for name, key in (("seconds a block", "seconds"), ("of processor", "cpu_s"))
-    ]
-    block = m["ensembles"]["sizes"]["block"]
-    return table((f"block of {block} motions of a scene", "threads", "dask, local", "overhead"), rows) + (
-        f"\nOnce running; its start takes {found['dask_start_s']:.2g} s.\n"
-    )
+    m = results["ensembles"]
+    found = m["cluster"]
+    columns = {
+        f"block of {m['sizes']['block']} motions of a scene": "{name}", "threads": "{threads:.3g}",
+        "dask, local": "{dask:.3g}", "overhead": "{overhead:+.1%}",
+    }  # fmt: skip
+    rows = (
+        {
+            "name": name, "threads": found[f"threads_{clock}_a_block"], "dask": found[f"dask_{clock}_a_block"],
+            "overhead": found[f"overhead_{clock}"],
+        }
+        for name, clock in (("seconds a block", "seconds"), ("of processor", "cpu_s"))
+    )  # fmt: skip
+    return listed(columns, rows) + cell("\nOnce running; its start takes {dask_start_s:.2g} s.\n", found)
 
 
-def plan(m: dict[str, Any]) -> str:
+def plan(results: Results) -> str:
     """10^11 motions on 100 machines like the one measured on."""
-    found = m["ensembles"]
-    sizes, workers = found["sizes"], MACHINES * found["threads"]
+    m = results["ensembles"]
+    sizes, workers = m["sizes"], MACHINES * m["threads"]
     measured = (f"{sizes['fixed'][-1]} motions of a scene", f"{sizes['uncertain']} motions, seven uncertain inputs")
-    kept = found["rows"][f"{sizes['designs']} motions of a scene, all kept"]
+    columns = {
+        "motions": "{name}", "blocks": "{blocks} of {block}", "a block takes": "{seconds:.2g} s",
+        "tasks a second": "{tasks:.2g}", "all take": "{hours:.2g} h", "records": "{records:.2g} GB",
+        "summing up": "{merging:.2g} min",
+    }  # fmt: skip
     rows = []
-    for (name, block), row in zip(BLOCKS_OF.items(), (found["rows"][key] for key in measured), strict=True):
-        each = row["cpu_s"] / row["motions"]
-        blocks, hours = MOTIONS // block, MOTIONS * each / workers / 3600.0
-        rows.append(
-            (
-                name, f"{blocks} of {block}", f"{block * each:.2g} s", f"{workers / (block * each):.2g}",
-                f"{hours:.2g} h",
-                f"{blocks * found['record_bytes'] / 1e9:.2g} GB", f"{blocks * found['merge_s_a_block'] / 60.0:.2g} min",
-            )
-        )  # fmt: skip
-    head = ("motions", "blocks", "a block takes", "tasks a second", "all take", "records", "summing up")
+    for (name, block), run in zip(BLOCKS_OF.items(), (m["rows"][key] for key in measured), strict=True):
+        blocks, seconds = MOTIONS // block, block * run["cpu_s"] / run["motions"]
+        rows.append({
+            "name": name, "blocks": blocks, "block": block, "seconds": seconds, "tasks": workers / seconds,
+            "hours": blocks * seconds / workers / 3600.0, "records": blocks * m["record_bytes"] / 1e9,
+            "merging": blocks * m["merge_s_a_block"] / 60.0,
+        })  # fmt: skip
+    kept = m["rows"][f"{sizes['designs']} motions of a scene, all kept"]
     whole = MOTIONS * kept["stored_mb"] / kept["motions"] / 1e6
-    return table(head, rows) + (
+    return listed(columns, rows) + (
         f"\nEvery motion with V, omega, x at one time, its start, onset, rest and status would be {whole:.2g} TB.\n"
     )
-
-
-BLOCKS = {"ensembles": rates, "ensembles_cluster": cluster, "ensembles_plan": plan}

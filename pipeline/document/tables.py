@@ -1,188 +1,154 @@
-"""The marked blocks of README.md and docs, from the results of stages; those of the benchmark: bench/report.py."""
+"""The marked blocks of README.md and docs, from the results of measure, prove and torture."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from ..results import rows_of, table
-from . import ensembles as ensembles_report
+from ..results import Results, rows_of, table
+from .cells import cell, listed, stated, two
 
 _NAMES = {
     "lam": "λ", "epsilon": "ε", "delta_star": "δ*", "beta": "β, times 1 − s", "Q": "Q", "M": "M",
 }  # fmt: skip
+_IMPORT = {"`import viscoroll`, over a bare Python": "{time[import_s]!m} ms"}
+_ROLL = "{time[roll_1e-06_us]!n} µs; {time[roll_1e-08_us]!n} µs"
+_ENSEMBLE = "{time[ensemble_1e-06_us]!n} µs; {time[ensemble_1e-08_us]!n} µs"
+_HEADLINE = {
+    "contact state, worst of {sizes[states]} random ones, against 50 digits": "{worst_contact!n}",
+    "pressure and shear: closures with load, Q and M, relative to the load": "{worst_closure!n}",
+    "motion IC1-IC3 at rtol 1e-8: V and ω, down to 1e-6": "{motion[speed]!n}",
+    "motion IC1-IC3 at rtol 1e-8: onset of stick": "{motion[onset]!n}",
+    "`contact()`, Q and M in arrays at one alpha, a state": "{time[contact_one_alpha_ns]!n} ns",
+    "the same by root solves of the printed equations": "{time[contact_direct_ns]!n} ns",
+    "`contact()`, Q and M in arrays with an alpha each, a state": "{time[contact_an_alpha_each_ns]!n} ns",
+    "`roll()`, one motion (rtol 1e-6; 1e-8)": _ROLL,
+    "`ensemble()`, a motion, integrated (rtol 1e-6; 1e-8)": _ENSEMBLE,
+    "`ensemble()` of one scene, a motion, from the flow map": "{time[flow_us]!n} µs",
+    **_IMPORT,
+}
+_TIMES = {
+    "`contact()`, Q and M, {sizes[timed_states]} states, one alpha": "{time[contact_one_alpha_ns]!n} ns a state",
+    "the same, an alpha each": "{time[contact_an_alpha_each_ns]!n} ns a state",
+    'the same by `method="direct"`, one alpha': "{time[contact_direct_ns]!n} ns a state",
+    "`contact()`, one state, all nine fields": "{time[contact_single_us]!n} µs",
+    "`roll()`, IC1 to t = 3e-3, final state (rtol 1e-6; 1e-8)": _ROLL,
+    "`ensemble()`, {sizes[timed_motions]} starts in [-2, 2]², final state, integrated (rtol 1e-6; 1e-8)": (
+        f"{_ENSEMBLE} a motion"
+    ),
+    "the same of {mapped} starts, from the flow map": "{time[flow_us]!n} µs a motion",
+    **_IMPORT,
+    "`viscoroll roll`, the whole process, kernels cached": "{time[cli_roll_s]!n} s",
+}
+_MACHINE = (
+    "\n{cpu}, {system}, Python {python}, numpy {numpy}, numba {numba}; "
+    "viscoroll {viscoroll}, {date}.  Times are medians on one core.\n"
+)
 
 
-def number(value: float, digits: int = 2) -> str:
-    """Two significant digits, plain where that is short."""
-    text = f"{value:.{digits}g}"
-    return f"{float(text):.0f}" if 100 <= float(text) < 1e6 else text
+def headline(results: Results) -> str:
+    m = results["measured"]
+    own = {
+        "worst_contact": max(field["worst"] for field in m["contact_error"].values()),
+        "worst_closure": max(m["stress_closure"].values()), "motion": m["motion_error"]["paper"]["1e-08"],
+    }  # fmt: skip
+    return stated(("what", "measured"), _HEADLINE, m | own) + cell(_MACHINE, m["machine"])
 
 
-def headline(m: dict[str, Any]) -> str:
-    contact, motion, time = m["contact_error"], m["motion_error"]["paper"]["1e-08"], m["time"]
-    worst = max(field["worst"] for field in contact.values())
-    rows = [
-        (f"contact state, worst of {m['sizes']['states']} random ones, against 50 digits", number(worst)),
-        (
-            "pressure and shear: closures with load, Q and M, relative to the load",
-            number(max(m["stress_closure"].values())),
-        ),
-        ("motion IC1-IC3 at rtol 1e-8: V and ω, down to 1e-6", number(motion["speed"])),
-        ("motion IC1-IC3 at rtol 1e-8: onset of stick", number(motion["onset"])),
-        ("`contact()`, Q and M in arrays at one alpha, a state", f"{number(time['contact_one_alpha_ns'])} ns"),
-        ("the same by root solves of the printed equations", f"{number(time['contact_direct_ns'])} ns"),
-        (
-            "`contact()`, Q and M in arrays with an alpha each, a state",
-            f"{number(time['contact_an_alpha_each_ns'])} ns",
-        ),
-        ("`roll()`, one motion (rtol 1e-6; 1e-8)", _pair(time, "roll")),
-        ("`ensemble()`, a motion, integrated (rtol 1e-6; 1e-8)", _pair(time, "ensemble")),
-        ("`ensemble()` of one scene, a motion, from the flow map", f"{number(time['flow_us'])} µs"),
-        ("`import viscoroll`, over a bare Python", f"{number(1e3 * time['import_s'])} ms"),
-    ]
-    return table(("what", "measured"), rows) + "\n" + machine(m)
+def times(results: Results) -> str:
+    m = results["measured"]
+    shown = m | {"mapped": 50 * m["sizes"]["timed_motions"]}
+    return stated(("what", "median time on one core"), _TIMES, shown) + cell(_MACHINE, m["machine"])
 
 
-def _pair(time: dict[str, float], name: str) -> str:
-    return f"{number(time[f'{name}_1e-06_us'])} µs; {number(time[f'{name}_1e-08_us'])} µs"
+def contact(results: Results) -> str:
+    rows = ({"name": text} | results["measured"]["contact_error"][name] for name, text in _NAMES.items())
+    return listed({"relative error": "{name}", "median": "{median!n}", "worst": "{worst!n}"}, rows)
 
 
-def contact(m: dict[str, Any]) -> str:
-    rows = (
-        (_NAMES[n], number(m["contact_error"][n]["median"]), number(m["contact_error"][n]["worst"])) for n in _NAMES
-    )
-    return table(("relative error", "median", "worst"), rows)
-
-
-def direct(m: dict[str, Any]) -> str:
+def direct(results: Results) -> str:
     units = {
         "lam": "relative", "epsilon": "over max(1, ε)", "delta_star": "relative", "beta": "absolute",
         "Q": "over μ", "M": "times κ",
     }  # fmt: skip
-    names = _NAMES | {"beta": "β"}
-    rows = ((names[n], units[n], number(m["table_against_direct"][n])) for n in _NAMES)
-    return table(("field", "difference", "worst"), rows)
+    worst, names = results["measured"]["table_against_direct"], _NAMES | {"beta": "β"}
+    return table(("field", "difference", "worst"), ((names[n], units[n], two(worst[n])) for n in units))
 
 
-def stress(m: dict[str, Any]) -> str:
-    meaning = {"load": "∫ p dx = P", "traction": "∫ τ dx = Q", "moment": "∫ x p dx = M"}
-    return table(
-        ("closure", "worst, relative to the load"), ((meaning[n], number(m["stress_closure"][n])) for n in meaning)
-    )
+def stress(results: Results) -> str:
+    meaning = {
+        "∫ p dx = P": "{load!n}", "∫ τ dx = Q": "{traction!n}", "∫ x p dx = M": "{moment!n}",
+    }  # fmt: skip
+    return stated(("closure", "worst, relative to the load"), meaning, results["measured"]["stress_closure"])
 
 
-def motion(m: dict[str, Any]) -> str:
-    head = ("rtol", "V, ω", "over condition", "x", "onset", "steps")
-    keys = ("speed", "speed_over_condition", "x", "onset")
+def motion(results: Results) -> str:
+    m = results["measured"]
+    columns = {
+        "rtol": "{rtol:.0e}", "V, ω": "{speed!n}", "over condition": "{speed_over_condition!n}", "x": "{x!n}",
+        "onset": "{onset!n}", "steps": "{steps:.0f}",
+    }  # fmt: skip
+    titles = {
+        "paper": "IC1-IC3, rounded parameters", "random": f"{m['sizes']['scenes']} random scenes and starts",
+    }  # fmt: skip
     parts = []
-    for group, title in (
-        ("paper", "IC1-IC3, rounded parameters"),
-        ("random", f"{m['sizes']['scenes']} random scenes and starts"),
-    ):
-        rows = (
-            (f"{float(rtol):.0e}", *(number(errors[key]) for key in keys), f"{errors['steps']:.0f}")
-            for rtol, errors in sorted(m["motion_error"][group].items(), key=lambda item: -float(item[0]))
-        )
-        parts.append(f"{title}:\n\n{table(head, rows)}")
+    for group, title in titles.items():
+        rows = ({"rtol": float(rtol)} | errors for rtol, errors in m["motion_error"][group].items())
+        parts.append(f"{title}:\n\n{listed(columns, sorted(rows, key=lambda row: -row['rtol']))}")
     return "\n".join(parts)
 
 
-def times(m: dict[str, Any]) -> str:
-    time, sizes = m["time"], m["sizes"]
-    rows = [
-        (
-            f"`contact()`, Q and M, {sizes['timed_states']} states, one alpha",
-            f"{number(time['contact_one_alpha_ns'])} ns a state",
-        ),
-        ("the same, an alpha each", f"{number(time['contact_an_alpha_each_ns'])} ns a state"),
-        ('the same by `method="direct"`, one alpha', f"{number(time['contact_direct_ns'])} ns a state"),
-        ("`contact()`, one state, all nine fields", f"{number(time['contact_single_us'])} µs"),
-        ("`roll()`, IC1 to t = 3e-3, final state (rtol 1e-6; 1e-8)", _pair(time, "roll")),
-        (
-            f"`ensemble()`, {sizes['timed_motions']} starts in [-2, 2]², final state, integrated (rtol 1e-6; 1e-8)",
-            _pair(time, "ensemble") + " a motion",
-        ),
-        (
-            f"the same of {50 * sizes['timed_motions']} starts, from the flow map",
-            f"{number(time['flow_us'])} µs a motion",
-        ),
-        ("`import viscoroll`, over a bare Python", f"{number(1e3 * time['import_s'])} ms"),
-        ("`viscoroll roll`, the whole process, kernels cached", f"{number(time['cli_roll_s'])} s"),
-    ]
-    return table(("what", "median time on one core"), rows) + "\n" + machine(m)
-
-
-def machine(m: dict[str, Any]) -> str:
-    about = m["machine"]
-    return (
-        f"{about['cpu']}, {about['system']}, Python {about['python']}, numpy {about['numpy']}, numba {about['numba']}; "
-        f"viscoroll {about['viscoroll']}, {about['date']}.  Times are medians on one core.\n"
-    )
-
-
-def proofs(m: dict[str, Any]) -> str:
-    """One table a proof, from proofs.json."""
+def proofs(results: Results) -> str:
+    """One table a proof."""
     titles = {
         "ratios": "Bessel ratios", "contact": "Contact states", "shape": "Shape", "slopes": "Slopes and stress",
         "motion": "Motion",
     }  # fmt: skip
+    columns = {
+        "claim": "{claim}", "domain": "{domain}", "points": "{points:,}", "bound": "{bound!n}", "worst": "{worst!n}",
+        "mean": "{mean!n}",
+    }  # fmt: skip
     parts = []
     for name, title in titles.items():
-        rows = (
-            (
-                row["claim"].replace("|", "\\|"),
-                row["domain"],
-                f"{row['points']:,}",
-                number(row["bound"]),
-                number(row["worst"]),
-                number(row["mean"]),
-            )
-            for row in m["proofs"]["parts"][name]["rows"]
-        )
-        parts.append(f"{title}:\n\n{table(('claim', 'domain', 'points', 'bound', 'worst', 'mean'), rows)}")
+        found = results["proofs"]["parts"][name]["rows"]
+        rows = (row | {"claim": row["claim"].replace("|", "\\|")} for row in found)
+        parts.append(f"{title}:\n\n{listed(columns, rows)}")
     return "\n".join(parts)
 
 
-def independent(m: dict[str, Any]) -> str:
+def independent(results: Results) -> str:
     """Deviations from other implementations, worst and mean."""
-    rows = (
-        (row["source"], row["quantity"], f"{row['values']}", number(row["worst"]), number(row["mean"]))
-        for row in m["independent"]["deviations"]
-    )
-    return table(("from", "deviation in", "values", "worst", "mean"), rows)
+    columns = {
+        "from": "{source}", "deviation in": "{quantity}", "values": "{values}", "worst": "{worst!n}",
+        "mean": "{mean!n}",
+    }  # fmt: skip
+    return listed(columns, results["independent"]["deviations"])
 
 
-def paper(m: dict[str, Any]) -> str:
+def paper(results: Results) -> str:
     """Numbers that the paper prints, and the same computed here."""
     names = {"alpha": "α", "kappa": "κ", "gamma": "γ", "delta": "δ", "lam": "λ", "epsilon": "ε", "beta": "β"}
+    columns = {
+        "Sect.": "{section:g}", "t": "{t}", "quantity": "{quantity}", "printed": "{value:g}", "here": "{here}",
+        "difference in last digits": "{digits!n}",
+    }  # fmt: skip
     rows = (
-        (
-            f"{row['section']:g}",
-            f"{row['t']:g}" if row["t"] != "" else "",
-            names.get(row["quantity"], row["quantity"]).replace("beta", "β"),
-            f"{row['value']:g}",
-            row["here"],
-            number(row["digits"]),
-        )
-        for row in m["independent"]["paper"]
-    )
-    return table(("Sect.", "t", "quantity", "printed", "here", "difference in last digits"), rows)
+        row | {
+            "t": f"{row['t']:g}" if row["t"] != "" else "",
+            "quantity": names.get(row["quantity"], row["quantity"]).replace("beta", "β"),
+        }
+        for row in results["independent"]["paper"]
+    )  # fmt: skip
+    return listed(columns, rows)
 
 
-def loading(m: dict[str, Any]) -> str:
+def loading(results: Results) -> str:
     """Errors of the ways to interpolate in the atlas."""
     ways = {"spline": "tensor cubic spline (not-a-knot)", "six_points": "polynomial through six nodes along each axis"}
-    errors = m["loading"]["errors"]
-    rows = ((ways[way], *(number(errors[way][name]) for name in ("beta", "Q", "M"))) for way in ways)
-    head = ("interpolation", "β", "Q/μ", "κM")
-    return (
-        table(head, rows)
-        + f"\nLargest of {m['loading']['points']:,} random states, by `pipeline/measure/loading.py`.\n"
-    )
+    columns = {"interpolation": "{way}", "β": "{beta!n}", "Q/μ": "{Q!n}", "κM": "{M!n}"}
+    rows = ({"way": text} | results["loading"]["errors"][way] for way, text in ways.items())
+    below = "\nLargest of {points:,} random states, by `pipeline/measure/loading.py`.\n"
+    return listed(columns, rows) + cell(below, results["loading"])
 
 
-def loading_steps(m: dict[str, Any]) -> str:
+def loading_steps(results: Results) -> str:
     """The way from a state to Q and M through the atlas, with numbers."""
     formulas = {
         "kappa_V": "kappa abs(V)",
@@ -196,43 +162,38 @@ def loading_steps(m: dict[str, Any]) -> str:
         "kappa_M": "look up at (alpha, kappa_V)",
         "M": "kappa_M/kappa with the sign of V",
     }
-    state = zip(("alpha", "kappa", "mu", "V", "delta"), m["loading"]["state"], strict=True)
-    rows = ((f"`{name}`", formula, f"{m['loading']['steps'][name]:.8g}") for name, formula in formulas.items())
-    given = ", ".join(f"{name} = {value:g}" for name, value in state)
+    m = results["loading"]
+    given = ", ".join(
+        f"{name} = {value:g}" for name, value in zip(("alpha", "kappa", "mu", "V", "delta"), m["state"], strict=True)
+    )
+    rows = ((f"`{name}`", formula, f"{m['steps'][name]:.8g}") for name, formula in formulas.items())
     return f"For {given}:\n\n{table(('name', 'how', 'value'), rows)}"
 
 
-def torture(m: dict[str, Any]) -> str:
-    """One table of all parts of torture.json."""
-    head = ("what was done", "how often", "refused", "unharmed", "wrong", "slowest, s of processor", "most memory, MB")
+def torture(results: Results) -> str:
+    """One table of all its parts."""
+    columns = {
+        "what was done": "{done}", "how often": "{tried:,}", "refused": "{refused:,}", "unharmed": "{unharmed:,}",
+        "wrong": "{wrong:,}", "slowest, s of processor": "{slowest_s}", "most memory, MB": "{peak_mb}",
+    }  # fmt: skip
     rows = (
-        (
-            row["done"],
-            *(f"{row[key]:,}" for key in ("tried", "refused", "unharmed", "wrong")),
-            *("" if row[key] is None else number(row[key]) for key in ("slowest_s", "peak_mb")),
-        )
-        for row in rows_of(m["torture"]["parts"])
+        row | {name: "" if row[name] is None else two(row[name]) for name in ("slowest_s", "peak_mb")}
+        for row in rows_of(results["torture"]["parts"])
     )
-    return table(head, rows)
+    return listed(columns, rows)
 
 
-def large(m: dict[str, Any]) -> str:
+def large(results: Results) -> str:
     """Memory of large calls."""
+    columns = {
+        "call": "`{call}`", "elements": "{elements}", "result": "{result:.0f} MB",
+        "beside input and result": "{extra:.1f} MB",
+    }  # fmt: skip
     rows = (
-        (
-            f"`{row['call']}`",
-            f"{row['elements']:.0e}".replace("e+0", "e"),
-            f"{row['result_bytes'] / 1e6:.0f} MB",
-            f"{row['extra_bytes'] / 1e6:.1f} MB",
-        )
-        for row in m["large"]["rows"]
-    )
-    return table(("call", "elements", "result", "beside input and result"), rows)
-
-
-BLOCKS: dict[str, Callable[[dict[str, Any]], str]] = {
-    "headline": headline, "contact": contact, "direct": direct, "stress": stress, "motion": motion, "times": times,
-    "proofs": proofs, "independent": independent, "independent_paper": paper, "large": large, "loading": loading,
-    "loading_steps": loading_steps, "torture": torture,
-    **ensembles_report.BLOCKS,
-}  # fmt: skip
+        {
+            "call": row["call"], "elements": f"{row['elements']:.0e}".replace("e+0", "e"),
+            "result": row["result_bytes"] / 1e6, "extra": row["extra_bytes"] / 1e6,
+        }
+        for row in results["large"]["rows"]
+    )  # fmt: skip
+    return listed(columns, rows)

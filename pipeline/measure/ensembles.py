@@ -27,7 +27,7 @@ from viscoroll.blocks import run_blocks, thread_count
 from viscoroll.runs import read_run, run_ensemble, verify
 from viscoroll.runs.store import Store
 
-from ..results import RESULTS, machine, parser, read_sizes, told, write_results
+from ..results import run
 
 WHO = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
 START = """
@@ -56,39 +56,27 @@ block = {block}
 """
 
 
-def main() -> int:
-    arguments = parser(__doc__, RESULTS / "ensembles.json").parse_args()
-    return told("ensembles", lambda: measure(arguments.config, arguments.quick, arguments.output))
-
-
-def measure(config: Path, quick: bool, output: Path) -> None:
-    """All rows, into ``output``."""
-    sizes = read_sizes(config, "ensembles", quick)
-    output = output.resolve()
+def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+    """All rows, in a folder of their own."""
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        results = measured(sizes) | {"threads": thread_count(), "machine": machine(), "sizes": sizes}
-    write_results(output, results)
-    print(f"{output}: written; now run pipeline.document")
+        return measured(sizes) | {"threads": thread_count(), "sizes": sizes}
 
 
 def measured(sizes: dict[str, Any]) -> dict[str, Any]:
-    block = sizes["block"]
+    block, designs = sizes["block"], sizes["designs"]
     rolled(FIXED, 4 * block, "warm", block)  # compiles, and builds the flow map
     rows = {f"{n} motions of a scene": rolled(FIXED, n, f"fixed-{n}", block) for n in sizes["fixed"]}
     for design in ("latin", "sobol"):
-        rows[f"{sizes['designs']} motions of a scene, {design}"] = rolled(
-            FIXED, sizes["designs"], design, block, design=design
-        )
-    rows[f"{sizes['designs']} motions of a scene, all kept"] = rolled(
-        FIXED, sizes["designs"], "kept", block, keep="all"
-    )
-    rows[f"{sizes['uncertain']} motions, seven uncertain inputs"] = rolled(
-        UNCERTAIN, sizes["uncertain"], "uncertain", max(sizes["uncertain"] // 16, 1)
+        rows[f"{designs} motions of a scene, {design}"] = rolled(FIXED, designs, design, block, design=design)
+    rows[f"{designs} motions of a scene, all kept"] = rolled(FIXED, designs, "kept", block, keep="all")
+    uncertain = sizes["uncertain"]
+    rows[f"{uncertain} motions, seven uncertain inputs"] = rolled(
+        UNCERTAIN, uncertain, "uncertain", max(uncertain // 16, 1)
     )
     return {
         "rows": rows,
-        "loop": loop(sizes["designs"], block),
+        "loop": loop(designs, block),
         "cluster": cluster(sizes["cluster"], sizes["rounds"], block),
         "verify_mb_per_s": verified(Path("kept.zarr")),
         **merged(f"fixed-{sizes['fixed'][-1]}"),
@@ -186,4 +174,4 @@ def verified(store: Path) -> float:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run("ensembles", measure, __doc__))

@@ -11,10 +11,9 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
-from ..results import RESULTS, machine, parser, read_sizes, told, write_results
+from ..results import run
 
 #: calls on vectors x and y of n elements, or on a grid of n of them; ``alphas`` is a scene with an alpha for each
 CALLS = {
@@ -63,18 +62,10 @@ def measured(name: str, count: int) -> dict[str, Any]:
     return {"call": CALLS[name], "elements": count} | json.loads(result.stdout)
 
 
-def main() -> int:
-    arguments = parser(__doc__, RESULTS / "large.json").parse_args()
-    return told("large", lambda: measure(arguments.config, arguments.quick, arguments.output))
-
-
-def measure(config: Path, quick: bool, output: Path) -> None:
-    """All calls, into ``output``."""
-    sizes = read_sizes(config, "large", quick)
-    rows = [measured(name, sizes["integrated" if name == "integrated" else "elements"]) for name in CALLS]
-    write_results(output, {"rows": rows, "machine": machine()})
-    print(f"{output}: {len(rows)} calls")
+def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+    """All calls."""
+    return {"rows": [measured(name, sizes["integrated" if name == "integrated" else "elements"]) for name in CALLS]}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run("large", measure, __doc__))

@@ -9,13 +9,10 @@ interpolation, from paper.nc as that file states it, from the atlas as measured 
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import runpy
 import sys
-import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -24,7 +21,7 @@ import msgspec
 import numpy as np
 
 import viscoroll as vr
-from viscoroll import ViscorollError, tables
+from viscoroll import tables
 from viscoroll.files import write_text
 from viscoroll.reference.enclosures import INPUTS, contact_enclosure
 from viscoroll.tables.grid import s_of_u, u_of_s
@@ -97,22 +94,15 @@ def check_row(state: State, allowed: tuple[float, ...]) -> dict[str, float]:
     return row | {f"allowed_{name}": rounded_up(value) for name, value in zip(FIELDS, allowed, strict=True)}
 
 
-def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    write_text(path, text.getvalue())
-
-
 def work(settings: Loading, source: Path, folder: Path, results: Path) -> stage.Outcome:
     atlas, paper = (tables.load(source / f"{name}.nc") for name in ("atlas", "paper"))
     errors = atlas_errors(atlas, settings)
     beta, Q, M = (max(found[name] for found in errors.values()) for name in FIELDS)
     stated = tuple(paper[name].attrs["interpolation_error"] for name in FIELDS)
+    folder, results = stage.make_folder(folder), stage.make_folder(results)
     files = [folder / "check_atlas.csv", folder / "check_paper.csv", results / "loading.json"]
-    write_rows(files[0], [check_row(state, (beta, state[2] * Q, M / state[1])) for state in settings.atlas])
-    write_rows(files[1], [check_row(state, stated) for state in settings.paper])
+    stage.write_rows(files[0], [check_row(state, (beta, state[2] * Q, M / state[1])) for state in settings.atlas])
+    stage.write_rows(files[1], [check_row(state, stated) for state in settings.paper])
     steps = {name: float(value) for name, value in spline_steps(atlas, *settings.atlas[0]).items()}
     record = {"points": settings.points, "errors": errors, "state": settings.atlas[0], "steps": steps}
     record["machine"] = machine()
@@ -121,23 +111,6 @@ def work(settings: Loading, source: Path, folder: Path, results: Path) -> stage.
     return stage.Outcome(files, headline)
 
 
-def main() -> int:
-    parser = stage.parser(__doc__)
-    parser.add_argument("--tables", type=Path, default=stage.ROOT / "data/tables", help="default data/tables")
-    parser.add_argument("--folder", type=Path, default=LOADING, help="of the check values (default docs/loading)")
-    parser.add_argument("--results", type=Path, default=stage.ROOT / "data/results", help="default data/results")
-    arguments = parser.parse_args()
-    start = time.perf_counter()
-    try:
-        settings = stage.read_section(arguments.config, "loading", Loading)
-        folders = (stage.make_folder(arguments.folder), stage.make_folder(arguments.results))
-        outcome = work(settings, arguments.tables, *folders)
-        stage.finish("loading", time.perf_counter() - start, outcome, arguments.output)
-    except ViscorollError as error:
-        print(f"loading: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    folders = {"tables": stage.ROOT / "data/tables", "folder": LOADING, "results": stage.ROOT / "data/results"}
+    sys.exit(stage.run("loading", Loading, work, __doc__, **folders))

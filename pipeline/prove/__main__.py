@@ -10,45 +10,23 @@ Exit code 1 where a bound is exceeded.  pipeline/document/ puts the table into d
 from __future__ import annotations
 
 import sys
-from pathlib import Path
+from typing import Any
 
-from ..results import RESULTS, parser, read_sizes, rows_of, run_parts, told, write_results
-from . import contact as proofs_contact
-from . import motion as proofs_motion
-from . import ratios as proofs_ratios
-from . import shape as proofs_shape
-from . import slopes as proofs_slopes
+from ..results import run_parts
+from . import contact, motion, ratios, shape, slopes
 
 #: name -> function of the sizes that returns rows of claim, domain, bound, worst, points, where
 PROOFS = {
-    "ratios": proofs_ratios.rows,
-    "contact": proofs_contact.rows,
-    "shape": proofs_shape.rows,
-    "slopes": proofs_slopes.rows,
-    "motion": proofs_motion.rows,
-}
+    "ratios": ratios.rows, "contact": contact.rows, "shape": shape.rows, "slopes": slopes.rows, "motion": motion.rows,
+}  # fmt: skip
 
 
-def main() -> int:
-    options = parser(__doc__, RESULTS / "proofs.json", parts=PROOFS)
-    arguments = options.parse_args()
-    return told("prove", lambda: prove(arguments.config, arguments.quick, arguments.only, arguments.output))
-
-
-def prove(config: Path, quick: bool, only: str | None, output: Path) -> int:
-    """All proofs or one, into ``output``; 1 if a row lies beyond its bound."""
-    sizes = read_sizes(config, "prove", quick)
-    proofs = run_parts(PROOFS, sizes, only, output)
-    write_results(output, {"parts": proofs})
-    rows = rows_of(proofs)
-    broken = [row for row in rows if not row["worst"] <= row["bound"]]
-    for row in broken:
-        print(
-            f"prove: {row['claim']}: {row['worst']:.3g} exceeds {row['bound']:.3g} at {row['where']}", file=sys.stderr
-        )
-    print(f"{output}: {len(rows)} rows, {len(broken)} beyond their bound")
-    return 1 if broken else 0
+def beyond(row: dict[str, Any]) -> str | None:
+    """What is to be said of a row beyond its bound."""
+    if row["worst"] <= row["bound"]:
+        return None
+    return f"{row['claim']}: {row['worst']:.3g} exceeds {row['bound']:.3g} at {row['where']}"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_parts("prove", PROOFS, __doc__, "proofs.json", beyond))

@@ -25,8 +25,8 @@ from viscoroll.files import write_dataset
 from viscoroll.reference import contact_enclosure
 from viscoroll.symbols import SYMBOLS, label
 
-from ..results import RESULTS, parser, read_sizes, told
-from ..stage import ROOT
+from ..results import RESULTS, parser, read_sizes
+from ..stage import ROOT, told
 from .contact import by_slice, one_by_one, relative_error
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ import numpy as np
 from viscoroll.figures import save
 from viscoroll.figures.style import LINES, THIN, new_figure
 
-from ..results import RESULTS, parser, told
-from ..stage import ROOT
+from ..results import RESULTS, parser
+from ..stage import ROOT, told
 from .motion import FACTOR
 
 if TYPE_CHECKING:
@@ -52,17 +52,17 @@ def drawn(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
+def draw(results: Path, output: Path) -> None:
+    """The figure of the motion proof."""
+    save(drawn(json.loads(results.read_text(encoding="utf-8"))["parts"]["motion"]["rows"]), output)
+    print(f"{output}: drawn")
+
+
 def main() -> int:
     options = parser(__doc__, ROOT / "docs/figures/motion-errors.png", sizes=False)
     options.add_argument("--results", type=Path, default=RESULTS / "proofs.json")
     arguments = options.parse_args()
     return told("proof_figures", lambda: draw(arguments.results, arguments.output))
-
-
-def draw(results: Path, output: Path) -> None:
-    """The figure of the motion proof."""
-    save(drawn(json.loads(results.read_text(encoding="utf-8"))["parts"]["motion"]["rows"]), output)
-    print(f"{output}: drawn")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,6 @@ from __future__ import annotations
 import csv
 import math
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,7 @@ from scipy.optimize import brentq
 
 import viscoroll as vr
 
-from ..results import RESULTS, machine, parser, told, write_results
+from ..results import run
 from ..stage import ROOT
 
 REFERENCE = ROOT / "data/reference"
@@ -194,17 +193,9 @@ def rows() -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def main() -> int:
-    arguments = parser(__doc__, RESULTS / "independent.json", sizes=False).parse_args()
-    return told("independent", lambda: compare(arguments.output))
-
-
-def compare(output: Path) -> None:
-    """Every comparison, into ``output``."""
-    result = {"deviations": rows(), "paper": paper(), "machine": machine()}
-    write_results(output, result)
-    print(f"{output}: {len(result['deviations'])} deviations, {len(result['paper'])} printed numbers")
+def compare() -> dict[str, Any]:
+    return {"deviations": rows(), "paper": paper()}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run("independent", compare, __doc__, sizes=False))

@@ -21,11 +21,10 @@ import xarray as xr
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.files import write_dataset, write_text
+from viscoroll.files import write_dataset
 from viscoroll.reference.motion import PreciseMotion, roll_precise
 
 from .. import stage
-from .check_values import as_csv
 from .random_motions import ChosenMotion, chosen_motion
 
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
@@ -100,11 +99,12 @@ def work(settings: CheckMotions, folder: Path) -> stage.Outcome:
         for number, motion in enumerate(tqdm(motions, desc="motions", delay=1.0, leave=False))
     ]
     rows = [row for some in each for row in some]
+    folder = stage.make_folder(folder)
     files = [folder / "check_motions.csv", folder / "check_motions.nc"]
-    write_text(files[0], as_csv(rows))
+    stage.write_rows(files[0], rows)
     write_dataset(as_dataset(rows, len(motions)), files[1])
     return stage.Outcome(files, {"motions": len(motions), "largest difference": max(row["difference"] for row in rows)})
 
 
 if __name__ == "__main__":
-    sys.exit(stage.run("check_motions", CheckMotions, work, __doc__, stage.ROOT / "data/reference"))
+    sys.exit(stage.run("check_motions", CheckMotions, work, __doc__, folder=stage.ROOT / "data/reference"))

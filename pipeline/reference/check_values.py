@@ -9,8 +9,6 @@ the relative error that one of 1 in each input makes.  Motions: pipeline/referen
 
 from __future__ import annotations
 
-import csv
-import io
 import sys
 from pathlib import Path
 from typing import Any
@@ -21,7 +19,7 @@ import xarray as xr
 from flint import arb
 from tqdm import tqdm
 
-from viscoroll.files import write_dataset, write_text
+from viscoroll.files import write_dataset
 from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
 
 from .. import stage
@@ -80,15 +78,6 @@ def check_row(state: tuple[float, ...]) -> dict[str, float]:
     return row | {f"condition_{name}": float(f"{conditions[name]:.2e}") for name in CONDITIONED}
 
 
-def as_csv(rows: list[dict[str, float]]) -> str:
-    """Rows under the names of their columns."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()
-
-
 def as_dataset(rows: list[dict[str, float]]) -> xr.Dataset:
     columns = {name: ("state", np.array([row[name] for row in rows])) for name in rows[0]}
     return xr.Dataset(
@@ -104,11 +93,12 @@ def as_dataset(rows: list[dict[str, float]]) -> xr.Dataset:
 def work(settings: CheckValues, folder: Path) -> stage.Outcome:
     rng = np.random.default_rng(settings.seed)
     rows = [check_row(chosen_state(rng)) for _ in tqdm(range(settings.states), desc="states", delay=1.0, leave=False)]
+    folder = stage.make_folder(folder)
     files = [folder / "check_values.csv", folder / "check_values.nc"]
-    write_text(files[0], as_csv(rows))
+    stage.write_rows(files[0], rows)
     write_dataset(as_dataset(rows), files[1])
     return stage.Outcome(files, {"contact states": len(rows)})
 
 
 if __name__ == "__main__":
-    sys.exit(stage.run("check_values", CheckValues, work, __doc__, stage.ROOT / "data/reference"))
+    sys.exit(stage.run("check_values", CheckValues, work, __doc__, folder=stage.ROOT / "data/reference"))
