@@ -310,11 +310,7 @@ def test_empty():
 @pytest.mark.parametrize("name", ["one by one", "slice", "grid", "slopes", "stress", "flow map", "integrated"])
 def test_large_arrays_in_bounded_memory(name):
     """Beside input and result a call takes the same few megabytes whatever its size (10^8 elements: make prove)."""
-    sys.path.insert(0, str(ROOT / "pipeline"))
-    try:
-        large = importlib.import_module("large")
-    finally:
-        sys.path.remove(str(ROOT / "pipeline"))
+    large = importlib.import_module("pipeline.measure.large")
     if not Path("/proc/self/status").exists():
         pytest.skip("the system does not tell a process its peak")
     found = large.measured(name, 200_000 if name == "integrated" else 2_000_000)

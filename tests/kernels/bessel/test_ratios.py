@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Callable
 
 import mpmath as mp
@@ -12,7 +11,6 @@ import pytest
 import tolerances as tol
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from places import PIPELINE
 
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
@@ -133,12 +131,8 @@ def test_monotone(ratio):
 
 def refit() -> np.ndarray:
     """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
-    source = PIPELINE / "ratios.py"
-    spec = importlib.util.spec_from_file_location("pipeline_ratios", source)
-    assert spec is not None
-    assert spec.loader is not None
-    pipeline = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(pipeline)
+    from pipeline.reference import ratios as pipeline
+
     points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * pipeline.NODES)) for i in range(pipeline.NODES)]
     rows = []
     for segment in layout.SEGMENTS:
