@@ -1,4 +1,4 @@
-"""Coverage-guided fuzzing of the loaders: TOML scenes and grids (config.py), and table files (tables/store.py).
+"""Coverage-guided fuzzing of the loaders: TOML scenes and grids (config.py), and table files (tables/content.py).
 
     python pipeline/fuzz_loaders.py toml|table [--seconds N] [--corpus FOLDER]
 
@@ -40,7 +40,7 @@ def read_toml(path: Path) -> None:
 def read_table(path: Path) -> None:
     """What ``tables.load`` does behind the seal and the rehearsal, in which a crash of HDF5 harms nobody."""
     from viscoroll import ViscorollError
-    from viscoroll.tables.store import read
+    from viscoroll.tables.content import read
 
     for verify in (True, False):
         try:
@@ -72,7 +72,7 @@ def fuzz(what: str, seconds: int, corpus: Path) -> None:
 
     with atheris.instrument_imports(include=["viscoroll", "tomllib", "h5netcdf"]):
         import viscoroll.config
-        import viscoroll.tables.store  # noqa: F401
+        import viscoroll.tables.content  # noqa: F401
     seeds(what, corpus)
     read: Callable[[Path], None] = {"toml": read_toml, "table": read_table}[what]
     path = Path(tempfile.mkdtemp()) / "input"

@@ -27,7 +27,7 @@ import numpy as np
 from mutants import MUTANTS, Mutant
 
 from viscoroll.files import write_text
-from viscoroll.kernels.compile.jit import sources_digest
+from viscoroll.kernels.compile.cache import sources_digest
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "data/results/mutants.json"

@@ -111,7 +111,7 @@ def machine() -> dict[str, Any]:
     """Where and when, and with what, this was measured; ``kernels`` is the hash of their sources."""
     import numba
 
-    from viscoroll.kernels.compile.jit import sources_digest
+    from viscoroll.kernels.compile.cache import sources_digest
 
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()

@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 from viscoroll import tables
 from viscoroll.errors import TableError
-from viscoroll.tables.store import content_hash
+from viscoroll.tables.content import content_hash
 
 #: marks of the parts of an HDF5 file that lead to others: B-trees, heaps, symbol tables, object headers
 MARKS = re.compile(rb"TREE|HEAP|SNOD|GCOL|OHDR|OCHK|FRHP|BTHD|FHDB|FADB|FAHD|EAHD")

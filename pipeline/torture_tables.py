@@ -25,7 +25,7 @@ from tqdm import tqdm
 from viscoroll import ViscorollError, tables
 from viscoroll.errors import OutputError, TableError
 from viscoroll.files import seal_holds
-from viscoroll.tables.store import content_hash
+from viscoroll.tables.content import content_hash
 
 HERE = Path(__file__).parent
 ATLAS = HERE.parent / "data/tables/atlas.nc"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numba
 
-from viscoroll.kernels.compile.jit import cache_root, sources_digest
+from viscoroll.kernels.compile.cache import cache_root, sources_digest
 
 PIPELINE = Path(__file__).parents[1]
 

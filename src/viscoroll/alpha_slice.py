@@ -35,7 +35,8 @@ def slice_for(alpha: float, kappa: NDArray[np.float64], V: NDArray[np.float64], 
 
     None where no state is within its reach.
     """
-    from .kernels.law.law import contact_length
+    from .kernels.law.length import contact_length
+    from .kernels.law.material import Material
     from .kernels.law.slice_fit import speed_octave, stick_octave
     from .kernels.law.slice_loop import EDGE
 
@@ -46,7 +47,8 @@ def slice_for(alpha: float, kappa: NDArray[np.float64], V: NDArray[np.float64], 
     if not stick:
         return Slice(speed, first_speed, speed[:0], 0)
     # zeta <= F(zeta) <= zeta + 1/2, with a margin for rounding
-    short, long = (contact_length(u, alpha, (alpha - 1.0) / alpha)[0] / (2.0 * u) for u in (fast, slow))
+    material = Material(alpha, (alpha - 1.0) / alpha)
+    short, long = (contact_length(u, material)[0] / (2.0 * u) for u in (fast, slow))
     return Slice(speed, first_speed, *_octaves(stick_octave, alpha, 0.99 * EDGE * short, 1.01 * long + 0.5))
 
 

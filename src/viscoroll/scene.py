@@ -288,3 +288,11 @@ PRESETS = {
 }
 #: Initial conditions (V, omega) of Sect. 5.1.
 PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
+
+
+def kernel_scene(alpha: float, kappa: float, mu: float, j: float) -> Any:
+    """The record that the kernels of a motion take."""
+    from .kernels.law.material import Material
+    from .kernels.motion import records
+
+    return records.Scene(Material(alpha, (alpha - 1.0) / alpha), kappa, mu, j)

@@ -49,16 +49,17 @@ class Validity(NamedTuple):
 
 def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
     """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments."""
-    from .kernels.law.law import contact_length, generators
+    from .kernels.law.length import contact_length
+    from .kernels.law.material import Material, generators
 
     def state(alpha: float, kappa: float, V: float) -> tuple[float, float]:
-        c, u = (alpha - 1.0) / alpha, kappa * abs(V)
+        material, u = Material(alpha, (alpha - 1.0) / alpha), kappa * abs(V)
         lam, epsilon = 1.0, 0.0
         if u > 0.0:
-            lam, _ = contact_length(u, alpha, c)
+            lam, _ = contact_length(u, material)
             zeta = 0.5 * lam / u
             # it underflows beyond all speeds, where the contact is that of the instantaneous modulus
-            epsilon = generators(zeta, alpha, c)[0] / zeta if zeta > 0.0 else 0.0
+            epsilon = generators(zeta, material)[0] / zeta if zeta > 0.0 else 0.0
         return lam * (1.0 + epsilon) / (2.0 * kappa), epsilon
 
     points = np.broadcast(alpha, kappa, V)

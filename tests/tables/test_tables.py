@@ -23,6 +23,8 @@ from viscoroll import files
 from viscoroll.tables import grid as grids
 from viscoroll.tables import rehearsal, schema, store
 from viscoroll.tables.build import solve_atlas
+from viscoroll.tables.content import HASH, content_hash
+from viscoroll.tables.content import read as read_content
 from viscoroll.tables.survey import survey
 from viscoroll.validation.table_check import check_table
 
@@ -140,7 +142,7 @@ def test_literal_nodes_are_the_printed_equations(literal: xr.Dataset) -> None:
 @pytest.mark.parametrize("grid", [ATLAS_GRID, LITERAL_GRID], ids=["atlas", "literal"])
 def test_two_threads_give_the_bits_of_one(grid: object) -> None:
     one, two = (vr.tables.build(grid, threads=n) for n in (1, 2))
-    assert store.content_hash(one.drop_attrs()) == store.content_hash(two.drop_attrs())
+    assert content_hash(one.drop_attrs()) == content_hash(two.drop_attrs())
 
 
 # --- interpolation and stated errors ---
@@ -302,9 +304,9 @@ def test_save_load_identity(table: xr.Dataset, tmp_path: Path) -> None:
     path = tmp_path / "table.nc"
     vr.tables.save(table, path)
     loaded = vr.tables.load(path)
-    assert loaded.attrs.pop(store.HASH) == store.content_hash(table)
+    assert loaded.attrs.pop(HASH) == content_hash(table)
     xr.testing.assert_identical(loaded, table)
-    assert store.HASH not in table.attrs
+    assert HASH not in table.attrs
     again = tmp_path / "again.nc"
     vr.tables.save(vr.tables.load(path), again)
     xr.testing.assert_identical(vr.tables.load(path), vr.tables.load(again))
@@ -423,10 +425,10 @@ def test_a_mishap_of_the_library_harms_nobody(
 ) -> None:
     """A reader that does what damaged files have made libraries do, in the process of its own."""
     child = f"""
-from viscoroll.tables import rehearsal, store
+from viscoroll.tables import rehearsal
 def read(*arguments):
     {mishap}
-store.read = read
+rehearsal.read = read
 rehearsal._SECONDS = 0.1
 rehearsal.main()
 """
@@ -447,7 +449,7 @@ def test_a_file_without_its_seal_is_read_with_care(saved: Path, literal: xr.Data
     """As another program writes it: its content decides."""
     content = saved.read_bytes()
     saved.write_bytes(content[: content.rindex(b"\n", 0, -1)])
-    assert store.content_hash(vr.tables.load(saved)) == store.content_hash(literal)
+    assert content_hash(vr.tables.load(saved)) == content_hash(literal)
 
 
 def test_a_rewrite_by_another_program_is_verified(saved: Path, literal: xr.Dataset) -> None:
@@ -462,7 +464,7 @@ def test_a_rewrite_by_another_program_is_verified(saved: Path, literal: xr.Datas
             copy.attrs[key] = value
         for n, axis in enumerate(("V", "alpha")):
             copy.dims[n].attach_scale(file[axis])
-    assert store.content_hash(vr.tables.load(saved)) == store.content_hash(literal)
+    assert content_hash(vr.tables.load(saved)) == content_hash(literal)
 
 
 def test_damage_is_found_before_a_library_parses_it(saved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -489,15 +491,15 @@ def test_a_seal_is_no_obstacle_to_other_programs(saved: Path, literal: xr.Datase
 def test_bit_flips_are_never_silent(saved: Path, literal: xr.Dataset) -> None:
     """A flipped bit is refused, or lies where it changes nothing."""
     content = saved.read_bytes()
-    expected, refused = store.content_hash(literal), {"sealed": 0, "without": 0}
+    expected, refused = content_hash(literal), {"sealed": 0, "without": 0}
     for position in np.random.default_rng(3).integers(0, len(content) * 8, 40):
         damaged = bytearray(content)
         damaged[position // 8] ^= 1 << (position % 8)
         saved.write_bytes(damaged)
-        bare = partial(store.read, bytes(damaged), saved, verify=True)
+        bare = partial(read_content, bytes(damaged), saved, verify=True)
         for way, read in (("sealed", partial(vr.tables.load, saved)), ("without", bare)):
             try:
-                assert store.content_hash(read()) == expected
+                assert content_hash(read()) == expected
             except vr.TableError:
                 refused[way] += 1
     # without the seal, some 20: the others lie in what HDF5 leaves unused, more or less with the length of the texts

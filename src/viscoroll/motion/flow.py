@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..blocks import run_blocks
 from ..rolling_contact import flattened
-from ..scene import Scene
+from ..scene import Scene, kernel_scene
 from .flow_store import FlowMap, load, path_of, save
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
@@ -40,7 +40,7 @@ def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
     """(parameters, octave) of the map for a scene and speeds up to ``speed`` > 0."""
     from ..kernels.flow.layout import OCTAVE_RANGE
 
-    parameters = (scene.alpha, (scene.alpha - 1.0) / scene.alpha, scene.kappa, scene.mu, scene.j)
+    parameters = (scene.alpha, scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
     return parameters, min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
 
@@ -87,25 +87,24 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
     from ..kernels.flow import slow as flow_slow
     from ..kernels.flow.layout import CROSS_MARGIN, views
 
-    _, c, kappa, _, j = parameters
-    parts = views(table)
-    if c == 0.0:
+    alpha, kappa, _, j = parameters
+    scene, parts = kernel_scene(*parameters), views(table)
+    if alpha == 1.0:
         return "an elastic cylinder never slows down"
     if not (
-        flow_slide.slide_table(1.0, parameters, parts.slide_up)
-        and flow_slide.slide_table(-1.0, parameters, parts.slide_down)
+        flow_slide.slide_table(1.0, scene, parts.slide_up) and flow_slide.slide_table(-1.0, scene, parts.slide_down)
     ):
         return "rolling resistance can hold the sliding cylinder at a speed"
     try:
-        lasting = flow_slow.slow_table(parameters, parts.slow)
+        lasting = flow_slow.slow_table(scene, parts.slow)
     except np.linalg.LinAlgError:  # a singular matrix: no such motion either
         lasting = False
     if not lasting:
         return "full slip returns"
-    flow_slide.time_table(parts.slide_up, parameters, parts.time_up)
-    flow_slide.time_table(parts.slide_down, parameters, parts.time_down)
-    flow_slide.onset_table(parts.slide_up, parameters, parts.onset_up)
-    flow_slide.onset_table(parts.slide_down, parameters, parts.onset_down)
+    flow_slide.time_table(parts.slide_up, scene, parts.time_up)
+    flow_slide.time_table(parts.slide_down, scene, parts.time_down)
+    flow_slide.onset_table(parts.slide_up, scene, parts.onset_up)
+    flow_slide.onset_table(parts.slide_down, scene, parts.onset_down)
     flow_slow.late_table(parts.slow, kappa, parts.late)
     flow_slow.early_table(parts.slow, kappa, parts.early)
     far = float(np.sign(1.0 - j))  # the sign of the creep that turns on its way to the slow manifold
@@ -117,7 +116,7 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
         def work(start: int, stop: int) -> None:
             for n in range(start, stop):
                 if not flow_layer.layer_octave(
-                    top, n, entering, sign, entering and sign == far, parts.entry_cross, parameters, table,
+                    top, n, entering, sign, entering and sign == far, parts.entry_cross, scene, table,
                     layers, entry,
                 ):  # fmt: skip
                     failed.append(n)
@@ -133,7 +132,7 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
 
 def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
     """Largest errors against the integrator, times the margin, on motions spread over the map."""
-    kappa, mu = made.parameters[2:4]
+    _, kappa, mu, _ = made.parameters
     rng = np.random.default_rng(20)
     size = 2.0 ** (octave - rng.uniform(0.0, 10.0, _SAMPLED)) / kappa
     angle = rng.uniform(0.0, 2.0 * math.pi, _SAMPLED)
@@ -156,7 +155,8 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     from ..kernels.flow.layer import stiff_rate
     from ..kernels.motion.loss_loop import loss_loop
 
-    alpha, c, kappa, mu, j = made.parameters
+    alpha, kappa, mu, j = made.parameters
+    c = (alpha - 1.0) / alpha
     start = np.array([V0]), np.array([omega0])
 
     def flow(times: NDArray) -> Answer:
@@ -164,7 +164,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
-    stiff_time = 1.0 / stiff_rate(max(abs(V0), abs(omega0)), made.parameters)
+    stiff_time = 1.0 / stiff_rate(max(abs(V0), abs(omega0)), kernel_scene(*made.parameters))
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
     late = np.linspace(0.1, 4.0, 6) * (1.0 + j) / c
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
@@ -215,14 +215,15 @@ def ask(
     from ..kernels.flow.loop import flow_loop
     from ..kernels.flow.read import lambda_at_rest
 
+    scene = kernel_scene(*chosen.parameters)
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     answer = Answer.empty(len(rows), count, times.size)
-    rest_lambda = lambda_at_rest(rest, chosen.table, chosen.parameters) if rest > 0.0 else 0.0
+    rest_lambda = lambda_at_rest(rest, chosen.table, scene) if rest > 0.0 else 0.0
 
     def work(start: int, stop: int) -> None:
         flow_loop(
-            chosen.parameters, gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
+            scene, gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
             np.array(rows, np.int64), answer.out, answer.status, answer.onset, answer.rest, answer.switches,
             start, stop,
         )  # fmt: skip

@@ -25,7 +25,7 @@ class FlowMap:
 
     Attributes
     ----------
-    parameters : alpha, c, kappa, mu, j.
+    parameters : alpha, kappa, mu, j.
     first : kappa V of the slowest stick onset in it is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
     error : stated error of V and omega relative to the larger of the two: four times the worst
@@ -51,7 +51,7 @@ class FlowMap:
 
 def folder() -> Path:
     """Where maps are kept: they are worth no more than the kernels that fill and read them."""
-    from ..kernels.compile.jit import cache_root, sources_digest
+    from ..kernels.compile.cache import cache_root, sources_digest
 
     return cache_root() / f"flow-{sources_digest()}"
 

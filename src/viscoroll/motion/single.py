@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import Values, contact
-from ..scene import Scene
+from ..scene import Scene, kernel_scene
 from .checks import controls, output_times, start_speeds
 
 if TYPE_CHECKING:
@@ -201,8 +201,8 @@ def _step_times(
     while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
         ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
         integrate(
-            scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, end, rtol, rest, max_steps,
-            np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
+            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end, rtol, rest,
+            max_steps, np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
         )  # fmt: skip
     return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
@@ -217,8 +217,8 @@ def _integrate(
     out = np.full((OUTPUTS, asked.size), np.nan)
     switches = np.empty((_SWITCHES_KEPT, 2))
     status, steps, turns, onset_time, rest_time = integrate(
-        scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, asked, rtol, rest, max_steps,
-        out, switches, np.empty(0),
+        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked, rtol, rest,
+        max_steps, out, switches, np.empty(0),
     )  # fmt: skip
     rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
     regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]

@@ -146,7 +146,7 @@ def _software() -> dict[str, str]:
     import numba
     import scipy
 
-    from ..kernels.compile.jit import sources_digest
+    from ..kernels.compile.cache import sources_digest
 
     return {
         "viscoroll": __version__, "kernels": sources_digest(), "numpy": np.__version__, "scipy": scipy.__version__,

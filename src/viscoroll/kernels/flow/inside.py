@@ -20,14 +20,14 @@ _SOLVER_CAP = 60
 
 
 @kernel
-def earlier_entry(V, delta, first, table, par):
+def earlier_entry(V, delta, first, table, scene):
     """(family, kappa V at entry, E since then, served) of a state inside the stick zone.
 
     On the slow manifold E is infinite and the speed its own.  Illinois on the logarithm of
     the distance to it, which falls nearly linearly in E, with the speed at entry corrected
     alongside.
     """
-    v = par[2] * V
+    v = scene.kappa * V
     if not LOWEST <= v < 2.0 ** (first + layout.ENTRY_OCTAVES):
         return PLUS, v, 0.0, False
     slow = slow_creep(v, table)

@@ -45,13 +45,13 @@ def _put(out, column, V, omega, x, angle, delta, regime, loss):
 
 
 @kernel(inline=True)
-def _stick_onset(T, X, w, frame, first, need, table, par):
+def _stick_onset(T, X, w, frame, first, need, table, scene):
     """(frame, family, kappa V, tau, X so far, served) of the stick onset of a motion that slides.
 
     ``frame`` mirrors so that omega > V while sliding, and afterwards so that V > 0.
     """
-    V_on, T_on, X_on = onset_of(w - 2.0 * par[3] * T, need, table, par)
-    v = par[2] * abs(V_on)
+    V_on, T_on, X_on = onset_of(w - 2.0 * scene.mu * T, need, table, scene)
+    v = scene.kappa * abs(V_on)
     served = 2.0**first <= v < 2.0 ** (first + layout.ENTRY_OCTAVES)
     if V_on > 0.0:
         return frame, PLUS, v, max(T_on - T, 0.0), X_on - X, served
@@ -59,16 +59,16 @@ def _stick_onset(T, X, w, frame, first, need, table, par):
 
 
 @kernel(inline=True)
-def _slide_outputs(at, tau_out, onset, T0, X0, w, frame, need, table, par, out):
+def _slide_outputs(at, tau_out, onset, T0, X0, w, frame, need, table, scene, out):
     """Outputs before stick onset; returns the next column."""
-    mu, per_j = par[3], 1.0 / par[4]
+    mu, per_j = scene.mu, 1.0 / scene.j
     while at < tau_out.size and tau_out[at] < onset:
         tau = tau_out[at]
-        V = speed_after(T0 + tau, table, par)
+        V = speed_after(T0 + tau, table, scene)
         omega = (V - (w + 2.0 * mu * tau)) * per_j
         x = angle = 0.0
         if need >= PATH:
-            x = slide(V, PATH, table, par)[1] - X0
+            x = slide(V, PATH, table, scene)[1] - X0
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
         _put(out, at, frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x))
@@ -77,7 +77,7 @@ def _slide_outputs(at, tau_out, onset, T0, X0, w, frame, need, table, par, out):
 
 
 @kernel(inline=True)
-def _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, need, table, par, out):
+def _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, need, table, scene, out):
     """Outputs in partial slip up to ``until``; returns the next column.
 
     ``origin`` = (frame; distance, angle and slip loss at the entry).
@@ -85,13 +85,13 @@ def _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, n
     frame, x0, angle0, loss0 = origin
     lam, rate, x_gained, angle_gained, loss_gained = entry
     to_lose = slow_loss(lam, table) + loss_gained if need >= LOSS else 0.0
-    slow_rate = par[1] / (1.0 + par[4])
+    slow_rate = scene.material.c / (1.0 + scene.j)
     layer_end = onset + layout.LAYER_END / rate
     while at < tau_out.size and tau_out[at] <= until:
         elapsed = tau_out[at] - onset
         x = angle = loss = 0.0
         if tau_out[at] < layer_end:
-            V, delta, x, angle, loss = layer_speeds(family, v, rate, elapsed, first, need, table, par[2])
+            V, delta, x, angle, loss = layer_speeds(family, v, rate, elapsed, first, need, table, scene.kappa)
         else:
             now = lam - slow_rate * elapsed
             V, delta = slow_state(now, table)
@@ -109,11 +109,11 @@ def _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, n
 
 
 @kernel
-def _rest_outputs(at, tau_out, entry, origin, rest_lambda, table, par, out):
+def _rest_outputs(at, tau_out, entry, origin, rest_lambda, table, scene, out):
     """Outputs at rest, where the threshold was crossed."""
     frame, x0, angle0, loss0 = origin
     lam, _, x_gained, angle_gained, loss_gained = entry
-    x, angle = slow_path(lam, rest_lambda, par[1] / (1.0 + par[4]), table)
+    x, angle = slow_path(lam, rest_lambda, scene.material.c / (1.0 + scene.j), table)
     x, angle = x0 + frame * (x + x_gained), angle0 + frame * (angle + angle_gained)
     loss = loss0 + loss_gained + slow_loss(lam, table) - slow_loss(rest_lambda, table)
     for column in range(at, tau_out.size):
@@ -121,12 +121,12 @@ def _rest_outputs(at, tau_out, entry, origin, rest_lambda, table, par, out):
 
 
 @kernel(inline=True)
-def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, par, out):
+def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, scene, out):
     """One motion in tau = gamma t: (status, onset, rest time); a time is NaN where there is none.
 
     ``rest_lambda``: lambda of the slow manifold at the rest threshold.
     """
-    kappa, mu, j = par[2], par[3], par[4]
+    kappa, mu, j = scene.kappa, scene.mu, scene.j
     nowhere = (NOT_SERVED, np.nan, np.nan)
     end = tau_out[tau_out.size - 1]
     if max(abs(V0), abs(omega0)) < rest:
@@ -137,14 +137,14 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, par,
         return nowhere
     frame = 1.0 if omega0 >= V0 else -1.0
     V, omega = frame * V0, frame * omega0
-    sliding = slides(V, omega - V, table, par)
+    sliding = slides(V, omega - V, table, scene)
     at, x0, angle0, loss0, w, E, T, X, onset = 0, 0.0, 0.0, 0.0, V - j * omega, 0.0, 0.0, 0.0, 0.0
     if sliding:
-        T, X = slide(V, need, table, par)
-        frame_on, family, v, onset, x0, served = _stick_onset(T, X, w, frame, first, need, table, par)
+        T, X = slide(V, need, table, scene)
+        frame_on, family, v, onset, x0, served = _stick_onset(T, X, w, frame, first, need, table, scene)
     else:
         frame_on = 1.0 if V0 > 0.0 else -1.0
-        family, v, E, served = earlier_entry(abs(V0), (omega0 - V0) / V0, first, table, par)
+        family, v, E, served = earlier_entry(abs(V0), (omega0 - V0) / V0, first, table, scene)
     if not served or v < 2.0 * kappa * rest or (sliding and kappa * max(abs(V0), abs(omega0)) > _MOST_LOST * v):
         return nowhere
     while at < tau_out.size and tau_out[at] == 0.0:
@@ -152,7 +152,7 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, par,
         _put(out, at, V0, omega0, 0.0, 0.0, delta, FULL if sliding else PARTIAL, 0.0)
         at += 1
     if sliding:
-        at = _slide_outputs(at, tau_out, onset, T, X, w, frame, need, table, par, out)
+        at = _slide_outputs(at, tau_out, onset, T, X, w, frame, need, table, scene, out)
         if end < onset:
             return DONE, np.nan, np.nan
         angle0 = (x0 - onset * (w + mu * onset)) / j
@@ -168,7 +168,7 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, par,
         return nowhere
     resting = np.inf
     if rest > 0.0:
-        resting = onset + (entry[0] - rest_lambda) * (1.0 + j) / par[1]
+        resting = onset + (entry[0] - rest_lambda) * (1.0 + j) / scene.material.c
         if resting < max(layer_end, 0.0):
             return nowhere
     if need >= PATH and E > 0.0 and not on_manifold:
@@ -176,17 +176,17 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, par,
         x0, angle0, loss0 = -frame_on * x, -frame_on * angle, -loss
     origin = (frame_on, x0, angle0, loss0)
     until = min(resting, end)
-    at = _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, need, table, par, out)
+    at = _stick_outputs(at, tau_out, until, onset, family, v, entry, origin, first, need, table, scene, out)
     onset_time = onset if sliding else np.nan
     if end <= resting:
         return DONE, onset_time, np.nan
-    _rest_outputs(at, tau_out, entry, origin, rest_lambda, table, par, out)
+    _rest_outputs(at, tau_out, entry, origin, rest_lambda, table, scene, out)
     return RESTED, onset_time, resting
 
 
 @kernel(allocates=True)
 def flow_loop(
-    par, gamma, first, rest, rest_lambda, table, V0, omega0, t, rows,
+    scene, gamma, first, rest, rest_lambda, table, V0, omega0, t, rows,
     out, status, onset, resting, switches, start, stop,
 ):  # fmt: skip
     """Motions start..stop; those that are not served get the status NOT_SERVED and no output.
@@ -200,10 +200,10 @@ def flow_loop(
         need = max(need, PATH if rows[n] == _X or rows[n] == _ANGLE else LOSS if rows[n] >= SLIP_LOSS else SPEEDS)
     for i in range(start, stop):
         V, omega = V0[min(i, V0.size - 1)], omega0[min(i, omega0.size - 1)]
-        status[i], onset[i], resting[i] = flow_motion(V, omega, tau, rest, rest_lambda, first, need, table, par, one)
+        status[i], onset[i], resting[i] = flow_motion(V, omega, tau, rest, rest_lambda, first, need, table, scene, one)
         if need >= LOSS:
             for m in range(t.size):
-                one[ROLLING_LOSS, m] = kinetic_energy_lost(V, omega, one[0, m], one[1, m], par[4]) - one[SLIP_LOSS, m]
+                one[ROLLING_LOSS, m] = kinetic_energy_lost(V, omega, one[0, m], one[1, m], scene.j) - one[SLIP_LOSS, m]
         onset[i] /= gamma
         resting[i] /= gamma
         switches[i] = 1 if onset[i] >= 0.0 else 0

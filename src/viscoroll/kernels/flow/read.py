@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..law.law import GAUSS_W, GAUSS_X
+from ..law.stick import GAUSS_W, GAUSS_X
 from . import layout
 from .fit import MANTISSA, ONE, bits_and_offset, polynomial
 
@@ -46,9 +46,9 @@ _BLOCK = layout.SPEED_COEFFICIENTS * layout.FAST_COEFFICIENTS
 
 
 @kernel(inline=True)
-def slide(V, need, table, par):
+def slide(V, need, table, scene):
     """(T, X) of sliding from rest to V in the mirrored frame, T with the sign of V."""
-    _, _, kappa, mu, _ = par
+    _, kappa, mu, _ = scene
     speed = abs(V)
     if kappa * speed < LOWEST:
         return V / mu, 0.5 * V * V / mu
@@ -60,9 +60,9 @@ def slide(V, need, table, par):
 
 
 @kernel(inline=True)
-def slides(V, slip, table, par):
+def slides(V, slip, table, scene):
     """Whether |slip| = |omega - V| is that of full slip at V."""
-    _, _, kappa, mu, _ = par
+    _, kappa, mu, _ = scene
     speed = abs(V)
     largest = 0.5 * mu * speed / kappa  # delta_star |V| as V -> 0; delta_star falls from there
     if V == 0.0 or slip > 1.0001 * largest:
@@ -74,9 +74,9 @@ def slides(V, slip, table, par):
 
 
 @kernel(inline=True)
-def speed_after(T, table, par):
+def speed_after(T, table, scene):
     """V at T in full slip, in the mirrored frame."""
-    _, _, kappa, mu, _ = par
+    _, kappa, mu, _ = scene
     x = kappa * mu * abs(T)
     if x < LOWEST:
         return mu * T
@@ -87,9 +87,9 @@ def speed_after(T, table, par):
 
 
 @kernel(inline=True)
-def onset_of(I, need, table, par):
+def onset_of(I, need, table, scene):
     """(V, T, X) at stick onset in the mirrored frame; V = 0 where the tables do not reach."""
-    x = par[2] * abs(I) / (1.0 + par[4])
+    x = scene.kappa * abs(I) / (1.0 + scene.j)
     if not LOWEST <= x < HIGHEST:
         return 0.0, 0.0, 0.0
     b, t = bits_and_offset(x)
@@ -266,9 +266,9 @@ def served_by_layer(v, first):
 
 
 @kernel
-def lambda_at_rest(rest, table, par):
+def lambda_at_rest(rest, table, scene):
     """Lambda of the slow manifold where max(|V|, |omega|) falls to ``rest``."""
-    kappa = par[2]
+    kappa = scene.kappa
     V = rest
     for _ in range(4):
         v = kappa * V

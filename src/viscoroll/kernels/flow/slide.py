@@ -16,9 +16,9 @@ _T, _X, _I, _L = layout.T, layout.X, layout.I, layout.L
 
 
 @kernel(allocates=True)
-def slide_table(sign, par, table):
+def slide_table(sign, scene, table):
     """Fill ``slide_up`` (sign = 1) or ``slide_down`` (-1); False where V' is not positive or I not monotone."""
-    _, _, kappa, mu, j = par
+    _, kappa, mu, j = scene
     V_low = 2.0**_LOW / kappa
     T, X, last_I = V_low / mu, 0.5 * V_low * V_low / mu, 0.0
     pace, rows = np.empty((2, N)), np.empty((4, N))
@@ -28,7 +28,7 @@ def slide_table(sign, par, table):
         half = 0.5 * width(b, _LOW) / kappa
         for n in range(N):
             V = node(b, n, _LOW) / kappa
-            acceleration = sliding_rate(sign * V, 1.0, par)
+            acceleration = sliding_rate(sign * V, 1.0, scene)
             if not acceleration > 0.0:
                 return False
             pace[0, n] = half / acceleration
@@ -39,7 +39,7 @@ def slide_table(sign, par, table):
             for m in range(N):
                 rows[_T, n] += TO_NODES[n, m] * pace[0, m]
                 rows[_X, n] += TO_NODES[n, m] * pace[1, m]
-            rows[_L, n], _ = stick_limit(V, par)
+            rows[_L, n], _ = stick_limit(V, scene)
             rows[_I, n] = 2.0 * mu * rows[_T, n] - V * (1.0 - j) + sign * j * rows[_L, n]
             if not rows[_I, n] > last_I:
                 return False
@@ -53,9 +53,9 @@ def slide_table(sign, par, table):
 
 
 @kernel(allocates=True)
-def time_table(slide, par, table):
+def time_table(slide, scene, table):
     """Fill ``time_up`` or ``time_down``: V as a function of T."""
-    _, _, kappa, mu, _ = par
+    _, kappa, mu, _ = scene
     values = np.empty(N)
     for b in range(table.shape[0]):
         for n in range(N):
@@ -65,9 +65,9 @@ def time_table(slide, par, table):
 
 
 @kernel(allocates=True)
-def onset_table(slide, par, table):
+def onset_table(slide, scene, table):
     """Fill ``onset_up`` or ``onset_down``: V, T and X at onset as functions of I."""
-    _, _, kappa, mu, j = par
+    _, kappa, mu, j = scene
     rows = np.empty((3, N))
     for b in range(table.shape[0]):
         for n in range(N):

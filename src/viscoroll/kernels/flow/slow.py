@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.law import contact_length
-from ..law.slopes import at_contact
+from ..law.length import contact_length
+from ..law.material import at_contact
 from ..motion.partial_slip import partial_jacobian, partial_rhs, partial_speeds
 from . import layout
 from .fit import BINS, DERIVATIVE, HALF, NODES, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
@@ -22,15 +22,15 @@ _ITERATIONS, EXTRA = 12, 2
 
 
 @kernel
-def _relative_rate(y, dy, par):
+def _relative_rate(y, dy, scene):
     """V'/V from y' at y = ln zeta: y' = -2 H/(zeta H') V'/V."""
     zeta = np.exp(y)
-    _, h, _, dh, _, _, _, _ = at_contact(zeta, par[0], par[1])
+    _, h, _, dh, _, _, _, _ = at_contact(zeta, scene.material)
     return -dy * (1.0 + h / zeta + dh) / (1.0 + 2.0 * h / zeta)
 
 
 @kernel(allocates=True)
-def _collocate(v, y, half, offset_end, offset, par):
+def _collocate(v, y, half, offset_end, offset, scene):
     """Solve for ``offset`` at the nodes v of a bin, given its value at the right end; False if it fails."""
     f, slope = np.empty(N), np.empty(N)
     matrix, residual = np.empty((N, N)), np.empty(N)
@@ -38,9 +38,9 @@ def _collocate(v, y, half, offset_end, offset, par):
     last = np.inf
     for _ in range(_ITERATIONS):
         for n in range(N):
-            dy, doffset, _, _ = partial_rhs(y[n], offset[n], par)
-            J = partial_jacobian(y[n], offset[n], par)
-            pace = half / (v[n] * _relative_rate(y[n], dy, par))
+            dy, doffset, _, _ = partial_rhs(y[n], offset[n], scene)
+            J = partial_jacobian(y[n], offset[n], scene)
+            pace = half / (v[n] * _relative_rate(y[n], dy, scene))
             f[n] = doffset * pace
             slope[n] = (J[3] - doffset * J[1] / dy) * pace
             if not abs(f[n]) + abs(slope[n]) < 1e300:
@@ -68,9 +68,10 @@ def _collocate(v, y, half, offset_end, offset, par):
 
 
 @kernel(allocates=True)
-def slow_table(par, table):
+def slow_table(scene, table):
     """Fill ``slow``; False where there is no such motion within the stick zone."""
-    _, c, _, _, j = par
+    material, _, _, j = scene
+    c = material.c
     rate = c / (1.0 + j)
     bins = table.shape[0]
     v, y, offset, V = np.empty(N), np.empty(N), np.empty(N), np.empty((bins, N))
@@ -79,34 +80,34 @@ def slow_table(par, table):
     for b in range(bins + EXTRA * BINS - 1, -1, -1):
         for n in range(N):
             v[n] = node(b, n, _LOW)
-            y[n] = np.log(contact_length(v[n], par[0], c)[0] / (2.0 * v[n]))
+            y[n] = np.log(contact_length(v[n], scene.material)[0] / (2.0 * v[n]))
         half = 0.5 * width(b, _LOW)
-        if not _collocate(v, y, half, end, offset, par):
+        if not _collocate(v, y, half, end, offset, scene):
             return False
         end = offset[0]
         if b >= bins:
             continue
         for n in range(N):
-            dy, _, _, _ = partial_rhs(y[n], offset[n], par)
-            fall = -_relative_rate(y[n], dy, par)
-            V[b, n], delta[b, n] = partial_speeds(y[n], offset[n], par)
-            if not (fall > 0.0 and abs(delta[b, n]) < _stick_bound(y[n], par)):
+            dy, _, _, _ = partial_rhs(y[n], offset[n], scene)
+            fall = -_relative_rate(y[n], dy, scene)
+            V[b, n], delta[b, n] = partial_speeds(y[n], offset[n], scene)
+            if not (fall > 0.0 and abs(delta[b, n]) < _stick_bound(y[n], scene)):
                 return False
             pace[b, n] = half / (v[n] * fall)
             # Q = V' + M/2
-            m = at_contact(np.exp(y[n]), par[0], c)[6]
+            m = at_contact(np.exp(y[n]), scene.material)[6]
             power[b, n] = V[b, n] * delta[b, n] * V[b, n] * (0.5 * m - fall)
     _integrals(rate, V, delta, power, pace, table)
     return True
 
 
 @kernel
-def _stick_bound(y, par):
+def _stick_bound(y, scene):
     """delta_star at y = ln zeta."""
     zeta = np.exp(y)
-    g, h, _, _, _, _, _, _ = at_contact(zeta, par[0], par[1])
-    V = 1.0 / (np.sqrt(1.0 + 2.0 * h / zeta) * 2.0 * par[2] * zeta)
-    return par[3] * V * (zeta + g)
+    g, h, _, _, _, _, _, _ = at_contact(zeta, scene.material)
+    V = 1.0 / (np.sqrt(1.0 + 2.0 * h / zeta) * 2.0 * scene.kappa * zeta)
+    return scene.mu * V * (zeta + g)
 
 
 @kernel(allocates=True)

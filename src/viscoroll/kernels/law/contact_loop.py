@@ -7,18 +7,10 @@ import numpy as np
 from ..bessel.ratios import small_k_over_z
 from ..compile.jit import kernel
 from . import lockstep
-from .law import (
-    CLOSE,
-    OK,
-    contact_solution,
-    generator_slopes,
-    moment_of,
-    near_length,
-    slight,
-    stick_from_root,
-    stick_solution,
-)
-from .slopes import at_contact, slope_ratio, slope_ratio_rise
+from .length import OK, contact_solution, near_length
+from .material import at_contact, generator_slopes, moment_of, standard
+from .slopes import slope_ratio, slope_ratio_rise
+from .stick import CLOSE, slight, stick_from_root, stick_solution
 
 #: Order of the rows of the kernel's output.
 ROWS = (
@@ -60,58 +52,56 @@ def creep_ratio(V, creep, slip, creep_is_omega):
 
 
 @kernel
-def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, root, alpha, c):
+def stick(speed, delta, mu, zeta, lam, g, h, dg, delta_star, root, material):
     """(eta, zeta - eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15)."""
     s = delta / delta_star
-    if c == 0.0 or not NEAR <= zeta <= FAR:
+    if material.c == 0.0 or not NEAR <= zeta <= FAR:
         return zeta * (1.0 - s), zeta * s, 1.0 - s, s * (2.0 - s), OK
     if s < _LINEAR:
-        _, _, dg, dh = generator_slopes(zeta, alpha, c)
+        _, _, dg, dh = generator_slopes(zeta, material)
         share = s * (1.0 + g / zeta) / (1.0 + dg)  # (zeta - eta)/zeta
         return zeta, share * zeta, 1.0, share * 2.0 * lam * lam * (1.0 + (h + zeta * dh) / zeta), OK
     d = delta / (mu * speed)
     if root[3]:
-        eta, D, dH = stick_from_root(root[0], root[1], root[2], zeta, g, h, d, alpha, c)
+        eta, D, dH = stick_from_root(root[0], root[1], root[2], zeta, g, h, d, material)
         status = OK
     else:
-        eta, D, dH, status = stick_solution(zeta, g, h, dg, d, alpha, c)
+        eta, D, dH, status = stick_solution(zeta, g, h, dg, d, material)
     return eta, D, eta / zeta, min(dH * (lam / zeta) * lam, 1.0), status
 
 
 @kernel
-def traction_slopes(speed, delta, kappa, mu, zeta, eta, D, beta, share, lam, alpha, c):
+def traction_slopes(speed, delta, kappa, mu, zeta, eta, D, beta, share, lam, material):
     """(d|Q|/d|V| at fixed delta, d|Q|/d|delta|) in partial slip; share = |Q|/mu."""
-    if c == 0.0 or not NEAR <= zeta <= FAR:
+    if material.c == 0.0 or not NEAR <= zeta <= FAR:
         return 0.0, 4.0 * kappa * beta / lam
     # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
-    A, A_eta = slope_ratio(zeta, alpha, c) / zeta, slope_ratio(eta, alpha, c) / zeta
+    A, A_eta = slope_ratio(zeta, material) / zeta, slope_ratio(eta, material) / zeta
     H = 1.0 / (lam * lam)
     d = delta / (mu * speed * zeta)
-    fall = A - A_eta if D > CLOSE * zeta else slope_ratio_rise(zeta, D, alpha, c) / zeta
+    fall = A - A_eta if D > CLOSE * zeta else slope_ratio_rise(zeta, D, material) / zeta
     bracket = -share * H + H * fall / A + 0.5 * A_eta * d
     dQ_dV = -mu * 2.0 * lam * lam * bracket / speed
     return dQ_dV, 2.0 * kappa * lam * A_eta
 
 
 @kernel
-def contact_state(alpha, kappa, mu, V, creep, creep_is_omega, need, out):
+def contact_state(material, kappa, mu, V, creep, creep_is_omega, need, out):
     """All rows of one state into ``out``; ``need`` = (shift, stick, moment, slopes)."""
-    c = (alpha - 1.0) / alpha
     kappa_V = kappa * abs(V)
-    solved = contact_solution(near_length(kappa_V, alpha, c, 1.0 / np.sqrt(alpha)), kappa_V, alpha, c)
-    return contact_state_at(solved, UNSOLVED, alpha, kappa, mu, V, creep, creep_is_omega, need, out)
+    solved = contact_solution(near_length(kappa_V, material, 1.0 / np.sqrt(material.alpha)), kappa_V, material)
+    return contact_state_at(solved, UNSOLVED, material, kappa, mu, V, creep, creep_is_omega, need, out)
 
 
 @kernel(inline=True)
-def contact_state_at(solved, root, alpha, kappa, mu, V, creep, creep_is_omega, need, out):
+def contact_state_at(solved, root, material, kappa, mu, V, creep, creep_is_omega, need, out):
     """``contact_state`` from the solution of Eq. (6), and for ``stick`` perhaps that of Eq. (10)."""
     need_shift, need_stick, need_moment, need_slopes = need
-    c = (alpha - 1.0) / alpha
     speed = abs(V)
     lam, zeta, g, h, dg, status = solved
     out[LAM], out[ZETA] = lam, zeta
     if need_moment:
-        _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out)
+        _moment(V, kappa, zeta, lam, g, h, material, need_slopes, out)
     if not need_shift:
         return status
     epsilon = g / zeta if zeta >= NEAR else h * small_k_over_z(zeta)
@@ -129,11 +119,11 @@ def contact_state_at(solved, root, alpha, kappa, mu, V, creep, creep_is_omega, n
         out[BETA], out[Q] = 0.0, mu * sign
         out[DQ_DV] = out[DQ_DDELTA] = out[DQ_DOMEGA] = 0.0
         return status
-    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, g, h, dg, delta_star, root, alpha, c)
+    eta, D, beta, share, stick_status = stick(speed, abs(delta), mu, zeta, lam, g, h, dg, delta_star, root, material)
     out[BETA] = beta
     out[Q] = sign * mu * share
     if need_slopes:
-        dQ_dV, dQ_ddelta = traction_slopes(speed, abs(delta), kappa, mu, zeta, eta, D, beta, share, lam, alpha, c)
+        dQ_dV, dQ_ddelta = traction_slopes(speed, abs(delta), kappa, mu, zeta, eta, D, beta, share, lam, material)
         out[DQ_DV] = np.sign(delta) * dQ_dV
         out[DQ_DDELTA] = direction * dQ_ddelta
         out[DQ_DOMEGA] = dQ_ddelta / speed
@@ -143,8 +133,9 @@ def contact_state_at(solved, root, alpha, kappa, mu, V, creep, creep_is_omega, n
 
 
 @kernel(inline=True)
-def _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out):
+def _moment(V, kappa, zeta, lam, g, h, material, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
+    alpha, c = material
     if zeta > FAR:
         out[M], out[DM_DV] = c * V, c
         return
@@ -152,9 +143,9 @@ def _moment(V, kappa, zeta, lam, g, h, alpha, c, need_slopes, out):
         out[M] = np.copysign(0.5 * lam / kappa, V) * (0.125 * c * alpha * zeta + h * small_k_over_z(zeta))
         out[DM_DV] = 0.0
     elif not need_slopes:
-        out[M] = V * moment_of(zeta, lam, g, h, alpha, c)
+        out[M] = V * moment_of(zeta, lam, g, h, material)
     else:
-        _, h, _, dh, _, _, m, dm = at_contact(zeta, alpha, c)
+        _, h, _, dh, _, _, m, dm = at_contact(zeta, material)
         out[M] = V * m
         half_slope = 1.0 + (h + zeta * dh) / zeta
         out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)
@@ -203,9 +194,10 @@ def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, st
             )  # fmt: skip
             found = block[lockstep.FOUND + i] == 1.0
             root = block[lockstep.ETA + i], block[lockstep.G_ETA + i], block[lockstep.H_ETA + i], found
+            material = standard(alpha[min(n, alpha.size - 1)])
             status = contact_state_at(
-                solved, root, alpha[min(n, alpha.size - 1)], kappa[min(n, kappa.size - 1)], mu[min(n, mu.size - 1)],
-                V[min(n, V.size - 1)], creep[min(n, creep.size - 1)], creep_is_omega, need, state,
+                solved, root, material, kappa[min(n, kappa.size - 1)], mu[min(n, mu.size - 1)], V[min(n, V.size - 1)],
+                creep[min(n, creep.size - 1)], creep_is_omega, need, state,
             )  # fmt: skip
             worst = max(worst, status)
             for m in range(rows.size):

@@ -20,7 +20,9 @@ import numpy as np
 
 from ..bessel.layout import BINS, COEFFICIENTS
 from ..compile.jit import kernel
-from .law import OK, contact_length, generator_slopes, generators, moment_factor, root_of_F
+from .length import OK, contact_length
+from .material import generator_slopes, generators, moment_factor, standard
+from .stick import root_of_F
 
 LENGTH, SHIFT, CREEP, MOMENT = range(4)
 SHARE, PRESS, RISE = range(3)
@@ -71,19 +73,19 @@ def _fitted(values):
 @kernel(allocates=True)
 def speed_octave(alpha, octave):
     """(coefficients[bin, function, power], status) for kappa |V| in [2^octave, 2^(octave + 1))."""
-    c = (alpha - 1.0) / alpha
+    material = standard(alpha)
     values = np.empty((BINS, 4, COEFFICIENTS))
     worst = OK
     for index in range(BINS):
         for n in range(COEFFICIENTS):
             kappa_V = _node(octave, index, n)
-            lam, status = contact_length(kappa_V, alpha, c)
+            lam, status = contact_length(kappa_V, material)
             zeta = 0.5 * lam / kappa_V
-            g, _ = generators(zeta, alpha, c)
+            g, _ = generators(zeta, material)
             values[index, LENGTH, n] = lam
             values[index, SHIFT, n] = g / zeta
             values[index, CREEP, n] = lam * (1.0 + g / zeta)
-            values[index, MOMENT, n] = moment_factor(zeta, lam, alpha, c)
+            values[index, MOMENT, n] = moment_factor(zeta, lam, material)
             worst = max(worst, status)
     return _fitted(values), worst
 
@@ -91,14 +93,14 @@ def speed_octave(alpha, octave):
 @kernel(allocates=True)
 def stick_octave(alpha, octave):
     """(coefficients[bin, function, power], status) for y = F(eta) in [2^octave, 2^(octave + 1))."""
-    c = (alpha - 1.0) / alpha
+    material = standard(alpha)
     values = np.empty((BINS, 3, COEFFICIENTS))
     worst = OK
     for index in range(BINS):
         for n in range(COEFFICIENTS):
             y = _node(octave, index, n)
-            eta, _, _, status = root_of_F(y, y, alpha, c)
-            _, h, dg, dh = generator_slopes(eta, alpha, c)
+            eta, _, _, status = root_of_F(y, y, material)
+            _, h, dg, dh = generator_slopes(eta, material)
             share = eta / y
             values[index, SHARE, n] = share
             values[index, PRESS, n] = share * (eta + 2.0 * h) / y

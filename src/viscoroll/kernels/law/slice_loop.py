@@ -32,8 +32,10 @@ from .contact_loop import (
     creep_ratio,
     signed_slip,
 )
-from .law import CLOSE, GAUSS_W, GAUSS_X, OK
+from .length import OK
+from .material import standard
 from .slice_fit import CREEP, LENGTH, MOMENT, PRESS, RISE, SHARE, SHIFT
+from .stick import CLOSE, GAUSS_W, GAUSS_X
 
 #: least F(eta)/F(zeta) served; below, beta is too near 0 for its bin to be in every slice
 EDGE = 2.0**-20
@@ -99,7 +101,7 @@ def slice_loop(
             w = L - D
             served = full_slip or w >= EDGE * L or not need_stick
         if not served:
-            worst = max(worst, contact_state(alpha[0], a, b, v, x, creep_is_omega, need, state))
+            worst = max(worst, contact_state(standard(alpha[0]), a, b, v, x, creep_is_omega, need, state))
             for n in range(rows.size):
                 out[n, i] = state[rows[n]]
             continue

@@ -60,13 +60,14 @@ def _memory(u, w, a, r_complement):
 
 
 @kernel
-def unit_shape(u, w, z, alpha, c):
+def unit_shape(u, w, z, material):
     """S/z at the distances u from the front and w from the rear edge, u + w = 2; 0 outside.
 
     z = inf is the elastic limit V = 0.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
+    alpha, c = material
     ellipse = np.sqrt(u * w)
     a = alpha * z
     if c == 0.0 or a == np.inf:
@@ -77,15 +78,15 @@ def unit_shape(u, w, z, alpha, c):
 
 
 @kernel
-def stress_at(x, kappa, mu, lam, epsilon, beta, zeta, alpha, c):
+def stress_at(x, kappa, mu, lam, epsilon, beta, zeta, material):
     """(p/E', |tau|/E') at x (unit l0, positive ahead of the axis); zeta = inf at V = 0."""
     y = 2.0 * x / lam
     u = (1.0 - y) + epsilon
     w = (1.0 + y) - epsilon
     scale = lam / (8.0 * np.pi * kappa)
-    p = scale * unit_shape(u, w, zeta, alpha, c)
+    p = scale * unit_shape(u, w, zeta, material)
     if u >= 2.0 * beta:
         return p, mu * p
-    stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, alpha, c)
+    stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, material)
     # beta = 1: the difference is zero to rounding, of either sign
     return p, mu * max(p - scale * stuck, 0.0)

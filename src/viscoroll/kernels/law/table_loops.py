@@ -10,7 +10,8 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
-from .law import OK, contact_solution, moment_of, near_length
+from .length import OK, contact_solution, near_length
+from .material import moment_of, standard
 
 #: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.
 ATLAS_PLANE = ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
@@ -25,23 +26,23 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     """Pairs start..stop of (alpha, kappa_V): ``plane`` (4, pairs), ``volume`` (2, pairs, s)."""
     worst = OK
     for i in range(start, stop):
-        a, w = alpha[i // kappa_V.size], kappa_V[i % kappa_V.size]
-        c = (a - 1.0) / a
-        lam, zeta, g, h, dg, status = contact_solution(near_length(w, a, c, 1.0 / np.sqrt(a)), w, a, c)
+        material, w = standard(alpha[i // kappa_V.size]), kappa_V[i % kappa_V.size]
+        guess = near_length(w, material, 1.0 / np.sqrt(material.alpha))
+        lam, zeta, g, h, dg, status = contact_solution(guess, w, material)
         worst = max(worst, status)
         epsilon = g / zeta
         # mu = kappa = 1 turns V into kappa V, Q into Q/mu, delta_star into kappa delta_star/mu
         delta_star = 0.5 * lam * (1.0 + epsilon)
         plane[0, i] = lam
         plane[1, i] = epsilon
-        plane[2, i] = w * moment_of(zeta, lam, g, h, a, c)
+        plane[2, i] = w * moment_of(zeta, lam, g, h, material)
         plane[3, i] = delta_star
         for n in range(s.size):
             if s[n] >= 1.0:
                 volume[0, i, n], volume[1, i, n] = 0.0, 1.0
                 continue
             _, _, beta, share, status = stick(
-                w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, UNSOLVED, a, c
+                w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, UNSOLVED, material
             )
             worst = max(worst, status)
             volume[0, i, n], volume[1, i, n] = beta, share

@@ -23,9 +23,9 @@ _TREND = (0.5, 1.5)
 
 
 @kernel
-def slip_share(u, par):
+def slip_share(u, scene):
     """D/zeta: 1 less the stick share, with the sign of delta."""
-    return signed_D(u[0], u[1], par) * np.exp(-u[0])
+    return signed_D(u[0], u[1], scene) * np.exp(-u[0])
 
 
 @kernel
@@ -105,13 +105,13 @@ def path_error(X, X_off, angle, angle_off, travelled, early):
 
 
 @kernel
-def first_length(u, rtol, par):
+def first_length(u, rtol, scene):
     """Length of the first step in partial slip."""
     # where the stick zone is small the law bends on the scale eta ~ 1/alpha, however large zeta
-    _, drift, _, _, _, _, relaxation, _, D = partial_rates(u[0], u[1], par)
+    _, drift, _, _, _, _, relaxation, _, D = partial_rates(u[0], u[1], scene)
     eta = np.exp(u[0]) - abs(D)
-    scale = max(eta, 0.0) + max(1.0 / par[0], 1e-9 * np.exp(u[0]))
-    bend = abs(drift) / scale if par[1] > 0.0 else 0.0
+    scale = max(eta, 0.0) + max(1.0 / scene.material.alpha, 1e-9 * np.exp(u[0]))
+    bend = abs(drift) / scale if scene.material.c > 0.0 else 0.0
     return rtol ** (1.0 / 3.0) / (abs(relaxation) + bend + 1e-300)
 
 

@@ -31,61 +31,61 @@ _ROUNDING = 1e-15
 
 
 @kernel
-def speeds(regime, u0, u1, par):
+def speeds(regime, u0, u1, scene):
     """(V, omega, delta) in the frame of the unknowns."""
     if regime == PARTIAL:
-        V, delta = partial_speeds(u0, u1, par)
+        V, delta = partial_speeds(u0, u1, scene)
         return V, V * (1.0 + delta), delta
     if regime == REST:
         return 0.0, 0.0, 0.0
-    V = sliding_speed(u0, par)
-    omega = (V - u1) / par[4]
+    V = sliding_speed(u0, scene)
+    omega = (V - u1) / scene.j
     slip = omega - V
     return V, omega, np.copysign(np.inf, slip) if V == 0.0 else slip / V
 
 
 @kernel
-def event_value(event, u0, u1, par, rest):
+def event_value(event, u0, u1, scene, rest):
     """Positive before the event, negative after it."""
     if event == SLIP:
-        return 1.0 - abs(signed_D(u0, u1, par)) * np.exp(-u0)
-    V, delta = partial_speeds(u0, u1, par)
+        return 1.0 - abs(signed_D(u0, u1, scene)) * np.exp(-u0)
+    V, delta = partial_speeds(u0, u1, scene)
     return V * max(1.0, abs(1.0 + delta)) - rest
 
 
 @kernel
-def advance(method, u, slope, h, par, K, new, error):
+def advance(method, u, slope, h, scene, K, new, error):
     """One step by the method, with the slope at its end in K[12]; the rate at which the offset relaxes there."""
     if method == EXPLICIT:
         copy(slope, K[0])
-        explicit_step(u, h, par, K, new, error)
+        explicit_step(u, h, scene, K, new, error)
     else:
-        stiff_step(u, h, par, K, new, error)
-    return slope_at(new, par, K[12])
+        stiff_step(u, h, scene, K, new, error)
+    return slope_at(new, scene, K[12])
 
 
 @kernel
-def interpolant(method, u, new, h, par, K, terms):
+def interpolant(method, u, new, h, scene, K, terms):
     """Coefficients of the dense output of the step just taken."""
     if method == EXPLICIT:
-        explicit_dense_terms(u, new, h, par, K, terms)
+        explicit_dense_terms(u, new, h, scene, K, terms)
     else:
         dense_terms(K, terms)
 
 
 @kernel
-def _value_within(theta, event, u, new, terms, par, rest):
+def _value_within(theta, event, u, new, terms, scene, rest):
     """Event value at the fraction theta of the step, by its dense output."""
     u0, u1 = dense(theta, u, new, terms, 0), dense(theta, u, new, terms, 1)
-    return event_value(event, u0, u1, par, rest)
+    return event_value(event, u0, u1, scene, rest)
 
 
 @kernel
-def _root(event, u, new, terms, par, rest):
+def _root(event, u, new, terms, scene, rest):
     """(theta, d value/d theta) where the dense output meets the event, by the Illinois method."""
     low, high = 0.0, 1.0
-    at_low = event_value(event, u[0], u[1], par, rest)
-    at_high = event_value(event, new[0], new[1], par, rest)
+    at_low = event_value(event, u[0], u[1], scene, rest)
+    at_high = event_value(event, new[0], new[1], scene, rest)
     side = 0
     for _ in range(_LOCATE_CAP):
         if high - low <= _NEAR * high or at_high == 0.0:
@@ -93,46 +93,46 @@ def _root(event, u, new, terms, par, rest):
         middle = secant(low, high, at_low, at_high)
         if not (low < middle < high):
             middle = 0.5 * (low + high)
-        value = _value_within(middle, event, u, new, terms, par, rest)
+        value = _value_within(middle, event, u, new, terms, scene, rest)
         if abs(value) <= _NEAR * abs(at_low - at_high):
             high, at_high = middle, value
             break
         low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, middle, value)
     near, far = max(high - _DIFFERENCE, 0.0), min(high + _DIFFERENCE, 1.0)
-    before = _value_within(near, event, u, new, terms, par, rest)
-    after = _value_within(far, event, u, new, terms, par, rest)
+    before = _value_within(near, event, u, new, terms, scene, rest)
+    after = _value_within(far, event, u, new, terms, scene, rest)
     return high, (after - before) / (far - near)
 
 
 @kernel
-def locate(event, method, u, slope, h, par, rest, K, new, error, terms):
+def locate(event, method, u, slope, h, scene, rest, K, new, error, terms):
     """Length of the step whose end lies on the event; fills ``new``."""
-    interpolant(method, u, new, h, par, K, terms)
-    theta, fall = _root(event, u, new, terms, par, rest)
+    interpolant(method, u, new, h, scene, K, terms)
+    theta, fall = _root(event, u, new, terms, scene, rest)
     length = theta * h
     for _ in range(_CORRECTIONS):
-        advance(method, u, slope, length, par, K, new, error)
-        change = event_value(event, new[0], new[1], par, rest) * h / fall
+        advance(method, u, slope, length, scene, K, new, error)
+        change = event_value(event, new[0], new[1], scene, rest) * h / fall
         if not abs(change) > _ROUNDING * length:
             return length
         length = min(max(length - change, 0.0), h)
         if abs(change) <= _LAST * length:
             break
-    advance(method, u, slope, length, par, K, new, error)
+    advance(method, u, slope, length, scene, K, new, error)
     return length
 
 
 @kernel
-def first_event(method, u, slope, h, par, rest, share, K, new, error, terms):
+def first_event(method, u, slope, h, scene, rest, share, K, new, error, terms):
     """(event, length): the first event within the step in partial slip, if any, with ``new`` on it.
 
     ``share`` is D/zeta at the end of the step; the stick zone has gone where it exceeds 1.
     """
     event = NO_EVENT
     if abs(share) > 1.0 + _ROUNDING:
-        h = locate(SLIP, method, u, slope, h, par, rest, K, new, error, terms)
+        h = locate(SLIP, method, u, slope, h, scene, rest, K, new, error, terms)
         event = SLIP
-    if rest > 0.0 and event_value(AT_REST, new[0], new[1], par, rest) < 0.0:
-        h = locate(AT_REST, method, u, slope, h, par, rest, K, new, error, terms)
+    if rest > 0.0 and event_value(AT_REST, new[0], new[1], scene, rest) < 0.0:
+        h = locate(AT_REST, method, u, slope, h, scene, rest, K, new, error, terms)
         event = AT_REST
     return event, h

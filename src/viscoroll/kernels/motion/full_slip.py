@@ -11,7 +11,8 @@ import numpy as np
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 from ..compile.jit import kernel
-from ..law.law import contact_length, generators, moment_factor
+from ..law.length import contact_length
+from ..law.material import generators, moment_factor
 
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
 HOLDS = 0.16
@@ -20,28 +21,30 @@ _NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
 
 
 @kernel
-def _moment(V, par):
+def _moment(V, scene):
     """M(V), odd in V, without its slope."""
-    alpha, c, kappa, _, _ = par
+    material, kappa, _, _ = scene
+    c = material.c
     if c == 0.0:
         return 0.0
     kappa_V = kappa * abs(V)
-    lam, _ = contact_length(kappa_V, alpha, c)
+    lam, _ = contact_length(kappa_V, material)
     if kappa_V < 1e-17:
         return c * V
-    return V * moment_factor(lam / (2.0 * kappa_V), lam, alpha, c)
+    return V * moment_factor(lam / (2.0 * kappa_V), lam, material)
 
 
 @kernel
-def sliding_rate(V, sigma, par):
+def sliding_rate(V, sigma, scene):
     """V' at V of either sign."""
-    return sigma * par[3] - 0.5 * _moment(V, par)
+    return sigma * scene.mu - 0.5 * _moment(V, scene)
 
 
 @kernel
-def sliding(s, sigma, par):
+def sliding(s, sigma, scene):
     """(V, V', dV/ds, M/2, delta_star V) at s >= 0."""
-    alpha, c, kappa, mu, _ = par
+    material, kappa, mu, _ = scene
+    alpha, c = material
     if c == 0.0:
         per_s = 0.5 / kappa
         V = per_s * s
@@ -65,59 +68,60 @@ def sliding(s, sigma, par):
 
 
 @kernel
-def sliding_speed(s, par):
+def sliding_speed(s, scene):
     """V at s >= 0."""
-    return edge_of_stick(s, par)[0]
+    return edge_of_stick(s, scene)[0]
 
 
 @kernel
-def edge_of_stick(s, par):
+def edge_of_stick(s, scene):
     """(V, delta_star V) at s >= 0; the stick band is |omega - V| < delta_star V."""
-    alpha, c, kappa, mu, _ = par
-    g, h = generators(1.0 / np.float64(s), alpha, c)
+    material, kappa, mu, _ = scene
+    g, h = generators(1.0 / np.float64(s), material)
     half_lam = 0.5 / (kappa * np.sqrt(1.0 + 2.0 * h * s))
     V = s * half_lam
     return V, mu * half_lam * (1.0 + g * s) * V
 
 
 @kernel
-def stick_limit(V, par):
+def stick_limit(V, scene):
     """(delta_star |V|, zeta) at V; the stick band is |omega - V| < delta_star |V|."""
-    alpha, c, kappa, mu, _ = par
+    material, kappa, mu, _ = scene
     speed = abs(V)
     kappa_V = kappa * speed
-    lam, _ = contact_length(kappa_V, alpha, c)
+    lam, _ = contact_length(kappa_V, material)
     zeta = lam / (2.0 * kappa_V)
-    g, _ = generators(zeta, alpha, c)
+    g, _ = generators(zeta, material)
     return 0.5 * mu * lam * (1.0 + g / zeta) / kappa * speed, zeta
 
 
 @kernel
-def sliding_scale(V, w, par):
+def sliding_scale(V, w, scene):
     """Speed that errors of V are measured by: the speed expected at onset, within bounds.
 
     Sliding alone would keep V + j omega, so onset lies near V = (V + j omega)/(1 + j).
     """
-    j = par[4]
+    j = scene.j
     omega = (V - w) / j
     largest = max(abs(V), abs(omega))
     return max(1e-3 * largest, min(largest, abs(V + j * omega) / (1.0 + j)))
 
 
 @kernel
-def standstill(par):
+def standstill(scene):
     """The least s at which rolling resistance holds V against the traction, M(V) = 2 mu; NaN if there is none.
 
     From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
     """
-    _, c, kappa, mu, _ = par
+    material, kappa, mu, _ = scene
+    c = material.c
     if not kappa * mu < HOLDS:
         return np.nan
     # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
     s = 4.0 * kappa * mu / c
     for _ in range(_NEWTON):
-        _, rate, _, _, _ = sliding(s, 1.0, par)
-        _, further, _, _, _ = sliding(s * (1.0 + _DIFFERENCE), 1.0, par)
+        _, rate, _, _, _ = sliding(s, 1.0, scene)
+        _, further, _, _, _ = sliding(s * (1.0 + _DIFFERENCE), 1.0, scene)
         change = rate * _DIFFERENCE * s / (rate - further)
         if not (further < rate and change < s):
             return np.nan

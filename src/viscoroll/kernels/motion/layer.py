@@ -34,20 +34,20 @@ _STIFF = 20.0
 
 
 @kernel
-def manifold(y, D, tolerance, values, matrix, right, slow, par):
+def manifold(y, D, tolerance, values, matrix, right, slow, scene):
     """S around y as powers of t in [-1, 1], in ``slow``, with the ends of its interval behind.  Whether there is one.
 
     Collocation at nodes 1 ... N alone: no left end, so that nothing of the fast motion enters.
     """
-    slow_start(y, 0.0, values, par)
+    slow_start(y, 0.0, values, scene)
     rise = 1.0 / stiffness(REACHED, values)
-    dy, dD, _, _ = creep_rates(y, D, par)
+    dy, dD, _, _ = creep_rates(y, D, scene)
     early = _EARLY * dy / dD * (node_D(REACHED, values) - D)
     left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
     reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
     if not 0.0 < rise < 1.0 / _STIFF:
         return False
-    if not slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, par):
+    if not slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, scene):
         return False
     for i in range(1, N + 1):
         if not stiffness(i, values) > _STIFF:
@@ -81,17 +81,17 @@ def within(y, slow):
 
 
 @kernel
-def layer_node(i, e, weight, nodes, slow, par):
+def layer_node(i, e, weight, nodes, slow, scene):
     """Fill node i from its y; ``weight``: slope of theta there."""
     y = nodes[Y, i]
     S, slope = slow_creep(y, slow)
-    dy, dD, V, delta = creep_rates(y, S + e, par)
+    dy, dD, V, delta = creep_rates(y, S + e, scene)
     per = -weight * e / (dD - slope * dy)
     nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = per * dy, per, per * V, per * V * delta
 
 
 @kernel
-def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, par):
+def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, scene):
     """Collocate over ``length`` e-folds from node 0, where e is given; returns the length, NaN where it failed.
 
     With ``to_zero`` the panel ends where D = 0.  ``tolerance`` bounds the remaining error of y.
@@ -104,7 +104,7 @@ def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, par):
         for i in range(1, N + 1):
             v = 0.5 * (1.0 + NODES[i])
             graded = v ** (power - 1)
-            layer_node(i, e * np.exp(-length * graded * v), power * graded, nodes, slow, par)
+            layer_node(i, e * np.exp(-length * graded * v), power * graded, nodes, slow, scene)
         change = 0.0
         for i in range(N):
             rise = 0.0

@@ -59,14 +59,14 @@ def panel_error(length, rtol, travelled, nodes):
 
 
 @kernel
-def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, par, gamma, offset, out):
+def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, scene, gamma, offset, out):
     """Outputs within the panel; the next column."""
     v = 0.0
     while at < tau_out.size and tau_out[at] <= tau + rise:
         since = tau_out[at] - tau
         v = place(since, max(v, 2.0 * max(since / rise, 0.0) ** (1.0 / power)), powers, 0)
         y, X = u[0] + rise_at(v, powers, 3), rise_at(v, powers, 1)
-        V, delta = creep_speeds(y, slow_creep(y, slow)[0] + e * np.exp(-length * (0.5 * v) ** power), par)
+        V, delta = creep_speeds(y, slow_creep(y, slow)[0] + e * np.exp(-length * (0.5 * v) ** power), scene)
         put(out, at, direction, PARTIAL, V, V * (1.0 + delta), delta,
             offset[0] + direction * (u[2] + X),
             offset[1] + direction * (u[3] + X + rise_at(v, powers, 2)), gamma)  # fmt: skip
@@ -75,10 +75,10 @@ def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, 
 
 
 @kernel
-def above_manifold(y, D, rtol, slow, work, par):
+def above_manifold(y, D, rtol, slow, work, scene):
     """e at (y, D), with the manifold around it solved for; NaN if there is none."""
     values, matrix, right, _ = work
-    if not manifold(y, D, max(NEWTON * SHARE * rtol, 1e-12), values, matrix, right, slow, par):
+    if not manifold(y, D, max(NEWTON * SHARE * rtol, 1e-12), values, matrix, right, slow, scene):
         return np.nan
     return D - slow_creep(y, slow)[0]
 
@@ -92,9 +92,9 @@ def tolerated(y, rtol, slow, work):
 
 
 @kernel
-def panel_size(e, length, power, to_zero, rtol, travelled, nodes, slow, par):
+def panel_size(e, length, power, to_zero, rtol, travelled, nodes, slow, scene):
     """(Length, error over its tolerance) of the panel from node 0; infinite where it failed."""
-    solved = layer_solve(e, length, power, to_zero, max(_SUBSTITUTION * SHARE * rtol, 1e-14), nodes, slow, par)
+    solved = layer_solve(e, length, power, to_zero, max(_SUBSTITUTION * SHARE * rtol, 1e-14), nodes, slow, scene)
     if not (solved > 0.0 and decays_throughout(nodes)):
         return length, np.inf
     return solved, panel_error(solved, rtol, travelled, nodes)
@@ -134,19 +134,19 @@ def fastest(nodes):
 
 
 @kernel
-def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, max_steps, steps,
+def layer_phase(u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, max_steps, steps,
                 out, step_ends, ends, work, nodes, slow):  # fmt: skip
     """Follow the layer from u until it is over, outputs end, or a panel fails.
 
     Returns (whether it is over, tau, next column, steps, ends noted).
     """
-    D, zeta = signed_D(u[0], u[1], par), np.exp(u[0])
-    e = above_manifold(u[0], D, rtol, slow, work, par)
+    D, zeta = signed_D(u[0], u[1], scene), np.exp(u[0])
+    e = above_manifold(u[0], D, rtol, slow, work, scene)
     if np.isnan(e):
         return False, tau, at, steps, ends
     known, crosses = u[0], D * (D - e) < 0.0
     left = np.log(abs(e) / tolerated(u[0], rtol, slow, work))
-    length = _FIRST * rtol ** (1.0 / 3.0) * (zeta - abs(D) + 1.0 / par[0]) / abs(e)
+    length = _FIRST * rtol ** (1.0 / 3.0) * (zeta - abs(D) + 1.0 / scene.material.alpha) / abs(e)
     shortest, stretch, power = _SHORTEST * length, _NEARLY, _GRADED
     nodes[Y, 0] = u[0]
     for row in range(D_Y, ROWS):
@@ -158,17 +158,17 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
         if stretch * length >= min(zero, left):
             length = min(zero, left)
         to_zero = crosses and length == zero
-        length, size = panel_size(e, length, power, to_zero, rtol, travelled, nodes, slow, par)
+        length, size = panel_size(e, length, power, to_zero, rtol, travelled, nodes, slow, scene)
         steps += 1
         if not size <= 1.0 and abs(e) > _ROUNDING * zeta:
             stretch = 1.0
             if size == np.inf and u[0] != known:
                 # perhaps the panel ends where the manifold is not known yet
                 known = u[0]
-                renewed = above_manifold(known, slow_creep(known, slow)[0] + e, rtol, slow, work, par)
+                renewed = above_manifold(known, slow_creep(known, slow)[0] + e, rtol, slow, work, scene)
                 if renewed * e > 0.0:
                     e, left = renewed, np.log(renewed / e) + left
-                    layer_node(0, e, 1.0, nodes, slow, par)
+                    layer_node(0, e, 1.0, nodes, slow, scene)
                     continue
             length = next_panel(length, power, size)
             if length >= shortest:
@@ -180,7 +180,7 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
             powers = work[3]
             layer_dense_terms(0.5 * length, nodes, powers)
             at = layer_outputs(
-                tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, par, gamma, offset, out
+                tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, scene, gamma, offset, out
             )
             ends = note_nodes(tau, powers, gamma, step_ends, ends)
         pass_on(length, power, u, travelled, nodes)
@@ -189,5 +189,5 @@ def layer_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, r
         e *= np.exp(-length)
         crosses, stretch = crosses and not to_zero, _NEARLY
         length, power = next_panel(length, power, size), 1
-    u[1] = slow_creep(u[0], slow)[0] + e - slow_D(u[0], par)[0]
+    u[1] = slow_creep(u[0], slow)[0] + e - slow_D(u[0], scene)[0]
     return left <= 0.0 or abs(e) <= _ROUNDING * zeta, tau, at, steps, ends

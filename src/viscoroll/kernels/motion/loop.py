@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..law.material import standard
 from .integrate import integrate
 from .output import OUTPUTS
+from .records import Scene
 
 #: columns of the per-motion information
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
@@ -21,10 +23,13 @@ def motion_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps
     one = np.empty((OUTPUTS, t.size))
     switches, step_ends = np.empty((0, 2)), np.empty(0)
     for i in range(start, stop):
+        scene = Scene(
+            standard(alpha[min(i, alpha.size - 1)]), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
+            j[min(i, j.size - 1)],
+        )  # fmt: skip
         one[:] = np.nan
         result = integrate(
-            alpha[min(i, alpha.size - 1)], kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
-            gamma[min(i, gamma.size - 1)], j[min(i, j.size - 1)],
+            scene, gamma[min(i, gamma.size - 1)],
             V0[min(i, V0.size - 1)], omega0[min(i, omega0.size - 1)],
             t, rtol, rest, max_steps, one, switches, step_ends,
         )  # fmt: skip

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..law.material import standard
 from .integrate import integrate
 from .losses import SLIP_LOSS, add_losses
 from .output import OUTPUTS
+from .records import Scene
 
 #: room for the ends of steps at first
 _ENDS = 1000
@@ -20,22 +22,23 @@ def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, 
     wanted = rows.max() >= SLIP_LOSS
     switches, step_ends = np.empty((0, 2)), np.zeros(_ENDS)
     for i in range(start, stop):
-        scene = (
-            alpha[min(i, alpha.size - 1)], kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
-            gamma[min(i, gamma.size - 1)], j[min(i, j.size - 1)],
+        scene = Scene(
+            standard(alpha[min(i, alpha.size - 1)]), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
+            j[min(i, j.size - 1)],
         )  # fmt: skip
+        scale = gamma[min(i, gamma.size - 1)]
         V, omega = V0[min(i, V0.size - 1)], omega0[min(i, omega0.size - 1)]
         while True:
             one[:] = np.nan
             result = integrate(
-                scene[0], scene[1], scene[2], scene[3], scene[4], V, omega, t, rtol, rest, max_steps,
+                scene, scale, V, omega, t, rtol, rest, max_steps,
                 one, switches, step_ends,
             )  # fmt: skip
             if step_ends[step_ends.size - 1] == 0.0:
                 break
             step_ends = np.zeros(4 * step_ends.size)
         if wanted:
-            add_losses(scene, V, omega, t, rtol, rest, max_steps, one, step_ends, losses)
+            add_losses(scene, scale, V, omega, t, rtol, rest, max_steps, one, step_ends, losses)
         for n in range(rows.size):
             row = rows[n]
             if row < SLIP_LOSS:

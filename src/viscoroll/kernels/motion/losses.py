@@ -15,7 +15,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..law.contact_loop import ROWS as CONTACT_ROWS
 from ..law.contact_loop import Q, contact_state
-from ..law.law import GAUSS_W, GAUSS_X
+from ..law.stick import GAUSS_W, GAUSS_X
 from .integrate import integrate
 from .output import OUTPUTS
 from .stepper import PARTIAL
@@ -36,8 +36,8 @@ def kinetic_energy_lost(V0, omega0, V, omega, j):
 def _slip_power(V, omega, delta, regime, scene, state):
     """(omega - V) Q >= 0; where slip is partial delta keeps the digits that omega - V has lost."""
     if regime != PARTIAL:
-        return abs(omega - V) * scene[2]
-    contact_state(scene[0], scene[1], scene[2], V, delta, False, _NEED, state)
+        return abs(omega - V) * scene.mu
+    contact_state(scene.material, scene.kappa, scene.mu, V, delta, False, _NEED, state)
     return delta * V * state[Q]
 
 
@@ -56,13 +56,11 @@ def _panels(step_ends, t):
 
 
 @kernel(allocates=True)
-def add_losses(scene, V0, omega0, t, rtol, rest, max_steps, out, step_ends, losses):
+def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_ends, losses):
     """Fill ``losses`` (2, times) of the motion whose outputs and ends of steps are given; ends become 0.
 
-    ``scene`` = (alpha, kappa, mu, gamma, j).  The motion is rolled once more, in the same steps, with output at
-    the points of the rule.
+    The motion is rolled once more, in the same steps, with output at the points of the rule.
     """
-    alpha, kappa, mu, gamma, j = scene
     edges = _panels(step_ends, t)
     panels = edges.size - 1
     times = np.empty(panels * _POINTS + 1)
@@ -71,9 +69,7 @@ def add_losses(scene, V0, omega0, t, rtol, rest, max_steps, out, step_ends, loss
             times[n * _POINTS + k] = edges[n] + (edges[n + 1] - edges[n]) * GAUSS_X[k]
     times[panels * _POINTS] = t[t.size - 1]
     points = np.full((OUTPUTS, times.size), np.nan)
-    integrate(
-        alpha, kappa, mu, gamma, j, V0, omega0, times, rtol, rest, max_steps, points, np.empty((0, 2)), np.empty(0)
-    )
+    integrate(scene, gamma, V0, omega0, times, rtol, rest, max_steps, points, np.empty((0, 2)), np.empty(0))
     state = np.empty(len(CONTACT_ROWS))
     lost, n = 0.0, 0
     for m in range(t.size):
@@ -83,4 +79,4 @@ def add_losses(scene, V0, omega0, t, rtol, rest, max_steps, out, step_ends, loss
                 lost += gamma * (edges[n + 1] - edges[n]) * GAUSS_W[k - n * _POINTS] * power
             n += 1
         losses[0, m] = lost
-        losses[1, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], j) - lost
+        losses[1, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost

@@ -23,7 +23,7 @@ def put(out, column, direction, regime, V, omega, delta, X, angle, gamma):
 
 
 @kernel(allocates=True)
-def write_outputs(tau_out, at, tau, h, last, method, direction, old, new, slope, K, terms, par, gamma, offset, out):
+def write_outputs(tau_out, at, tau, h, last, method, direction, old, new, slope, K, terms, scene, gamma, offset, out):
     """Outputs that fall within the step in partial slip (or, if ``last``, on its end); returns the next column.
 
     In the boundary layer steps are long beside its time: there each output is a step of its own.
@@ -33,18 +33,18 @@ def write_outputs(tau_out, at, tau, h, last, method, direction, old, new, slope,
     stepped = method == EXPLICIT
     point, error = np.empty(4), np.empty(4)
     if h > 0.0 and not stepped:
-        interpolant(method, old, new, h, par, K, terms)
+        interpolant(method, old, new, h, scene, K, terms)
     while at < tau_out.size and (last or tau_out[at] < tau + h):
         theta = min((tau_out[at] - tau) / h, 1.0) if h > 0.0 else 1.0
         if theta == 1.0:
             copy(new, point)
         elif stepped:
             copy(slope, K[0])
-            explicit_step(old, theta * h, par, K, point, error)
+            explicit_step(old, theta * h, scene, K, point, error)
         else:
             for m in range(4):
                 point[m] = dense(theta, old, new, terms, m)
-        V, omega, delta = speeds(PARTIAL, point[0], point[1], par)
+        V, omega, delta = speeds(PARTIAL, point[0], point[1], scene)
         put(out, at, direction, PARTIAL, V, omega, delta,
             offset[0] + direction * point[2], offset[1] + direction * point[3], gamma)  # fmt: skip
         at += 1
@@ -52,15 +52,16 @@ def write_outputs(tau_out, at, tau, h, last, method, direction, old, new, slope,
 
 
 @kernel
-def coast(tau_out, at, tau, u, direction, par, gamma, offset, rest, out):
+def coast(tau_out, at, tau, u, direction, scene, gamma, offset, rest, out):
     """Slow motion at vanishing speed, in closed form: V' = -c V/(1 + j), delta/V constant.
 
     Relative corrections are of the order of kappa V < 1e-17.  Returns (next column, time
     at which the rest threshold is crossed or infinity).
     """
-    _, c, _, _, j = par
+    material, _, _, j = scene
+    c = material.c
     rate = c / (1.0 + j)
-    V, omega, delta = speeds(PARTIAL, u[0], u[1], par)
+    V, omega, delta = speeds(PARTIAL, u[0], u[1], scene)
     crossing = np.inf
     if rest > 0.0 and rate > 0.0:
         crossing = tau + np.log(max(abs(V), abs(omega)) / rest) / rate

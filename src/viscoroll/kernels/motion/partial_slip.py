@@ -24,8 +24,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.law import differences, generator_slopes, generators
-from ..law.slopes import at_contact, second_slopes
+from ..law.material import at_contact, generator_slopes, generators, second_slopes
+from ..law.stick import differences
 
 #: differences of g and h, which are at most min(zeta, 1/2), lose digits where D is a small
 #: part of that: there they are integrated instead
@@ -35,12 +35,12 @@ _STEP = 1e-6
 
 
 @kernel(inline=True)
-def leading_order(zeta, h, dh, ddh, m, dm, par):
+def leading_order(zeta, h, dh, ddh, m, dm, scene):
     """(D0, dD0/d ln zeta): the slow manifold to leading order, linear in D.
 
     Q = -M (1 - j)/(2 (1 + j)) with Q = mu D H'/H.
     """
-    _, _, kappa, mu, j = par
+    _, kappa, mu, j = scene
     per = 1.0 / zeta
     share = h * per
     square = 1.0 + 2.0 * share  # 1/lam^2
@@ -52,67 +52,67 @@ def leading_order(zeta, h, dh, ddh, m, dm, par):
 
 
 @kernel
-def slow_D(y, par):
+def slow_D(y, scene):
     """(D0, dD0/dy) at y = ln zeta."""
     zeta = np.exp(y)
-    _, h, _, dh, _, ddh, m, dm = at_contact(zeta, par[0], par[1])
-    return leading_order(zeta, h, dh, ddh, m, dm, par)
+    _, h, _, dh, _, ddh, m, dm = at_contact(zeta, scene.material)
+    return leading_order(zeta, h, dh, ddh, m, dm, scene)
 
 
 @kernel(inline=True)
-def slip_differences(zeta, D, g, h, g_eta, h_eta, alpha, c):
+def slip_differences(zeta, D, g, h, g_eta, h_eta, material):
     """(F(zeta) - F(eta), (H(zeta) - H(eta))/zeta) from the generators already at hand."""
     eta = zeta - D
     if eta <= 0.0:
         return zeta + g - eta, zeta + 2.0 * h
     if D < _NEAR * min(zeta, 1.0):
-        return differences(zeta, eta, D, alpha, c)
+        return differences(zeta, eta, D, material)
     ratio = eta / zeta
     return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
 
 
 @kernel(inline=True)
-def partial_rhs(y, offset, par):
+def partial_rhs(y, offset, scene):
     """(y', offset', V, omega) at y = ln zeta and offset = D - D0(y)."""
-    dy, d_offset, V, delta, _, _, _, _, _ = partial_rates(y, offset, par)
+    dy, d_offset, V, delta, _, _, _, _, _ = partial_rates(y, offset, scene)
     return dy, d_offset, V, V * (1.0 + delta)
 
 
 @kernel(inline=True)
-def partial_rates(y, offset, par):
+def partial_rates(y, offset, scene):
     """(y', offset', V, delta, V'/V, d(y', offset', delta)/d offset, D; d offset' to leading order in V)."""
     zeta = np.exp(y)
-    contact = at_contact(zeta, par[0], par[1])
+    contact = at_contact(zeta, scene.material)
     _, h, _, dh, _, ddh, m, dm = contact
-    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
+    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, scene)
     D = D0 + offset
-    dy, dD, V, delta, rate, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, par)
+    dy, dD, V, delta, rate, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, scene)
     return dy, dD - D0_y * dy, V, delta, rate, dy_D, dD_D - D0_y * dy_D, delta_D, D
 
 
 @kernel(inline=True)
-def creep_rates(y, D, par):
+def creep_rates(y, D, scene):
     """(y', D', V, delta) at y = ln zeta and D."""
-    dy, dD, V, delta, _ = branch_rates(y, D, np.sign(D), par)
+    dy, dD, V, delta, _ = branch_rates(y, D, np.sign(D), scene)
     return dy, dD, V, delta
 
 
 @kernel(inline=True)
-def branch_rates(y, D, sign, par):
+def branch_rates(y, D, sign, scene):
     """(y', D', V, delta, Q/V) on the branch of the law with this sign of delta, which goes on through D = 0."""
     zeta = np.exp(y)
-    dy, dD, V, delta, _, _, _, _, q_over_V = _rates(zeta, D, sign, at_contact(zeta, par[0], par[1]), par)
+    dy, dD, V, delta, _, _, _, _, q_over_V = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
     return dy, dD, V, delta, q_over_V
 
 
 @kernel(inline=True)
-def _rates(zeta, D, sign, contact, par):
+def _rates(zeta, D, sign, contact, scene):
     """(y', D', V, delta, V'/V, d(y', D', delta)/dD, Q/V); that of D' to leading order in V."""
-    alpha, c, kappa, mu, j = par
+    material, kappa, mu, j = scene
     g, h, dg, dh, _, _, m, _ = contact
     size = sign * D
-    g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, alpha, c)
-    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
+    g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, material)
+    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, material)
     per = 1.0 / zeta
     square = 1.0 + 2.0 * h * per  # 1/lam^2
     U = 1.0 + h * per + dh  # H'/(2 zeta)
@@ -136,20 +136,20 @@ def _rates(zeta, D, sign, contact, par):
 
 
 @kernel
-def partial_jacobian(y, offset, par):
+def partial_jacobian(y, offset, scene):
     """d(y', offset', V, omega)/d(y, offset), row by row."""
-    alpha, c, kappa, mu, j = par
+    material, kappa, mu, j = scene
     zeta = np.exp(y)
-    g, h, dg, dh, ddg, ddh, m, dm = at_contact(zeta, alpha, c)
-    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, par)
-    _, after = slow_D(y + _STEP, par)
+    g, h, dg, dh, ddg, ddh, m, dm = at_contact(zeta, material)
+    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, scene)
+    _, after = slow_D(y + _STEP, scene)
     D0_yy = (after - D0_y) / _STEP
     D = D0 + offset
     size = abs(D)
     sign = 1.0 if D >= 0.0 else -1.0
-    g_eta, h_eta, dg_eta, dh_eta, ddg_eta, _ = second_slopes(zeta - size, alpha, c)
+    g_eta, h_eta, dg_eta, dh_eta, ddg_eta, _ = second_slopes(zeta - size, material)
     eta = max(zeta - size, 0.0)
-    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, alpha, c)
+    rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, material)
     lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
     V = np.sqrt(lam2) / (2.0 * kappa * zeta)
     # U = H'/(2 zeta), W = H'(eta)/(2 zeta); H = zeta^2/lam2
@@ -195,25 +195,25 @@ def partial_jacobian(y, offset, par):
 
 
 @kernel
-def signed_D(y, offset, par):
+def signed_D(y, offset, scene):
     """D = sign(delta) (zeta - eta)."""
-    D0, _ = slow_D(y, par)
+    D0, _ = slow_D(y, scene)
     return D0 + offset
 
 
 @kernel
-def partial_speeds(y, offset, par):
+def partial_speeds(y, offset, scene):
     """(V, delta) at y = ln zeta and offset = D - D0(y)."""
-    return creep_speeds(y, signed_D(y, offset, par), par)
+    return creep_speeds(y, signed_D(y, offset, scene), scene)
 
 
 @kernel
-def creep_speeds(y, D, par):
+def creep_speeds(y, D, scene):
     """(V, delta) at y = ln zeta and D."""
-    alpha, c, kappa, mu, _ = par
+    material, kappa, mu, _ = scene
     zeta = np.exp(y)
-    g, h = generators(zeta, alpha, c)
-    g_eta, h_eta = generators(zeta - abs(D), alpha, c)
-    rise_F, _ = slip_differences(zeta, abs(D), g, h, g_eta, h_eta, alpha, c)
+    g, h = generators(zeta, material)
+    g_eta, h_eta = generators(zeta - abs(D), material)
+    rise_F, _ = slip_differences(zeta, abs(D), g, h, g_eta, h_eta, material)
     V = 1.0 / (np.sqrt(1.0 + 2.0 * h / zeta) * 2.0 * kappa * zeta)
     return V, np.sign(D) * mu * V * rise_F

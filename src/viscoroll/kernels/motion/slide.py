@@ -47,12 +47,12 @@ def s_at(v, panel):
 
 
 @kernel
-def slide_rates(panel, sigma, par, nodes):
+def slide_rates(panel, sigma, scene, nodes):
     """Fill tau', I', V and the stick limit; whether V' keeps its sign."""
     s, pole, length, _, _, _ = panel
     for i in range(N + 1):
         at, _ = s_at(1.0 + NODES[i], panel)
-        speed, rate, per_s, half_M, limit = sliding(at, sigma, par)
+        speed, rate, per_s, half_M, limit = sliding(at, sigma, scene)
         per = (s - pole) * np.exp(0.5 * length * (1.0 + NODES[i])) * per_s / rate
         if not per * length > 0.0:
             return False
@@ -61,50 +61,50 @@ def slide_rates(panel, sigma, par, nodes):
 
 
 @kernel
-def standing_rates(rise, panel, sigma, par, nodes):
+def standing_rates(rise, panel, sigma, scene, nodes):
     """As :func:`slide_rates` where M = 2 mu, for a time: s stays."""
-    speed, _, _, _, limit = sliding(panel[0], sigma, par)
+    speed, _, _, _, limit = sliding(panel[0], sigma, scene)
     for i in range(N + 1):
-        nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = rise, par[3] * rise, speed, limit
+        nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = rise, scene.mu * rise, speed, limit
 
 
 @kernel
-def _slip(tau, I, panel, sigma, par):
+def _slip(tau, I, panel, sigma, scene):
     """sigma (omega - V)."""
-    _, _, _, mu, j = par
+    _, _, mu, j = scene
     _, _, _, _, speed, omega = panel
     return sigma * (omega - speed) - (1.0 + 1.0 / j) * mu * tau - sigma * (1.0 / j - 1.0) * I
 
 
 @kernel
-def _fastest(speed, tau, I, panel, sigma, par):
+def _fastest(speed, tau, I, panel, sigma, scene):
     """max(V, |omega|)."""
-    return max(speed, abs(panel[5] - (sigma * par[3] * tau + I) / par[4]))
+    return max(speed, abs(panel[5] - (sigma * scene.mu * tau + I) / scene.j))
 
 
 @kernel
-def _time(speed, I, tau, panel, sigma, par):
+def _time(speed, I, tau, panel, sigma, scene):
     """tau from the change of V; or, where that is a small difference, as it was found."""
-    return (sigma * (speed - panel[4]) + sigma * I) / par[3] if abs(panel[2]) > _LONG else tau
+    return (sigma * (speed - panel[4]) + sigma * I) / scene.mu if abs(panel[2]) > _LONG else tau
 
 
 @kernel
-def slide_sums(panel, sigma, par, nodes):
+def slide_sums(panel, sigma, scene, nodes):
     """Fill the other rows; the rise of tau."""
     half, tau = 0.5 * panel[2], 0.0
     nodes[D_WAY, 0] = 0.0
-    nodes[SLIP, 0] = _slip(0.0, 0.0, panel, sigma, par) - nodes[SLIP, 0]
-    nodes[SPEED, 0] = _fastest(nodes[V, 0], 0.0, 0.0, panel, sigma, par)
+    nodes[SLIP, 0] = _slip(0.0, 0.0, panel, sigma, scene) - nodes[SLIP, 0]
+    nodes[SPEED, 0] = _fastest(nodes[V, 0], 0.0, 0.0, panel, sigma, scene)
     for i in range(1, N + 1):
         tau = I = 0.0
         for n in range(N):
             tau += INTEGRALS[i - 1, n] * nodes[D_TAU, n + 1]
             I += INTEGRALS[i - 1, n] * nodes[D_I, n + 1]
         I *= half
-        tau = _time(nodes[V, i], I, half * tau, panel, sigma, par)
-        nodes[D_WAY, i] = ((sigma * par[3] * tau if panel[1] > 0.0 else 0.0) - I) * nodes[D_TAU, i]
-        nodes[SLIP, i] = _slip(tau, I, panel, sigma, par) - nodes[SLIP, i]
-        nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, par)
+        tau = _time(nodes[V, i], I, half * tau, panel, sigma, scene)
+        nodes[D_WAY, i] = ((sigma * scene.mu * tau if panel[1] > 0.0 else 0.0) - I) * nodes[D_TAU, i]
+        nodes[SLIP, i] = _slip(tau, I, panel, sigma, scene) - nodes[SLIP, i]
+        nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, scene)
         nodes[MEAN_GAIN, i] = half / tau if tau > 0.0 else 0.0
     nodes[MEAN_GAIN, 0] = 0.0
     for i in range(1, N + 1):
@@ -140,17 +140,17 @@ def slide_terms(length, nodes, powers):
 
 
 @kernel
-def slide_rise(v, panel, sigma, par, powers):
+def slide_rise(v, panel, sigma, scene, powers):
     """(V, delta_star V, tau, I) at v."""
-    speed, limit = edge_of_stick(s_at(v, panel)[0], par)
+    speed, limit = edge_of_stick(s_at(v, panel)[0], scene)
     I = rise_at(v, powers, LOST)
-    return speed, limit, _time(speed, I, rise_at(v, powers, TAU), panel, sigma, par), I
+    return speed, limit, _time(speed, I, rise_at(v, powers, TAU), panel, sigma, scene), I
 
 
 @kernel
-def slide_state(v, tau, panel, sigma, par, powers):
+def slide_state(v, tau, panel, sigma, scene, powers):
     """(V, omega, X, angle) at v and at the time tau from the left end."""
-    _, _, _, mu, j = par
+    _, _, mu, j = scene
     s, pole, _, _, speed, omega = panel
     push = sigma * mu * tau
     gain = push - rise_at(v, powers, LOST)
@@ -161,16 +161,16 @@ def slide_state(v, tau, panel, sigma, par, powers):
 
 
 @kernel
-def event_at(event, v, panel, sigma, par, rest, powers):
+def event_at(event, v, panel, sigma, scene, rest, powers):
     """Positive before the event, negative after it."""
-    speed, limit, tau, I = slide_rise(v, panel, sigma, par, powers)
+    speed, limit, tau, I = slide_rise(v, panel, sigma, scene, powers)
     if event == STICK:
-        return _slip(tau, I, panel, sigma, par) - limit
-    return _fastest(speed, tau, I, panel, sigma, par) - rest
+        return _slip(tau, I, panel, sigma, scene) - limit
+    return _fastest(speed, tau, I, panel, sigma, scene) - rest
 
 
 @kernel
-def locate_slide(event, low, high, panel, sigma, par, rest, nodes, powers):
+def locate_slide(event, low, high, panel, sigma, scene, rest, nodes, powers):
     """v in [low, high] of the event, by Newton's iteration with the slope of the interpolant."""
     row = SLIP if event == STICK else SPEED
     level = 0.0 if event == STICK else rest
@@ -179,7 +179,7 @@ def locate_slide(event, low, high, panel, sigma, par, rest, nodes, powers):
     v, exact = 0.5 * (low + high), False
     for _ in range(_MOST_ITERATIONS):
         if exact:
-            value = event_at(event, v, panel, sigma, par, rest, powers)
+            value = event_at(event, v, panel, sigma, scene, rest, powers)
             low, high = v if value > 0.0 else low, high if value > 0.0 else v
         else:
             value = start + rise_at(v, powers, EVENT)

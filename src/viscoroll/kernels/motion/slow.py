@@ -26,12 +26,12 @@ _LEAST_STICK = 1e-3
 
 
 @kernel
-def _evaluate(i, y, values, par):
+def _evaluate(i, y, values, scene):
     """Fill node i at y from its offset."""
     (
         values[i, _RATE], values[i, _DRIFT], values[i, _V], values[i, _DELTA], values[i, _DECAY],
         values[i, _RATE_D], values[i, _DRIFT_D], values[i, _DELTA_D], values[i, _D],
-    ) = partial_rates(y, values[i, _OFFSET], par)  # fmt: skip
+    ) = partial_rates(y, values[i, _OFFSET], scene)  # fmt: skip
 
 
 @kernel
@@ -52,7 +52,7 @@ def _eliminate(matrix, right):
 
 
 @kernel
-def slow_solve(y, length, tolerance, slopes, values, matrix, right, par):
+def slow_solve(y, length, tolerance, slopes, values, matrix, right, scene):
     """Collocate on [y, y + length] from the left end in ``values[REACHED]``.  Whether it converged.
 
     ``tolerance`` bounds the remaining errors of y' (relative) and of the creep ratio.  ``slopes``
@@ -65,7 +65,7 @@ def slow_solve(y, length, tolerance, slopes, values, matrix, right, par):
     before = 0.0
     for iteration in range(_MOST_ITERATIONS):
         for i in range(1, N + 1):
-            _evaluate(i, y + half * (1.0 + NODES[i]), values, par)
+            _evaluate(i, y + half * (1.0 + NODES[i]), values, scene)
         for i in range(N):
             slope = 0.0
             for n in range(N + 1):
@@ -99,10 +99,10 @@ def slow_solve(y, length, tolerance, slopes, values, matrix, right, par):
 
 
 @kernel
-def slow_start(y, offset, values, par):
+def slow_start(y, offset, values, scene):
     """Fill the left end."""
     values[REACHED, _OFFSET] = offset
-    _evaluate(REACHED, y, values, par)
+    _evaluate(REACHED, y, values, scene)
 
 
 @kernel

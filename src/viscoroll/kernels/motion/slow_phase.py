@@ -33,17 +33,17 @@ _OVERSTATED = 0.05
 
 
 @kernel
-def attempt(u, length, rtol, travelled, values, matrix, right, par):
+def attempt(u, length, rtol, travelled, values, matrix, right, scene):
     """One interval: (error of its interpolants, and of the offset at its left end, over their tolerances;
     rise of tau, X and angle).  The errors are infinite where it failed."""
-    solved = slow_solve(u[0], length, NEWTON * SHARE * rtol, SLOPES, values, matrix, right, par)
+    solved = slow_solve(u[0], length, NEWTON * SHARE * rtol, SLOPES, values, matrix, right, scene)
     if not (solved and sticks_throughout(u[0], length, values)):
         return np.inf, np.inf, 0.0, 0.0, 0.0
     rest = abs(project(values))
     tau, X, angle, tau_off, X_off, turn_off = slow_quadratures(length, values)
     error = max(tau_off * values[0, 1], path_error(X, X_off, angle, turn_off, travelled, _OVERSTATED))
     per = 1.0 / (SHARE * rtol)
-    offset_error = rest * max(creep_weight(slip_share(u, par)) * np.exp(-u[0]), values[0, 8])
+    offset_error = rest * max(creep_weight(slip_share(u, scene)) * np.exp(-u[0]), values[0, 8])
     return _OVERSTATED * error * per, offset_error * per, tau, X, angle
 
 
@@ -56,14 +56,14 @@ def next_interval(length, size):
 
 
 @kernel
-def to_rest(u, length, rtol, rest, travelled, values, matrix, right, par):
+def to_rest(u, length, rtol, rest, travelled, values, matrix, right, scene):
     """Length of the interval at whose end max(V, omega) = rest, by Newton on its logarithm; its rises."""
-    result = attempt(u, length, rtol, travelled, values, matrix, right, par)
+    result = attempt(u, length, rtol, travelled, values, matrix, right, scene)
     for _ in range(8):
         excess = np.log(_fastest(values) / rest)
         change = -excess * values[N, 1] / values[N, 5]
         length += change
-        result = attempt(u, length, rtol, travelled, values, matrix, right, par)
+        result = attempt(u, length, rtol, travelled, values, matrix, right, scene)
         if abs(change) < 1e-15 * abs(u[0]) + 1e-15:
             break
     return length, result[2], result[3], result[4]
@@ -100,7 +100,7 @@ def note_nodes(tau, powers, gamma, step_ends, ends):
 
 
 @kernel
-def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, far, max_steps, steps,
+def slow_phase(u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, far, max_steps, steps,
                out, step_ends, ends, work):  # fmt: skip
     """Follow the slow manifold from u until outputs end, zeta exceeds exp(far), or an interval fails.
 
@@ -109,11 +109,11 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
     values, matrix, right, powers = work
     tau_end = tau_out[tau_out.size - 1]
     length, entering, before = _FIRST, True, np.inf
-    slow_start(u[0], u[1], values, par)
+    slow_start(u[0], u[1], values, scene)
     relaxation = -values[REACHED, 7]
     while at < tau_out.size and u[0] < far and steps < max_steps:
         length = min(length, _LONGEST, max(1.1 * (tau_end - tau) * values[REACHED, 1], 0.05))
-        size, offset_size, rise, X, angle = attempt(u, length, rtol, travelled, values, matrix, right, par)
+        size, offset_size, rise, X, angle = attempt(u, length, rtol, travelled, values, matrix, right, scene)
         steps += 1
         # what is left of the layer stays as the interval is shortened; what the interval does not resolve falls
         if size <= 1.0 < offset_size and entering and offset_size > 0.5 * before:
@@ -128,7 +128,7 @@ def slow_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
         ahead = next_interval(length, size)
         rested = rest > 0.0 and _fastest(values) < rest
         if rested:
-            length, rise, X, angle = to_rest(u, length, rtol, rest, travelled, values, matrix, right, par)
+            length, rise, X, angle = to_rest(u, length, rtol, rest, travelled, values, matrix, right, scene)
         inside = tau_out[at] <= tau + rise or ends < step_ends.size
         if inside:
             slow_dense_terms(length, values, powers)

@@ -54,26 +54,26 @@ def judged(method, u, slope, share, share_new, length, rtol, travelled, new, err
 
 
 @kernel
-def step_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rtol, rest, far, try_at, max_steps, steps,
-               out, step_ends, ends, pace, slope, buffers):  # fmt: skip
+def step_phase(u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, far, try_at, max_steps,
+               steps, out, step_ends, ends, pace, slope, buffers):  # fmt: skip
     """Step from u to an event, until outputs end, to zeta = exp(far), or from ``try_at`` on near the slow manifold.
 
     Returns (event, whether the slow manifold seems near, tau, next column, steps, ends noted).
     """
     new, error, K, terms = buffers
     tau_end = tau_out[tau_out.size - 1]
-    relaxation, share, rejected = slope_at(u, par, slope), slip_share(u, par), 0
+    relaxation, share, rejected = slope_at(u, scene, slope), slip_share(u, scene), 0
     method = EXPLICIT if pace[METHOD] == EXPLICIT else STIFF
     if pace[LENGTH] == 0.0:
-        pace[LENGTH] = first_length(u, rtol, par)
+        pace[LENGTH] = first_length(u, rtol, scene)
     while (
         at < tau_out.size and steps < max_steps and u[0] < far and rejected <= _MOST_REJECTIONS and pace[LENGTH] > 0.0
     ):
         if rejected == 0 and tau >= try_at and settled(u, slope, share, relaxation, rtol):
             return NO_EVENT, True, tau, at, steps, ends
         last, length = pace[LENGTH] >= tau_end - tau, min(pace[LENGTH], tau_end - tau)
-        relaxation_new = advance(method, u, slope, length, par, K, new, error)
-        share_new = slip_share(new, par)
+        relaxation_new = advance(method, u, slope, length, scene, K, new, error)
+        share_new = slip_share(new, scene)
         size, part, half = judged(method, u, slope, share, share_new, length, rtol, travelled, new, error, K)
         steps += 1
         rejected += 1
@@ -82,7 +82,7 @@ def step_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
             shortened = min(part, half) * length
             pace[LENGTH] = min(shortened, shorter(length, size, method)) if half == 1.0 else shortened
             continue
-        event, reached = first_event(method, u, slope, length, par, rest, share_new, K, new, error, terms)
+        event, reached = first_event(method, u, slope, length, scene, rest, share_new, K, new, error, terms)
         if event == SLIP:
             if reached < _AT_ONCE * length and rejected <= _MOST_RETRIES:
                 # |D| = zeta at the start may be taken for the end of a stick zone that is shorter than the step
@@ -99,7 +99,7 @@ def step_phase(u, tau, tau_out, at, direction, par, gamma, offset, travelled, rt
         pace[LENGTH], pace[WISH] = max(pace[WISH], ahead), 0.0
         pace[LENGTH_BEFORE], pace[ERROR_BEFORE] = length, max(size, 1e-20)
         at = write_outputs(
-            tau_out, at, tau, reached, last and event == NO_EVENT, method, direction, u, new, slope, K, terms, par,
+            tau_out, at, tau, reached, last and event == NO_EVENT, method, direction, u, new, slope, K, terms, scene,
             gamma, offset, out,
         )  # fmt: skip
         for m in range(2):

@@ -61,9 +61,9 @@ A, C = _square(_A), _square(_C)
 
 
 @kernel
-def stiff_step(u, h, par, K, new, error):
+def stiff_step(u, h, scene, K, new, error):
     """Advance u by h into ``new``, local errors into ``error``; stages stay in K for the dense output."""
-    J00, J01, J10, J11, J20, J21, J30, J31 = partial_jacobian(u[0], u[1], par)
+    J00, J01, J10, J11, J20, J21, J30, J31 = partial_jacobian(u[0], u[1], scene)
     # (I - h gamma J) k = h gamma (...): scaled so that no step length overflows
     scale, per_h = h * GAMMA, 1.0 / h
     a, d = 1.0 - scale * J00, 1.0 - scale * J11
@@ -81,7 +81,7 @@ def stiff_step(u, h, par, K, new, error):
             r1 += weight * K[n, 1]
             r2 += weight * K[n, 2]
             r3 += weight * K[n, 3]
-        f0, f1, f2, f3 = partial_rhs(s0, s1, par)
+        f0, f1, f2, f3 = partial_rhs(s0, s1, scene)
         r0 += f0
         r1 += f1
         k0 = (d * r0 + b * r1) * whole

@@ -1,12 +1,12 @@
 """The contact law as the paper prints it: Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker roots.
 
-Independent of :mod:`law.law` in the Bessel ratios, in the algebra and in the root finder: the
+Independent of the modules of ``law`` in the Bessel ratios, in the algebra and in the root finder: the
 baseline that the explicit law is timed against and checked against.  The one liberty taken
 is that Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur
 and nothing overflows.
 
 The printed forms lose digits in corners where the explicit ones do not.  Differences from
-:mod:`law.law`, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
+``law``, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in
 [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu,
 M 2e-13/kappa; the docstrings say where relative digits go.
 """
@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.law import NOT_CONVERGED, OK
+from ..law.length import NOT_CONVERGED, OK
 from .bessel import ratio_i, ratio_k0k1
 
 _EQ_6, _EQ_10 = 6, 10

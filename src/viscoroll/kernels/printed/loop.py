@@ -19,7 +19,7 @@ from ..law.contact_loop import (
     creep_ratio,
     signed_slip,
 )
-from ..law.law import OK
+from ..law.length import OK
 from .law import direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 

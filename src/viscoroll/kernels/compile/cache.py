@@ -1,0 +1,107 @@
+"""A disk cache of machine code that cannot go stale.
+
+numba's own cache stamps a function with the file it is defined in and does not notice a change in a
+function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
+sources, their coefficient table and the numba version.  It holds one file for each function and
+signature, behind a SHA-256 of itself: anything unreadable is compiled anew and replaced, never
+trusted and never fatal.
+
+The cache lives in ``$VISCOROLL_CACHE_DIR``, else in ``$XDG_CACHE_HOME/viscoroll``, else in
+``~/.cache/viscoroll``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import secrets
+import sys
+import warnings
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Callable
+
+import numba
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+#: where all kernels lie
+HERE = Path(__file__).parents[1]
+_DIGEST_SIZE = hashlib.sha256().digest_size
+
+
+def cache_root() -> Path:
+    """Folder that holds every cache of the package."""
+    if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
+        return Path(chosen)
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "viscoroll"
+
+
+@lru_cache(maxsize=1)
+def sources_digest() -> str:
+    """Hash of the kernel sources, of their coefficients and of numba's version."""
+    digest = hashlib.sha256(f"{numba.__version__}".encode())
+    for path in sorted((*HERE.rglob("*.py"), *HERE.rglob("*.npy"))):
+        digest.update(path.relative_to(HERE).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@lru_cache(maxsize=2)
+def note_trouble(trouble: str) -> None:
+    """Once for each kind of trouble."""
+    warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
+
+
+class DiskCache:
+    """What numba's dispatcher of one function asks for its machine code before it compiles."""
+
+    def __init__(self, function: Callable) -> None:
+        self._function = function
+        self._folder = cache_root() / f"kernels-{sources_digest()}"
+        self.cache_path = str(self._folder)
+
+    def load_overload(self, signature: Any, target: Any) -> CompileResult | None:
+        """The machine code for this signature, or None."""
+        target.refresh()
+        try:
+            stored = self._path(signature, target.codegen()).read_bytes()
+        except OSError:  # not there, or not to be read: saving will say so
+            return None
+        try:
+            if hashlib.sha256(stored[_DIGEST_SIZE:]).digest() != stored[:_DIGEST_SIZE]:
+                raise ValueError("not what was written")
+            return CompileResult._rebuild(target, *pickle.loads(stored[_DIGEST_SIZE:]))
+        except Exception:  # compile again, save_overload then replaces the file
+            note_trouble(f"the cache of compiled kernels is damaged ({self._folder})")
+            return None
+
+    def save_overload(self, signature: Any, compiled: CompileResult) -> None:
+        """Store machine code: the file is whole or not there."""
+        if compiled.library.has_dynamic_globals:
+            return  # addresses of this process
+        path = self._path(signature, compiled.codegen)
+        temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
+        try:
+            content = dumps(compiled._reduce())
+            self._folder.mkdir(parents=True, exist_ok=True)
+            temporary.write_bytes(hashlib.sha256(content).digest() + content)
+            os.replace(temporary, path)
+        except OSError as error:
+            note_trouble(f"compiled kernels are not cached ({error})")
+        finally:
+            with suppress(OSError):
+                temporary.unlink()
+
+    def flush(self) -> None:
+        """``recompile`` of numba's dispatcher wants this: nothing is held in memory."""
+
+    def _path(self, signature: Any, codegen: Any) -> Path:
+        """Named for people after the function, for certain after all that the machine code depends on."""
+        function = self._function
+        name = f"{function.__module__}.{function.__qualname__}"
+        key = (name, function.__code__.co_firstlineno, str(signature), codegen.magic_tuple(), sys.version_info[:2])
+        digest = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        return self._folder / f"{function.__module__.rpartition('kernels.')[2]}.{function.__name__}-{digest}.nbc"

@@ -1,0 +1,162 @@
+"""LLVM once for each call from Python, not once for each function and all those above it.
+
+numba optimises a function, links it into each of its callers, and optimises it there again, level
+by level.  Here a kernel that another one calls, a *part*, is typed and lowered to LLVM's intermediate
+representation (IR) only; a kernel called from Python, the *whole*, links the IR of all parts below it,
+and LLVM works on that once.
+
+This leans on names inside numba.  Where one of them fails, numba compiles in its own way: the same
+kernels, the same bits, some three times the time.
+"""
+
+from __future__ import annotations
+
+import warnings
+from functools import lru_cache
+from typing import Any, Callable
+
+import numba
+from numba.core import types
+from numba.core.compiler import Compiler
+
+_deferring = True
+
+
+class EntryPipeline:
+    """What numba calls to compile a kernel that Python calls."""
+
+    def __init__(self, *given: Any) -> None:
+        self._given = given
+
+    def compile_extra(self, function: Callable) -> Any:
+        """The one guard of the names inside numba."""
+        global _deferring
+        if not _deferring:
+            return Compiler(*self._given).compile_extra(function)
+        try:
+            return _pipelines()[1](*self._given).compile_extra(function)
+        except Exception as error:
+            reason = error
+        _deferring = False
+        try:
+            compiled = Compiler(*self._given).compile_extra(function)
+        except Exception:  # numba was right
+            _deferring = True
+            raise
+        reason_line = " ".join(str(reason).split())
+        warnings.warn(
+            f"numba {numba.__version__} does not compile {function.__name__} together with what it calls "
+            f"({type(reason).__name__}: {reason_line}); kernels are compiled one by one, which takes longer",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return compiled
+
+
+def defer(whole: Any, options: dict[str, Any]) -> None:
+    """Let other kernels that call this one see its part."""
+    plain = type(whole)
+
+    @lru_cache(maxsize=1)
+    def part() -> Any:
+        return numba.njit(
+            whole.py_func, pipeline_class=_pipelines()[0], no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
+        )
+
+    def get_call_template(given: tuple, named: dict[str, Any]) -> Any:
+        # numba compiles anew for every literal integer among the arguments
+        given = tuple(map(types.unliteral, given))
+        named = {name: types.unliteral(kind) for name, kind in named.items()}
+        return plain.get_call_template(part() if _deferring else whole, given, named)
+
+    def get_overload(signature: Any) -> Any:
+        return plain.get_overload(part() if _deferring else whole, signature)
+
+    whole.get_call_template, whole.get_overload = get_call_template, get_overload
+
+
+@lru_cache(maxsize=1)
+def _pipelines() -> tuple[type, type]:
+    """numba's pipelines for parts and for wholes."""
+    from numba.core.codegen import JITCodeLibrary
+
+    class Part(JITCodeLibrary):
+        """IR alone."""
+
+        def finalize(self) -> None:
+            self._finalized = True
+
+        def get_pointer_to_function(self, name: str) -> int:
+            return 1  # never called: the whole of the same function is what Python calls
+
+        @property
+        def codegen(self) -> Part:
+            return self
+
+        def set_env(self, name: str, environment: Any) -> None:
+            """Nothing to set before there is code."""
+
+        def _get_module_for_linking(self) -> Any:
+            """For an ordinary jitted function between two kernels, which LLVM compiles by itself: all below."""
+            module = super()._get_module_for_linking().clone()
+            for library in below(self):
+                module.link_in(alone(library), preserve=True)
+            return module
+
+    class Whole(JITCodeLibrary):
+        """IR of all parts below, optimised and compiled together."""
+
+        def finalize(self) -> None:
+            for library in below(self):
+                self._reload_init.update(library._reload_init)
+                self._final_module.link_in(alone(library), preserve=True)
+            self._linking_libraries = []
+            super().finalize()
+
+        def _verify_declare_only_symbols(self) -> None:
+            """What is missing ends the process when LLVM links; _ZN begins the names of all that numba compiles."""
+            for function in self._final_module.functions:
+                if function.is_declaration and function.name.startswith("_ZN"):
+                    raise RuntimeError(f"{self.name} calls {function.name}, which was not compiled with it")
+            super()._verify_declare_only_symbols()
+
+    def below(library: Any) -> list[Any]:
+        """The libraries that this one and the parts below it call."""
+        found, ahead = [], list(library._linking_libraries)
+        while ahead:
+            library = ahead.pop(0)
+            if library not in found:
+                found.append(library)
+                ahead.extend(library._linking_libraries if isinstance(library, Part) else ())
+        return found
+
+    def alone(library: Any) -> Any:
+        """The module of a library without those of the parts below."""
+        return JITCodeLibrary._get_module_for_linking(library)
+
+    return _pipeline(Part), _pipeline(Whole)
+
+
+def _pipeline(library_class: type) -> type:
+    """numba's default pipeline, lowering into this class of library."""
+    from numba.core.compiler import CompilerBase, DefaultPassBuilder
+    from numba.core.compiler_machinery import register_pass
+    from numba.core.typed_passes import NativeLowering
+
+    @register_pass(mutates_CFG=True, analysis_only=False)
+    class Lowering(NativeLowering):
+        _name = f"lowering into {library_class.__name__}"
+
+        def run_pass(self, state: Any) -> bool:
+            state.library = library_class(state.targetctx.codegen(), state.func_id.func_qualname)
+            state.library.enable_object_caching()
+            return super().run_pass(state)
+
+    class Compiler(CompilerBase):
+        def define_pipelines(self) -> list[Any]:
+            passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+            passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in passes.passes]
+            passes.finalize()
+            return [passes]
+
+    return Compiler
