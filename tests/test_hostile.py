@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import platform
-import runpy
 import shutil
 import subprocess
 import sys
@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from memory import forget
-from places import RESULTS, script
+from places import RESULTS
 from processes import printed
 from refusals import refused
 
@@ -284,7 +284,7 @@ def test_empty():
 @pytest.mark.parametrize("name", ["one by one", "slice", "grid", "slopes", "stress", "flow map", "integrated"])
 def test_large_arrays_in_bounded_memory(name):
     """Beside input and result a call takes the same few megabytes whatever its size (10^8 elements: make prove)."""
-    measured = runpy.run_path(str(script("large")))["measured"]
+    measured = importlib.import_module("pipeline.measure.large").measured
     if not Path("/proc/self/status").exists():
         pytest.skip("the system does not tell a process its peak")
     found = measured(name, 200_000 if name == "integrated" else 2_000_000)

@@ -14,7 +14,6 @@ import viscoroll as vr
 from viscoroll.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
-from viscoroll.scene import kernel_scene
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 16)
@@ -214,18 +213,9 @@ def test_scenes_without_a_map_are_integrated():
 
 def test_motions_beyond_the_map_are_integrated():
     """The second and third slide until V and omega vanish nearly together: their onset lies below every table."""
-<<<<<<< HEAD
     spin = 1.4692137743888765  # by bisection on the sign of V at onset
     V0, omega0 = np.array([1.0, -1.0, -1.0, 0.0]), np.array([1.0, spin, spin * (1.0 + 1e-7), 0.0])
     mapped, rolled = (vr.ensemble(SCENE, V0, omega0, [1e-3, 3e-3], method=method) for method in ("flow", "integrate"))
-=======
-    built = flow.flow_map(SCENE, 2.0)
-    T, _ = slide(-1.0, SPEEDS, built.table, kernel_scene(*built.parameters))
-    omega = (-1.0 - 2.0 * SCENE.mu * T) / SCENE.j
-    V0, omega0 = np.array([1.0, -1.0, -1.0, 0.0]), np.array([1.0, omega, omega * (1.0 + 1e-7), 0.0])
-    mapped = vr.ensemble(SCENE, V0, omega0, T_OUT := np.array([1e-3, 3e-3]), method="flow")
-    rolled = vr.ensemble(SCENE, V0, omega0, T_OUT, method="integrate")
->>>>>>> main
     assert mapped.flow.tolist() == [True, False, False, False]
     assert np.array_equal(mapped.V[1:], rolled.V[1:])
     assert (mapped.status == rolled.status).all()

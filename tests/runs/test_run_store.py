@@ -285,13 +285,13 @@ def test_a_cluster_gives_the_same_files(run_file, tmp_path, whole):
 
 
 @pytest.mark.parametrize(
-    ("command", "key"), [(["ensembles.py"], "rows"), (["torture.py", "--only", "ensembles"], "parts")]
+    ("command", "key"), [(["measure.ensembles"], "rows"), (["torture", "--only", "ensembles"], "parts")]
 )
 def test_stages_run(tmp_path, command, key):
     """At the size of a test: the numbers that docs/ensembles.md states come from these."""
-    output, (script, *options) = tmp_path / "results.json", command
-    argv = [sys.executable, ROOT / "pipeline" / script, *options, "--quick", "-o", output]
-    done = subprocess.run(argv, capture_output=True, text=True, check=False)
+    output, (stage, *options) = tmp_path / "results.json", command
+    argv = [sys.executable, "-m", f"pipeline.{stage}", *options, "--quick", "-o", output]
+    done = subprocess.run(argv, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert json.loads(output.read_text(encoding="utf-8"))[key]
 

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
-from places import PIPELINE
 from refusals import refused
 
 import viscoroll as vr
@@ -32,7 +31,6 @@ ATLAS_GRID = vr.tables.AtlasGrid(nodes=(16, 40, 32), block=(4, 8, 8), allowed=(1
 LITERAL_GRID = vr.tables.LiteralGrid(
     kappa=2.91, mu=0.2, V=np.geomspace(1e-3, 2.0, 21), delta=np.linspace(-0.04, 0.04, 33), alpha=[1.0, 3.0, 11.0]
 )
-TABULATE = PIPELINE / "tabulate.py"
 
 
 @pytest.fixture(scope="module")
@@ -560,7 +558,7 @@ def test_a_symbolic_link_is_followed(literal: xr.Dataset, tmp_path: Path) -> Non
     vr.tables.load(link)
 
 
-# --- pipeline/tabulate.py ---
+# --- pipeline/demo/tabulate.py ---
 
 CONFIG = """
 [tables.atlas]
@@ -580,10 +578,9 @@ alpha = [1.0, 11.0]
 def tabulate(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, config: str) -> int:
     (tmp_path / "run.toml").write_text(config)
     folders = ["--tables", str(tmp_path / "out"), "-o", str(tmp_path / "run")]
-    monkeypatch.setattr(sys, "argv", [str(TABULATE), "--config", str(tmp_path / "run.toml"), *folders])
-    monkeypatch.syspath_prepend(str(TABULATE.parent))
+    monkeypatch.setattr(sys, "argv", ["tabulate", "--config", str(tmp_path / "run.toml"), *folders])
     with pytest.raises(SystemExit) as exit_:
-        runpy.run_path(str(TABULATE), run_name="__main__")
+        runpy.run_module("pipeline.demo.tabulate", run_name="__main__")
     return int(exit_.value.code or 0)
 
 

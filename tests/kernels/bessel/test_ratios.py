@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import runpy
 from collections.abc import Callable, Iterator
 
 import mpmath as mp
@@ -12,7 +11,6 @@ import pytest
 import tolerances as tol
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from places import script
 
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
@@ -140,11 +138,11 @@ def bins() -> Iterator[tuple[str, Callable[[mp.mpf], mp.mpf]]]:
 
 def refit() -> np.ndarray:
     """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
-    stage = runpy.run_path(str(script("ratios")))
-    nodes, fit = stage["NODES"], stage["chebyshev_fit"]
-    points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * nodes)) for i in range(nodes)]
+    from pipeline.reference.ratios import NODES, chebyshev_fit
+
+    points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * NODES)) for i in range(NODES)]
     values = ([EXACT[function](at(t)) for t in points] for function, at in bins())
-    return np.array([float(m) for each in values for m in fit(each, mp.mpf(HALF_BIN))])
+    return np.array([float(m) for each in values for m in chebyshev_fit(each, mp.mpf(HALF_BIN))])
 
 
 def test_every_coefficient_is_the_rounded_fit():
