@@ -25,8 +25,8 @@ from viscoroll.kernels.law.material import Material, generators
 from viscoroll.kernels.motion.partial_slip import slip_differences
 from viscoroll.reference import contact_precise
 
+from ..timing import nanoseconds, rounds
 from .jit import compiled
-from .timing import nanoseconds, rounds
 
 FIELDS = ("Q", "M")
 #: states of a block, and the rows of what a block holds
