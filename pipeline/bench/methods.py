@@ -12,14 +12,14 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from peers import lsoda_compiled, paper_method, scipy_peers
 
 import viscoroll as vr
 
+from ..peers import lsoda_compiled, paper_method, scipy_peers
+from ..stage import ROOT
 from . import baseline
 from .problem import Method, Outcome, Problem
 
-ROOT = Path(__file__).parents[2]
 ATLAS = ROOT / "data/tables/atlas.nc"
 #: right-hand sides after which a peer gives up: 15 s of the paper's method, 1 min of scipy's
 _MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000

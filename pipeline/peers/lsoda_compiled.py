@@ -15,13 +15,14 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from bench.jit import compiled
 from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.law.material import Material
 from viscoroll.kernels.motion.partial_slip import partial_rhs, partial_speeds, slow_D
 from viscoroll.kernels.motion.records import Scene
+
+from ..bench.jit import compiled
 
 ENGINE = "numbalsoda" if find_spec("numbalsoda") else "scipy"
 #: share of rtol that the absolute tolerance is; 1e-3 and less cost half as much again for the same error

@@ -148,8 +148,8 @@ def test_roll_has_the_check_motions(rtol):
 def test_picture_of_tolerance_and_error(tmp_path):
     """From the stored proofs."""
     picture = tmp_path / "errors.png"
-    script = [sys.executable, str(ROOT / "pipeline/proof_figures.py"), "-o", str(picture)]
-    result = subprocess.run(script, check=False, capture_output=True, text=True)
+    script = [sys.executable, "-m", "pipeline.prove.figures", "-o", str(picture)]
+    result = subprocess.run(script, cwd=ROOT, check=False, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     assert picture.read_bytes()[1:4] == b"PNG"
 

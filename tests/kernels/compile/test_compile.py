@@ -324,7 +324,7 @@ def test_a_process_without_a_cache_folder(tmp_path):
     assert done.stderr.count("RuntimeWarning: compiled kernels are not cached") == 1
 
 
-@pytest.mark.parametrize("name", ["law/law.py", "bessel/ratios.npy", "compile/jit.py"])
+@pytest.mark.parametrize("name", ["law/length.py", "bessel/ratios.npy", "compile/jit.py"])
 def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, name):
     """numba's own cache would not notice a change in a function called from another module."""
     copy = tmp_path / "kernels"

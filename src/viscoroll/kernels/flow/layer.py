@@ -13,23 +13,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy, fill
 from ..compile.jit import kernel
-from ..law.bracket import narrowed, secant
 from ..law.length import contact_length
 from ..law.material import generator_slopes
 from ..motion import dop853
 from ..motion.partial_slip import branch_rates
+from ..numerics.arrays import copy, fill
+from ..numerics.bracket import narrowed, secant
+from ..numerics.nodes import Interpolation, chebyshev
 from . import layout
-from .fit import BINS, N, bin_of, fit_matrix, node, put, value
+from .fit import BINS, N, bin_of, node, put, value
 from .read import slow_entry, slow_loss, slow_path
 
 _LONGEST = 0.5
 _SPEED_N, _FAST_N = layout.SPEED_COEFFICIENTS, layout.FAST_COEFFICIENTS
-_SPEED_NODES = -np.cos(np.pi * (np.arange(_SPEED_N) + 0.5) / _SPEED_N)
-_FAST_NODES = -np.cos(np.pi * (np.arange(_FAST_N) + 0.5) / _FAST_N)
-_SPEED_FIT = fit_matrix(_SPEED_NODES, 0.5)
-_FAST_FIT_OCTAVE, _FAST_FIT_HALF = fit_matrix(_FAST_NODES, 0.5), fit_matrix(_FAST_NODES, 0.25)
+_SPEED, _FAST = Interpolation(chebyshev(_SPEED_N)), Interpolation(chebyshev(_FAST_N))
+_SPEED_NODES, _FAST_NODES = _SPEED.nodes, _FAST.nodes
+_SPEED_FIT, _FAST_FIT_OCTAVE, _FAST_FIT_HALF = _SPEED.powers(0.5), _FAST.powers(0.5), _FAST.powers(0.25)
 #: columns of a layer's table
 LN_V, SLIP, X_EXCESS, ANGLE_EXCESS, LOSS = range(layout.LAYER_COLUMNS)
 _WHOLE = layout.ENTRY_COLUMNS - 1

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
 from ..law.length import contact_length
 from ..law.material import at_contact
 from ..motion.partial_slip import partial_jacobian, partial_rhs, partial_speeds
+from ..numerics.arrays import fill
 from ..numerics.linear import eliminate
 from . import layout
 from .fit import BINS, DERIVATIVE, HALF, NODES, TO_END, TO_NODES, N, bin_of, find, node, put, value, width

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy
 from ..compile.jit import kernel
+from ..numerics.arrays import copy
 from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
 from .length import OK, contact_solution, near_length
 from .material import moment_of, standard

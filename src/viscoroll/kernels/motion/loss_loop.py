@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy, fill
 from ..compile.jit import kernel
 from ..law.material import standard
+from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .losses import SLIP_LOSS, add_losses
 from .output import OUTPUTS

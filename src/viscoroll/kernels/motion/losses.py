@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
 from ..law.contact_loop import ROWS as CONTACT_ROWS
 from ..law.contact_loop import Q, contact_state
 from ..law.stick import GAUSS_W, GAUSS_X
+from ..numerics.arrays import fill
 from .integrate import integrate
 from .output import OUTPUTS
 from .stepper import PARTIAL

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy, fill
 from ..compile.jit import kernel
+from ..numerics.arrays import copy, fill
 from ..numerics.linear import eliminate
 from .collocation import INTEGRAL, NODES, TO_POWERS, TO_START, N, integral_terms, polynomial, rise_at
 from .partial_slip import partial_rates
