@@ -8,14 +8,14 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := data/tables/atlas.nc data/tables/paper.nc
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture check clean interop interop-tools
+.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
 
 setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 .venv/stamp: pyproject.toml constraints.txt
-	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'
+	@$(PYTHON) -c 'import sys; sys.version_info < (3, 11) and sys.exit("viscoroll needs Python 3.11 or newer, $(PYTHON) is %d.%d: make PYTHON=..." % sys.version_info[:2])'
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	touch $@
@@ -99,6 +99,9 @@ mutate: setup ## plant defects in the kernels and see which the tests notice (ab
 torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 25 minutes)
 	$(RUN) -m pipeline.torture --config $(CONFIG)
 	$(RUN) -m pipeline.document
+
+matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (half an hour; PYTHONS names others)
+	$(RUN) -m pipeline.matrix
 
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports

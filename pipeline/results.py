@@ -6,7 +6,6 @@ import argparse
 import datetime
 import json
 import math
-import os
 import platform
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -16,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
+from viscoroll.blocks import cores
 from viscoroll.errors import ConfigError
 from viscoroll.files import write_text
 
@@ -164,7 +164,7 @@ def machine() -> dict[str, Any]:
         cpu = platform.processor() or platform.machine()
     return {
         "cpu": cpu,
-        "cores": len(os.sched_getaffinity(0)),
+        "cores": cores(),
         "system": platform.system(),
         "python": platform.python_version(),
         "numpy": np.__version__,

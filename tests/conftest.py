@@ -1,6 +1,8 @@
-"""Fixtures that tests of several folders share."""
+"""Fixtures that tests of several folders share, and an environment of the suite's own."""
 
 from __future__ import annotations
+
+import os
 
 import pytest
 import xarray as xr
@@ -8,6 +10,9 @@ from memory import forget
 
 import viscoroll as vr
 from viscoroll.motion import flow_store
+
+# what a user chose for other work does not reach the tests
+os.environ.pop("VISCOROLL_THREADS", None)
 
 
 @pytest.fixture

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import threading
 
 import numpy as np
 import pytest
 
 import viscoroll as vr
-from viscoroll.blocks import elements, run_blocks, thread_count
+from viscoroll.blocks import cores, elements, run_blocks, thread_count
 
 GRID = np.arange(60.0).reshape(4, 5, 3)
 ARRAYS = {
@@ -55,7 +54,7 @@ def test_a_number_of_threads_that_is_none(monkeypatch):
     with pytest.raises(vr.ParameterError, match="VISCOROLL_THREADS = 'two': must be a whole number"):
         vr.ensemble(*start)
     monkeypatch.setenv("VISCOROLL_THREADS", "")
-    assert thread_count() == len(os.sched_getaffinity(0))
+    assert thread_count() == cores()
 
 
 def test_blocks_after_an_error_are_not_begun():

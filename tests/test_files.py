@@ -76,8 +76,9 @@ def test_a_device_or_pipe_is_not_replaced(write: Callable, tmp_path: Path) -> No
 
 
 @pytest.fixture
-def shared(tmp_path: Path) -> Path:
-    """A folder that others may enter."""
+def shared(tmp_path: Path, write: Callable) -> Path:
+    """A folder that others may enter; what ``write`` imports is loaded, for they may not read where it lies."""
+    write(tmp_path / "before")
     let_in(tmp_path)
     folder = tmp_path / "shared"
     folder.mkdir()
