@@ -152,6 +152,19 @@ def run(name: str, kind: type[T] | None, work: Callable[..., Outcome], doc: str 
     return told(name, timed)
 
 
+def read_rows(path: Path) -> list[dict[str, Any]]:
+    """Rows of a CSV file, numbers where there are any."""
+
+    def value(text: str) -> Any:
+        try:
+            return float(text)
+        except ValueError:
+            return text
+
+    with path.open(encoding="utf-8", newline="") as file:
+        return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+
 def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
     """Rows as CSV under the names of their columns; raises OutputError."""
     text = io.StringIO()

@@ -7,20 +7,16 @@ A part without results is left out.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-
-mpl.use("Agg")
-import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
 
 from viscoroll.files import replacing
 
 from ..document.bench import finished, paper_rows
-from ..results import Results
+from ..results import RESULTS, Results
 from ..stage import ROOT
 
 #: line and marker by method: told apart without colour
@@ -28,94 +24,93 @@ _STYLES = {
     "flow": ("#000000", "*", "-"), "table": ("#000000", "o", "-"), "direct": ("#0072b2", "s", "--"),
     "atlas": ("#d55e00", "^", "--"), "lsoda": ("#009e73", "D", "-."), "gsl-adams": ("#666666", "x", ":"),
     "gsl-bdf": ("#666666", "+", ":"), "scipy-lsoda": ("#aa4499", "v", ":"), "scipy-radau": ("#aa4499", "<", ":"),
+    "shipped ratios": ("#000000", "*", "-"), "1-D ratio splines": ("#0072b2", "s", "-"),
+    "3-D atlas": ("#d55e00", "^", "-"),
 }  # fmt: skip
 _OTHER = ("#999999", "p", ":")
+#: key of a row -> what it is, over all outputs of the motions
+_ERRORS = {"max": "max", "p99": "99th percentile"}
 
 
-def _lines(axes: Any, rows: list[dict[str, Any]], key: str, methods: dict[str, Any]) -> None:
-    """One line for each method: error over time."""
-    for name in methods:
+def _line(axes: Any, name: str, points: list[tuple[float, float]], label: str, **options: Any) -> None:
+    colour, marker, dashes = _STYLES.get(name, _OTHER)
+    style = {"color": colour, "marker": marker, "ls": dashes, "ms": 5, "lw": 1.2} | options
+    axes.loglog(*zip(*points), label=label, **style)
+
+
+def _work(axes: Any, rows: list[dict[str, Any]], key: str, methods: dict[str, Any], title: str) -> None:
+    """Error over time, a line for each method."""
+    for name, method in methods.items():
         points = [(r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r)]
         if points:
-            colour, marker, dashes = _STYLES.get(name, _OTHER)
-            us, error = zip(*points)
-            axes.loglog(us, error, color=colour, marker=marker, ls=dashes, ms=5, lw=1.2, label=methods[name]["label"])
+            _line(axes, name, points, method["label"])
     axes.grid(True, which="major", color="0.9")
     axes.set_xlabel("time of a motion, µs, one core")
     axes.set_ylim(1e-12, 10.0)
+    axes.set_title(title, fontsize=9)
 
 
-def work_precision(result: dict[str, Any]) -> Any:
+def work_precision(result: dict[str, Any]) -> Figure:
     """IC1-IC3 with every peer, and the random starts."""
     rows, methods = result["measured"]["results"], result["measured"]["methods"]
-    motions = result["sizes"]["motions"]
-    figure, panels = plt.subplots(1, 3, figsize=(12, 4.2), sharey=True, layout="constrained")
-    _lines(panels[0], paper_rows(rows), "max", methods)
-    panels[0].set_title("IC1-IC3, down to a speed of 1e-3: max error", fontsize=9)
+    figure = Figure((12, 4.2), layout="constrained")
+    panels = figure.subplots(1, 3, sharey=True)
+    _work(panels[0], paper_rows(rows), "max", methods, "IC1-IC3, down to a speed of 1e-3: max error")
     panels[0].set_ylabel("relative error of V and ω")
     random = [row for row in rows if row["group"] == "random"]
-    for panel, key, text in ((panels[1], "max", "max"), (panels[2], "p99", "99th percentile")):
-        _lines(panel, random, key, methods)
-        panel.set_title(f"{motions} random starts (peers: fewer): {text}", fontsize=9)
+    for panel, (key, text) in zip(panels[1:], _ERRORS.items(), strict=True):
+        _work(panel, random, key, methods, f"{result['sizes']['motions']} random starts (peers: fewer): {text}")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
 
 
-def own_parameters(result: dict[str, Any]) -> Any:
+def own_parameters(result: dict[str, Any]) -> Figure:
     """Max and 99th percentile where every motion has its own scene."""
-    rows, methods = result["measured"]["results"], result["measured"]["methods"]
-    figure, panels = plt.subplots(1, 2, figsize=(8, 3.6), sharey=True, layout="constrained")
-    for panel, key, text in ((panels[0], "max", "max"), (panels[1], "p99", "99th percentile")):
-        _lines(panel, rows, key, methods)
-        panel.set_title(f"every motion its own scene: {text}", fontsize=9)
+    figure = Figure((8, 3.6), layout="constrained")
+    panels, measured = figure.subplots(1, 2, sharey=True), result["measured"]
+    for panel, (key, text) in zip(panels, _ERRORS.items(), strict=True):
+        _work(panel, measured["results"], key, measured["methods"], f"every motion its own scene: {text}")
     panels[0].set_ylabel("relative error of V and ω")
     panels[0].legend(fontsize=8, frameon=False)
     return figure
 
 
-def tables(result: dict[str, Any]) -> Any:
+def tables(result: dict[str, Any]) -> Figure:
     """Error of Q/mu against size and against look-up time."""
-    figure, panels = plt.subplots(1, 2, figsize=(8, 3.6), sharey=True, layout="constrained")
-    kinds = {"shipped ratios": ("#000000", "*"), "1-D ratio splines": ("#0072b2", "s"), "3-D atlas": ("#d55e00", "^")}
-    for kind, (colour, marker) in kinds.items():
-        rows = [row for row in result["measured"]["rows"] if row["kind"] == kind]
-        for panel, key in zip(panels, ("bytes", "ns")):
-            values = [row[key] for row in rows]
-            error = [max(row["error"]["Q_over_mu"], 1e-17) for row in rows]
-            panel.loglog(values, error, color=colour, marker=marker, ls="-", lw=1, ms=6, label=kind)
-            panel.grid(True, color="0.9")
-    panels[0].set_xlabel("bytes of the table")
-    panels[1].set_xlabel("ns for Q and M")
+    figure = Figure((8, 3.6), layout="constrained")
+    panels, rows = figure.subplots(1, 2, sharey=True), result["measured"]["rows"]
+    for panel, (key, text) in zip(panels, {"bytes": "bytes of the table", "ns": "ns for Q and M"}.items(), strict=True):
+        for kind in dict.fromkeys(row["kind"] for row in rows):
+            points = [(row[key], max(row["error"]["Q_over_mu"], 1e-17)) for row in rows if row["kind"] == kind]
+            _line(panel, kind, points, kind, lw=1, ms=6)
+        panel.grid(True, color="0.9")
+        panel.set_xlabel(text)
     panels[0].set_ylabel(r"max error of $Q/\mu$")
     panels[0].legend(fontsize=8, frameon=False)
     return figure
 
 
-def scaling(result: dict[str, Any]) -> Any:
+def scaling(result: dict[str, Any]) -> Figure:
     """Time of a motion and peak memory over the number of motions."""
-    figure, panels = plt.subplots(1, 2, figsize=(8, 3.4), layout="constrained")
-    rows = result["measured"]["rows"]
-    for name, threads in sorted({(row["method"], row["threads"]) for row in rows}):
-        part = [row for row in rows if (row["method"], row["threads"]) == (name, threads)]
-        style = {"marker": "o" if threads == 1 else "s", "ls": "-" if name == "flow" else "--", "color": "k", "lw": 1}
-        style |= {"mfc": "k" if threads == 1 else "w", "label": f"{name}, {threads} thread{'s' * (threads > 1)}"}
-        for panel, key in zip(panels, ("us", "peak_mb")):
-            panel.loglog([row["motions"] for row in part], [row[key] for row in part], **style)
-    for panel, text in zip(panels, ("time of a motion, µs", "peak memory, MB")):
-        panel.set_xlabel("motions")
-        panel.set_ylabel(text)
+    figure = Figure((8, 3.4), layout="constrained")
+    panels, rows = figure.subplots(1, 2), result["measured"]["rows"]
+    shown = {"us": "time of a motion, µs", "peak_mb": "peak memory, MB"}
+    for panel, (key, text) in zip(panels, shown.items(), strict=True):
+        for name, threads in sorted({(row["method"], row["threads"]) for row in rows}):
+            points = [(r["motions"], r[key]) for r in rows if (r["method"], r["threads"]) == (name, threads)]
+            style = {"marker": "o" if threads == 1 else "s", "mfc": "k" if threads == 1 else "w"}
+            style |= {"ls": "-" if name == "flow" else "--", "color": "k", "lw": 1}
+            _line(panel, name, points, f"{name}, {threads} thread{'s' * (threads > 1)}", **style)
+        panel.set(xlabel="motions", ylabel=text)
         panel.grid(True, color="0.9")
     panels[0].legend(fontsize=8, frameon=False)
     return figure
 
 
-FIGURES: dict[str, Callable[[dict[str, Any]], Any]] = {
-    "work-precision": work_precision,
-    "own-parameters": own_parameters,
-    "tables": tables,
-    "scaling": scaling,
-}
+FIGURES: dict[str, Callable[[dict[str, Any]], Figure]] = {
+    "work-precision": work_precision, "own-parameters": own_parameters, "tables": tables, "scaling": scaling,
+}  # fmt: skip
 
 
 def draw(results: Path, folder: Path) -> None:
@@ -124,13 +119,10 @@ def draw(results: Path, folder: Path) -> None:
     found = Results(results)
     for part, figure_of in FIGURES.items():
         if (result := found.found(f"bench-{part}")) is not None:
-            figure = figure_of(result)
             name = part if part == "work-precision" else f"bench-{part}"
             with replacing(folder / f"{name}.png") as temporary:
-                figure.savefig(temporary, dpi=110, metadata={"Software": None})
-            plt.close(figure)
+                figure_of(result).savefig(temporary, dpi=110, metadata={"Software": None})
 
 
 if __name__ == "__main__":
-    draw(ROOT / "data/results", ROOT / "docs/figures")
-    sys.exit(0)
+    draw(RESULTS, ROOT / "docs/figures")

@@ -11,11 +11,8 @@ this moment: run it with nothing else running.  pipeline/document/ puts the numb
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
-import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,7 +24,9 @@ from viscoroll.reference import contact_precise
 from viscoroll.validation.states import differences
 from viscoroll.validation.stresses import closures
 
-from ..results import RESULTS, machine, parser, read_sizes, told, write_results
+from ..bench.cold_start import cold_start
+from ..results import run
+from ..timing import alternating
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 DIGITS = 50
@@ -37,26 +36,17 @@ REFERENCE_RTOL = 1e-12
 LEAST_SPEED = 1e-6 / 1.5
 
 
-def main() -> int:
-    arguments = parser(__doc__, RESULTS / "measured.json").parse_args()
-    return told("measure", lambda: measure(arguments.config, arguments.quick, arguments.output))
-
-
-def measure(config: Path, quick: bool, output: Path) -> None:
-    """Everything, into ``output``."""
-    sizes = read_sizes(config, "measure", quick)
+def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Everything that measured.json holds beside the machine."""
     os.environ["VISCOROLL_THREADS"] = "1"  # every time is that of one core
-    measured = {
+    return {
         "contact_error": contact_errors(sizes),
         "table_against_direct": table_against_direct(sizes),
         "stress_closure": stress_closures(sizes),
         "motion_error": motion_errors(sizes),
-        "time": {**contact_times(sizes), **motion_times(sizes), **process_times(sizes)},
-        "machine": machine(),
+        "time": call_times(sizes) | process_times(sizes),
         "sizes": sizes,
     }
-    write_results(output, measured)
-    print(f"{output}: written; now run pipeline.document")
 
 
 def random_states(
@@ -79,15 +69,16 @@ def contact_errors(sizes: dict[str, Any]) -> dict[str, Any]:
     """Relative error of each field against 50 digits; beta's is times 1 - s, over its condition number."""
     scene, V, delta = random_states(sizes["states"], sizes["seed"], (1e-7, 1e5), (1e-8, 1e-6))
     table = vr.contact(scene, V, delta=delta, fields=FIELDS)
-    errors: dict[str, list[float]] = {name: [] for name in FIELDS}
+    errors = np.empty((len(FIELDS), V.size))
     for i in tqdm(range(V.size), desc="contact against 50 digits", delay=1.0, leave=False):
         exact = contact_precise(scene.alpha[i], scene.kappa[i], scene.mu[i], V[i], delta[i], DIGITS)
-        for name in FIELDS:
+        for row, name in zip(errors, FIELDS, strict=True):
             # the difference is formed with all digits: a double converts exactly
             error = abs((exact[name] - float(getattr(table, name)[i])) / exact[name])
-            errors[name].append(float(error * (1 - float(delta[i]) / exact["delta_star"]) if name == "beta" else error))
+            row[i] = error * (1 - float(delta[i]) / exact["delta_star"]) if name == "beta" else error
     return {
-        name: {"worst": float(np.max(values)), "median": float(np.median(values))} for name, values in errors.items()
+        name: {"worst": float(row.max()), "median": float(np.median(row))}
+        for name, row in zip(FIELDS, errors, strict=True)
     }
 
 
@@ -163,69 +154,49 @@ def motion_difference(motion: Any, best: Any) -> dict[str, float]:
     return {name: float(error) if np.isfinite(error) else np.inf for name, error in errors.items()}
 
 
-def median_seconds(call: Callable[[], Any], repeats: int) -> float:
-    """Median wall time of a call that has been warmed up once."""
-    call()
-    seconds = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        call()
-        seconds.append(time.perf_counter() - start)
-    return float(np.median(seconds))
-
-
-def contact_times(sizes: dict[str, Any]) -> dict[str, float]:
-    """Time of contact() on one core: ns per state in arrays, us for a single state."""
-    n, repeats = sizes["timed_states"], sizes["repeats"]
+def call_times(sizes: dict[str, Any]) -> dict[str, float]:
+    """Median times on one core: of a state or motion in arrays, and of single calls; motions end at t = 3e-3."""
+    n, m = sizes["timed_states"], sizes["timed_motions"]
     rng = np.random.default_rng(sizes["seed"] + 4)
-    scene = vr.PAPER_SECTION_5
+    scene, end = vr.PAPER_SECTION_5, np.array([3e-3])
     each = scene.replace(alpha=np.exp(rng.uniform(0.0, np.log(100.0), n)))
-    V = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n))
-    s = rng.uniform(0.0, 1.2, n)
-    fewer = slice(0, max(n // 20, 1))
-    calls = {}
-    for name, which in (("one_alpha", scene), ("an_alpha_each", each)):
-        delta = s * vr.contact(which, V, delta=0.0, fields="delta_star").delta_star
-        calls[name] = lambda which=which, delta=delta: vr.contact(which, V, delta=delta, fields=("Q", "M"))
-    delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
-    times = {f"contact_{name}_ns": 1e9 * median_seconds(call, repeats) / n for name, call in calls.items()}
-    direct = median_seconds(
-        lambda: vr.contact(scene, V[fewer], delta=delta[fewer], fields=("Q", "M"), method="direct"), repeats
-    )
-    single = median_seconds(lambda: vr.contact(scene, 0.5, delta=-0.01), 100 * repeats)
-    return times | {"contact_direct_ns": 1e9 * direct / V[fewer].size, "contact_single_us": 1e6 * single}
+    V, s = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n)), rng.uniform(0.0, 1.2, n)
+    starts = np.random.default_rng(sizes["seed"] + 5).uniform(-2.0, 2.0, (2, 51 * m))
+    #: name -> (what its time is over, call)
+    calls: dict[str, tuple[float, Callable[[], Any]]] = {}
 
+    def contact(name: str, which: vr.Scene, count: int, **options: Any) -> None:
+        delta = s[:count] * vr.contact(which, V[:count], delta=0.0, fields="delta_star").delta_star
+        calls[name] = (
+            1e-9 * count, lambda: vr.contact(which, V[:count], delta=delta, fields=("Q", "M"), **options)
+        )  # fmt: skip
 
-def motion_times(sizes: dict[str, Any]) -> dict[str, float]:
-    """Time of one roll() and of a motion of an ensemble, us, on one core; final state at t = 3e-3 only."""
-    scene, end, times = vr.PAPER_SECTION_5, np.array([3e-3]), {}
-    rng = np.random.default_rng(sizes["seed"] + 5)
-    V0, omega0 = rng.uniform(-2.0, 2.0, (2, sizes["timed_motions"]))
+    def motions(name: str, V0: NDArray, omega0: NDArray, **options: Any) -> None:
+        calls[name] = 1e-6 * V0.size, lambda: vr.ensemble(scene, V0, omega0, end, **options)
+
+    contact("contact_one_alpha_ns", scene, n)
+    contact("contact_an_alpha_each_ns", each, n)
+    contact("contact_direct_ns", scene, max(n // 20, 1), method="direct")
+    calls["contact_single_us"] = 1e-6, lambda: vr.contact(scene, 0.5, delta=-0.01)
     for rtol in (1e-6, 1e-8):
-        one = median_seconds(lambda rtol=rtol: vr.roll(scene, 1.5, 0.5, end, rtol), 20 * sizes["repeats"])
-        many = median_seconds(
-            lambda rtol=rtol: vr.ensemble(scene, V0, omega0, end, rtol=rtol, method="integrate"), sizes["repeats"]
-        )
-        times |= {f"roll_{rtol:.0e}_us": 1e6 * one, f"ensemble_{rtol:.0e}_us": 1e6 * many / V0.size}
-    V0, omega0 = rng.uniform(-2.0, 2.0, (2, 50 * sizes["timed_motions"]))
-    vr.ensemble(scene, 1.0, 1.0, end, method="flow")  # builds the map
-    mapped = median_seconds(lambda: vr.ensemble(scene, V0, omega0, end, method="flow"), sizes["repeats"])
-    return times | {"flow_us": 1e6 * mapped / V0.size}
+        calls[f"roll_{rtol:.0e}_us"] = 1e-6, lambda rtol=rtol: vr.roll(scene, 1.5, 0.5, end, rtol)
+        motions(f"ensemble_{rtol:.0e}_us", *starts[:, :m], rtol=rtol, method="integrate")
+    motions("flow_us", *starts[:, m:], method="flow")
+    for _, call in calls.values():
+        call()  # compiles, and builds the map
+    seconds = alternating({name: call for name, (_, call) in calls.items()}, sizes["repeats"])
+    return {name: seconds[name] / over for name, (over, _) in calls.items()}
 
 
 def process_times(sizes: dict[str, Any]) -> dict[str, float]:
     """Whole processes: import over a bare python, and the program rolling IC1; kernels cached."""
-
-    def seconds(*arguments: str) -> float:
-        def run() -> None:
-            subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
-
-        return median_seconds(run, sizes["processes"])
-
-    bare = seconds("-c", "pass")
-    roll = ("-m", "viscoroll", "roll", "--preset", "paper-section-5", "--ic", "IC1", "--t-end", "3e-3")
-    return {"bare_python_s": bare, "import_s": seconds("-c", "import viscoroll") - bare, "cli_roll_s": seconds(*roll)}
+    processes = {"processes": ["bare_python", "import", "cli_roll"], "repeats": sizes["processes"]}
+    found = cold_start(processes)
+    return {
+        "bare_python_s": found["bare_python"]["s"], "import_s": found["import"]["over_bare_s"],
+        "cli_roll_s": found["cli_roll"]["s"],
+    }  # fmt: skip
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run("measure", measure, __doc__, "measured.json"))

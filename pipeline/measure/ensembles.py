@@ -11,12 +11,10 @@ pipeline/document/ puts the numbers into docs/ensembles.md.
 from __future__ import annotations
 
 import os
-import resource
 import sys
 import tempfile
 import time
-from collections.abc import Callable
-from multiprocessing import get_context
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +26,8 @@ from viscoroll.runs import read_run, run_ensemble, verify
 from viscoroll.runs.store import Store
 
 from ..results import run
+from ..timing import forked, peak_mb, processor_time
 
-WHO = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
 START = """
 V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
 omega0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
@@ -90,31 +88,18 @@ def rolled(
     """Seconds, peak memory and bytes on disk of a run."""
     path = Path(f"{name}.toml")
     path.write_text(text + RUN.format(n=n, design=design, keep=keep, block=block), encoding="utf-8")
-    taken = in_process(lambda: run_ensemble(read_run(path), f"{name}.zarr", cluster=cluster))
+    (taken,) = forked(spent, lambda: run_ensemble(read_run(path), f"{name}.zarr", cluster=cluster))
+    if isinstance(taken, str):
+        raise vr.ParameterError("ensembles", taken, "one that ends well")
     stored = sum(path.stat().st_size for path in Path(f"{name}.zarr").rglob("*") if path.is_file())
     return {"motions": n, "block": block, "stored_mb": stored / 1e6} | taken
 
 
-def in_process(work: Callable[[], Any]) -> dict[str, float]:
-    """Seconds, seconds of processors and peak memory of ``work`` in a process of its own."""
-    receiver, sender = get_context("fork").Pipe(duplex=False)
-
-    def run() -> None:
-        begun = time.perf_counter()
-        work()
-        seconds, used = time.perf_counter() - begun, [resource.getrusage(who) for who in WHO]
-        cpu = sum(one.ru_utime + one.ru_stime for one in used)
-        sender.send({"seconds": seconds, "cpu_s": cpu, "peak_mb": 1.024e-3 * max(one.ru_maxrss for one in used)})
-
-    process = get_context("fork").Process(target=run)
-    process.start()
-    sender.close()  # so that a child that fails ends the wait
-    try:
-        return receiver.recv()
-    except EOFError:
-        raise vr.ParameterError("ensembles", "a process that failed", "one that ends well") from None
-    finally:
-        process.join()
+def spent(work: Callable[[], Any]) -> Iterator[dict[str, float]]:
+    """Seconds, seconds of processors and peak memory of ``work``."""
+    begun = time.perf_counter()
+    work()
+    yield {"seconds": time.perf_counter() - begun, "cpu_s": processor_time(), "peak_mb": peak_mb()}
 
 
 def loop(n: int, block: int) -> dict[str, float]:

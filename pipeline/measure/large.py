@@ -8,12 +8,11 @@ the configuration; 10^8 motions want 8 GB.  pipeline/document/ puts the table in
 
 from __future__ import annotations
 
-import json
-import subprocess
 import sys
 from typing import Any
 
 from ..results import run
+from ..timing import printed
 
 #: calls on vectors x and y of n elements, or on a grid of n of them; ``alphas`` is a scene with an alpha for each
 CALLS = {
@@ -26,13 +25,7 @@ CALLS = {
     "integrated": "vr.ensemble(scene, x, y, 1e-9, method='integrate')",
 }
 _CHILD = """
-import json, sys, time
-import numpy as np
-import viscoroll as vr
 scene = vr.PAPER_SECTION_5
-def memory(name):  # of this process alone: ru_maxrss is inherited from the parent
-    with open("/proc/self/status") as status:
-        return 1024 * next(int(line.split()[1]) for line in status if line.startswith(name))
 def own(result, *given):  # what the result holds, each array once, without the arrays that were given
     values = result.as_dict() if hasattr(result, "as_dict") else vars(result)
     whole = {}
@@ -51,15 +44,13 @@ def run(n):
     held = min(own(result, x, y), after - before)  # pages of zeros take memory when they are first written
     return {"seconds": seconds, "result_bytes": own(result, x, y), "extra_bytes": memory("VmHWM") - before - held}
 run(10_000)  # compiles, and builds the map
-print(json.dumps(run(int(sys.argv[1]))))
+print(json.dumps(run(*given)))
 """
 
 
 def measured(name: str, count: int) -> dict[str, Any]:
     """Seconds, bytes of the result, and bytes at the peak beside it and the input."""
-    code = _CHILD.replace("CALL", CALLS[name])
-    result = subprocess.run([sys.executable, "-c", code, str(count)], check=True, capture_output=True, text=True)
-    return {"call": CALLS[name], "elements": count} | json.loads(result.stdout)
+    return {"call": CALLS[name], "elements": count} | printed(_CHILD.replace("CALL", CALLS[name]), count)
 
 
 def measure(sizes: dict[str, Any]) -> dict[str, Any]:

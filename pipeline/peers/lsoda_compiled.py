@@ -10,6 +10,7 @@ the package, and none of that is timed.  A motion whose full slip returns is bey
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.util import find_spec
 from typing import NamedTuple
 
@@ -98,13 +99,9 @@ def _put(unknowns, first, direction, par, V, omega):
                 V[i, m], omega[i, m] = direction[i] * speed, direction[i] * speed * (1.0 + delta)
 
 
+@cache
 def _engine():
-    if not _cached:
-        _cached.append(_by_numbalsoda() if ENGINE == "numbalsoda" else _by_scipy)
-    return _cached[0]
-
-
-_cached: list = []
+    return _by_numbalsoda() if ENGINE == "numbalsoda" else _by_scipy
 
 
 def _by_numbalsoda():

@@ -38,3 +38,8 @@ class Claim:
             "claim": self.claim, "domain": self.domain, "bound": self.bound, "points": self.points,
             "worst": self.worst, "mean": mean, "where": self.where,
         }  # fmt: skip
+
+
+def at(**values: float) -> str:
+    """Where an error was found, to the last digit."""
+    return ", ".join(f"{name} = {value!r}" for name, value in values.items())

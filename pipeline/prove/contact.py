@@ -15,7 +15,7 @@ from viscoroll.alpha_slice import WORTHWHILE
 from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
 
 from ..reference.check_values import EDGE_ALPHAS, chosen_state
-from .claim import Claim
+from .claim import Claim, at
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: relative error where the condition number leaves it, else that many roundings of the inputs
@@ -46,19 +46,21 @@ def by_slice(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
     return vr.rolling_contact.Values({name: value[: len(states)] for name, value in state.as_dict().items()})
 
 
-class Tally:
+class Tally(dict[str, Claim]):
     """The claims of one way."""
 
     def __init__(self, way: str) -> None:
+        super().__init__()
         self.way = way
-        self.claims: dict[str, Claim] = {}
 
     def add(self, claim: str, bound: float, error: float, state: tuple[float, ...]) -> None:
-        row = self.claims.setdefault(claim, Claim(f"{claim} ({self.way})", DOMAIN, bound))
-        row.add(error, ", ".join(f"{n} = {v!r}" for n, v in zip(INPUTS, state, strict=True)))
+        row = self.setdefault(claim, Claim(f"{claim} ({self.way})", DOMAIN, bound))
+        row.add(error, at(**dict(zip(INPUTS, state, strict=True))))
 
 
 DOMAIN = "alpha in [1, 1e6], kappa V in [1e-300, 1e300], kappa, mu in [1e-6, 1e6], s from 1e-300 to 1 and beyond"
+_WELL_CLAIM = f"{{}}, relative, condition below {WELL_CONDITIONED:.0f}"
+_ILL_CLAIM = f"{{}}, over condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f}"
 
 
 def compare(tally: Tally, state: tuple[float, ...], found: dict[str, float]) -> None:
@@ -72,16 +74,11 @@ def compare(tally: Tally, state: tuple[float, ...], found: dict[str, float]) -> 
     tally.add(SLIP, SLIP_ULP, 0.0, state)
     condition = condition_numbers({name: arb(abs(value)) for name, value in zip(INPUTS, state, strict=True)})
     for name in FIELDS:
-        error = relative_error(found[name], exact[name])
-        if condition[name] <= WELL_CONDITIONED:
-            tally.add(f"{name}, relative, condition below {WELL_CONDITIONED:.0f}", WELL, error, state)
+        error, factor = relative_error(found[name], exact[name]), condition[name]
+        if factor <= WELL_CONDITIONED:
+            tally.add(_WELL_CLAIM.format(name), WELL, error, state)
         else:
-            tally.add(
-                f"{name}, over condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f}",
-                ROUNDINGS,
-                error / (condition[name] * UNIT),
-                state,
-            )
+            tally.add(_ILL_CLAIM.format(name), ROUNDINGS, error / (factor * UNIT), state)
 
 
 def relative_error(value: float, exact: Any) -> float:
@@ -106,5 +103,5 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             values = method(states).as_dict()
             for i, state in enumerate(tqdm(states, desc="states", delay=1.0, leave=False)):
                 compare(tally, state, {name: column[i] for name, column in values.items()})
-        result += sorted((claim.row for claim in tally.claims.values()), key=lambda row: row["claim"])
+        result += sorted((claim.row for claim in tally.values()), key=lambda row: row["claim"])
     return result

@@ -10,7 +10,6 @@ pipeline/document/ puts the tables into docs/accuracy.md.
 
 from __future__ import annotations
 
-import csv
 import math
 import sys
 from typing import Any
@@ -22,7 +21,7 @@ from scipy.optimize import brentq
 import viscoroll as vr
 
 from ..results import run
-from ..stage import ROOT
+from ..stage import ROOT, read_rows
 
 REFERENCE = ROOT / "data/reference"
 #: friction and kappa of profiles.csv
@@ -30,19 +29,6 @@ PROFILES_MU, PROFILES_KAPPA = 0.2, 29.1
 #: share of the half-length on which p is compared: at its ends p falls like a square root within one cell
 INNER = 0.97
 SYMBOLS = {"lam": "λ", "epsilon": "ε", "beta": "β"}
-
-
-def read(name: str) -> list[dict[str, Any]]:
-    """Rows of a file of data/reference: numbers where there are any."""
-    with (REFERENCE / name).open(encoding="utf-8", newline="") as file:
-        return [{key: number(text) for key, text in row.items()} for row in csv.DictReader(file)]
-
-
-def number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def columns(rows: list[dict[str, Any]]) -> dict[str, NDArray]:
@@ -54,7 +40,7 @@ def columns(rows: list[dict[str, Any]]) -> dict[str, NDArray]:
 
 def wang_knothe() -> dict[str, NDArray]:
     """Deviations by quantity and unit, one entry a case; cells are those of the other's grid."""
-    cases = read("wang_knothe.csv")
+    cases = read_rows(REFERENCE / "wang_knothe.csv")
     off = columns([wang_knothe_case(case) for case in cases])
     elastic = np.array([case["alpha"] == 1.0 for case in cases])
     return off | {"creep, relative, elastic": off["creep, relative"][elastic]}
@@ -89,7 +75,7 @@ def wang_knothe_case(case: dict[str, float]) -> dict[str, float]:
 
 def half_space() -> dict[str, NDArray]:
     """Deviations by quantity and unit, an entry a state; full slip: 1 where it is decided otherwise."""
-    data = columns(read("half_space_code.csv"))
+    data = columns(read_rows(REFERENCE / "half_space_code.csv"))
     state = vr.contact(vr.Scene(data["alpha"], data["kappa"], data["mu"]), data["V"], delta=data["delta"])
     elastic = data["alpha"] == 1.0
     slow = ~elastic & (data["kappa"] * data["V"] < 2.5)
@@ -108,7 +94,7 @@ def half_space() -> dict[str, NDArray]:
 
 def profiles() -> dict[str, NDArray]:
     """p over its peak, on the inner part of the contact; tau over mu times the peak."""
-    data, p_off, tau_off = columns(read("profiles.csv")), [], []
+    data, p_off, tau_off = columns(read_rows(REFERENCE / "profiles.csv")), [], []
     for alpha in np.unique(data["alpha"]):
         x, p, tau, s, kappa_V, E_prime = (
             data[name][data["alpha"] == alpha]
@@ -129,7 +115,7 @@ def profiles() -> dict[str, NDArray]:
 
 def section_5() -> dict[str, NDArray]:
     """V and omega over |V|, onset relative: IC1-IC3 with both sets of parameters, at rtol 1e-11."""
-    rows = read("section5.csv")
+    rows = read_rows(REFERENCE / "section5.csv")
     off: dict[str, list[NDArray]] = {"V, relative": [], "ω, over V": [], "onset time, relative": []}
     for ic, params in sorted({(row["ic"], row["params"]) for row in rows}):
         data = columns([row for row in rows if (row["ic"], row["params"]) == (ic, params)])
@@ -157,7 +143,7 @@ def paper() -> list[dict[str, Any]]:
             return onset
         return at(row["t"], row["quantity"]) if row["t"] != "" else getattr(vr.PAPER_SECTION_5, row["quantity"])
 
-    rows = read("paper.csv")
+    rows = read_rows(REFERENCE / "paper.csv")
     # beta rises from 0 to 0.98 within 1.5e-5: where its printed value is passed says more than the value at that time
     early = next(row for row in rows if (row["t"], row["quantity"]) == (1.52e-4, "beta"))
     passed = brentq(lambda t: at(t, "beta") - early["value"], onset * (1.0 + 1e-9), early["t"], xtol=1e-12)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import warnings
+from collections import defaultdict
+from itertools import groupby
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +18,7 @@ from viscoroll.errors import MotionStatus
 from viscoroll.reference import roll_precise
 
 from ..reference.random_motions import DOMAIN, ChosenMotion, chosen_motion
-from ..stage import ROOT
+from ..stage import ROOT, read_rows
 from .claim import Claim
 
 CHECK_MOTIONS = ROOT / "data/reference/check_motions.csv"
@@ -116,7 +118,7 @@ def accuracy_rows(count: int, tolerances: list[float], rng: np.random.Generator)
         "steps": Claim("steps of a motion", DOMAIN, STEPS),
         "given up": Claim(f"motions given up after {10 * STEPS} steps", DOMAIN, 0),
     }
-    curves: dict[tuple[str, float], list[float]] = {}
+    curves: dict[str, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
     for _ in tqdm(range(count), desc="motions", delay=1.0, leave=False):
         motion = chosen_motion(rng)
         tried = {rtol: rolled(motion, rtol) for rtol in (*tolerances, REFERENCE_RTOL)}
@@ -127,44 +129,33 @@ def accuracy_rows(count: int, tolerances: list[float], rng: np.random.Generator)
         factor = condition(motion, best)
         name, excuse = ("speed", 1.0) if factor <= FACTOR else ("ill", factor)
         for rtol, one in found.items():
-            where = f"rtol = {rtol:g}, {motion}"
-            claims[name].add(one["speed"] / rtol / excuse, where)
-            claims["x"].add(one["x"] / rtol, where)
-            claims["onset"].add(one["onset"] / rtol, where)
-            claims["steps"].add(tracks[rtol].steps, where)
-            for key, value in (
-                (name, one["speed"]),
-                ("x", one["x"]),
-                ("onset", one["onset"]),
-                ("steps", tracks[rtol].steps),
-            ):
-                curves.setdefault((key, rtol), []).append(value)
+            # value of the curve, and what it is over in the claim
+            for key, value, over in (
+                (name, one["speed"], rtol * excuse), ("x", one["x"], rtol), ("onset", one["onset"], rtol),
+                ("steps", tracks[rtol].steps, 1.0),
+            ):  # fmt: skip
+                claims[key].add(value / over, f"rtol = {rtol:g}, {motion}")
+                curves[key][rtol].append(value)
     rows = {name: claim.row for name, claim in claims.items() if claim.points}
-    for name in {name for name, _ in curves} & set(rows):
+    for name, curve in curves.items():
         rows[name]["by_rtol"] = {
-            f"{rtol:g}": {"worst": max(curves[name, rtol]), "median": float(np.median(curves[name, rtol]))}
+            f"{rtol:g}": {"worst": max(curve[rtol]), "median": float(np.median(curve[rtol]))}
             for rtol in tolerances
-            if (name, rtol) in curves
+            if rtol in curve
         }
     return list(rows.values())
 
 
 def check_motions() -> list[tuple[ChosenMotion, Track]]:
     """The motions of data/reference/check_motions.csv."""
-    with CHECK_MOTIONS.open(encoding="utf-8", newline="") as file:
-        rows = [{name: float(text) for name, text in row.items()} for row in csv.DictReader(file)]
     motions = []
-    for number in sorted({row["motion"] for row in rows}):
-        here = [row for row in rows if row["motion"] == number]
+    for _, rows in groupby(read_rows(CHECK_MOTIONS), itemgetter("motion")):
+        here = list(rows)
         first = here[0]
         scene = vr.Scene(*(first[name] for name in ("alpha", "kappa", "mu", "gamma", "j")))
         values = (np.array([row[name] for row in here]) for name in ("V", "omega", "x", "angle"))
-        motions.append(
-            (
-                ChosenMotion(scene, first["V0"], first["omega0"], here[-1]["t"]),
-                Track(*values, first["onset_time"], 0),
-            )
-        )
+        motion = ChosenMotion(scene, first["V0"], first["omega0"], here[-1]["t"])
+        motions.append((motion, Track(*values, first["onset_time"], 0)))
     return motions
 
 
@@ -237,12 +228,9 @@ def identity_rows(count: int, rtol: float, rng: np.random.Generator) -> list[dic
         claims["mirror"].add(0.0 if same(here, mirror, sign=-1.0) else 1.0, where)
         fast = rolled(motion._replace(scene=scene.replace(gamma=8.0 * scene.gamma)), rtol, motion.t / 8.0)
         claims["power"].add(0.0 if same(here, fast, time=8.0) else 1.0, where)
-        other = rolled(
-            motion._replace(scene=scene.replace(gamma=_TIME_SCALE * scene.gamma)), rtol, motion.t / _TIME_SCALE
-        )
-        other = other._replace(
-            x=other.x * _TIME_SCALE, angle=other.angle * _TIME_SCALE, onset=other.onset * _TIME_SCALE
-        )
+        slow = motion._replace(scene=scene.replace(gamma=_TIME_SCALE * scene.gamma))
+        other = rolled(slow, rtol, motion.t / _TIME_SCALE)
+        other = other._replace(**{name: getattr(other, name) * _TIME_SCALE for name in ("x", "angle", "onset")})
         claims["gamma"].add(max(errors(other, here, motion.end).values()) / rtol, where)
     return [claim.row for claim in claims.values()]
 

@@ -24,7 +24,7 @@ from viscoroll.validation.states import random_states
 from viscoroll.validation.stresses import closures
 
 from ..reference.check_values import chosen_alpha
-from .claim import Claim
+from .claim import Claim, at
 from .shape import at_edges, contact
 
 SLOPE, STRESS, CLOSURE = 1e-10, 1e-11, 1e-11
@@ -87,7 +87,7 @@ def slope_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
         if errors["dQ_dV"] > SLOPE:
             errors["dQ_dV"] /= allowance(given, scales["dQ_dV"])
         for name, error in errors.items():
-            claims[name].add(error, f"alpha = {alpha!r}, kappa = {kappa!r}, mu = {mu!r}, V = {V!r}, s = {s!r}")
+            claims[name].add(error, at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s))
     return [one.row for one in claims.values()]
 
 
@@ -149,15 +149,14 @@ def stress_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
         exact = contact_enclosure(alpha, kappa, mu, V, delta, 200)
         with flint.ctx.workprec(260):
             given = [arb(value) for value in (alpha, kappa, mu, V)]
-            for i, at in enumerate(x.tolist()):
-                where = f"alpha = {alpha!r}, kappa = {kappa!r}, mu = {mu!r}, V = {V!r}, s = {s!r}, x = {at!r}"
-                shift = _SHIFT * max(abs(at), 0.5 * state.lam * (1.0 + state.epsilon))
-                here, up, down = (enclosed_stress(exact, *given, arb(at) + move) for move in (0, shift, -shift))
+            for i, place in enumerate(x.tolist()):
+                shift = _SHIFT * max(abs(place), 0.5 * state.lam * (1.0 + state.epsilon))
+                here, up, down = (enclosed_stress(exact, *given, arb(place) + move) for move in (0, shift, -shift))
                 for n, values in enumerate((found.p, found.tau)):
                     off = abs(arb(float(values[i])) - here[n])
                     allowed = max(float(abs(other[n] - here[n]).mid()) for other in (up, down))
                     over = (float(off.upper()) - allowed) / (peak * (mu if n else 1.0))
-                    claims[n].add(over, where)
+                    claims[n].add(over, at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s, x=place))
     return [one.row for one in claims]
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 import resource
+import subprocess
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from multiprocessing import get_context
-from multiprocessing.connection import Connection
+from contextlib import contextmanager
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -18,6 +18,8 @@ from tqdm import tqdm
 from viscoroll import tables
 from viscoroll.errors import TableError
 from viscoroll.tables.content import content_hash
+
+from ..timing import forked, peak_mb, processor_time
 
 #: marks of the parts of an HDF5 file that lead to others: B-trees, heaps, symbol tables, object headers
 MARKS = re.compile(rb"TREE|HEAP|SNOD|GCOL|OHDR|OCHK|FRHP|BTHD|FHDB|FADB|FAHD|EAHD")
@@ -45,13 +47,15 @@ def unsealed(content: bytes) -> bytes:
 
 
 def flip(content: bytes, rng: np.random.Generator) -> bytes:
-    changed, position = bytearray(content), int(rng.integers(8 * len(content)))
+    """One bit; an empty file gets a byte."""
+    changed = bytearray(content or b"\0")
+    position = int(rng.integers(8 * len(changed)))
     changed[position // 8] ^= 1 << position % 8
     return bytes(changed)
 
 
 def truncate(content: bytes, rng: np.random.Generator) -> bytes:
-    return content[: int(rng.integers(len(content)))]
+    return content[: int(rng.integers(max(len(content), 1)))]
 
 
 def edit(content: bytes, rng: np.random.Generator) -> bytes:
@@ -62,6 +66,25 @@ def edit(content: bytes, rng: np.random.Generator) -> bytes:
     for position in first + rng.integers(size, size=rng.integers(1, 17)):
         changed[min(int(position), len(content) - 1)] = int(rng.integers(256))
     return bytes(changed)
+
+
+@contextmanager
+def small_disk(folder: Path, size: int) -> Iterator[bool]:
+    """``folder`` as a tmpfs of that size; False where none can be had."""
+    options = ["-t", "tmpfs", "-o", f"size={max(size // 4096, 4) * 4096}", "tmpfs", str(folder)]
+    try:
+        mounted = subprocess.run(["mount", *options], capture_output=True, check=False).returncode == 0
+    except FileNotFoundError:
+        mounted = False
+    try:
+        yield mounted
+    finally:
+        if mounted:
+            subprocess.run(["umount", str(folder)], check=True)
+
+
+def enlarge(disk: Path) -> None:
+    subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=True)
 
 
 class Damage:
@@ -78,7 +101,8 @@ class Damage:
         with tqdm(total=count, desc=done, delay=1.0, leave=False) as progress:
             while len(outcomes) < count:
                 seeds = self.rng.integers(1 << 62, size=min(BATCH, count - len(outcomes))).tolist()
-                for outcome, seconds, megabytes in in_child(self.load_all, content, change, seeds, expected):
+                for found in forked(self.load_all, content, change, seeds, expected):
+                    outcome, seconds, megabytes = (found, 0.0, 0.0) if isinstance(found, str) else found
                     outcomes.append(outcome)
                     slowest, peak = max(slowest, seconds), max(peak, megabytes)
                     progress.update()
@@ -93,17 +117,7 @@ class Damage:
             begin = processor_time()
             outcome = outcome_of(self.path, expected)
             seconds = processor_time() - begin
-            yield outcome, seconds, max(usage.ru_maxrss for usage in usages()) / 1024
-
-
-def usages() -> list[resource.struct_rusage]:
-    """Of this process and of those that it has waited for."""
-    return [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-
-
-def processor_time() -> float:
-    """Seconds that do not depend on what else the machine does."""
-    return sum(usage.ru_utime + usage.ru_stime for usage in usages())
+            yield outcome, seconds, peak_mb()
 
 
 def outcome_of(path: Path, expected: str) -> str:
@@ -115,23 +129,3 @@ def outcome_of(path: Path, expected: str) -> str:
     except BaseException as error:
         return f"not the package's own error: {error!r}"
     return "unharmed" if found == expected else "other values without a word"
-
-
-def in_child(work: Callable[..., Iterator[tuple]], *arguments: Any) -> Iterator[tuple]:
-    """What ``work`` yields in a forked process; a crash of it is one more outcome."""
-    receiver, sender = get_context("fork").Pipe(duplex=False)
-
-    def run(sender: Connection) -> None:
-        for item in work(*arguments):
-            sender.send(item)
-
-    process = get_context("fork").Process(target=run, args=(sender,))
-    process.start()
-    sender.close()
-    try:
-        while True:
-            yield receiver.recv()
-    except EOFError:
-        process.join()
-    if process.exitcode:
-        yield f"crashed with exit code {process.exitcode}", 0.0, 0.0

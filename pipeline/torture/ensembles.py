@@ -29,7 +29,7 @@ from viscoroll import ViscorollError
 from viscoroll.errors import OutputError
 from viscoroll.runs import Run, export_netcdf, read_run, run_ensemble, verify
 
-from .damage import row
+from .damage import enlarge, flip, row, small_disk, truncate
 
 RUN = """
 preset = "paper-section-5"
@@ -49,6 +49,7 @@ keep = "all"
 THREADS = 2
 #: seconds that a cluster is given to fail or to finish
 PATIENCE = 180.0
+NO_TMPFS = "no tmpfs can be had"
 
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
@@ -157,16 +158,15 @@ class Ensemble:
             shutil.rmtree(self.store, ignore_errors=True)
             self.store.mkdir()
             room = int(self.rng.uniform(0.05, 0.9) * size)
-            mounted = mount(self.store, room)
-            if not mounted:
-                yield "no tmpfs can be had"
-                continue
-            code = child(self.run, self.store)
-            if code == 2:
-                subprocess.run(["mount", "-o", "remount,size=64m", str(self.store)], check=True)
-            outcome = self.outcome() if code == 2 else f"exit code {code}"
-            subprocess.run(["umount", str(self.store)], check=True)
+            with small_disk(self.store, room) as mounted:
+                outcome = self.on_full_disk() if mounted else NO_TMPFS
             yield outcome
+
+    def on_full_disk(self) -> str:
+        code = child(self.run, self.store)
+        if code == 2:
+            enlarge(self.store)
+        return self.outcome() if code == 2 else f"exit code {code}"
 
     def full_exports(self, count: int) -> Iterator[str]:
         """To a tmpfs that is too small: refused, and the file that is there stays; then it is large enough."""
@@ -175,20 +175,20 @@ class Ensemble:
         disk.mkdir()
         export_netcdf(self.store, whole)
         for _ in tqdm(range(count), desc="full exports", delay=1.0, leave=False):
-            room = whole.stat().st_size
-            if not mount(disk, int(self.rng.uniform(0.01, 0.9) * room)):
-                yield "no tmpfs can be had"
-                continue
-            path = disk / "all.nc"
-            path.write_bytes(b"as it was")
-            code = exit_code(export_netcdf, self.store, path)
-            kept = path.read_bytes() == b"as it was" and len(list(disk.iterdir())) == 1
-            subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=True)
-            again = exit_code(export_netcdf, self.store, path)
-            same = again == 0 and all(map(xr.Dataset.identical, datasets(path), datasets(whole)))
-            subprocess.run(["umount", str(disk)], check=True)
-            ended = f"exit code {code}, " + ("the file damaged" if not kept else f"then {again}")
-            yield "unharmed" if code == 2 and kept and same else ended
+            with small_disk(disk, int(self.rng.uniform(0.01, 0.9) * whole.stat().st_size)) as mounted:
+                outcome = self.exported(disk / "all.nc", whole) if mounted else NO_TMPFS
+            yield outcome
+
+    def exported(self, path: Path, whole: Path) -> str:
+        """To a full disk, then to one that is large enough."""
+        path.write_bytes(b"as it was")
+        code = exit_code(export_netcdf, self.store, path)
+        kept = path.read_bytes() == b"as it was" and len(list(path.parent.iterdir())) == 1
+        enlarge(path.parent)
+        again = exit_code(export_netcdf, self.store, path)
+        if code == 2 and kept and again == 0 and all(map(xr.Dataset.identical, datasets(path), datasets(whole))):
+            return "unharmed"
+        return f"exit code {code}, " + (f"then {again}" if kept else "the file damaged")
 
     def damage(self, count: int, change: Any) -> Iterator[str]:
         """Of any file: it must be found, and the same command must put it right."""
@@ -247,24 +247,3 @@ def restore(store: Path, files: dict[str, bytes]) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_bytes() != data:
             path.write_bytes(data)
-
-
-def flip(data: bytes, rng: np.random.Generator) -> bytes:
-    """One bit of a file; an empty one gets a byte."""
-    changed = bytearray(data or b"\0")
-    position = int(rng.integers(8 * len(changed)))
-    changed[position // 8] ^= 1 << position % 8
-    return bytes(changed)
-
-
-def truncate(data: bytes, rng: np.random.Generator) -> bytes:
-    return data[: int(rng.integers(max(len(data), 1)))]
-
-
-def mount(folder: Path, size: int) -> bool:
-    """Whether the folder is now a tmpfs of that size."""
-    options = ["-t", "tmpfs", "-o", f"size={max(size // 4096, 4) * 4096}", "tmpfs", str(folder)]
-    try:
-        return subprocess.run(["mount", *options], capture_output=True, check=False).returncode == 0
-    except FileNotFoundError:
-        return False

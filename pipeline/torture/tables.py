@@ -12,7 +12,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -27,7 +27,8 @@ from viscoroll.files import seal_holds
 from viscoroll.tables.content import content_hash
 
 from ..stage import ROOT
-from .damage import Damage, edit, flip, in_child, row, truncate, unsealed
+from ..timing import forked
+from .damage import Damage, edit, flip, row, small_disk, truncate, unsealed
 
 ATLAS = ROOT / "data/tables/atlas.nc"
 #: a table whose file is headers for the most part
@@ -171,31 +172,15 @@ def writers(done: str, count: int, path: Path) -> dict[str, Any]:
 def full_disk(done: str, count: int, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
     """Saving ends in OutputError, the old file stays, nothing is left beside it; on a tmpfs where one can be had."""
     table = tables.build(GRID)
-    outcomes = []
-    with small_disk(folder / "disk") as disk:
+    disk = folder / "disk"
+    disk.mkdir()
+    with small_disk(disk, 1 << 18):
         tables.save(table, disk / "old.nc")
         size = (disk / "old.nc").stat().st_size
-        outcomes += [o for o, *_ in in_child(fill_and_save, table, disk, rng.integers(size, size=count).tolist())]
-    return row(done, outcomes)
+        return row(done, forked(fill_and_save, table, disk, rng.integers(size, size=count).tolist()))
 
 
-@contextmanager
-def small_disk(folder: Path) -> Iterator[Path]:
-    """A tmpfs of 256 kB, or a plain folder for those who may not mount one."""
-    folder.mkdir()
-    options = ["-t", "tmpfs", "-o", "size=256k", "tmpfs", str(folder)]
-    try:
-        mounted = subprocess.run(["mount", *options], capture_output=True, check=False).returncode == 0
-    except FileNotFoundError:
-        mounted = False
-    try:
-        yield folder
-    finally:
-        if mounted:
-            subprocess.run(["umount", str(folder)], check=True)
-
-
-def fill_and_save(table: Any, disk: Path, room: list[int]) -> Iterator[tuple]:
+def fill_and_save(table: Any, disk: Path, room: list[int]) -> Iterator[str]:
     """Save where there is room for so many bytes: left on the disk if it is small, else in a file."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     old = disk / "old.nc"
@@ -216,4 +201,4 @@ def fill_and_save(table: Any, disk: Path, room: list[int]) -> Iterator[tuple]:
         (disk / "filler").unlink(missing_ok=True)
         if old.read_bytes() != before or len(list(disk.iterdir())) > 1:
             outcome = "damaged"
-        yield (outcome,)
+        yield outcome

@@ -227,26 +227,23 @@ def test_gamma_only_scales_time():
     assert fast.onset_time == here.onset_time / 8.0
 
 
-def test_slow_manifold():
-    """After onset Q = -M (1 - j)/(2 (1 + j)) to leading order in V."""
-    for j in (0.3, 0.5, 1.0):
-        motion = vr.roll(ROUNDED.replace(j=j), 1.5, 0.5, np.linspace(1e-3, 5e-3, 30), rtol=1e-12)
-        state = motion.contact(fields=("Q", "M"))
-        leading = -state.M * (1.0 - j) / (2.0 * (1.0 + j))
-        assert np.all(abs(state.Q - leading) <= tol.MANIFOLD * abs(motion.V * state.M))
-
-
 # --- regimes ---
 
 
-@pytest.mark.parametrize("j", [0.5, 1.5])
+@pytest.mark.parametrize("j", [0.3, 0.5, 1.0, 1.5])
 def test_slow_manifold_to_leading_order(j):
     """V'/V = omega'/omega on it, so that (1 + 1/j) Q = -(1/j - 1) M/2; what is left out is of order 1/zeta."""
     scene = ROUNDED.replace(j=j)
-    motion = vr.roll(scene, 1.0, 1.0, np.array([22.0, 27.0]) * decay_time(scene), rtol=1e-12)
-    zeta = 0.5 / (scene.kappa * motion.V)
-    off = (1.0 + 1.0 / j) * motion.contact("Q").Q / (-(1.0 / j - 1.0) * 0.5 * motion.contact("M").M) - 1.0
+    # of a moderate speed, some stiff times behind the onset
+    motion = vr.roll(scene, 1.5, 0.5, np.linspace(1e-3, 5e-3, 30), rtol=1e-12)
+    state = motion.contact(fields=("Q", "M"))
+    assert np.all(abs(state.Q + state.M * (1.0 - j) / (2.0 * (1.0 + j))) <= tol.MANIFOLD * abs(motion.V * state.M))
+    if j == 1.0:
+        return
+    late = vr.roll(scene, 1.0, 1.0, np.array([22.0, 27.0]) * decay_time(scene), rtol=1e-12)
+    state, zeta = late.contact(fields=("Q", "M")), 0.5 / (scene.kappa * late.V)
     assert zeta.min() > 1e3
+    off = (1.0 + 1.0 / j) * state.Q / (-(1.0 / j - 1.0) * 0.5 * state.M) - 1.0
     assert np.all(abs(off) < 5.0 / zeta), (off, zeta)
 
 

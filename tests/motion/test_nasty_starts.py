@@ -107,13 +107,6 @@ def test_the_map_serves_nasty_starts():
     assert vr.ensemble(SCENE, *nasty(SCENE).T, 1e-3, method="flow").flow.mean() > 0.5
 
 
-def test_elastic_cylinder_rolls_for_ever():
-    t = np.array([1.0, 1e12]) * decay_time(SCENES["elastic"])
-    many = vr.ensemble(SCENES["elastic"], [1.0, -0.3], [1.0, -0.3], t)
-    assert many.V.tolist() == [[1.0, 1.0], [-0.3, -0.3]]
-    np.testing.assert_allclose(many.x, many.V * t, rtol=tol.MOTION_DEFAULT)
-
-
 def test_refused():
     for method in METHODS:
         for V0, omega0, text in (

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 import tolerances as tol
-from places import ROOT
+from places import RESULTS
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_committed_deviations_are_those_found_now(independent, tmp_path, monkeyp
     monkeypatch.setattr(sys, "argv", ["independent.py", "-o", str(tmp_path / "independent.json")])
     assert independent.main() == 0
     now = json.loads((tmp_path / "independent.json").read_text(encoding="utf-8"))
-    committed = json.loads((ROOT / "data/results/independent.json").read_text(encoding="utf-8"))
+    committed = json.loads((RESULTS / "independent.json").read_text(encoding="utf-8"))
     for mine, theirs in zip(now["deviations"], committed["deviations"], strict=True):
         assert (mine["source"], mine["quantity"], mine["values"]) == tuple(
             theirs[k] for k in ("source", "quantity", "values")

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.material import standard
+from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .losses import SLIP_LOSS, add_losses
 from .output import OUTPUTS
@@ -29,7 +30,8 @@ def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, 
         scale = gamma[min(i, gamma.size - 1)]
         V, omega = V0[min(i, V0.size - 1)], omega0[min(i, omega0.size - 1)]
         while True:
-            one[:] = np.nan
+            for row in one:
+                fill(np.nan, row)
             result = integrate(
                 scene, scale, V, omega, t, rtol, rest, max_steps,
                 one, switches, step_ends,
@@ -42,8 +44,8 @@ def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, 
         for n in range(rows.size):
             row = rows[n]
             if row < SLIP_LOSS:
-                out[n, i, :] = one[row, :]
+                copy(one[row], out[n, i])
             else:
-                out[n, i, :] = losses[row - SLIP_LOSS, :]
+                copy(losses[row - SLIP_LOSS], out[n, i])
         info[i, 0], info[i, 1], info[i, 2] = result[0], result[1], result[2]
         info[i, 3], info[i, 4] = result[3], result[4]
