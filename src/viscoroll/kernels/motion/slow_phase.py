@@ -100,6 +100,12 @@ def note_nodes(tau, powers, gamma, step_ends, ends):
 
 
 @kernel
+def _behind(tau, wait):
+    """tau + wait, at least one digit later: else steps and manifold hand the motion to each other for ever."""
+    return max(tau + wait, np.nextafter(tau, np.inf))
+
+
+@kernel
 def slow_phase(u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, far, max_steps, steps,
                out, step_ends, ends, work):  # fmt: skip
     """Follow the slow manifold from u until outputs end, zeta exceeds exp(far), or an interval fails.
@@ -117,12 +123,12 @@ def slow_phase(u, tau, tau_out, at, direction, scene, gamma, offset, travelled, 
         steps += 1
         # what is left of the layer stays as the interval is shortened; what the interval does not resolve falls
         if size <= 1.0 < offset_size and entering and offset_size > 0.5 * before:
-            return NO_EVENT, tau, at, steps, ends, tau + max(np.log(offset_size), 1.0) / relaxation
+            return NO_EVENT, tau, at, steps, ends, _behind(tau, max(np.log(offset_size), 1.0) / relaxation)
         size, before = max(size, offset_size), offset_size
         if not size <= 1.0:
             length = next_interval(length, size)
             if length < _SHORTEST or relaxation * length < _STIFF * values[REACHED, 1]:
-                return NO_EVENT, tau, at, steps, ends, tau + _STIFF / relaxation
+                return NO_EVENT, tau, at, steps, ends, _behind(tau, _STIFF / relaxation)
             continue
         entering = False
         ahead = next_interval(length, size)
