@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import importlib
 import json
-import sys
 
 import numpy as np
 import pytest
 import tolerances as tol
 from places import RESULTS
+from processes import made
 
 
 @pytest.fixture(scope="module")
@@ -78,9 +78,8 @@ def test_numbers_of_the_paper(independent):
     assert [(row["t"], row["quantity"]) for row in off] == [(1.52e-4, "beta")]
 
 
-def test_committed_deviations_are_those_found_now(independent, tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "argv", ["independent.py", "-o", str(tmp_path / "independent.json")])
-    assert independent.main() == 0
+def test_committed_deviations_are_those_found_now(tmp_path):
+    made("prove.independent", "-o", tmp_path / "independent.json")
     now = json.loads((tmp_path / "independent.json").read_text(encoding="utf-8"))
     committed = json.loads((RESULTS / "independent.json").read_text(encoding="utf-8"))
     for mine, theirs in zip(now["deviations"], committed["deviations"], strict=True):
