@@ -5,11 +5,8 @@ from __future__ import annotations
 import gc
 import hashlib
 import importlib
-import os
 import pickle
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numba
@@ -17,6 +14,7 @@ import numpy as np
 import pytest
 from numba.core.codegen import JITCodeLibrary
 from ordinary_user import as_ordinary_user, let_in
+from processes import python
 
 from viscoroll.kernels.compile import cache as cache_module
 from viscoroll.kernels.compile import deferred
@@ -25,13 +23,6 @@ from viscoroll.kernels.compile.jit import kernel
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
 
 FACTOR = 3.0
-
-
-def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", code]
-    return subprocess.run(
-        command, env=os.environ | environment, capture_output=True, text=True, timeout=120, check=False
-    )
 
 
 @pytest.fixture(autouse=True)
@@ -303,14 +294,14 @@ def test_a_process_with_a_damaged_cache(tmp_path):
 from viscoroll.kernels.bessel.ratios import ratio_r
 print(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))
 """
-    first = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+    first = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path))
     assert first.stdout == "0.4463899658965345 0\n", first.stderr
     for path in tmp_path.rglob("*.nbc"):
         content = bytearray(path.read_bytes())
         content[len(content) // 3] ^= 255
         path.write_bytes(content)
     for hits in (0, 1):
-        again = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+        again = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path))
         assert again.stdout == f"0.4463899658965345 {hits}\n", again.stderr
         assert again.stderr.count("RuntimeWarning: the cache of compiled kernels is damaged") == 1 - hits
 
@@ -319,7 +310,7 @@ def test_a_process_without_a_cache_folder(tmp_path):
     obstacle = tmp_path / "file"
     obstacle.write_text("in the way")
     code = "from viscoroll.kernels.bessel.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
-    done = run(code, VISCOROLL_CACHE_DIR=str(obstacle))
+    done = python("-c", code, VISCOROLL_CACHE_DIR=str(obstacle))
     assert done.stdout == "0.4463899658965345\n", done.stderr
     assert done.stderr.count("RuntimeWarning: compiled kernels are not cached") == 1
 

@@ -104,7 +104,7 @@ def finish_coasting(at, tau_out, tau, u, direction, scene, gamma, offset, rest, 
     return RESTED, crossing / gamma
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=12)
 def integrate(scene, gamma, V0, omega0, t_out, rtol, rest, max_steps, out, switches, step_ends):
     """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
 

@@ -15,7 +15,7 @@ from .records import Scene
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=12)
 def motion_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
     """Motions start..stop; parameters hold one value or one a motion.
 

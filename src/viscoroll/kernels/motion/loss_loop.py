@@ -16,7 +16,7 @@ from .records import Scene
 _ENDS = 1000
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=15)
 def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
     """Motions start..stop; as ``motion_loop``, but ``rows`` may name those of :mod:`losses` too."""
     one, losses = np.empty((OUTPUTS, t.size)), np.empty((2, t.size))
