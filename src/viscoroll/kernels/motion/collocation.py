@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import legendre
 
+from ..compile.arrays import fill
 from ..compile.fma import fma
 from ..compile.jit import kernel
 
@@ -28,6 +29,8 @@ NODES = _radau_nodes()
 _POWERS = np.vander(NODES, increasing=True)
 #: values at all nodes to the coefficients of powers
 TO_POWERS = np.linalg.inv(_POWERS)
+#: the same, node by node
+BY_NODE = np.ascontiguousarray(TO_POWERS.T)
 _SLOPES = np.hstack((np.zeros((N + 1, 1)), _POWERS[:, :-1] * np.arange(1, N + 1)))
 #: values at all nodes to slopes at nodes 1 ... N
 SLOPES = (_SLOPES @ TO_POWERS)[1:]
@@ -51,25 +54,27 @@ def polynomial(t, powers, row):
 
 
 @kernel
+def fit_terms(values, powers):
+    """Coefficients for :func:`polynomial` of the interpolant of all nodes; the sums of all powers side by side."""
+    fill(0.0, powers)
+    for i in range(N + 1):
+        for k in range(N + 1):
+            powers[k] += BY_NODE[i, k] * values[i]
+
+
+@kernel
 def integral_terms(values, half, powers, row):
     """Coefficients for :func:`rise_at` of the integral of the interpolant of all nodes, scaled by ``half``."""
-    for k in range(N + 1):
-        total = 0.0
-        for i in range(N + 1):
-            total += TO_POWERS[k, i] * values[i]
-        powers[row, k + 1] = total * half / (k + 1.0)
+    fit_terms(values, powers[row])
+    for k in range(N, -1, -1):
+        powers[row, k + 1] = powers[row, k] * half / (k + 1.0)
     _divide(powers, row)
 
 
 @kernel
 def rise_terms(values, powers, row):
     """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
-    powers[row, N + 1] = 0.0
-    for k in range(1, N + 1):
-        total = 0.0
-        for i in range(N + 1):
-            total += TO_POWERS[k, i] * values[i]
-        powers[row, k] = total
+    fit_terms(values, powers[row])
     _divide(powers, row)
 
 
@@ -108,3 +113,20 @@ def place(value, v, powers, row):
         if abs(change) <= 1e-9 * v:
             break
     return v
+
+
+@kernel(inline=True)
+def eliminate(matrix, right, count):
+    """Solve a linear system in place, without pivoting: what that spoils, Newton's convergence shows."""
+    for i in range(count):
+        inverse = 1.0 / matrix[i, i]
+        for row in range(i + 1, count):
+            factor = matrix[row, i] * inverse
+            for column in range(i + 1, count):
+                matrix[row, column] -= factor * matrix[i, column]
+            right[row] -= factor * right[i]
+    for i in range(count - 1, -1, -1):
+        total = right[i]
+        for column in range(i + 1, count):
+            total -= matrix[i, column] * right[column]
+        right[i] = total / matrix[i, i]
