@@ -40,7 +40,7 @@ def next_length(length, size, power):
     """Length of the panel that should meet the tolerance, after one with this error over its tolerance."""
     if not size < 1e300:
         return _FAILED * length
-    if power == 1.0:
+    if power == 1:
         return length * max(_SHRINK, min(_GROW, _SAFETY * (size + 1e-30) ** (-1.0 / N)))
     # the bend of the law at eta = 0 sets the error of graded nodes, and is left behind with them
     return length * (_BEHIND if size <= 1.0 else max(_SHRINK, _SAFETY * size ** (-1.0 / _BENT)))

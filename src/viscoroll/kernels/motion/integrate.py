@@ -13,7 +13,7 @@ from ..compile.jit import kernel
 from ..law.length import OK
 from ..law.stick import stick_length
 from .collocation import N
-from .full_slip import stick_limit
+from .full_slip import sliding_speed, stick_limit
 from .layer_phase import layer_phase
 from .output import coast, put, put_rest, put_to_end, speeds
 from .partial_slip import slow_D
@@ -51,9 +51,16 @@ _AT_THE_END = 2.0**-51
 
 
 @kernel
+def rolling(momentum, scene):
+    """(y, D) once the fast transient is over, which at vanishing speed lasts a time of order V: V + j omega is kept."""
+    y = -np.log(2.0 * scene.kappa * momentum / (1.0 + scene.j))
+    return y, slow_D(y, scene)[0]
+
+
+@kernel
 def start(V, omega, scene):
     """(V, omega) in the unknowns of its regime: (state, frame, status)."""
-    material, kappa, mu, j = scene
+    material, _, mu, j = scene
     if max(abs(V), abs(omega)) < _TINY:
         # sliding ends within a time of that order: V + j omega is kept
         V = omega = (V + j * omega) / (1.0 + j)
@@ -70,9 +77,8 @@ def start(V, omega, scene):
         s = 1.0 / zeta if V > 0.0 else 0.0
         return State(s, V - j * omega, 0.0, 0.0, 0.0, 0.0), Frame(FULL, direction, sigma), OK
     if np.log(zeta) > FAR:
-        # the fast transient lasts a time of order V: it is over, V + j omega is kept
-        y = -np.log(2.0 * kappa * (V + j * omega) / (1.0 + j))
-        D, status = slow_D(y, scene)[0], OK
+        y, D = rolling(V + j * omega, scene)
+        status = OK
     else:
         y = np.log(zeta)
         _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
@@ -87,7 +93,11 @@ def switch(event, state, frame, scene):
     if event == STICK:
         # both speeds may end at once, to rounding
         y = -np.log(max(first, _LEAST))
-        return State(y, frame.sigma * np.exp(y), X, angle, way, turned), Frame(PARTIAL, frame.direction, frame.sigma)
+        D = frame.sigma * np.exp(y)
+        momentum = 2.0 * sliding_speed(first, scene) - second
+        if y > FAR and momentum > 0.0:
+            y, D = rolling(momentum, scene)
+        return State(y, D, X, angle, way, turned), Frame(PARTIAL, frame.direction, frame.sigma)
     if event == SLIP:
         V, omega, _ = speeds(state, PARTIAL, scene)
         w = V - scene.j * omega

@@ -20,7 +20,7 @@ from ..compile.arrays import fill
 from ..compile.jit import kernel
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
 from .partial_slip import creep_rates, linear_rates
-from .path import D_TAU, D_TURN, D_X, D_Y, Y
+from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
 from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
 
 _MOST_ITERATIONS = 8
@@ -117,8 +117,7 @@ def layer_solve(e, length, power, to_zero, tolerance, scene, work):
         half = 0.5 * length
         for i in range(1, N + 1):
             v = 0.5 * (1.0 + NODES[i])
-            graded = 1.0 if power == 1.0 else v ** (power - 1.0)
-            layer_node(i, e * np.exp(-length * graded * v), power * graded, nodes, slow, scene)
+            layer_node(i, e * np.exp(-length * v**power), grade(v, power), nodes, slow, scene)
         change = 0.0
         for i in range(N):
             rise = 0.0

@@ -18,7 +18,7 @@ from .slow_phase import NEWTON
 _LONGEST, _SHORTEST = 6.0, 1e-2
 #: near eta = 0 the law bends on the scale 1/alpha: share of it in the first panel at rtol = 1, whose nodes lie as
 #: this power
-_FIRST, GRADED = 50.0, 3.0
+_FIRST, GRADED = 50.0, 3
 #: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate
 _SUBSTITUTION = 1e-3
 #: a panel that would end this little short of delta = 0 or of the end of the layer, or behind, ends there
@@ -116,5 +116,5 @@ def layer_phase(state, frame, clock, case):
             return False, event, state, clock
         next_start(power, nodes)
         crosses, stretch = crosses and not to_zero, _NEARLY
-        length, power = next_length(length, size, power), 1.0
+        length, power = next_length(length, size, power), 1
     return left <= 0.0 or abs(e) <= _ROUNDING * zeta, NO_EVENT, state, clock

@@ -20,12 +20,6 @@ _NEAR, _MOST_ITERATIONS = 1e-15, 80
 
 
 @kernel
-def _graded(share, power):
-    """share^power, quick where nothing is graded."""
-    return share if power == 1.0 else share**power
-
-
-@kernel
 def within_panel(v, since, panel, sigma, scene, powers, slow):
     """(V, omega, delta, X, angle) at v, the time ``since`` behind the left end; X and angle since there."""
     if panel.kind == SLIDE:
@@ -37,7 +31,7 @@ def within_panel(v, since, panel, sigma, scene, powers, slow):
     else:
         y = panel.first + rise_at(v, powers, RISE_Y)
         if panel.kind == LAYER:
-            creep = slow_creep(y, slow)[0] + panel.second * np.exp(-panel.length * _graded(0.5 * v, panel.power))
+            creep = slow_creep(y, slow)[0] + panel.second * np.exp(-panel.length * (0.5 * v) ** panel.power)
         else:
             creep = panel.second + rise_at(v, powers, RISE_D)
         V, delta = creep_speeds(y, creep, scene)
@@ -57,8 +51,6 @@ def _excess(v, panel, sigma, case):
 @kernel
 def rest_place(high, panel, sigma, case):
     """v up to ``high`` at which both speeds have fallen to the threshold; NaN if they have not."""
-    if case.limits.rest <= 0.0:
-        return np.nan
     low = 0.0
     if panel.kind == SLIDE:
         for i in range(N, 0, -1):
@@ -80,7 +72,7 @@ def rest_place(high, panel, sigma, case):
     return high
 
 
-@kernel
+@kernel(inline=True)
 def write(end, closed, panel, state, frame, clock, case):
     """Outputs before the time ``end`` of the panel, and, if ``closed``, on it; the next column."""
     sink, tau, at = case.sink, clock.tau, clock.at
@@ -89,14 +81,14 @@ def write(end, closed, panel, state, frame, clock, case):
     while at < sink.tau.size and (sink.tau[at] < tau + end or (closed and sink.tau[at] == tau + end)):
         since = sink.tau[at] - tau
         share = since / end if since > 0.0 else 0.0
-        v = place(since, max(v, 2.0 * _graded(share, 1.0 / panel.power)), powers, TAU)
+        v = place(since, max(v, 2.0 * (share if panel.power == 1 else share ** (1.0 / panel.power))), powers, TAU)
         V, omega, delta, X_rise, angle = within_panel(v, since, panel, frame.sigma, case.scene, powers, slow)
         put(sink, at, frame, (V, omega, delta), state.X + X_rise, state.angle + angle)
         at += 1
     return at
 
 
-@kernel
+@kernel(inline=True)
 def pass_panel(v, end, closed, panel, state, frame, clock, case):
     """Outputs up to v, at the time ``end`` of the panel, and ends of steps there; the clock behind."""
     sink, ends = case.sink, clock.ends
@@ -134,7 +126,7 @@ def pass_path(first, second, panel, state, frame, clock, case):
     v, event = 2.0, NO_EVENT
     if case.limits.rest > 0.0 or case.sink.tau[clock.at] <= clock.tau + end or clock.ends < case.sink.step_ends.size:
         _terms(panel, case.work)
-        rested = rest_place(2.0, panel, frame.sigma, case)
+        rested = rest_place(2.0, panel, frame.sigma, case) if case.limits.rest > 0.0 else np.nan
         if not np.isnan(rested):
             v, event = rested, AT_REST
             end, X_rise, turn = rise_at(v, powers, TAU), rise_at(v, powers, X), rise_at(v, powers, TURN)

@@ -48,6 +48,12 @@ def path_mismatch(length, creep, state, nodes):
 
 
 @kernel
+def grade(share, power):
+    """Slope of share^power."""
+    return power * share ** (power - 1)
+
+
+@kernel
 def time_terms(half, nodes, powers):
     """Interpolants of tau, X, angle - X."""
     integral_terms(nodes[D_TAU], half, powers, TAU)

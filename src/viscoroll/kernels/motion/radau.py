@@ -10,12 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .collocation import INTEGRALS, NODES, TO_START, N, eliminate
+from .collocation import INTEGRALS, NODES, TO_START, N, factorize, substitute
 from .control import SHARE, creep_weight
 from .partial_slip import stiff_rates
-from .path import D_D, D_TAU, D_TURN, D_X, D_Y, OVERSTATED, D, Y, path_mismatch
+from .path import D_D, D_TAU, D_TURN, D_X, D_Y, OVERSTATED, D, Y, grade, path_mismatch
 
-_MOST_ITERATIONS = 8
+_MOST_ITERATIONS = 12
+#: gain from one iteration to the next beyond which it takes new slopes
+_SLOW = 0.05
 #: Newton stops at this share of the tolerance
 _NEWTON = 0.05
 #: step in y of the difference quotients
@@ -24,26 +26,50 @@ _STEP = 1e-7
 
 @kernel
 def _stage(i, weight, sign, scene, nodes):
-    """Fill node i from its y and D; (slopes of both rates in D, in y), times ``weight``."""
-    y, D_here = nodes[Y, i], nodes[D, i]
-    dy, dD, V, delta, dy_D, dD_D = stiff_rates(y, D_here, sign, scene)
-    dy_after, dD_after, _, _, _, _ = stiff_rates(y + _STEP, D_here, sign, scene)
+    """Fill node i from its y and D; slopes of both rates in D, all times ``weight``."""
+    dy, dD, V, delta, dy_D, dD_D = stiff_rates(nodes[Y, i], nodes[D, i], sign, scene)
     nodes[D_Y, i], nodes[D_D, i] = weight * dy, weight * dD
     nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = weight, weight * V, weight * V * delta
-    per = weight / _STEP
-    return weight * dy_D, weight * dD_D, per * (dy_after - dy), per * (dD_after - dD)
+    return weight * dy_D, weight * dD_D
+
+
+@kernel
+def _put_slopes(n, half, weight, in_D, sign, scene, work):
+    """Columns of Newton's matrix for node n, whose rates have the slopes ``in_D``; those in y are differences."""
+    nodes, matrix = work.nodes, work.matrix
+    i, column = n + 1, 2 * n
+    dy, dD, _, _, _, _ = stiff_rates(nodes[Y, i] + _STEP, nodes[D, i], sign, scene)
+    in_y = (weight * dy - nodes[D_Y, i]) / _STEP, (weight * dD - nodes[D_D, i]) / _STEP
+    for m in range(N):
+        share = half * INTEGRALS[m, n]
+        matrix[2 * m, column], matrix[2 * m, column + 1] = -share * in_y[0], -share * in_D[0]
+        matrix[2 * m + 1, column], matrix[2 * m + 1, column + 1] = -share * in_y[1], -share * in_D[1]
+    matrix[column, column] += 1.0
+    matrix[column + 1, column + 1] += 1.0
+
+
+@kernel
+def _put_residuals(half, nodes, right):
+    """What the unknowns at the nodes lack."""
+    for i in range(N):
+        y_rise = D_rise = 0.0
+        for n in range(N):
+            y_rise += INTEGRALS[i, n] * nodes[D_Y, n + 1]
+            D_rise += INTEGRALS[i, n] * nodes[D_D, n + 1]
+        right[2 * i] = nodes[Y, 0] + half * y_rise - nodes[Y, i + 1]
+        right[2 * i + 1] = nodes[D, 0] + half * D_rise - nodes[D, i + 1]
 
 
 @kernel
 def radau_start(y, D_here, sign, power, scene, nodes):
-    """Fill node 0 for a first panel; (y', D', slope of D' in D)."""
+    """Fill node 0; (y', D', slope of D' in D)."""
     nodes[Y, 0], nodes[D, 0] = y, D_here
-    _, relaxation, _, _ = _stage(0, 1.0, sign, scene, nodes)
-    dy, dD = nodes[D_Y, 0], nodes[D_D, 0]
-    if power > 1.0:
+    _, slope = _stage(0, 1.0, sign, scene, nodes)
+    rates = nodes[D_Y, 0], nodes[D_D, 0], slope
+    if power > 1:
         for row in (D_Y, D_D, D_TAU, D_X, D_TURN):
             nodes[row, 0] = 0.0
-    return dy, dD, relaxation
+    return rates
 
 
 @kernel
@@ -61,38 +87,31 @@ def _guess(length, power, rates, nodes):
 def radau_solve(length, power, sign, rates, rtol, scene, work):
     """Collocate over ``length`` from node 0, with its ``rates`` (y', D', slope of D' in D).  Whether it converged.
 
-    By Newton's iteration on both unknowns of all stages.
+    By Newton's iteration on both unknowns of all stages, with new slopes where it is slow.
     """
-    nodes, matrix, right = work.nodes, work.matrix, work.right
+    nodes, right = work.nodes, work.right
     _guess(length, power, rates, nodes)
-    half, before = 0.5 * length, 0.0
-    for iteration in range(_MOST_ITERATIONS):
+    half, before, gain = 0.5 * length, 0.0, np.inf
+    for _ in range(_MOST_ITERATIONS):
+        slow = gain > _SLOW
         for n in range(N):
-            weight = power * (0.5 * (1.0 + NODES[n + 1])) ** (power - 1.0)
-            y_D, D_D_slope, y_y, D_y = _stage(n + 1, weight, sign, scene, nodes)
-            for i in range(N):
-                share = half * INTEGRALS[i, n]
-                matrix[2 * i, 2 * n], matrix[2 * i, 2 * n + 1] = -share * y_y, -share * y_D
-                matrix[2 * i + 1, 2 * n], matrix[2 * i + 1, 2 * n + 1] = -share * D_y, -share * D_D_slope
-            matrix[2 * n, 2 * n] += 1.0
-            matrix[2 * n + 1, 2 * n + 1] += 1.0
-        for i in range(N):
-            y_rise = D_rise = 0.0
-            for n in range(N):
-                y_rise += INTEGRALS[i, n] * nodes[D_Y, n + 1]
-                D_rise += INTEGRALS[i, n] * nodes[D_D, n + 1]
-            right[2 * i] = nodes[Y, 0] + half * y_rise - nodes[Y, i + 1]
-            right[2 * i + 1] = nodes[D, 0] + half * D_rise - nodes[D, i + 1]
-        eliminate(matrix, right, 2 * N)
+            weight = grade(0.5 * (1.0 + NODES[n + 1]), power)
+            in_D = _stage(n + 1, weight, sign, scene, nodes)
+            if slow:
+                _put_slopes(n, half, weight, in_D, sign, scene, work)
+        if slow:
+            factorize(work.matrix, 2 * N)
+        _put_residuals(half, nodes, right)
+        substitute(work.matrix, right, 2 * N)
         change = 0.0
         for i in range(N):
             change = max(change, abs(right[2 * i]), abs(right[2 * i + 1]) * np.exp(-nodes[Y, 0]))
             nodes[Y, i + 1] += right[2 * i]
             nodes[D, i + 1] += right[2 * i + 1]
-        gain = change / before if iteration > 0 else 0.1
+        gain = change / before if before > 0.0 else 1.0
         if not (change < 1e3 and gain < 2.0):
             return False
-        if change * gain <= _NEWTON * SHARE * rtol:
+        if change * min(gain, 0.1) <= _NEWTON * SHARE * rtol:
             return True
         before = change
     return False

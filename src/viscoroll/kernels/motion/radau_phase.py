@@ -153,6 +153,6 @@ def radau_phase(try_at, state, frame, clock, case):
         event, state, clock = pass_path(nodes[Y, N], D_end, panel, state, frame, clock, case)
         if event != NO_EVENT or edge == 1.0:
             return event if event != NO_EVENT else SLIP, False, state, clock
-        power, rejected, length = 1.0, 0, ahead
+        power, rejected, length = 1, 0, ahead
         sign, rates = radau_start_of(-sign if edge == 0.0 else sign, power, state, case)
     return NO_EVENT, False, state, clock

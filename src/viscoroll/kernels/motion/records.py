@@ -83,7 +83,7 @@ class Panel(NamedTuple):
     first: float
     second: float
     length: float
-    power: float
+    power: int
     pole: float
     end: float
     V: float

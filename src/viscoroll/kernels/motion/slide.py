@@ -227,6 +227,6 @@ def standing_panel(state, s, left, sigma, scene, nodes):
     # the spin may fall by any factor yet, so V is that where it stands
     V = sliding_speed(s, scene)
     omega = (V - state.second) / j
-    panel = Panel(SLIDE, s, state.second, 1.0, 1.0, s, s, V, omega)
+    panel = Panel(SLIDE, s, state.second, 1.0, 1, s, s, V, omega)
     standing_rates(min(BEYOND * left, 0.5 * j * sigma * (omega - V) / mu), panel, sigma, scene, nodes)
     return panel

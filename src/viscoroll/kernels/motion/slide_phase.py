@@ -140,7 +140,7 @@ def chosen_panel(state, here, pole, longest, left, sigma, case):
     if abs(length) > most:
         length = np.copysign(most, length)
         end = s + (s - pole) * np.expm1(length)
-    panel = Panel(SLIDE, s, state.second, length, 1.0, pole, end, speed, omega)
+    panel = Panel(SLIDE, s, state.second, length, 1, pole, end, speed, omega)
     return panel, slide_rates(panel, sigma, scene, nodes)
 
 
@@ -157,7 +157,7 @@ def panel_event(slipped, tau_left, panel, sigma, case):
     """(event, v, time until there): the first event on the panel, else none and its end."""
     scene, work = case.scene, case.work
     event, v = end_of_slip(slipped, panel, sigma, scene, work)
-    rested = rest_place(v, panel, sigma, case) if v > 0.0 else np.nan
+    rested = rest_place(v, panel, sigma, case) if case.limits.rest > 0.0 and v > 0.0 else np.nan
     if not np.isnan(rested):
         event, v = AT_REST, rested
     if event == NO_EVENT and panel.end == 0.0:
@@ -190,7 +190,7 @@ def slide_phase(slipped, state, frame, clock, case):
         if ready:
             rise = slide_sums(panel, sigma, case.scene, case.work.nodes)
             size = panel_size(rise, state, panel, sigma, case)
-        longest = min(_LONGEST, next_length(abs(panel.length), size, 1.0))
+        longest = min(_LONGEST, next_length(abs(panel.length), size, 1))
         if not size <= 1.0:
             if longest < _SHORTEST:
                 return STUCK, state, clock

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.arrays import copy
 from ..compile.jit import kernel
-from .collocation import NODES, TO_START, N, eliminate, fit_terms, polynomial
+from .collocation import NODES, TO_START, N, factorize, fit_terms, polynomial, substitute
 from .partial_slip import partial_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, RISE_D, RISE_Y, Y, time_terms
 
@@ -63,7 +63,8 @@ def slow_solve(y, length, tolerance, slopes, scene, work):
                 matrix[i, n] = rate * slopes[i, n + 1] / half
             matrix[i, i] += slope * values[i + 1, _RATE_D] - values[i + 1, _DRIFT_D]
             right[i] = values[i + 1, _DRIFT] - rate * slope
-        eliminate(matrix, right, N)
+        factorize(matrix, N)
+        substitute(matrix, right, N)
         change = 0.0
         for i in range(N):
             shift = right[i]

@@ -75,14 +75,14 @@ def slow_phase(state, frame, clock, case):
         if size <= 1.0 < offset_size and entering and offset_size > 0.5 * before:
             return NO_EVENT, state, clock, clock.tau + max(np.log(offset_size), 1.0) / relaxation
         size, before = max(size, offset_size), offset_size
-        ahead = next_length(length, size, 1.0)
+        ahead = next_length(length, size, 1)
         if not size <= 1.0:
             length = ahead
             if length < _SHORTEST or relaxation * length < _STIFF * pace(REACHED, values):
                 return NO_EVENT, state, clock, clock.tau + _STIFF / relaxation
             continue
         entering = False
-        panel = Panel(SLOW, state.first, state.second, length, 1.0, 0.0, 0.0, 0.0, 0.0)
+        panel = Panel(SLOW, state.first, state.second, length, 1, 0.0, 0.0, 0.0, 0.0)
         event, state, clock = pass_path(state.first + length, node_D(N, values), panel, state, frame, clock, case)
         if event != NO_EVENT:
             return event, state, clock, clock.tau
