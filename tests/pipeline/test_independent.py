@@ -9,16 +9,12 @@ import sys
 import numpy as np
 import pytest
 import tolerances as tol
-from places import PIPELINE, ROOT
+from places import RESULTS
 
 
 @pytest.fixture(scope="module")
 def independent():
-    sys.path.insert(0, str(PIPELINE))
-    try:
-        yield importlib.import_module("independent")
-    finally:
-        sys.path.remove(str(PIPELINE))
+    return importlib.import_module("pipeline.prove.independent")
 
 
 def worst(off: dict[str, np.ndarray]) -> dict[str, float]:
@@ -86,7 +82,7 @@ def test_committed_deviations_are_those_found_now(independent, tmp_path, monkeyp
     monkeypatch.setattr(sys, "argv", ["independent.py", "-o", str(tmp_path / "independent.json")])
     assert independent.main() == 0
     now = json.loads((tmp_path / "independent.json").read_text(encoding="utf-8"))
-    committed = json.loads((ROOT / "data/results/independent.json").read_text(encoding="utf-8"))
+    committed = json.loads((RESULTS / "independent.json").read_text(encoding="utf-8"))
     for mine, theirs in zip(now["deviations"], committed["deviations"], strict=True):
         assert (mine["source"], mine["quantity"], mine["values"]) == tuple(
             theirs[k] for k in ("source", "quantity", "values")

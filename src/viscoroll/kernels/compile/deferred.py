@@ -11,7 +11,10 @@ kernels, the same bits, some three times the time.
 
 from __future__ import annotations
 
+import gc
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, Callable
 
@@ -19,16 +22,24 @@ import numba
 from numba.core import types
 from numba.core.compiler import Compiler
 
+from .notice import tell
+
 _deferring = True
 
 
 class EntryPipeline:
     """What numba calls to compile a kernel that Python calls."""
 
-    def __init__(self, *given: Any) -> None:
-        self._given = given
+    def __init__(self, seconds: float, *given: Any) -> None:
+        self._seconds, self._given = seconds, given
 
     def compile_extra(self, function: Callable) -> Any:
+        """What numba makes of the function."""
+        tell(self._seconds)
+        with _garbage_kept():
+            return self._compiled(function)
+
+    def _compiled(self, function: Callable) -> Any:
         """The one guard of the names inside numba."""
         global _deferring
         if not _deferring:
@@ -43,14 +54,26 @@ class EntryPipeline:
         except Exception:  # numba was right
             _deferring = True
             raise
-        reason_line = " ".join(str(reason).split())
+        told = f"{type(reason).__name__}: {' '.join(str(reason).split())}"
         warnings.warn(
-            f"numba {numba.__version__} does not compile {function.__name__} together with what it calls "
-            f"({type(reason).__name__}: {reason_line}); kernels are compiled one by one, which takes longer",
+            f"numba {numba.__version__} does not compile {function.__name__} with what it calls ({told}); "
+            "kernels are compiled one by one, which takes longer",
             RuntimeWarning,
             stacklevel=2,
         )
         return compiled
+
+
+@contextmanager
+def _garbage_kept() -> Iterator[None]:
+    """numba makes millions of small objects that live until it is done: to look for dead ones takes a tenth."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
 
 
 def defer(whole: Any, options: dict[str, Any]) -> None:
@@ -108,7 +131,6 @@ def _pipelines() -> tuple[type, type]:
 
         def finalize(self) -> None:
             for library in below(self):
-                self._reload_init.update(library._reload_init)
                 self._final_module.link_in(alone(library), preserve=True)
             self._linking_libraries = []
             super().finalize()
@@ -139,7 +161,7 @@ def _pipelines() -> tuple[type, type]:
 
 def _pipeline(library_class: type) -> type:
     """numba's default pipeline, lowering into this class of library."""
-    from numba.core.compiler import CompilerBase, DefaultPassBuilder
+    from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
     from numba.core.typed_passes import NativeLowering
 
@@ -152,7 +174,19 @@ def _pipeline(library_class: type) -> type:
             state.library.enable_object_caching()
             return super().run_pass(state)
 
+    class ShortFlags(Flags):
+        """numba looks its flags up at every call that it types, all forty of them: here those that are set."""
+
+        def __hash__(self) -> int:
+            return hash(frozenset(self._values))
+
+        def __eq__(self, other: object) -> bool:
+            return isinstance(other, ShortFlags) and self._values == other._values
+
     class Compiler(CompilerBase):
+        def __init__(self, typing: Any, target: Any, library: Any, args: tuple, returns: Any, flags: Any, known: dict):
+            super().__init__(typing, target, library, args, returns, ShortFlags(flags), known)
+
         def define_pipelines(self) -> list[Any]:
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
             passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in passes.passes]

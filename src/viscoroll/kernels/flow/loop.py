@@ -184,7 +184,7 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, scen
     return RESTED, onset_time, resting
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=3)
 def flow_loop(
     scene, gamma, first, rest, rest_lambda, table, V0, omega0, t, rows,
     out, status, onset, resting, switches, start, stop,

@@ -15,7 +15,7 @@ _LOW = layout.LOW
 _T, _X, _I, _L = layout.T, layout.X, layout.I, layout.L
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=20)  # with the rest of the map, and the motions that measure it
 def slide_table(sign, scene, table):
     """Fill ``slide_up`` (sign = 1) or ``slide_down`` (-1); False where V' is not positive or I not monotone."""
     _, kappa, mu, j = scene

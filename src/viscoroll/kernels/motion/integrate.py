@@ -174,7 +174,7 @@ def follow(state, frame, clock, case, switches):
     return DONE, clock, turns, onset_time, np.nan
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=12)
 def integrate(scene, gamma, V0, omega0, t_out, limits, out, switches, step_ends):
     """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
 

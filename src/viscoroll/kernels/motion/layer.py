@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
+from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
 from .partial_slip import creep_rates, linear_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade

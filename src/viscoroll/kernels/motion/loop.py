@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
 from ..law.material import standard
+from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .output import OUTPUTS
 from .records import Scene
@@ -32,19 +32,18 @@ def motion_of(batch, i):
 def keep(i, rows, one, result, out, info):
     """Put the chosen rows of a motion, and what ``integrate`` returned, where those of all lie."""
     for n in range(rows.size):
-        for m in range(one.shape[1]):
-            out[n, i, m] = one[rows[n], m]
+        copy(one[rows[n]], out[n, i])
     info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=12)
 def motion_loop(batch, t, limits, rows, out, info, start, stop):
     """Motions start..stop; ``rows`` picks the output quantities of ``integrate`` into out[quantity, motion, time]."""
     one = np.empty((OUTPUTS, t.size))
     switches, step_ends = np.empty((0, 2)), np.empty(0)
     for i in range(start, stop):
-        for row in range(OUTPUTS):
-            fill(np.nan, one[row])
+        for row in one:
+            fill(np.nan, row)
         scene, gamma, V0, omega0 = motion_of(batch, i)
         result = integrate(scene, gamma, V0, omega0, t, limits, one, switches, step_ends)
         keep(i, rows, one, result, out, info)

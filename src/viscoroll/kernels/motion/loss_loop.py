@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
+from ..numerics.arrays import fill
 from .integrate import integrate
 from .loop import keep, motion_of
 from .losses import ROWS, SLIP_LOSS, add_losses
-from .output import OUTPUTS
 
 #: room for the ends of steps at first
 _ENDS = 1000
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=15)
 def loss_loop(batch, t, limits, rows, out, info, start, stop):
     """Motions start..stop; as ``motion_loop``, but ``rows`` may name those of :mod:`losses` too."""
     one, switches, step_ends = np.empty((ROWS, t.size)), np.empty((0, 2)), np.zeros(_ENDS)
     for i in range(start, stop):
         scene, gamma, V0, omega0 = motion_of(batch, i)
         while True:
-            for row in range(OUTPUTS):
-                fill(np.nan, one[row])
+            for row in one:
+                fill(np.nan, row)
             result = integrate(scene, gamma, V0, omega0, t, limits, one, switches, step_ends)
             if step_ends[step_ends.size - 1] == 0.0:
                 break

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.bracket import narrowed, secant
+from ..numerics.bracket import narrowed, secant
 from .collocation import NODES, N, integral_terms, place, rise_at, rise_terms
 from .layer import slow_creep
 from .output import put

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .collocation import INTEGRALS, NODES, TO_START, N, factorize, substitute
+from ..numerics.linear import factorize, substitute
+from .collocation import INTEGRALS, NODES, TO_START, N
 from .control import SHARE, creep_weight
 from .partial_slip import stiff_rates
 from .path import D_D, D_TAU, D_TURN, D_X, D_Y, OVERSTATED, D, Y, grade, path_mismatch

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy
 from ..compile.jit import kernel
-from .collocation import NODES, TO_START, N, factorize, fit_terms, polynomial, substitute
+from ..numerics.arrays import copy
+from ..numerics.linear import factorize, substitute
+from .collocation import NODES, TO_START, N, fit_terms, polynomial
 from .partial_slip import partial_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, RISE_D, RISE_Y, Y, time_terms
 

@@ -56,6 +56,12 @@ def attempt(length, state, case):
 
 
 @kernel
+def _behind(tau, wait):
+    """tau + wait, at least one digit later: else steps and manifold hand the motion to each other for ever."""
+    return max(tau + wait, np.nextafter(tau, np.inf))
+
+
+@kernel
 def slow_phase(state, frame, clock, case):
     """Follow the slow manifold until outputs end, y exceeds FAR, or an interval fails.
 
@@ -73,13 +79,13 @@ def slow_phase(state, frame, clock, case):
         clock = Clock(clock.tau, clock.at, clock.steps + 1, clock.ends)
         # what is left of the layer stays as the interval is shortened; what the interval does not resolve falls
         if size <= 1.0 < offset_size and entering and offset_size > 0.5 * before:
-            return NO_EVENT, state, clock, clock.tau + max(np.log(offset_size), 1.0) / relaxation
+            return NO_EVENT, state, clock, _behind(clock.tau, max(np.log(offset_size), 1.0) / relaxation)
         size, before = max(size, offset_size), offset_size
         ahead = next_length(length, size, 1)
         if not size <= 1.0:
             length = ahead
             if length < _SHORTEST or relaxation * length < _STIFF * pace(REACHED, values):
-                return NO_EVENT, state, clock, clock.tau + _STIFF / relaxation
+                return NO_EVENT, state, clock, _behind(clock.tau, _STIFF / relaxation)
             continue
         entering = False
         panel = Panel(SLOW, state.first, state.second, length, 1, 0.0, 0.0, 0.0, 0.0)
