@@ -154,6 +154,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
     from ..kernels.flow.layer import stiff_rate
     from ..kernels.motion.loss_loop import loss_loop
+    from ..kernels.motion.records import Batch, Limits
 
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
@@ -173,7 +174,8 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
         return 0.0, 0.0, 0.0
     scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
-    loss_loop(*scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
+    limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
+    loss_loop(Batch(*scene, *start), times, limits, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
