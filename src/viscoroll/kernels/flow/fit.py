@@ -47,18 +47,9 @@ def _integrals(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray(to_nodes @ inverse), np.ascontiguousarray((to_end @ inverse)[0])
 
 
-def _derivative(nodes: np.ndarray) -> np.ndarray:
-    """Values at (1, nodes) -> derivatives at the nodes."""
-    points = np.append(1.0, nodes)
-    basis = legendre.legvander(points, nodes.size)
-    slopes = np.array([legendre.legder(row) for row in np.eye(points.size)])
-    return np.ascontiguousarray(legendre.legvander(nodes, nodes.size - 1) @ slopes.T @ np.linalg.inv(basis))
-
-
 NODES = _radau(N)
 FIT = fit_matrix(NODES, HALF)
 TO_NODES, TO_END = _integrals(NODES)
-DERIVATIVE = _derivative(NODES)
 
 
 @kernel(inline=True)
@@ -121,6 +112,18 @@ def put(table, b, column, values):
         for n in range(N):
             total += FIT[k, n] * values[n]
         table[b, column, k] = total
+
+
+@kernel
+def integrate_bin(slopes, start, values):
+    """Integral of ``slopes``, over t in [-1, 1], from ``start``: ``values`` at the nodes, and that at the end."""
+    end = start
+    for n in range(N):
+        end += TO_END[n] * slopes[n]
+        values[n] = start
+        for m in range(N):
+            values[n] += TO_NODES[n, m] * slopes[m]
+    return end
 
 
 @kernel

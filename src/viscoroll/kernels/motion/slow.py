@@ -35,7 +35,7 @@ def _evaluate(i, y, values, scene):
 
 
 @kernel
-def _eliminate(matrix, right):
+def eliminate(matrix, right):
     """Solve in place, without pivoting: what that spoils, Newton's convergence shows."""
     for i in range(N):
         inverse = 1.0 / matrix[i, i]
@@ -76,7 +76,7 @@ def slow_solve(y, length, tolerance, slopes, values, matrix, right, scene):
                 matrix[i, n] = rate * slopes[i, n + 1] / half
             matrix[i, i] += slope * values[i + 1, _RATE_D] - values[i + 1, _DRIFT_D]
             right[i] = values[i + 1, _DRIFT] - rate * slope
-        _eliminate(matrix, right)
+        eliminate(matrix, right)
         change = 0.0
         for i in range(N):
             shift = right[i]
