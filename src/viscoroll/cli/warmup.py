@@ -47,10 +47,9 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     import numpy as np
 
     from .. import PAPER_SECTION_5 as scene
-    from .. import Scene, contact, ensemble, roll, stress, tables
+    from .. import Scene, contact, ensemble, roll, stress
     from ..alpha_slice import WORTHWHILE
     from ..motion import flow
-    from ..validation.direct_motion import roll_direct
 
     many = np.linspace(0.1, 1.0, WORTHWHILE)
     start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}

@@ -82,10 +82,11 @@ def build(parameters: tuple[float, ...], octave: int, threads: int | None = None
 
 def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
     """Fill the tables; returns what stands against it, or nothing."""
-    from ..kernels.flow import layer as flow_layer
     from ..kernels.flow import slide as flow_slide
     from ..kernels.flow import slow as flow_slow
-    from ..kernels.flow.layout import CROSS_MARGIN, views
+    from ..kernels.flow.layout import ENTRY_OCTAVES, views
+    from ..kernels.flow.octave import layer_octave
+    from ..kernels.flow.read import CROSS, MINUS, PLUS
 
     alpha, kappa, _, j = parameters
     scene, parts = kernel_scene(*parameters), views(table)
@@ -95,38 +96,27 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
         flow_slide.slide_table(1.0, scene, parts.slide_up) and flow_slide.slide_table(-1.0, scene, parts.slide_down)
     ):
         return "rolling resistance can hold the sliding cylinder at a speed"
-    try:
-        lasting = flow_slow.slow_table(scene, parts.slow)
-    except np.linalg.LinAlgError:  # a singular matrix: no such motion either
-        lasting = False
-    if not lasting:
+    if not flow_slow.slow_table(scene, parts.slow):
         return "full slip returns"
     flow_slide.time_table(parts.slide_up, scene, parts.time_up)
     flow_slide.time_table(parts.slide_down, scene, parts.time_down)
     flow_slide.onset_table(parts.slide_up, scene, parts.onset_up)
     flow_slide.onset_table(parts.slide_down, scene, parts.onset_down)
-    flow_slow.late_table(parts.slow, kappa, parts.late)
-    flow_slow.early_table(parts.slow, kappa, parts.early)
-    far = float(np.sign(1.0 - j))  # the sign of the creep that turns on its way to the slow manifold
+    flow_slow.lambda_table(parts.slow, kappa, True, parts.late)
+    flow_slow.lambda_table(parts.slow, kappa, False, parts.early)
+    families = {CROSS: "cross", PLUS: "plus", MINUS: "minus"}
     failed: list[int] = []
+    for family, name in families.items():
+        if family == CROSS and j == 1.0:
+            continue  # no motion passes delta = 0 on its way to the slow manifold
+        layers, entry = getattr(parts, f"layer_{name}"), getattr(parts, f"entry_{name}")
 
-    def layer(top: int, entering: bool, sign: float, which: str) -> None:
-        layers, entry = getattr(parts, f"layer_{which}"), getattr(parts, f"entry_{which}")
-
-        def work(start: int, stop: int) -> None:
+        def work(start, stop):
             for n in range(start, stop):
-                if not flow_layer.layer_octave(
-                    top, n, entering, sign, entering and sign == far, parts.entry_cross, scene, table,
-                    layers, entry,
-                ):  # fmt: skip
+                if not layer_octave(family, n, octave - ENTRY_OCTAVES, scene, table, layers, entry):
                     failed.append(n)
 
-        run_blocks(work, entry.shape[0] // flow_layer.BINS, 1, threads=threads)
-
-    if far:
-        layer(octave + CROSS_MARGIN, False, -far, "cross")
-    layer(octave, True, 1.0, "plus")
-    layer(octave, True, -1.0, "minus")
+        run_blocks(work, entry.shape[0] // 8, 1, threads=threads)
     return "the stick zone does not always last" if failed else ""
 
 
