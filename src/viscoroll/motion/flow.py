@@ -106,17 +106,17 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
     flow_slow.lambda_table(parts.slow, kappa, False, parts.early)
     families = {CROSS: "cross", PLUS: "plus", MINUS: "minus"}
     failed: list[int] = []
+
+    def work(family: int, layers: NDArray, entry: NDArray, start: int, stop: int) -> None:
+        for n in range(start, stop):
+            if not layer_octave(family, n, octave - ENTRY_OCTAVES, scene, table, layers, entry):
+                failed.append(n)
+
     for family, name in families.items():
         if family == CROSS and j == 1.0:
             continue  # no motion passes delta = 0 on its way to the slow manifold
         layers, entry = getattr(parts, f"layer_{name}"), getattr(parts, f"entry_{name}")
-
-        def work(start, stop):
-            for n in range(start, stop):
-                if not layer_octave(family, n, octave - ENTRY_OCTAVES, scene, table, layers, entry):
-                    failed.append(n)
-
-        run_blocks(work, entry.shape[0] // 8, 1, threads=threads)
+        run_blocks(partial(work, family, layers, entry), entry.shape[0] // BINS, 1, threads=threads)
     return "the stick zone does not always last" if failed else ""
 
 
