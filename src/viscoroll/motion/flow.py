@@ -157,7 +157,9 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
 
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
-    start = np.array([V0]), np.array([omega0])
+    # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
+    *scene, start_V, start_omega = (flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0))
+    start = start_V, start_omega
 
     def flow(times: NDArray) -> Answer:
         return ask(made, 1.0, 0.0, *start, times, rows)
@@ -171,7 +173,6 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
     loss_loop(*scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
