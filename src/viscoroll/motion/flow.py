@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +85,7 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
     """Fill the tables; returns what stands against it, or nothing."""
     from ..kernels.flow import slide as flow_slide
     from ..kernels.flow import slow as flow_slow
-    from ..kernels.flow.layout import ENTRY_OCTAVES, views
+    from ..kernels.flow.layout import BINS, ENTRY_OCTAVES, views
     from ..kernels.flow.octave import layer_octave
     from ..kernels.flow.read import CROSS, MINUS, PLUS
 
@@ -148,7 +149,9 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
 
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
-    start = np.array([V0]), np.array([omega0])
+    # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
+    *scene, start_V, start_omega = (flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0))
+    start = start_V, start_omega
 
     def flow(times: NDArray) -> Answer:
         return ask(made, 1.0, 0.0, *start, times, rows)
@@ -162,7 +165,6 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
     limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
     loss_loop(Batch(*scene, *start), times, limits, np.array(rows), rolled, info, 0, 1)
