@@ -150,11 +150,10 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
     # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
-    *scene, start_V, start_omega = (flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0))
-    start = start_V, start_omega
+    batch = Batch(*(flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0)))
 
     def flow(times: NDArray) -> Answer:
-        return ask(made, 1.0, 0.0, *start, times, rows)
+        return ask(made, 1.0, 0.0, batch.V0, batch.omega0, times, rows)
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
@@ -167,7 +166,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
         return 0.0, 0.0, 0.0
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
     limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
-    loss_loop(Batch(*scene, *start), times, limits, np.array(rows), rolled, info, 0, 1)
+    loss_loop(batch, times, limits, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out

@@ -14,6 +14,7 @@ from ..law.length import contact_length
 from ..motion.collocation import INNER_POWERS, SLOPES
 from ..motion.collocation import N as PANEL_N
 from ..motion.partial_slip import branch_rates
+from ..motion.records import Workspace
 from ..motion.slow import COLUMNS, REACHED, node_D, slow_solve, slow_start
 from ..numerics.arrays import copy
 from . import layout
@@ -36,7 +37,8 @@ def slow_table(scene, table):
     """Fill ``slow``; False where there is no such motion within the stick zone."""
     bins = table.shape[0]
     values, powers = np.empty((PANEL_N + 2, COLUMNS)), np.empty(PANEL_N)
-    matrix, right = np.empty((PANEL_N, PANEL_N)), np.empty(PANEL_N)
+    none = np.empty((0, 0))
+    work = Workspace(none, none, values, powers, np.empty((PANEL_N, PANEL_N)), np.empty(PANEL_N))
     columns = np.empty((bins, DELTA + 1, N))
     last = bins + _EXTRA * BINS
     y = _ln_zeta(2.0 ** (last // BINS + _LOW), scene.material)
@@ -45,7 +47,7 @@ def slow_table(scene, table):
         end, n = _ln_zeta(node(b, 0, _LOW), scene.material), N - 1
         while y < end:
             length = end - y
-            while not slow_solve(y, length, _CONVERGED, SLOPES, values, matrix, right, scene):
+            while not slow_solve(y, length, _CONVERGED, SLOPES, scene, work):
                 length *= 0.5
                 if not length > _SHORTEST:
                     return False
