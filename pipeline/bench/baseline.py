@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.motion.stepper import GAMMA, STAGES, A, C, dense, dense_terms
 from viscoroll.kernels.numerics.bracket import narrowed, secant
 from viscoroll.kernels.printed.law import (
     direct_contact_length,
@@ -27,6 +26,7 @@ from viscoroll.kernels.printed.law import (
 )
 
 from .jit import compiled
+from .rodas5p import GAMMA, STAGES, A, C, dense, dense_terms
 from .splines import at_2, at_3, basis, scratch, spline
 
 DIRECT, ATLAS = 0, 1

@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.integrate import DONE, RESTED
 from ..motion.losses import ROLLING_LOSS, ROWS, SLIP_LOSS, kinetic_energy_lost
-from ..motion.stepper import FULL, PARTIAL, REST
+from ..motion.records import FULL, PARTIAL, REST
 from . import layout
 from .inside import earlier_entry
 from .read import (
