@@ -10,10 +10,9 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
-from viscoroll.kernels.flow.read import SPEEDS, slide
+from viscoroll.kernels.flow.read import SPEEDS, slide_to
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
-from viscoroll.scene import kernel_scene
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 16)
@@ -226,7 +225,7 @@ def test_scenes_without_a_map_are_integrated(scene, why):
 def test_motions_beyond_the_map_are_integrated():
     """The second and third slide until V and omega vanish nearly together: their onset lies below every table."""
     built = flow.flow_map(SCENE, 2.0)
-    T, _ = slide(-1.0, SPEEDS, built.table, kernel_scene(*built.parameters))
+    T, _ = slide_to(-1.0, SPEEDS, flow.kernel_map(built))
     omega = (-1.0 - 2.0 * SCENE.mu * T) / SCENE.j
     V0, omega0 = np.array([1.0, -1.0, -1.0, 0.0]), np.array([1.0, omega, omega * (1.0 + 1e-7), 0.0])
     mapped = vr.ensemble(SCENE, V0, omega0, T_OUT := np.array([1e-3, 3e-3]), method="flow")

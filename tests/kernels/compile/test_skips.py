@@ -123,12 +123,14 @@ def test_the_flow_map_looks_up_no_path_unless_asked():
         """
         from viscoroll.kernels.flow import layout as flow_layout
         from viscoroll.kernels.flow import loop as flow_loop
-        flow_loop.flow_motion = lambda *a: (needed.append(a[6]), (0, 0.0, 0.0))[1]
-        table, out, needed = np.zeros(flow_layout.SIZE), np.empty((1, 1, 1)), []
-        one, status, zero = np.ones(1), np.zeros(1, np.int8), np.zeros(1)
+        from viscoroll.kernels.flow.records import Flow
+        from viscoroll.motion.flow import Answer
+        from viscoroll.scene import kernel_scene
+        flow_loop.flow_motion = lambda *a: (needed.append(a[3].need), (0, 0.0, 0.0))[1]
+        flow, needed = Flow(np.zeros(flow_layout.SIZE), -16, kernel_scene(11.0, 2.9, 0.2, 0.5)), []
+        one, answer = np.ones(1), Answer.empty(1, 1, 1)
         for row in (0, 2):
-            flow_loop.flow_loop(((11.0, 0.9), 2.9, 0.2, 0.5), 1.0, -16, 0.0, 0.0, table, one, one, one, np.array([row]),
-                                out, status, zero, zero, np.zeros(1, int), 0, 1)
+            flow_loop.flow_loop(flow, 1.0, 0.0, one, one, one, np.array([row]), answer, 0, 1)
         assert needed == [False, True]
         """
     )

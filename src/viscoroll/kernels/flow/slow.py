@@ -1,8 +1,8 @@
 """Flow map, slow manifold: the one motion in partial slip that all others come to follow.
 
-It is solved for from high to low V as for a single motion (:mod:`motion.slow`), on a panel a bin where
-that converges: the boundary layer of an inexact start is gone within a few bins, so the motion found is the manifold.  Time, distance and
-angle along it are integrals.
+It is solved for from high to low V as for a single motion (:mod:`motion.slow`), on a panel a bin where that
+converges: the boundary layer of an inexact start is gone within a few bins, so the motion found is the
+manifold.  Time, distance and angle along it are integrals.
 """
 
 from __future__ import annotations
