@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,52 +72,52 @@ def build(parameters: tuple[float, ...], octave: int, threads: int | None = None
     """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
     from ..kernels.flow.layout import ENTRY_OCTAVES, SIZE
 
-    table = np.zeros(SIZE)
-    problem = _fill(parameters, octave, table, threads)
-    made = FlowMap(parameters, octave - ENTRY_OCTAVES, table, math.inf, math.inf, math.inf, problem)
+    made = FlowMap(parameters, octave - ENTRY_OCTAVES, np.zeros(SIZE), math.inf, math.inf, math.inf, "")
+    problem = _fill(made, threads)
     if problem:
-        return made
+        return replace(made, problem=problem)
     error, path_error, loss_error = _measure(made, octave, threads)
     return replace(made, error=error, path_error=path_error, loss_error=loss_error)
 
 
-def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
+def kernel_map(made: FlowMap) -> Any:
+    """The record that the kernels of a flow map take."""
+    from ..kernels.flow.records import Flow
+
+    return Flow(made.table, made.first, kernel_scene(*made.parameters))
+
+
+def _fill(made: FlowMap, threads: int | None) -> str:
     """Fill the tables; returns what stands against it, or nothing."""
-    from ..kernels.flow import slide as flow_slide
-    from ..kernels.flow import slow as flow_slow
-    from ..kernels.flow.layout import BINS, ENTRY_OCTAVES, views
+    from ..kernels.flow.fill import FILLED, HELD, SLIPS, fill_curves
+    from ..kernels.flow.layout import BINS, views
     from ..kernels.flow.octave import layer_octave
     from ..kernels.flow.read import CROSS, MINUS, PLUS
 
-    alpha, kappa, _, j = parameters
-    scene, parts = kernel_scene(*parameters), views(table)
+    alpha, _, _, j = made.parameters
+    flow, parts = kernel_map(made), views(made.table)
     if alpha == 1.0:
         return "an elastic cylinder never slows down"
-    if not (
-        flow_slide.slide_table(1.0, scene, parts.slide_up) and flow_slide.slide_table(-1.0, scene, parts.slide_down)
-    ):
-        return "rolling resistance can hold the sliding cylinder at a speed"
-    if not flow_slow.slow_table(scene, parts.slow):
-        return "full slip returns"
-    flow_slide.time_table(parts.slide_up, scene, parts.time_up)
-    flow_slide.time_table(parts.slide_down, scene, parts.time_down)
-    flow_slide.onset_table(parts.slide_up, scene, parts.onset_up)
-    flow_slide.onset_table(parts.slide_down, scene, parts.onset_down)
-    flow_slow.lambda_table(parts.slow, kappa, True, parts.late)
-    flow_slow.lambda_table(parts.slow, kappa, False, parts.early)
-    families = {CROSS: "cross", PLUS: "plus", MINUS: "minus"}
+    found = fill_curves(parts, flow.scene)
+    if found != FILLED:
+        return {
+            HELD: "rolling resistance can hold the sliding cylinder at a speed",
+            SLIPS: "full slip returns",
+        }[found]
     failed: list[int] = []
 
-    def work(family: int, layers: NDArray, entry: NDArray, start: int, stop: int) -> None:
-        for n in range(start, stop):
-            if not layer_octave(family, n, octave - ENTRY_OCTAVES, scene, table, layers, entry):
-                failed.append(n)
+    def octaves(family: int, layer: NDArray, entry: NDArray) -> None:
+        def work(start: int, stop: int) -> None:
+            for n in range(start, stop):
+                if not layer_octave(family, n, flow, layer, entry):
+                    failed.append(n)
 
-    for family, name in families.items():
-        if family == CROSS and j == 1.0:
-            continue  # no motion passes delta = 0 on its way to the slow manifold
-        layers, entry = getattr(parts, f"layer_{name}"), getattr(parts, f"entry_{name}")
-        run_blocks(partial(work, family, layers, entry), entry.shape[0] // BINS, 1, threads=threads)
+        run_blocks(work, entry.shape[0] // BINS, 1, threads=threads)
+
+    if j != 1.0:  # else none passes delta = 0 on its way to the slow manifold
+        octaves(CROSS, parts.layer_cross, parts.entry_cross)
+    octaves(PLUS, parts.layer_plus, parts.entry_plus)
+    octaves(MINUS, parts.layer_minus, parts.entry_minus)
     return "the stick zone does not always last" if failed else ""
 
 
@@ -143,8 +143,6 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
-    from ..kernels.flow.layer import stiff_rate
-
     alpha, _, _, j = made.parameters
     c = (alpha - 1.0) / alpha
     start = np.array([V0]), np.array([omega0])
@@ -154,7 +152,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
-    stiff_time = 1.0 / stiff_rate(max(abs(V0), abs(omega0)), kernel_scene(*made.parameters))
+    stiff_time = _stiff_time(made, max(abs(V0), abs(omega0)))
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
     late = np.linspace(0.1, 4.0, 6) * (1.0 + j) / c
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
@@ -193,8 +191,16 @@ def _rolled(
     return out, onset
 
 
-@dataclass(frozen=True)
-class Answer:
+def _stiff_time(made: FlowMap, speed: float) -> float:
+    """1/k0 for an onset at about this speed, of those in the map."""
+    from ..kernels.flow.layout import BINS, RATE, views
+
+    rates = views(made.table).entry_plus[:, RATE, 0]
+    bins = BINS * (math.log2(made.parameters[1] * speed) - made.first)
+    return float(1.0 / rates[min(int(bins), rates.size - 1)])
+
+
+class Answer(NamedTuple):
     """Motions as arrays: outputs (rows, motions, times), and one entry a motion of the rest.
 
     ``status`` < 0 stands for a motion that is not in the map, whose other entries mean nothing.
@@ -221,20 +227,15 @@ def ask(
 ) -> Answer:  # fmt: skip
     """Roll motions by a map; ``rows`` as in ``kernels/motion/output.py``, ``rest`` = 0 for none."""
     from ..kernels.flow.loop import flow_loop
-    from ..kernels.flow.read import lambda_at_rest
 
-    scene = kernel_scene(*chosen.parameters)
+    flow = kernel_map(chosen)
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     answer = Answer.empty(len(rows), count, times.size)
-    rest_lambda = lambda_at_rest(rest, chosen.table, scene) if rest > 0.0 else 0.0
+    wanted = np.array(rows, np.int64)
 
     def work(start: int, stop: int) -> None:
-        flow_loop(
-            scene, gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
-            np.array(rows, np.int64), answer.out, answer.status, answer.onset, answer.rest, answer.switches,
-            start, stop,
-        )  # fmt: skip
+        flow_loop(flow, gamma, rest, V0, omega0, times, wanted, answer, start, stop)
 
     run_blocks(work, answer.status.size, _BLOCK, threads=threads, progress=progress)
     return answer

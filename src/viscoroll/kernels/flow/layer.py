@@ -36,7 +36,7 @@ _ROWS = LAYER_COLUMNS + 9
 #: length of the first panel behind the edge of the stick zone, at most and at least (rounding), of the longest, and
 #: of the shortest over the first
 _FIRST, _LEAST, _LONGEST, _SHORTEST = 2.0**-11, 1e-12, 8.0, 1e-3
-_MOST_ITERATIONS, _CONVERGED = 30, 1e-11
+_MOST_ITERATIONS, _CONVERGED, _ROUNDING = 30, 1e-11, 1e-13
 
 
 class Onset(NamedTuple):
@@ -134,7 +134,7 @@ def _sticks(sign, nodes):
     largest = -np.inf
     for i in range(1, N + 1):
         largest = max(largest, sign * nodes[_D, i] * np.exp(-nodes[_Y, i]))
-    return largest <= 1.0
+    return largest <= 1.0 + _ROUNDING
 
 
 @kernel

@@ -24,41 +24,43 @@ _WHOLE = layout.RATE
 
 
 @kernel(allocates=True)
-def layer_octave(family, octave, first, scene, table, layer, entry):
-    """Fill one octave of the entries of a family and of their layer; False if it cannot be served.
-
-    ``first``: the slowest entry in the map is at kappa V = 2**first.
-    """
-    far = np.sign(1.0 - scene.j)  # the sign of the creep that turns on its way to the slow manifold
+def layer_octave(family, octave, flow, layer, entry):
+    """Fill one octave of the entries of a family and of their layer; False if it cannot be served."""
+    lowest = flow.first - layout.CROSS_MARGIN if family == CROSS else flow.first
+    far = np.sign(1.0 - flow.scene.j)  # the sign of the creep that turns on its way to the slow manifold
     sign = -far if family == CROSS else -1.0 if family == MINUS else 1.0
-    top = first + layout.ENTRY_OCTAVES
-    lowest = first - layout.CROSS_MARGIN if family == CROSS else first
-    lowest_cross, highest_cross = 2.0 ** (first - layout.CROSS_MARGIN), 2.0 ** (top + layout.CROSS_MARGIN)
+    turns = family != CROSS and sign == far
     values, whole = np.empty((_SPEED_N, layer.shape[1], layout.LAYER_COLUMNS, _FAST_N)), np.zeros((_WHOLE, _SPEED_N))
     for i in range(_SPEED_N):
-        v = (1.5 + 0.5 * _SPEED_NODES[i]) * 2.0 ** (lowest + octave)
-        V = v / scene.kappa
-        onset = Onset(V, family != CROSS, sign, stiff_rate(V, scene), scene)
-        lasts, crossing, end = layer_motion(onset, values[i])
-        if not lasts:
+        V = (1.5 + 0.5 * _SPEED_NODES[i]) * 2.0 ** (lowest + octave) / flow.scene.kappa
+        onset = Onset(V, family != CROSS, sign, stiff_rate(V, flow.scene), flow.scene)
+        if not _served(onset, turns, flow, values[i], whole[:, i]):
             return False
-        if family == CROSS or sign != far:
-            if 0.0 <= crossing.E < layout.LAYER_END:
-                return False
-            _join(onset, end, slow_entry(v * np.exp(end.ln_V), table), table, whole[:, i])
-            continue
-        there = v * np.exp(crossing.ln_V)
-        if not (crossing.E > 0.0 and lowest_cross <= there < highest_cross):
-            return False
-        _join(onset, crossing, entry_state(CROSS, there, first, LOSS, table), table, whole[:, i])
-        _note_crossing(onset, crossing, whole[:, i])
     skipped = entry.shape[0] // BINS - layer.shape[0]
     if octave >= skipped:
         _fit_layer(values, family, layer[octave - skipped])
-    _fit_entry(whole, lowest + octave, scene, table, entry[octave * BINS : (octave + 1) * BINS])
-    if family == CROSS or sign != far:
+    _fit_entry(whole, lowest + octave, flow, entry[octave * BINS : (octave + 1) * BINS])
+    if not turns:
         for b in range(octave * BINS, (octave + 1) * BINS):
             entry[b, layout.CROSSING, 0] = np.inf
+    return True
+
+
+@kernel
+def _served(onset, turns, flow, values, whole):
+    """Roll one motion, which ``turns`` where it passes delta = 0, and join it to the slow manifold."""
+    v = flow.scene.kappa * onset.V
+    lasts, crossing, end = layer_motion(onset, values)
+    if not turns:
+        _join(onset, end, slow_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
+        return lasts and not 0.0 <= crossing.E < layout.LAYER_END
+    lowest, octaves = 2.0 ** (flow.first - layout.CROSS_MARGIN), layout.ENTRY_OCTAVES + 2 * layout.CROSS_MARGIN
+    there = v * np.exp(crossing.ln_V)
+    if not (lasts and crossing.E > 0.0 and lowest <= there < lowest * 2.0**octaves):
+        return False
+    _join(onset, crossing, entry_state(CROSS, there, LOSS, flow), flow.table, whole)
+    whole[layout.CROSSING], whole[layout.CROSSING_SPEED] = crossing.E, crossing.ln_V
+    whole[layout.CROSSING_X], whole[layout.CROSSING_ANGLE], whole[layout.CROSSING_LOSS] = _gained(onset, crossing)
     return True
 
 
@@ -72,22 +74,13 @@ def _gained(onset, reached):
 @kernel
 def _join(onset, reached, there, table, whole):
     """What a motion has in common with the slow manifold, from ``there``, the same where it goes on."""
-    lam_there, _, x_there, angle_there, loss_there = there
     slow_rate = onset.scene.material.c / (1.0 + onset.scene.j)
-    lam = lam_there + slow_rate * reached.E / onset.rate
+    lam = there.lam + slow_rate * reached.E / onset.rate
     x, angle, loss = _gained(onset, reached)
-    slow_x, slow_angle = slow_path(lam, lam_there, slow_rate, table)
-    whole[layout.ENTRY_LAMBDA] = lam - slow_entry(onset.scene.kappa * onset.V, table)[0]
-    whole[layout.ENTRY_X], whole[layout.ENTRY_ANGLE] = x + x_there - slow_x, angle + angle_there - slow_angle
-    whole[layout.ENTRY_LOSS] = loss + loss_there - (slow_loss(lam, table) - slow_loss(lam_there, table))
-
-
-@kernel
-def _note_crossing(onset, crossing, whole):
-    """Where a motion passes delta = 0."""
-    whole[layout.CROSSING], whole[layout.CROSSING_SPEED] = crossing.E, crossing.ln_V
-    x, angle, loss = _gained(onset, crossing)
-    whole[layout.CROSSING_X], whole[layout.CROSSING_ANGLE], whole[layout.CROSSING_LOSS] = x, angle, loss
+    slow_x, slow_angle = slow_path(lam, there.lam, slow_rate, table)
+    whole[layout.ENTRY_LAMBDA] = lam - slow_entry(onset.scene.kappa * onset.V, table).lam
+    whole[layout.ENTRY_X], whole[layout.ENTRY_ANGLE] = x + there.x - slow_x, angle + there.angle - slow_angle
+    whole[layout.ENTRY_LOSS] = loss + there.loss - (slow_loss(lam, table) - slow_loss(there.lam, table))
 
 
 @kernel(allocates=True)
@@ -112,7 +105,7 @@ def _fit_layer(values, family, table):
 
 
 @kernel(allocates=True)
-def _fit_entry(whole, octave, scene, table, entry):
+def _fit_entry(whole, octave, flow, entry):
     """Entries on the finer bins of an octave, and what they are known to be differences from."""
     terms, rows = np.zeros((_WHOLE, _SPEED_N)), np.empty((layout.ENTRY_COLUMNS, N))
     for row in range(_WHOLE):
@@ -127,7 +120,7 @@ def _fit_entry(whole, octave, scene, table, entry):
                 rows[row, n] = 0.0
                 for k in range(_SPEED_N - 1, -1, -1):
                     rows[row, n] = terms[row, k] + t * rows[row, n]
-            rows[layout.ENTRY_LAMBDA, n] += slow_entry(v, table)[0]
-            rows[layout.RATE, n] = stiff_rate(v / scene.kappa, scene)
+            rows[layout.ENTRY_LAMBDA, n] += slow_entry(v, flow.table).lam
+            rows[layout.RATE, n] = stiff_rate(v / flow.scene.kappa, flow.scene)
         for column in range(layout.ENTRY_COLUMNS):
             put(entry, b, column, rows[column])

@@ -1,7 +1,7 @@
 """Flow map, slow manifold: the one motion in partial slip that all others come to follow.
 
-It is solved for from high to low V as for a single motion (:mod:`motion.slow`), on a panel a bin where
-that converges: the boundary layer of an inexact start is gone within a few bins, so the motion found is the
+It is solved for from high to low V as for a single motion (:mod:`motion.slow`), on a panel a bin where that
+converges: the boundary layer of an inexact start is gone within a few bins, so the motion found is the
 manifold.  Time, distance and angle along it are integrals.
 """
 
