@@ -4,3 +4,4 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PIPELINE, DATA, DOCS = ROOT / "pipeline", ROOT / "data", ROOT / "docs"
+RESULTS = DATA / "results"

@@ -201,7 +201,8 @@ def _compute(
 
 def _chosen_loop(arrays: list[NDArray], need: tuple[bool, ...], count: int, method: str) -> tuple[Callable, tuple]:
     """The kernel for a call and the tables that it wants."""
-    from .kernels.law.contact_loop import contact_loop
+    from .kernels.law.contact_loop import contact_loop, state_loop
+    from .kernels.law.lockstep import TOGETHER
 
     if method == "direct":
         from .kernels.printed.loop import direct_loop
@@ -216,7 +217,7 @@ def _chosen_loop(arrays: list[NDArray], need: tuple[bool, ...], count: int, meth
             from .kernels.law.slice_loop import slice_loop
 
             return slice_loop, tables
-    return contact_loop, ()
+    return (state_loop if count < TOGETHER else contact_loop), ()
 
 
 def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:

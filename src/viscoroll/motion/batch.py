@@ -225,6 +225,7 @@ def _integrate_others(
 
     def work(start: int, stop: int) -> None:
         from ..kernels.motion.loop import INFO
+        from ..kernels.motion.records import Batch, Limits
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
@@ -232,7 +233,8 @@ def _integrate_others(
         inputs = [flattened(array[left], left.shape) if array.size > 1 else array for array in flat]
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
         loop = _loop(tuple(FIELDS[row] for row in rows))
-        loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
+        limits = Limits(rtol, rest, max_steps)
+        loop(Batch(*inputs), times, limits, np.array(rows, np.int64), out, info, 0, left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -106,18 +107,17 @@ def _fill(made: FlowMap, threads: int | None) -> str:
         }[found]
     failed: list[int] = []
 
-    def octaves(family: int, layer: NDArray, entry: NDArray) -> None:
-        def work(start: int, stop: int) -> None:
-            for n in range(start, stop):
-                if not layer_octave(family, n, flow, layer, entry):
-                    failed.append(n)
+    def work(family: int, layer: NDArray, entry: NDArray, start: int, stop: int) -> None:
+        for n in range(start, stop):
+            if not layer_octave(family, n, flow, layer, entry):
+                failed.append(n)
 
-        run_blocks(work, entry.shape[0] // BINS, 1, threads=threads)
-
-    if j != 1.0:  # else none passes delta = 0 on its way to the slow manifold
-        octaves(CROSS, parts.layer_cross, parts.entry_cross)
-    octaves(PLUS, parts.layer_plus, parts.entry_plus)
-    octaves(MINUS, parts.layer_minus, parts.entry_minus)
+    for family, layer, entry in (
+        (CROSS, parts.layer_cross, parts.entry_cross), (PLUS, parts.layer_plus, parts.entry_plus),
+        (MINUS, parts.layer_minus, parts.entry_minus),
+    ):  # fmt: skip
+        if family != CROSS or j != 1.0:  # else none passes delta = 0 on its way to the slow manifold
+            run_blocks(partial(work, family, layer, entry), entry.shape[0] // BINS, 1, threads=threads)
     return "the stick zone does not always last" if failed else ""
 
 
@@ -144,10 +144,13 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
     from ..kernels.motion.loss_loop import loss_loop
+    from ..kernels.motion.records import Batch, Limits
 
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
-    start = np.array([V0]), np.array([omega0])
+    # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
+    *scene, start_V, start_omega = (flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0))
+    start = start_V, start_omega
 
     def flow(times: NDArray) -> Answer:
         return ask(made, 1.0, 0.0, *start, times, rows)
@@ -161,9 +164,9 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
-    loss_loop(*scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
+    limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
+    loss_loop(Batch(*scene, *start), times, limits, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out

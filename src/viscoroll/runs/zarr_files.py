@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..extras import imported
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -23,20 +25,21 @@ def metadata(
     about: dict[str, Any],
 ) -> dict[str, bytes]:  # fmt: skip
     """The group of all motions without its chunks; ``columns`` show names, types and dimensions."""
-    import zarr
+    zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=about)
     for name, values in columns.items():
         _create(group, name, values, count, block, described[name])
     # with zarr's own fill value, 0, xarray would take t = 0 for missing
-    group.create_array("t", data=t, fill_value=np.nan, attributes=described["t"] | {"_ARRAY_DIMENSIONS": ["t"]})
+    about_t = described["t"] | {"_ARRAY_DIMENSIONS": ["t"]}
+    group.create_array("t", shape=t.shape, dtype=t.dtype, chunks=t.shape, fill_value=np.nan, attributes=about_t)[:] = t
     return _as_bytes(files)
 
 
 def chunks(columns: Mapping[str, NDArray], number: int, count: int, block: int) -> dict[str, bytes]:
     """The chunks of one block, by their path in the group."""
-    import zarr
+    zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2)
@@ -47,7 +50,7 @@ def chunks(columns: Mapping[str, NDArray], number: int, count: int, block: int) 
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
     """All files of a small dataset."""
-    import zarr
+    zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     dataset.to_zarr(zarr.storage.MemoryStore(files), zarr_format=2, consolidated=False)

@@ -9,9 +9,9 @@ kappa; :class:`LiteralGrid` for Q, beta, ... over (V, delta, alpha) at one kappa
     vr.tables.interpolate(vr.tables.load("atlas.nc"), alpha=11.0, kappa_V=0.7, s=0.3).Q_over_mu
 
 Read in this order: :mod:`grid` (axes and coordinate maps), :mod:`build`, :mod:`schema` (what
-a file holds), :mod:`store` (atomic save, checked load), :mod:`survey` and :mod:`rehearsal`
-(what stands before a load), :mod:`interpolate`, :mod:`accuracy` (the exact law at a table's
-coordinates), :mod:`export` (formats of other programs).
+a file holds), :mod:`survey`, :mod:`content` and :mod:`rehearsal` (what its bytes hold, checked),
+:mod:`store` (atomic save, checked load), :mod:`interpolate`, :mod:`accuracy` (the exact law at a
+table's coordinates), :mod:`export` (formats of other programs).
 """
 
 from .build import build

@@ -15,6 +15,7 @@ from contextlib import suppress
 from os import PathLike
 
 from ..errors import TableError
+from .content import read
 from .survey import most_bytes, one_line
 
 _CHILD = "from viscoroll.tables.rehearsal import main; main()"
@@ -33,7 +34,7 @@ def rehearse(content: bytes, path: str | PathLike[str], verify: bool) -> None:
     Raises
     ------
     TableError
-        What ``store.read`` raised there, or that it took too long, too much memory, or crashed.
+        What ``content.read`` raised there, or that it took too long, too much memory, or crashed.
     """
     command = [sys.executable, "-P", "-c", _CHILD, os.fspath(path), "verify" if verify else ""]
     places = os.pathsep.join(place or os.getcwd() for place in sys.path)
@@ -59,8 +60,6 @@ def _seconds(content: bytes) -> float:
 
 def main() -> None:
     """The other process: content on standard input, exit code and a line on standard output."""
-    from .store import read
-
     content, path, verify = sys.stdin.buffer.read(), sys.argv[1], bool(sys.argv[2])
     _limit(content)
     try:

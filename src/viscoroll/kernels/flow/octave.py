@@ -9,15 +9,16 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..numerics.nodes import Interpolation, chebyshev
 from . import layout
-from .fit import BINS, N, fit_matrix, node, put
-from .layer import FAST_NODES, Onset, layer_motion, stiff_rate
-from .read import CROSS, LOSS, MINUS, entry_state, slow_entry, slow_loss, slow_path
+from .fit import BINS, N, fit_column, node
+from .layer import FAST, Onset, layer_motion, stiff_rate
+from .read import CROSS, LOSS, MINUS, entry_state, manifold_entry, manifold_loss, manifold_path
 
 _SPEED_N, _FAST_N = layout.SPEED_COEFFICIENTS, layout.FAST_COEFFICIENTS
-_SPEED_NODES = -np.cos(np.pi * (np.arange(_SPEED_N) + 0.5) / _SPEED_N)
-_SPEED_FIT = fit_matrix(_SPEED_NODES, 0.5)
-_FAST_FIT_OCTAVE, _FAST_FIT_HALF = fit_matrix(FAST_NODES, 0.5), fit_matrix(FAST_NODES, 0.25)
+_SPEED = Interpolation(chebyshev(_SPEED_N))
+_SPEED_NODES, _SPEED_FIT = _SPEED.nodes, _SPEED.powers(0.5)
+_FAST_FIT_OCTAVE, _FAST_FIT_HALF = FAST.powers(0.5), FAST.powers(0.25)
 #: columns of an entry that motions give; the stiff rate is a function of V alone
 _WHOLE = layout.RATE
 
@@ -51,7 +52,7 @@ def _served(onset, turns, flow, values, whole):
     v = flow.scene.kappa * onset.V
     lasts, crossing, end = layer_motion(onset, values)
     if not turns:
-        _join(onset, end, slow_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
+        _join(onset, end, manifold_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
         return lasts and not 0.0 <= crossing.E < layout.LAYER_END
     lowest, octaves = 2.0 ** (flow.first - layout.CROSS_MARGIN), layout.ENTRY_OCTAVES + 2 * layout.CROSS_MARGIN
     there = v * np.exp(crossing.ln_V)
@@ -76,10 +77,10 @@ def _join(onset, reached, there, table, whole):
     slow_rate = onset.scene.material.c / (1.0 + onset.scene.j)
     lam = there.lam + slow_rate * reached.E / onset.rate
     x, angle, loss = _gained(onset, reached)
-    slow_x, slow_angle = slow_path(lam, there.lam, slow_rate, table)
-    whole[layout.ENTRY_LAMBDA] = lam - slow_entry(onset.scene.kappa * onset.V, table).lam
+    slow_x, slow_angle = manifold_path(lam, there.lam, slow_rate, table)
+    whole[layout.ENTRY_LAMBDA] = lam - manifold_entry(onset.scene.kappa * onset.V, table).lam
     whole[layout.ENTRY_X], whole[layout.ENTRY_ANGLE] = x + there.x - slow_x, angle + there.angle - slow_angle
-    whole[layout.ENTRY_LOSS] = loss + there.loss - (slow_loss(lam, table) - slow_loss(there.lam, table))
+    whole[layout.ENTRY_LOSS] = loss + there.loss - (manifold_loss(lam, table) - manifold_loss(there.lam, table))
 
 
 @kernel(allocates=True)
@@ -119,7 +120,7 @@ def _fit_entry(whole, octave, flow, entry):
                 rows[row, n] = 0.0
                 for k in range(_SPEED_N - 1, -1, -1):
                     rows[row, n] = terms[row, k] + t * rows[row, n]
-            rows[layout.ENTRY_LAMBDA, n] += slow_entry(v, flow.table).lam
+            rows[layout.ENTRY_LAMBDA, n] += manifold_entry(v, flow.table).lam
             rows[layout.RATE, n] = stiff_rate(v / flow.scene.kappa, flow.scene)
         for column in range(layout.ENTRY_COLUMNS):
-            put(entry, b, column, rows[column])
+            fit_column(entry, b, column, rows[column])

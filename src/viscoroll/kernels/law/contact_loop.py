@@ -168,7 +168,23 @@ def _slipping(first, count, mu, V, creep, creep_is_omega, block, some):
     return found
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=3)
+def state_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
+    """``contact_loop`` for fewer states than a block, one after another: the same bits, and less to compile."""
+    state = np.empty(len(ROWS))
+    worst = OK
+    for n in range(start, stop):
+        status = contact_state(
+            standard(alpha[min(n, alpha.size - 1)]), kappa[min(n, kappa.size - 1)], mu[min(n, mu.size - 1)],
+            V[min(n, V.size - 1)], creep[min(n, creep.size - 1)], creep_is_omega, need, state,
+        )  # fmt: skip
+        worst = max(worst, status)
+        for m in range(rows.size):
+            out[m, n] = state[rows[m]]
+    return worst
+
+
+@kernel(allocates=True, seconds=5)
 def contact_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
     """States start..stop; inputs hold one value or one a state; ``rows`` picks the output."""
     state = np.empty(len(ROWS))

@@ -65,7 +65,7 @@ def traction_near_rest(u, L, D, stick, first):
     return 2.0 * D * total
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=2)
 def slice_loop(
     alpha, kappa, mu, V, creep, creep_is_omega, need, rows,
     speed, first_speed, stick, first_stick, out, start, stop,

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..numerics.arrays import copy
 from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
 from .length import OK, contact_solution, near_length
 from .material import moment_of, standard
@@ -21,7 +22,7 @@ LITERAL_PLANE = ("lam", "epsilon", "M", "delta_star")
 LITERAL_VOLUME = ("beta", "Q")
 
 
-@kernel
+@kernel(seconds=3)
 def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     """Pairs start..stop of (alpha, kappa_V): ``plane`` (4, pairs), ``volume`` (2, pairs, s)."""
     worst = OK
@@ -49,7 +50,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     return worst
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=5)
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
     need = (True, True, True, False)
@@ -62,5 +63,6 @@ def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
         worst = max(worst, status)
         for m in range(plane.shape[0]):
             plane[m, i] = out[m, 0]
-        volume[:, i] = out[plane.shape[0] :]
+        for m in range(volume.shape[0]):
+            copy(out[plane.shape[0] + m], volume[m, i])
     return worst

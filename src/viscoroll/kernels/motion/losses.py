@@ -16,9 +16,10 @@ from ..compile.jit import kernel
 from ..law.contact_loop import ROWS as CONTACT_ROWS
 from ..law.contact_loop import Q, contact_state
 from ..law.stick import GAUSS_W, GAUSS_X
+from ..numerics.arrays import fill
 from .integrate import integrate
 from .output import OUTPUTS
-from .stepper import PARTIAL
+from .records import PARTIAL
 
 #: rows that follow those of :mod:`output`, and the number of all
 SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
@@ -47,17 +48,22 @@ def _panels(step_ends, t):
     count = 0
     while count < step_ends.size and (count == 0 or step_ends[count] > 0.0):
         count += 1
-    edges = np.zeros(1 + t.size + count)
-    edges[1 : 1 + t.size] = t
-    for n in range(count):
-        edges[1 + t.size + n] = min(step_ends[n], t[t.size - 1])
-    step_ends[:count] = 0.0
-    return np.sort(edges)
+    edges, last = np.zeros(1 + t.size + count), t[t.size - 1]
+    m = n = 0
+    for k in range(1, edges.size):
+        if n == count or (m < t.size and t[m] <= step_ends[n]):
+            edges[k] = t[m]
+            m += 1
+        else:
+            edges[k] = min(step_ends[n], last)
+            n += 1
+    fill(0.0, step_ends[:count])
+    return edges
 
 
 @kernel(allocates=True)
-def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_ends, losses):
-    """Fill ``losses`` (2, times) of the motion whose outputs and ends of steps are given; ends become 0.
+def add_losses(scene, gamma, V0, omega0, t, limits, out, step_ends):
+    """Fill the two rows of losses of the motion whose outputs and ends of steps are given; ends become 0.
 
     The motion is rolled once more, in the same steps, with output at the points of the rule.
     """
@@ -68,8 +74,10 @@ def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_end
         for k in range(_POINTS):
             times[n * _POINTS + k] = edges[n] + (edges[n + 1] - edges[n]) * GAUSS_X[k]
     times[panels * _POINTS] = t[t.size - 1]
-    points = np.full((OUTPUTS, times.size), np.nan)
-    integrate(scene, gamma, V0, omega0, times, rtol, rest, max_steps, points, np.empty((0, 2)), np.empty(0))
+    points = np.empty((OUTPUTS, times.size))
+    for row in points:
+        fill(np.nan, row)
+    integrate(scene, gamma, V0, omega0, times, limits, points, np.empty((0, 2)), np.empty(0))
     state = np.empty(len(CONTACT_ROWS))
     lost, n = 0.0, 0
     for m in range(t.size):
@@ -78,5 +86,5 @@ def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_end
                 power = _slip_power(points[0, k], points[1, k], points[4, k], points[5, k], scene, state)
                 lost += gamma * (edges[n + 1] - edges[n]) * GAUSS_W[k - n * _POINTS] * power
             n += 1
-        losses[0, m] = lost
-        losses[1, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost
+        out[SLIP_LOSS, m] = lost
+        out[ROLLING_LOSS, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost

@@ -105,6 +105,22 @@ def branch_rates(y, D, sign, scene):
 
 
 @kernel(inline=True)
+def linear_rates(y, D, sign, scene):
+    """(y', D', V, delta, d(y', delta)/dD) on the branch with this sign of delta."""
+    zeta = np.exp(y)
+    dy, dD, V, delta, _, dy_D, _, delta_D, _ = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
+    return dy, dD, V, delta, dy_D, delta_D
+
+
+@kernel
+def stiff_rates(y, D, sign, scene):
+    """(y', D', V, delta, d(y', D')/dD) on the branch with this sign of delta; d D' to leading order in V."""
+    zeta = np.exp(y)
+    dy, dD, V, delta, _, dy_D, dD_D, _, _ = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
+    return dy, dD, V, delta, dy_D, dD_D
+
+
+@kernel(inline=True)
 def _rates(zeta, D, sign, contact, scene):
     """(y', D', V, delta, V'/V, d(y', D', delta)/dD, Q/V); that of D' to leading order in V."""
     material, kappa, mu, j = scene

@@ -52,7 +52,7 @@ def direct_state(alpha, kappa, mu, V, creep, creep_is_omega, out):
     return max(status, stick_status)
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=2)
 def direct_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
     """States start..stop; arguments as of ``contact_loop`` (``need`` is not used)."""
     state = np.empty(len(ROWS))

@@ -1,0 +1,1 @@
+"""What any numerical method needs: nodes and matrices of interpolation, brackets, loops over arrays."""
