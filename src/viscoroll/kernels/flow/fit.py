@@ -86,7 +86,7 @@ def slope(table, b, column, t):
 
 
 @kernel
-def put(table, b, column, values):
+def fit_column(table, b, column, values):
     """Fit a column of bin b to its values at the nodes."""
     for k in range(N):
         total = 0.0

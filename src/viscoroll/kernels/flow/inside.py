@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.bracket import narrowed, secant
 from . import layout
-from .read import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, layer_place, layer_value, slow_delta
+from .read import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, layer_place, layer_value, manifold_delta
 
 #: creep ratios nearer to the slow manifold than this are on it: an error of that size in omega
 _ON_MANIFOLD = 1e-10
@@ -41,7 +41,7 @@ def earlier_entry(V, delta, flow):
     lowest, highest = 2.0 ** (flow.first + LAYER_SKIP), 2.0 ** (flow.first + layout.ENTRY_OCTAVES)
     if not LOWEST <= v < highest:
         return PLUS, v, 0.0, False
-    slow = slow_delta(v, flow.table)
+    slow = manifold_delta(v, flow.table)
     if abs(delta - slow) < _ON_MANIFOLD:
         return PLUS, v, np.inf, True
     if not 2.0 * lowest <= v <= 0.5 * highest:

@@ -5,9 +5,10 @@ those that start from delta = 0, where the law bends (Q has a corner in its seco
 Within a family the law keeps the sign of delta, so its motions are smooth in both variables;
 one that reaches delta = 0 changes families there.
 
-A motion is collocated at Radau's nodes on panels of E: (y, D) of :mod:`motion.partial_slip`, by
-Newton's iteration in D, which is stiff, and by substitution in y, which hardly moves.  What the table
-holds are functions of the two and integrals of such.
+A motion is collocated at Radau's nodes on panels of E: (y, D) of :mod:`motion.partial_slip`, by Newton's
+iteration in D, which is stiff, and by substitution in y, which hardly moves: half the time that
+:mod:`motion.radau` takes, which presumes nothing.  What the table holds are functions of the two and
+integrals of such.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..law.length import contact_length
 from ..law.material import generator_slopes
-from ..motion.collocation import INTEGRALS, NODES, SLOPES, TO_POWERS, N, polynomial
+from ..motion.collocation import INTEGRALS, NODES, SLOPES, N, fit_terms, polynomial
 from ..motion.partial_slip import branch_rates
 from ..numerics.bracket import narrowed, secant
 from ..numerics.linear import eliminate
@@ -29,8 +30,8 @@ from .layout import E_LOW, FAST_COEFFICIENTS, LAYER_ANGLE, LAYER_COLUMNS, LAYER_
 #: Chebyshev's nodes of a bin of E
 FAST = Interpolation(chebyshev(FAST_COEFFICIENTS))
 FAST_NODES = FAST.nodes
-#: rows of the values at the nodes of a panel, behind the columns of the table: slopes over E of its
-#: integrals, the unknowns, their slopes, and the derivatives of these with respect to D
+#: rows of the values at the nodes of a panel, behind the columns of the table: slopes over E of its integrals, the
+#: unknowns, their slopes, and the derivatives of these with respect to D
 _D_X, _D_ANGLE, _D_LOSS, _Y, _D, _D_Y, _D_D, _Y_OF_D, _D_OF_D = range(LAYER_COLUMNS, LAYER_COLUMNS + 9)
 _ROWS = LAYER_COLUMNS + 9
 #: length of the first panel behind the edge of the stick zone, at most and at least (rounding), of the longest, and
@@ -129,27 +130,21 @@ def _collocate(half, onset, nodes, matrix, right):
 
 
 @kernel
-def _sticks(sign, nodes):
-    """Whether the stick zone lasts at all nodes."""
-    largest = -np.inf
-    for i in range(1, N + 1):
-        largest = max(largest, sign * nodes[_D, i] * np.exp(-nodes[_Y, i]))
-    return largest <= 1.0 + _ROUNDING
-
-
-@kernel
-def _columns(half, nodes, powers):
-    """Integrals at the nodes, and the coefficients of all columns over the panel."""
+def _panel(length, onset, nodes, matrix, right):
+    """Roll over a panel from node 0, or a part of it: (its length, whether it was found and the stick zone lasts)."""
+    shortest = _SHORTEST * length
+    while not _collocate(0.5 * length, onset, nodes, matrix, right):
+        length *= 0.5
+        if length < shortest:
+            return length, False
+    fullest = -np.inf
     for n in range(N):
         for row in (LAYER_X, LAYER_ANGLE, LAYER_LOSS):
             nodes[row, n + 1] = nodes[row, 0]
             for m in range(N):
-                nodes[row, n + 1] += half * INTEGRALS[n, m] * nodes[row - LAYER_X + _D_X, m + 1]
-    for row in range(LAYER_COLUMNS):
-        for k in range(N + 1):
-            powers[row, k] = 0.0
-            for n in range(N + 1):
-                powers[row, k] += TO_POWERS[k, n] * nodes[row, n]
+                nodes[row, n + 1] += 0.5 * length * INTEGRALS[n, m] * nodes[row - LAYER_X + _D_X, m + 1]
+        fullest = max(fullest, onset.sign * nodes[_D, n + 1] * np.exp(-nodes[_Y, n + 1]))
+    return length, fullest <= 1.0 + _ROUNDING
 
 
 @kernel
@@ -173,47 +168,56 @@ def _crossing(sign, powers):
     return high
 
 
+@kernel
+def _start(onset, nodes):
+    """Fill node 0; length of the first panel."""
+    scene = onset.scene
+    lam, _ = contact_length(scene.kappa * onset.V, scene.material)
+    zeta = lam / (2.0 * scene.kappa * onset.V)
+    nodes[_Y, 0], nodes[_D, 0] = np.log(zeta), onset.sign * zeta if onset.entering else 0.0
+    nodes[LAYER_X, 0] = nodes[LAYER_ANGLE, 0] = nodes[LAYER_LOSS, 0] = 0.0
+    _evaluate(0, onset, nodes)
+    if not onset.entering:
+        return _LONGEST
+    # the law bends where the stick zone is as small as eta = 1/alpha, and like eta ln eta from 0 on
+    return max(min(0.25 / (scene.material.alpha * zeta), _FIRST), _LEAST)
+
+
+@kernel
+def _sample(b, ends, E, length, powers, values):
+    """Fill the nodes of bin b, with these ends, that lie on the panel of this length from E."""
+    left, right = ends
+    for n in range(FAST_COEFFICIENTS):
+        t = (left + 0.5 * (right - left) * (1.0 + FAST_NODES[n]) - E) / (0.5 * length) - 1.0
+        if abs(t) <= 1.0 + _ROUNDING:
+            for column in range(LAYER_COLUMNS):
+                values[b, column, n] = polynomial(t, powers, column)
+
+
 @kernel(allocates=True)
 def layer_motion(onset, values):
     """One motion: ``values[bin, column, node]``, and (whether it lasts, where delta = 0, the end).
 
     E < 0 where delta = 0 is not passed, or where the motion starts.
     """
-    scene = onset.scene
-    lam, _ = contact_length(scene.kappa * onset.V, scene.material)
-    zeta = lam / (2.0 * scene.kappa * onset.V)
-    first, low = _LONGEST, 0
-    if onset.entering:  # the law bends where the stick zone is as small as eta = 1/alpha, and like eta ln eta from 0 on
-        first, low = max(min(0.25 / (scene.material.alpha * zeta), _FIRST), _LEAST), E_LOW
-    nodes, powers = np.zeros((_ROWS, N + 1)), np.empty((LAYER_COLUMNS, N + 1))
+    nodes, powers = np.empty((_ROWS, N + 1)), np.empty((LAYER_COLUMNS, N + 2))
     matrix, right = np.empty((N, N)), np.empty(N)
-    nodes[_Y, 0], nodes[_D, 0] = np.log(zeta), onset.sign * zeta if onset.entering else 0.0
-    _evaluate(0, onset, nodes)
+    first = _start(onset, nodes)
     E, crossing, end = 0.0, Reached(-1.0, 0.0, 0.0, 0.0, 0.0), Reached(0.0, 0.0, 0.0, 0.0, 0.0)
     for b in range(values.shape[0]):
-        left, right_end = fast_bin_ends(b, low)
-        n = 0
-        while E < right_end:
-            length = min(right_end - E, max(0.5 * E, first), _LONGEST)
-            while not _collocate(0.5 * length, onset, nodes, matrix, right):
-                length *= 0.5
-                if length < _SHORTEST * first:
-                    return False, crossing, end
-            if not _sticks(onset.sign, nodes):
+        ends = fast_bin_ends(b, E_LOW if onset.entering else 0)
+        while E < ends[1]:
+            ahead = min(ends[1] - E, max(0.5 * E, first), _LONGEST)
+            length, lasts = _panel(ahead, onset, nodes, matrix, right)
+            if not lasts:
                 return False, crossing, end
-            last = length == right_end - E
-            _columns(0.5 * length, nodes, powers)
+            for row in range(LAYER_COLUMNS):
+                fit_terms(nodes[row], powers[row])
             if onset.entering and crossing.E < 0.0 and onset.sign * nodes[LAYER_CREEP, N] <= 0.0:
                 t = _crossing(onset.sign, powers)
                 crossing = _reached(E + 0.5 * length * (1.0 + t), t, powers)
-            while n < FAST_COEFFICIENTS:
-                t = (left + 0.5 * (right_end - left) * (1.0 + FAST_NODES[n]) - E) / (0.5 * length) - 1.0
-                if t > 1.0:
-                    break
-                for column in range(LAYER_COLUMNS):
-                    values[b, column, n] = polynomial(t, powers, column)
-                n += 1
-            E = right_end if last else E + length
+            _sample(b, ends, E, length, powers, values)
+            E = ends[1] if length == ends[1] - E else E + length
             end = _reached(E, 1.0, powers)
             for row in range(_ROWS):
                 nodes[row, 0] = nodes[row, N]

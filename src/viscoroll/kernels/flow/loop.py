@@ -22,16 +22,16 @@ from .read import (
     has_layer,
     lambda_at_rest,
     layer_state,
+    manifold_entry,
+    manifold_loss,
+    manifold_path,
+    manifold_speeds,
     onset_of,
     slide_to,
     slides,
-    slow_entry,
-    slow_loss,
-    slow_path,
-    slow_speeds,
     speed_after,
 )
-from .records import Request, Slide, State, Stick
+from .records import Output, Request, Slide, Stick
 
 NOT_SERVED = -1
 #: a start this many times faster than the onset of stick is left to the integrator: V there is a small difference, with
@@ -51,7 +51,7 @@ def _write(out, column, state):
 def _rest(at, x, angle, loss, out):
     """Outputs at rest from column ``at`` on."""
     for column in range(at, out.shape[1]):
-        _write(out, column, State(0.0, 0.0, x, angle, 0.0, REST, loss))
+        _write(out, column, Output(0.0, 0.0, x, angle, 0.0, REST, loss))
 
 
 @kernel(inline=True)
@@ -76,7 +76,7 @@ def _inside(V0, omega0, need, flow):
     """(Earlier entry into partial slip, what the map holds of it, whether served) of a start inside the stick zone."""
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, served = earlier_entry(abs(V0), (omega0 - V0) / V0, flow)
-    entry = slow_entry(v, flow.table) if E > LAYER_END or not served else entry_state(family, v, need, flow)
+    entry = manifold_entry(v, flow.table) if E > LAYER_END or not served else entry_state(family, v, need, flow)
     stick = Stick(frame, family, v, -min(E, 1.1 * LAYER_END) / entry.rate, 0.0, 0.0, 0.0)
     if not served or E > LAYER_END or E == 0.0 or need < PATH:
         return stick, entry, served
@@ -100,7 +100,7 @@ def _slide_outputs(at, tau_out, until, slide, need, flow, out):
             x = slide_to(V, PATH, flow)[1] - X0
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
-        _write(out, at, State(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x)))
+        _write(out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x)))
         at += 1
     return at
 
@@ -109,7 +109,7 @@ def _slide_outputs(at, tau_out, until, slide, need, flow, out):
 def _stick_outputs(at, tau_out, until, stick, entry, need, flow, out):
     """Outputs in partial slip up to ``until``; returns the next column."""
     frame = stick.frame
-    to_lose = slow_loss(entry.lam, flow.table) + entry.loss if need >= LOSS else 0.0
+    to_lose = manifold_loss(entry.lam, flow.table) + entry.loss if need >= LOSS else 0.0
     slow_rate = flow.scene.material.c / (1.0 + flow.scene.j)
     layer_end = stick.tau + LAYER_END / entry.rate
     while at < tau_out.size and tau_out[at] <= until:
@@ -119,14 +119,14 @@ def _stick_outputs(at, tau_out, until, stick, entry, need, flow, out):
             V, delta, x, angle, loss = layer_state(stick, entry.rate, elapsed, need, flow)
         else:
             now = entry.lam - slow_rate * elapsed
-            V, delta = slow_speeds(now, flow.table)
+            V, delta = manifold_speeds(now, flow.table)
             if need >= PATH:
-                x, angle = slow_path(entry.lam, now, slow_rate, flow.table)
+                x, angle = manifold_path(entry.lam, now, slow_rate, flow.table)
                 x, angle = x + entry.x, angle + entry.angle
             if need >= LOSS:
-                loss = to_lose - slow_loss(now, flow.table)
+                loss = to_lose - manifold_loss(now, flow.table)
         x, angle = stick.x + frame * x, stick.angle + frame * angle
-        _write(out, at, State(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL, stick.loss + loss))
+        _write(out, at, Output(frame * V, frame * V * (1.0 + delta), x, angle, delta, PARTIAL, stick.loss + loss))
         at += 1
     return at
 
@@ -146,8 +146,8 @@ def _stick(at, tau_out, stick, entry, request, flow, out):
     at = _stick_outputs(at, tau_out, min(resting, end), stick, entry, request.need, flow, out)
     if end <= resting:
         return DONE, np.nan
-    x, angle = slow_path(entry.lam, request.rest_lambda, slow_rate, flow.table)
-    loss = entry.loss + slow_loss(entry.lam, flow.table) - slow_loss(request.rest_lambda, flow.table)
+    x, angle = manifold_path(entry.lam, request.rest_lambda, slow_rate, flow.table)
+    loss = entry.loss + manifold_loss(entry.lam, flow.table) - manifold_loss(request.rest_lambda, flow.table)
     x, angle = stick.x + stick.frame * (x + entry.x), stick.angle + stick.frame * (angle + entry.angle)
     _rest(at, x, angle, stick.loss + loss, out)
     return RESTED, resting
@@ -174,7 +174,7 @@ def flow_motion(V0, omega0, tau_out, request, flow, out):
     if not served or stick.v < 2.0 * kappa * request.rest:
         return NOT_SERVED, np.nan, np.nan
     while at < tau_out.size and tau_out[at] == 0.0:
-        _write(out, at, State(V0, omega0, 0.0, 0.0, (omega0 - V0) / V0 if V0 != 0.0 else np.inf, first, 0.0))
+        _write(out, at, Output(V0, omega0, 0.0, 0.0, (omega0 - V0) / V0 if V0 != 0.0 else np.inf, first, 0.0))
         at += 1
     onset = np.nan
     if slides_first:

@@ -11,9 +11,9 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.nodes import Interpolation, chebyshev
 from . import layout
-from .fit import BINS, N, node, put
+from .fit import BINS, N, fit_column, node
 from .layer import FAST, Onset, layer_motion, stiff_rate
-from .read import CROSS, LOSS, MINUS, entry_state, slow_entry, slow_loss, slow_path
+from .read import CROSS, LOSS, MINUS, entry_state, manifold_entry, manifold_loss, manifold_path
 
 _SPEED_N, _FAST_N = layout.SPEED_COEFFICIENTS, layout.FAST_COEFFICIENTS
 _SPEED = Interpolation(chebyshev(_SPEED_N))
@@ -52,7 +52,7 @@ def _served(onset, turns, flow, values, whole):
     v = flow.scene.kappa * onset.V
     lasts, crossing, end = layer_motion(onset, values)
     if not turns:
-        _join(onset, end, slow_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
+        _join(onset, end, manifold_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
         return lasts and not 0.0 <= crossing.E < layout.LAYER_END
     lowest, octaves = 2.0 ** (flow.first - layout.CROSS_MARGIN), layout.ENTRY_OCTAVES + 2 * layout.CROSS_MARGIN
     there = v * np.exp(crossing.ln_V)
@@ -77,10 +77,10 @@ def _join(onset, reached, there, table, whole):
     slow_rate = onset.scene.material.c / (1.0 + onset.scene.j)
     lam = there.lam + slow_rate * reached.E / onset.rate
     x, angle, loss = _gained(onset, reached)
-    slow_x, slow_angle = slow_path(lam, there.lam, slow_rate, table)
-    whole[layout.ENTRY_LAMBDA] = lam - slow_entry(onset.scene.kappa * onset.V, table).lam
+    slow_x, slow_angle = manifold_path(lam, there.lam, slow_rate, table)
+    whole[layout.ENTRY_LAMBDA] = lam - manifold_entry(onset.scene.kappa * onset.V, table).lam
     whole[layout.ENTRY_X], whole[layout.ENTRY_ANGLE] = x + there.x - slow_x, angle + there.angle - slow_angle
-    whole[layout.ENTRY_LOSS] = loss + there.loss - (slow_loss(lam, table) - slow_loss(there.lam, table))
+    whole[layout.ENTRY_LOSS] = loss + there.loss - (manifold_loss(lam, table) - manifold_loss(there.lam, table))
 
 
 @kernel(allocates=True)
@@ -120,7 +120,7 @@ def _fit_entry(whole, octave, flow, entry):
                 rows[row, n] = 0.0
                 for k in range(_SPEED_N - 1, -1, -1):
                     rows[row, n] = terms[row, k] + t * rows[row, n]
-            rows[layout.ENTRY_LAMBDA, n] += slow_entry(v, flow.table).lam
+            rows[layout.ENTRY_LAMBDA, n] += manifold_entry(v, flow.table).lam
             rows[layout.RATE, n] = stiff_rate(v / flow.scene.kappa, flow.scene)
         for column in range(layout.ENTRY_COLUMNS):
-            put(entry, b, column, rows[column])
+            fit_column(entry, b, column, rows[column])

@@ -107,7 +107,7 @@ def onset_of(I, need, flow):
 
 
 @kernel(inline=True)
-def _slow(lam):
+def _manifold(lam):
     """(place in the table, t, factor) of lambda on the slow manifold; below the table all falls like exp(lambda)."""
     if lam >= layout.LATE_HIGH:
         b, t = bits_and_offset(1.0 + lam)
@@ -122,49 +122,49 @@ def _slow(lam):
 
 
 @kernel(inline=True)
-def slow_speeds(lam, table):
+def manifold_speeds(lam, table):
     """(V, delta) on the slow manifold at lambda."""
-    at, t, share = _slow(lam)
+    at, t, share = _manifold(lam)
     return share * _column(table, at, layout.SPEED, t), share * _column(table, at, layout.DELTA, t)
 
 
 @kernel
-def slow_path(start, end, rate, table):
+def manifold_path(start, end, rate, table):
     """(distance, angle) along the slow manifold between two lambda; ``rate`` = c/(1 + j).
 
     The difference of what is left to rest, or where that cancels the integral of V.
     """
     span = start - end
     if span > 0.25 * max(1.0 + end, 1.0):
-        at, t, share = _slow(start)
+        at, t, share = _manifold(start)
         x, angle = share * _column(table, at, layout.X_TO_GO, t), share * _column(table, at, layout.ANGLE_TO_GO, t)
-        at, t, share = _slow(end)
+        at, t, share = _manifold(end)
         x -= share * _column(table, at, layout.X_TO_GO, t)
         return x, angle - share * _column(table, at, layout.ANGLE_TO_GO, t)
     x = angle = 0.0
     for n in range(GAUSS_X.size):
-        V, delta = slow_speeds(end + span * GAUSS_X[n], table)
+        V, delta = manifold_speeds(end + span * GAUSS_X[n], table)
         x += GAUSS_W[n] * V
         angle += GAUSS_W[n] * V * (1.0 + delta)
     return x * span / rate, angle * span / rate
 
 
 @kernel
-def slow_loss(lam, table):
+def manifold_loss(lam, table):
     """Energy still to be lost in slip at lambda on the slow manifold; it falls like V^3 as V -> 0."""
-    at, t, share = _slow(lam)
+    at, t, share = _manifold(lam)
     return share**3 * _column(table, at, layout.LOSS_TO_GO, t)
 
 
 @kernel
-def slow_delta(v, table):
+def manifold_delta(v, table):
     """Delta on the slow manifold at v = kappa V."""
     b, t = bits_and_offset(v)
     return _column(table, b * _SLOW + _SLOW_BY_V, layout.DELTA, t)
 
 
 @kernel
-def slow_entry(v, table):
+def manifold_entry(v, table):
     """Of a motion on the slow manifold at v = kappa V: no layer is left."""
     b, t = bits_and_offset(v)
     return Entry(_column(table, b * _SLOW + _SLOW_BY_V, layout.LAMBDA, t), _NO_LAYER, 0.0, 0.0, 0.0)
@@ -275,8 +275,8 @@ def lambda_at_rest(rest, flow):
     V = rest
     for _ in range(4):
         v = kappa * V
-        V = rest / (1.0 + max(slow_delta(v, flow.table) if v >= LOWEST else 0.0, 0.0))
+        V = rest / (1.0 + max(manifold_delta(v, flow.table) if v >= LOWEST else 0.0, 0.0))
     v = kappa * V
     if v >= LOWEST:
-        return slow_entry(v, flow.table).lam
-    return slow_entry(LOWEST, flow.table).lam + np.log(v / LOWEST)
+        return manifold_entry(v, flow.table).lam
+    return manifold_entry(LOWEST, flow.table).lam + np.log(v / LOWEST)

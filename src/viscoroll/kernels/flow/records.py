@@ -55,8 +55,8 @@ class Entry(NamedTuple):
     loss: Any
 
 
-class State(NamedTuple):
-    """One output, in the frame of the caller, times gamma where it is a length."""
+class Output(NamedTuple):
+    """One column of outputs, in the frame of the caller, times gamma where it is a length."""
 
     V: Any
     omega: Any

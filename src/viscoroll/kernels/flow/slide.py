@@ -9,13 +9,13 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.full_slip import sliding_rate, stick_limit
 from . import layout
-from .fit import BINS, HALF, N, bin_of, find, integrate_bin, node, put, value, width
+from .fit import BINS, HALF, N, bin_of, find, fit_column, integrate_bin, node, value, width
 
 _LOW = layout.LOW
 _T, _X, _I, _L = layout.T, layout.X, layout.I, layout.L
 
 
-@kernel(allocates=True, seconds=20)  # with the rest of the map, and the motions that measure it
+@kernel(allocates=True)
 def slide_table(sign, scene, table):
     """Fill ``slide_up`` (sign = 1) or ``slide_down`` (-1); False where V' is not positive or I not monotone."""
     _, kappa, mu, j = scene
@@ -42,7 +42,7 @@ def slide_table(sign, scene, table):
                 return False
             last_I = rows[_I, n]
         for column in range(4):
-            put(table, b, column, rows[column])
+            fit_column(table, b, column, rows[column])
     return True
 
 
@@ -55,7 +55,7 @@ def time_table(slide, scene, table):
         for n in range(N):
             v, _ = find(slide, _T, node(b, n, _LOW) / (kappa * mu), _LOW)
             values[n] = v / kappa
-        put(table, b, 0, values)
+        fit_column(table, b, 0, values)
 
 
 @kernel(allocates=True)
@@ -76,4 +76,4 @@ def onset_table(slide, scene, table):
             rows[layout.ONSET_T, n] = value(slide, at, _T, t)
             rows[layout.ONSET_X, n] = value(slide, at, _X, t)
         for column in range(3):
-            put(table, b, column, rows[column])
+            fit_column(table, b, column, rows[column])

@@ -14,11 +14,9 @@ from ..law.length import contact_length
 from ..motion.collocation import INNER_POWERS, SLOPES
 from ..motion.collocation import N as PANEL_N
 from ..motion.partial_slip import branch_rates
-from ..motion.records import Workspace
-from ..motion.slow import COLUMNS, REACHED, node_D, slow_solve, slow_start
-from ..numerics.arrays import copy
+from ..motion.slow import node_D, slow_go_on, slow_solve, slow_start, workspace
 from . import layout
-from .fit import BINS, HALF, NODES, N, bin_of, find, integrate_bin, node, put, value, width
+from .fit import BINS, HALF, NODES, N, bin_of, find, fit_column, integrate_bin, node, value, width
 from .layout import ANGLE_TO_GO, DELTA, LAMBDA, LOSS_TO_GO, SPEED, X_TO_GO
 
 _LOW = layout.LOW
@@ -36,13 +34,11 @@ def _ln_zeta(v, material):
 def slow_table(scene, table):
     """Fill ``slow``; False where there is no such motion within the stick zone."""
     bins = table.shape[0]
-    values, powers = np.empty((PANEL_N + 2, COLUMNS)), np.empty(PANEL_N)
-    none = np.empty((0, 0))
-    work = Workspace(none, none, values, powers, np.empty((PANEL_N, PANEL_N)), np.empty(PANEL_N))
+    work, powers = workspace(), np.empty(PANEL_N)
     columns = np.empty((bins, DELTA + 1, N))
     last = bins + _EXTRA * BINS
     y = _ln_zeta(2.0 ** (last // BINS + _LOW), scene.material)
-    slow_start(y, 0.0, values, scene)
+    slow_start(y, 0.0, work.values, scene)
     for b in range(last - 1, -1, -1):
         end, n = _ln_zeta(node(b, 0, _LOW), scene.material), N - 1
         while y < end:
@@ -51,13 +47,13 @@ def slow_table(scene, table):
                 length *= 0.5
                 if not length > _SHORTEST:
                     return False
-            _D_powers(values, powers)
+            _D_powers(work.values, powers)
             y_after = y + length if y + length < end else end
             while b < bins and n >= 0 and _ln_zeta(node(b, n, _LOW), scene.material) <= y_after:
                 if not _slow_node(b, n, y, length, powers, scene, columns[b]):
                     return False
                 n -= 1
-            copy(values[PANEL_N], values[REACHED])
+            slow_go_on(work.values)
             y = y_after
     _integrate(columns, table)
     return True
@@ -103,8 +99,8 @@ def _integrate(columns, table):
             start = ends[LAMBDA]
         for column in range(DELTA):
             ends[column] = integrate_bin(columns[b, column], ends[column], rows[column])
-            put(table, b, column, rows[column])
-        put(table, b, DELTA, columns[b, DELTA])
+            fit_column(table, b, column, rows[column])
+        fit_column(table, b, DELTA, columns[b, DELTA])
     table[:, LAMBDA, 0] -= start
 
 
@@ -136,4 +132,4 @@ def lambda_table(slow, kappa, late, table):
             lam = layout.LATE_LOW + (b + 0.5 + 0.5 * NODES[n]) * layout.LATE_WIDTH if late else node(b, n, 0) - 1.0
             _by_lambda(slow, lam, kappa, n, rows)
         for column in range(DELTA + 1):
-            put(table, b, column, rows[column])
+            fit_column(table, b, column, rows[column])
