@@ -14,13 +14,15 @@ from ..numerics.linear import factorize, substitute
 from .collocation import INTEGRALS, NODES, TO_START, N
 from .control import SHARE, creep_weight
 from .partial_slip import stiff_rates
-from .path import D_D, D_TAU, D_TURN, D_X, D_Y, OVERSTATED, D, Y, grade, path_mismatch
+from .path import D_D, D_TAU, D_TURN, D_X, D_Y, D, Y, grade, path_mismatch
 
 _MOST_ITERATIONS = 12
 #: gain from one iteration to the next beyond which it takes new slopes
 _SLOW = 0.05
 #: Newton stops at this share of the tolerance
-_NEWTON = 0.05
+_NEWTON = 0.01
+#: a mismatch of the rates at the left end overstates the error of their interpolants
+_OVERSTATED = 0.05
 #: step in y of the difference quotients
 _STEP = 1e-7
 
@@ -112,7 +114,7 @@ def radau_solve(length, power, sign, rates, rtol, scene, work):
         gain = change / before if before > 0.0 else 1.0
         if not (change < 1e3 and gain < 2.0):
             return False
-        if change * min(gain, 0.1) <= _NEWTON * SHARE * rtol:
+        if change * gain <= _NEWTON * SHARE * rtol:
             return True
         before = change
     return False
@@ -127,4 +129,4 @@ def radau_error(length, relaxation, rtol, state, nodes):
     D_off *= length / (1.0 + length * abs(relaxation))
     per = np.exp(-nodes[Y, N])
     error = abs(D_off) * per * creep_weight(nodes[D, N] * per)
-    return OVERSTATED * max(error, path_mismatch(length, 0.0, state, nodes)) / (SHARE * rtol)
+    return _OVERSTATED * max(error, path_mismatch(length, 0.0, state, nodes)) / (SHARE * rtol)

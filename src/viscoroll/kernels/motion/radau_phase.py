@@ -23,10 +23,12 @@ _STIFF = 20.0
 _NEAR = 10.0
 #: a stick zone that starts at eta = 0 may round to below it before it grows
 _ROUNDING = 1e-15
+#: share of rtol that the square of D/zeta may be on the wrong side of delta = 0
+_KINK = 0.01
 #: panels solved at most until one ends on an edge of the stick zone, and how close that is in units of zeta
 _CUTS, _HIT = 5, 4e-16
-#: what rounding may leave of it
-_FOUND = 1e-13
+#: and a correction of the length that is none
+_LAST = 1e-15
 #: longest first panel in relaxation times
 _FIRST = 3.0
 #: slip that returns from the start on is looked at closer: so often, each time in a panel of this share
@@ -63,15 +65,17 @@ def fill_shares(sign, nodes):
 
 
 @kernel
-def first_edge(nodes):
+def first_edge(rtol, nodes):
     """(Edge of the stick zone met, node behind it): 0 where delta = 0, 1 where the zone is lost; -1 for none.
 
-    Node 0 where the zone is lost from the start on.
+    Node 0 where the zone is lost from the start on.  So little beyond delta = 0 that the square of D/zeta is no error,
+    the side does not matter.
     """
+    beyond = -np.sqrt(_KINK * rtol)
     inside = nodes[SHARE_D, 0] < 1.0 - _ROUNDING
     for i in range(1, N + 1):
         share = nodes[SHARE_D, i]
-        if share < 0.0:
+        if share < beyond:
             return 0.0, i
         if share > 1.0 + _ROUNDING:
             return 1.0, i if inside else 0
@@ -92,14 +96,17 @@ def cut_at(edge, node, length, power, sign, rates, state, case):
     for _ in range(_CUTS):
         size = panel_size(length, power, sign, rates, state, case)
         fill_shares(sign, nodes)
-        share = nodes[SHARE_D, N]
-        if not size < np.inf or abs(share - edge) <= _HIT:
+        off = nodes[SHARE_D, N] - edge
+        if not size < np.inf or abs(off) <= _HIT:
             return length, size
-        rise = (sign * nodes[D_D, N] * np.exp(-nodes[Y, N]) - share * nodes[D_Y, N]) / nodes[D_TAU, N]
-        length -= (share - edge) / rise
+        rise = (sign * nodes[D_D, N] * np.exp(-nodes[Y, N]) - nodes[SHARE_D, N] * nodes[D_Y, N]) / nodes[D_TAU, N]
+        change = off / rise
+        if abs(change) <= _LAST * length:
+            return length, size
+        length -= change
         if not length > 0.0:
             break
-    return length, size if abs(share - edge) <= _FOUND and length > 0.0 else np.inf
+    return length, np.inf
 
 
 @kernel
@@ -135,7 +142,7 @@ def radau_phase(try_at, state, frame, clock, case):
         ahead, edge = next_length(length, size, power), -1.0
         if size <= 1.0:
             fill_shares(sign, nodes)
-            edge, node = first_edge(nodes)
+            edge, node = first_edge(limits.rtol, nodes)
             if edge == 1.0 and node == 0:
                 if rejected > _MOST_RETRIES:
                     return SLIP, False, state, clock
