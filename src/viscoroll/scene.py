@@ -292,7 +292,7 @@ PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 def kernel_scene(alpha: float, kappa: float, mu: float, j: float) -> Any:
     """The record that the kernels of a motion take."""
-    from .kernels.law.material import Material
+    from .kernels.law.tabulated import tabulated
     from .kernels.motion import records
 
-    return records.Scene(Material(alpha, (alpha - 1.0) / alpha), kappa, mu, j)
+    return records.Scene(tabulated(alpha), kappa, mu, j)

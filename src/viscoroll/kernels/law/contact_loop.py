@@ -8,7 +8,8 @@ from ..bessel.ratios import small_k_over_z
 from ..compile.jit import kernel
 from . import lockstep
 from .length import OK, contact_solution, near_length
-from .material import at_contact, generator_slopes, moment_of, standard
+from .material import at_contact, generator_slopes, moment_of
+from .standard import standard
 from .slopes import slope_ratio, slope_ratio_rise
 from .stick import CLOSE, slight, stick_from_root, stick_solution
 
@@ -135,7 +136,7 @@ def contact_state_at(solved, root, material, kappa, mu, V, creep, creep_is_omega
 @kernel(inline=True)
 def _moment(V, kappa, zeta, lam, g, h, material, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
-    alpha, c = material
+    alpha, c = material.alpha, material.c
     if zeta > FAR:
         out[M], out[DM_DV] = c * V, c
         return

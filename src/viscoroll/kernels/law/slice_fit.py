@@ -21,7 +21,8 @@ import numpy as np
 from ..bessel.layout import BINS, COEFFICIENTS
 from ..compile.jit import kernel
 from .length import OK, contact_length
-from .material import generator_slopes, generators, moment_factor, standard
+from .material import generator_slopes, generators, moment_factor
+from .standard import standard
 from .stick import root_of_F
 
 LENGTH, SHIFT, CREEP, MOMENT = range(4)

@@ -33,7 +33,7 @@ from .contact_loop import (
     signed_slip,
 )
 from .length import OK
-from .material import standard
+from .standard import standard
 from .slice_fit import CREEP, LENGTH, MOMENT, PRESS, RISE, SHARE, SHIFT
 from .stick import CLOSE, GAUSS_W, GAUSS_X
 

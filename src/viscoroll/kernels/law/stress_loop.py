@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .material import standard
+from .standard import standard
 from .stress import stress_at
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from ..compile.jit import kernel
 from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
 from .length import OK, contact_solution, near_length
-from .material import moment_of, standard
+from .material import moment_of
+from .standard import standard
 
 #: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.
 ATLAS_PLANE = ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import standard
+from ..law.tabulated import KEPT, Tabulated
+from ..numerics.quarters import COEFFICIENTS
 from .integrate import integrate
 from .losses import SLIP_LOSS, add_losses
 from .output import OUTPUTS
@@ -21,9 +22,15 @@ def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, 
     one, losses = np.empty((OUTPUTS, t.size)), np.empty((2, t.size))
     wanted = rows.max() >= SLIP_LOSS
     switches, step_ends = np.empty((0, 2)), np.zeros(_ENDS)
+    numbers, pieces = np.full(KEPT, -1), np.empty((KEPT, COEFFICIENTS, 4))
+    last = 0.0
     for i in range(start, stop):
+        a = alpha[min(i, alpha.size - 1)]
+        if a != last:
+            numbers[:] = -1
+            last = a
         scene = Scene(
-            standard(alpha[min(i, alpha.size - 1)]), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
+            Tabulated(a, (a - 1.0) / a, numbers, pieces), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
             j[min(i, j.size - 1)],
         )  # fmt: skip
         scale = gamma[min(i, gamma.size - 1)]
