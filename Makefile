@@ -8,66 +8,66 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := data/tables/atlas.nc data/tables/paper.nc
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture check clean interop interop-tools
+.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
 
 setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 .venv/stamp: pyproject.toml constraints.txt
-	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed"'
+	@$(PYTHON) -c 'import sys; sys.version_info < (3, 11) and sys.exit("viscoroll needs Python 3.11 or newer, $(PYTHON) is %d.%d: make PYTHON=..." % sys.version_info[:2])'
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	touch $@
 
 demo: out/index.html ## tables, validation, motions, an ensemble of 10^6, figures and a summary page
-	@$(RUN) pipeline/summary.py --config $(CONFIG) --show
+	@$(RUN) -m pipeline.demo.summary --config $(CONFIG) --show
 
 tables: $(TABLES) ## build data/tables/atlas.nc and paper.nc
-$(TABLES) &: pipeline/tabulate.py $(SOURCES) $(STAGE)
-	$(RUN) $< --config $(CONFIG)
+$(TABLES) &: pipeline/demo/tabulate.py $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.tabulate --config $(CONFIG)
 
 validate: out/validation.nc ## tables and motions against direct solves; exit code 1 beyond a stated tolerance
-out/validation.nc: pipeline/validate.py $(TABLES) $(SOURCES) $(STAGE)
-	$(RUN) $< --config $(CONFIG)
+out/validation.nc: pipeline/demo/validate.py $(TABLES) $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.validate --config $(CONFIG)
 
-out/motions.nc: pipeline/motions.py $(SOURCES) $(STAGE)
-	$(RUN) $< --config $(CONFIG)
+out/motions.nc: pipeline/demo/motions.py $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.motions --config $(CONFIG)
 
-out/ensemble.nc: pipeline/ensemble.py $(SOURCES) $(STAGE)
-	$(RUN) $< --config $(CONFIG)
+out/ensemble.nc: pipeline/demo/ensemble.py $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.ensemble --config $(CONFIG)
 
 figures: out/figures/figure-5.png ## the paper's figures and more, as PNG under out/figures
-out/figures/figure-5.png: pipeline/figures.py $(TABLES) out/ensemble.nc $(SOURCES) $(STAGE)
-	$(RUN) $< --config $(CONFIG)
+out/figures/figure-5.png: pipeline/demo/figures.py $(TABLES) out/ensemble.nc $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.figures --config $(CONFIG)
 
-out/index.html: pipeline/summary.py out/validation.nc out/motions.nc out/ensemble.nc out/figures/figure-5.png
-	$(RUN) $< --config $(CONFIG)
+out/index.html: pipeline/demo/summary.py out/validation.nc out/motions.nc out/ensemble.nc out/figures/figure-5.png
+	$(RUN) -m pipeline.demo.summary --config $(CONFIG)
 
 bench: setup $(TABLES) ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
-	$(RUN) pipeline/benchmark.py --config $(CONFIG)
-	$(RUN) pipeline/document.py
+	$(RUN) -m pipeline.bench --config $(CONFIG)
+	$(RUN) -m pipeline.document
 
 numbers: setup $(TABLES) ## measure again what README and docs state, and put it there (about 10 minutes)
-	$(RUN) pipeline/measure.py --config $(CONFIG)
-	$(RUN) pipeline/loading.py --config $(CONFIG)
-	$(RUN) pipeline/ensembles.py --config $(CONFIG)
-	$(RUN) pipeline/document.py
+	$(RUN) -m pipeline.measure --config $(CONFIG)
+	$(RUN) -m pipeline.measure.loading --config $(CONFIG)
+	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
+	$(RUN) -m pipeline.document
 	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
-	$(RUN) pipeline/prove.py --config $(CONFIG)
-	$(RUN) pipeline/proof_figures.py
-	$(RUN) pipeline/error_maps.py --config $(CONFIG)
-	$(RUN) pipeline/independent.py
-	$(RUN) pipeline/large.py --config $(CONFIG)
-	$(RUN) pipeline/document.py
+	$(RUN) -m pipeline.prove --config $(CONFIG)
+	$(RUN) -m pipeline.prove.figures
+	$(RUN) -m pipeline.prove.error_maps --config $(CONFIG)
+	$(RUN) -m pipeline.prove.independent
+	$(RUN) -m pipeline.measure.large --config $(CONFIG)
+	$(RUN) -m pipeline.document
 
 BASE ?= HEAD
 same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
-	$(RUN) pipeline/same.py --base $(BASE)
+	$(RUN) -m pipeline.same --base $(BASE)
 
 test: setup ## the whole test suite
 	$(BIN)/pytest -n 2
@@ -90,15 +90,18 @@ FUZZ_SECONDS ?= 600
 fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS) and the loaders (a minute each)
 	FUZZ_SECONDS=$(FUZZ_SECONDS) $(BIN)/pytest tests/test_properties.py
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fuzz]'
-	$(RUN) pipeline/fuzz_loaders.py toml
-	$(RUN) pipeline/fuzz_loaders.py table
+	$(RUN) -m pipeline.torture.fuzz_loaders toml
+	$(RUN) -m pipeline.torture.fuzz_loaders table
 
 mutate: setup ## plant defects in the kernels and see which the tests notice (about an hour)
-	$(RUN) pipeline/mutate.py
+	$(RUN) -m pipeline.mutate
 
 torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 25 minutes)
-	$(RUN) pipeline/torture.py --config $(CONFIG)
-	$(RUN) pipeline/document.py
+	$(RUN) -m pipeline.torture --config $(CONFIG)
+	$(RUN) -m pipeline.document
+
+matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (half an hour; PYTHONS names others)
+	$(RUN) -m pipeline.matrix
 
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports

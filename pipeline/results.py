@@ -1,4 +1,4 @@
-"""What the stages share whose results are kept in git: their options and sizes, the file, errors in one line."""
+"""What the stages share whose results are kept in git: their options and sizes, the file, rows and parts."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import argparse
 import datetime
 import json
 import math
-import os
 import platform
-import subprocess
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from stage import CONFIG, ROOT, read_toml
 
 import viscoroll as vr
-from viscoroll.errors import ConfigError, ViscorollError
+from viscoroll.blocks import cores
+from viscoroll.errors import ConfigError
 from viscoroll.files import write_text
+
+from .stage import CONFIG, ROOT, make_folder, read_toml, told
 
 #: folder of the results
 RESULTS = ROOT / "data/results"
@@ -41,14 +41,67 @@ def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | 
     return result
 
 
-def run_parts(parts: Parts, sizes: dict[str, Any], only: str | None, output: Path) -> dict[str, dict[str, Any]]:
-    """Rows, sizes and machine of every part; with ``only``, of that one beside the others that ``output`` has."""
-    known = json.loads(output.read_text(encoding="utf-8"))["parts"] if only and output.exists() else {}
-    return known | {
-        name: {"rows": rows(sizes), "sizes": sizes, "machine": machine()}
-        for name, rows in parts.items()
-        if only in (None, name)
-    }
+def run(
+    name: str, work: Callable[..., dict[str, Any]], doc: str | None, file: str | None = None, *, sizes: bool = True
+) -> int:
+    """Run a stage from the command line: what ``work`` finds, and the machine, into -o, data/results/``file``."""
+    arguments = parser(doc, RESULTS / (file or f"{name}.json"), sizes=sizes).parse_args()
+
+    def measured() -> None:
+        output = arguments.output.resolve()
+        found = work(*([read_sizes(arguments.config, name, arguments.quick)] if sizes else []))
+        write_results(output, found | {"machine": machine()})
+        print(f"{output}: written; now run pipeline.document")
+
+    return told(name, measured)
+
+
+def run_parts(
+    name: str, parts: Parts, doc: str | None, file: str, complaint: Callable[[dict[str, Any]], str | None]
+) -> int:
+    """Run a stage of ``parts``: rows, sizes and machine of each; --only renews one beside those that -o has.
+
+    Exit code 1 if there is a ``complaint`` about a row.
+    """
+    arguments = parser(doc, RESULTS / file, parts=parts).parse_args()
+    only, output = arguments.only, arguments.output
+
+    def measured() -> int:
+        sizes = read_sizes(arguments.config, name, arguments.quick)
+        found = json.loads(output.read_text(encoding="utf-8"))["parts"] if only and output.exists() else {}
+        for part in [only] if only else parts:
+            found[part] = {"rows": parts[part](sizes), "sizes": sizes, "machine": machine()}
+        write_results(output, {"parts": found})
+        rows = rows_of(found)
+        complaints = [text for row in rows if (text := complaint(row))]
+        for text in complaints:
+            print(f"{name}: {text}", file=sys.stderr)
+        print(f"{output}: {len(rows)} rows, {len(complaints)} of them bad")
+        return int(bool(complaints))
+
+    return told(name, measured)
+
+
+class Results(dict[str, Any]):
+    """What stages have left, by the name of the file, from the first of the folders that has it."""
+
+    def __init__(self, *folders: Path) -> None:
+        super().__init__()
+        self.folders = folders
+
+    def __missing__(self, name: str) -> Any:
+        for folder in self.folders:
+            if (path := folder / f"{name}.json").exists():
+                self[name] = json.loads(path.read_text(encoding="utf-8"))
+                return self[name]
+        raise KeyError(f"{name}.json")
+
+    def found(self, name: str) -> Any:
+        """None if there is no such file."""
+        try:
+            return self[name]
+        except KeyError:
+            return None
 
 
 def rows_of(parts: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
@@ -82,7 +135,7 @@ def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
 
 def write_results(path: Path, results: Any, *, ordered: bool = True) -> None:
     """``results`` as JSON, keys sorted if ``ordered``; floats as :func:`rounded`."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     text = json.dumps(rounded(results), indent=1, sort_keys=ordered, ensure_ascii=False, allow_nan=False)
     write_text(path, f"{text}\n")
 
@@ -98,15 +151,6 @@ def rounded(value: Any) -> Any:
     return float(f"{value:.3g}") if math.isfinite(value) else None
 
 
-def told(name: str, work: Callable[[], int | None]) -> int:
-    """Exit code of ``work()``, None being 0; an error is told in one line, exit code 2."""
-    try:
-        return work() or 0
-    except (ViscorollError, OSError, json.JSONDecodeError, subprocess.CalledProcessError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 2
-
-
 def machine() -> dict[str, Any]:
     """Where and when, and with what, this was measured; ``kernels`` is the hash of their sources."""
     import numba
@@ -120,7 +164,7 @@ def machine() -> dict[str, Any]:
         cpu = platform.processor() or platform.machine()
     return {
         "cpu": cpu,
-        "cores": len(os.sched_getaffinity(0)),
+        "cores": cores(),
         "system": platform.system(),
         "python": platform.python_version(),
         "numpy": np.__version__,

@@ -1,7 +1,7 @@
 """Hashes of what the package computes, for a change that must not move a bit.
 
-    python pipeline/same.py                 the hashes of this tree
-    python pipeline/same.py --base HEAD     beside those of a commit: exit code 1 where they differ
+    python -m pipeline.same                 the hashes of this tree
+    python -m pipeline.same --base HEAD     beside those of a commit: exit code 1 where they differ
 
 Contact states, stresses, motions, maps and tables through the public interface alone: the script
 outlives any move inside.

@@ -1,14 +1,17 @@
 """What the stages share: options, their section of the configuration, timing, and a record of what they found.
 
 A stage is a function work(settings, out) -> Outcome.  :func:`run` calls it and leaves
-<out>/stages/<name>.json: seconds, files and headline numbers, which pipeline/summary.py reads.
+<out>/stages/<name>.json: seconds, files and headline numbers, which pipeline/demo/summary.py reads.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
+import io
 import json
 import os
+import subprocess
 import sys
 import time
 import tomllib
@@ -118,27 +121,57 @@ def finish(name: str, seconds: float, outcome: Outcome, out: Path) -> None:
         print(f"  {line}: {readable(value)}")
 
 
-def run(
-    name: str, kind: type[T], work: Callable[[T, Path], Outcome], doc: str | None, folder: Path | None = None
-) -> int:
-    """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line.
-
-    ``work`` writes to --output, or where there is a ``folder`` for what is kept in git, to that or --folder.
-    """
-    options = parser(doc)
-    if folder is not None:
-        options.add_argument("--folder", type=Path, default=folder, help=f"default {shown(folder)}")
-    arguments = options.parse_args()
+def told(name: str, work: Callable[[], int | None]) -> int:
+    """Exit code of ``work()``, None being 0; an error is told in one line, exit code 2."""
     try:
-        settings = read_section(arguments.config, name, kind)
-        out = make_folder(arguments.output)
-        start = time.perf_counter()
-        outcome = work(settings, out if folder is None else make_folder(arguments.folder))
-        finish(name, time.perf_counter() - start, outcome, out)
-    except ViscorollError as error:
+        return work() or 0
+    except (ViscorollError, OSError, json.JSONDecodeError, subprocess.CalledProcessError) as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 2
-    return 1 if outcome.failed else 0
+
+
+def run(name: str, kind: type[T] | None, work: Callable[..., Outcome], doc: str | None, **folders: Path) -> int:
+    """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line.
+
+    ``work`` gets its settings, a ``kind`` (without one the path of the configuration), and the ``folders``, which
+    options of their names change; without any, --output.
+    """
+    options = parser(doc)
+    for option, folder in folders.items():
+        options.add_argument(f"--{option}", type=Path, default=folder, help=f"default {shown(folder)}")
+    arguments = options.parse_args()
+
+    def timed() -> int:
+        settings = read_section(arguments.config, name, kind) if kind else arguments.config
+        out = make_folder(arguments.output)
+        start = time.perf_counter()
+        outcome = work(settings, *(getattr(arguments, option) for option in folders or ["output"]))
+        finish(name, time.perf_counter() - start, outcome, out)
+        return int(outcome.failed)
+
+    return told(name, timed)
+
+
+def read_rows(path: Path) -> list[dict[str, Any]]:
+    """Rows of a CSV file, numbers where there are any."""
+
+    def value(text: str) -> Any:
+        try:
+            return float(text)
+        except ValueError:
+            return text
+
+    with path.open(encoding="utf-8", newline="") as file:
+        return [{name: value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+
+
+def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
+    """Rows as CSV under the names of their columns; raises OutputError."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    write_text(path, text.getvalue())
 
 
 def shown(path: Path) -> str:

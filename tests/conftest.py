@@ -1,21 +1,37 @@
-"""Fixtures that tests of several folders share."""
+"""Fixtures that tests of several folders share, and an environment of the suite's own."""
 
 from __future__ import annotations
 
+import os
+
 import pytest
 import xarray as xr
+from memory import forget
 
 import viscoroll as vr
-from viscoroll.motion import flow, flow_store
+from viscoroll.motion import flow_store
+
+# what a user chose for other work does not reach the tests
+os.environ.pop("VISCOROLL_THREADS", None)
 
 
 @pytest.fixture
 def own_maps(tmp_path, monkeypatch):
     """Flow maps of a test are its own; compiled kernels stay where they are."""
     monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "maps")
-    flow._recent.clear()
+    forget()
     yield
-    flow._recent.clear()
+    forget()
+
+
+@pytest.fixture(scope="module")
+def maps_of_this_file(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("maps")
+        patch.setattr(flow_store, "folder", lambda: folder)
+        forget()
+        yield
+    forget()
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 
-from places import ROOT, script
+from places import ROOT
 
 
 def python(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -25,8 +25,8 @@ def printed(code: str, *arguments: object, **environment: str) -> str:
 
 
 def stage(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-    """A stage of the pipeline that ends well, or at least of its own accord: 2 where it refuses, 1 where it fails."""
-    done = python(script(name), *arguments)
+    """A stage ("prove", "demo.tabulate") that ends of its own accord: 2 where it refuses, 1 where it fails."""
+    done = python("-m", f"pipeline.{name}", *arguments)
     assert "Traceback" not in done.stderr, done.stderr
     return done
 

@@ -154,9 +154,10 @@ def test_signs_rest_and_omega():
     assert all(np.array_equal(getattr(by_omega, name), getattr(as_delta, name)) for name in FIELDS)
 
 
-@pytest.mark.parametrize("name", FIELDS)
-def test_one_field_alone_is_the_same_bit_for_bit(name):
+def test_one_field_alone_is_the_same_bit_for_bit():
     V, delta, _ = states(SCENE, MANY, seed=19)
-    # from EDGE on a state asks for the stick zone, and goes the exact way only for that
+    # close to full slip a state asks for the stick zone, and goes the exact way only for that
     whole = vr.contact(SCENE, V, delta=0.9 * delta)
-    assert np.array_equal(getattr(vr.contact(SCENE, V, delta=0.9 * delta, fields=name), name), getattr(whole, name))
+    for name in FIELDS:
+        alone = vr.contact(SCENE, V, delta=0.9 * delta, fields=name)
+        assert np.array_equal(getattr(alone, name), getattr(whole, name)), name

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import threading
 
 import numpy as np
 import pytest
 
 import viscoroll as vr
-from viscoroll.blocks import elements, run_blocks, thread_count
+from viscoroll.blocks import cores, elements, run_blocks, thread_count
 
 GRID = np.arange(60.0).reshape(4, 5, 3)
 ARRAYS = {
@@ -25,17 +24,16 @@ ARRAYS = {
 }
 
 
-@pytest.mark.parametrize("name", ARRAYS)
-def test_elements_are_those_of_the_broadcast_array(name):
-    array = ARRAYS[name]
-    of, whole = elements(array, GRID.shape), np.broadcast_to(array, GRID.shape).reshape(-1)
-    for start, stop in ((0, 60), (0, 1), (59, 60), (7, 22), (13, 14)):
-        part = of(start, stop)
-        assert not part.flags.writeable
-        assert part.flags.c_contiguous
-        assert np.array_equal(np.broadcast_to(part, (stop - start,)), whole[start:stop])
-        assert part.size == (1 if array.size == 1 else stop - start)
-    assert np.shares_memory(of(0, 60), array) == (name in ("single", "one", "whole"))
+def test_elements_are_those_of_the_broadcast_array():
+    for name, array in ARRAYS.items():
+        of, whole = elements(array, GRID.shape), np.broadcast_to(array, GRID.shape).reshape(-1)
+        for start, stop in ((0, 60), (0, 1), (59, 60), (7, 22), (13, 14)):
+            part = of(start, stop)
+            assert not part.flags.writeable, name
+            assert part.flags.c_contiguous, name
+            assert np.array_equal(np.broadcast_to(part, (stop - start,)), whole[start:stop]), name
+            assert part.size == (1 if array.size == 1 else stop - start), name
+        assert np.shares_memory(of(0, 60), array) == (name in ("single", "one", "whole")), name
 
 
 def test_a_grid_of_two_axes_is_as_the_grid_written_out():
@@ -56,7 +54,7 @@ def test_a_number_of_threads_that_is_none(monkeypatch):
     with pytest.raises(vr.ParameterError, match="VISCOROLL_THREADS = 'two': must be a whole number"):
         vr.ensemble(*start)
     monkeypatch.setenv("VISCOROLL_THREADS", "")
-    assert thread_count() == len(os.sched_getaffinity(0))
+    assert thread_count() == cores()
 
 
 def test_blocks_after_an_error_are_not_begun():
@@ -71,3 +69,27 @@ def test_blocks_after_an_error_are_not_begun():
     with pytest.raises(ValueError, match="block 10"):
         run_blocks(work, 100_000, 1, threads=2)
     assert len(begun) < 1000
+
+
+def test_blocks_cover_the_work_once(monkeypatch):
+    for threads in (1, 3):
+        seen = np.zeros(1001, dtype=int)
+
+        def work(start: int, stop: int, seen=seen) -> None:
+            seen[start:stop] += 1
+
+        run_blocks(work, 1001, 64, threads=threads)
+        assert np.all(seen == 1)
+    run_blocks(lambda start, stop: pytest.fail("no work"), 0, 64)
+    monkeypatch.setenv("VISCOROLL_THREADS", "3")
+    assert thread_count() == 3
+    assert thread_count(1) == 1
+
+
+def test_a_failing_block_is_not_swallowed():
+    def work(start: int, stop: int) -> None:
+        if start == 64:
+            raise RuntimeError("block 1")
+
+    with pytest.raises(RuntimeError, match="block 1"):
+        run_blocks(work, 200, 64, threads=2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import mpmath as mp
 import numpy as np
@@ -384,7 +385,7 @@ BAD_CALLS = [
 def test_bad_input():
     """One line that names the thing, its value and what is allowed; a ValueError too."""
     for options, name, value, allowed in BAD_CALLS:
-        text = refused(lambda options=options: vr.contact(SCENE, **options), value, allowed)
+        text = refused(partial(vr.contact, SCENE, **options), value, allowed)
         assert text.startswith(f"{name} = ")
     assert issubclass(vr.ParameterError, ValueError)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 import tolerances as tol
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.scene import PAPER_CYLINDER, PAPER_STARTS, PRESETS
@@ -66,16 +68,16 @@ def test_single_precision_given_is_computed_in_double():
     assert cylinder.E_prime == vr.Cylinder(**double).E_prime
 
 
-@pytest.mark.parametrize("value", [1.7, -0.3, 0.0, np.array([1.0, -2.0])])
-def test_round_trips_to_SI(value):
-    cylinder = vr.Cylinder(**SI)
+def test_round_trips_to_SI():
+    cylinder, values = vr.Cylinder(**SI), np.array([1.7, -0.3, 0.0, 1.0, -2.0])
     for there, back in (
         (cylinder.V_to_si, cylinder.V_from_si),
         (cylinder.omega_to_si, cylinder.omega_from_si),
         (cylinder.t_to_si, cylinder.t_from_si),
     ):
-        np.testing.assert_allclose(back(there(value)), value, rtol=tol.SCENE)
-        np.testing.assert_allclose(there(back(value)), value, rtol=tol.SCENE)
+        np.testing.assert_allclose(back(there(values)), values, rtol=tol.SCENE)
+        np.testing.assert_allclose(there(back(values)), values, rtol=tol.SCENE)
+        assert there(1.7) == there(values)[0]
 
 
 def test_conversions_by_hand():
@@ -148,14 +150,10 @@ BAD_SCENES = [
 ]
 
 
-@pytest.mark.parametrize(("change", "name"), BAD_SCENES)
-def test_bad_scene(change, name):
-    with pytest.raises(vr.ParameterError) as caught:
-        vr.Scene(**({"alpha": 2.0, "kappa": 2.0, "mu": 0.2} | change))
-    text = str(caught.value)
-    assert text.startswith(f"{name} = ")
-    assert ">" in text
-    assert "\n" not in text
+def test_bad_scene():
+    for change, name in BAD_SCENES:
+        call = partial(vr.Scene, **{"alpha": 2.0, "kappa": 2.0, "mu": 0.2} | change)
+        assert refused(call, " = ", ">").startswith(name)
 
 
 def test_bad_value_is_shown():
@@ -170,23 +168,21 @@ def test_shapes_that_do_not_broadcast():
         vr.Scene([1.0, 2.0], [1.0, 2.0, 3.0], 0.2)
 
 
-@pytest.mark.parametrize(
-    ("change", "name"),
-    [
-        *(({name: bad}, name) for name in ("R", "m", "E", "mu", "T_sigma") for bad in (0.0, -1.0, math.nan)),
-        ({"nu": 0.51}, "nu"),
-        ({"nu": -1.0}, "nu"),
-        ({"T_epsilon": 0.5}, "T_epsilon"),
-        ({"plane": "bent"}, "plane"),
-        ({"R": [0.1, 0.2]}, "R"),
-        ({"g": 0.0}, "g"),
-        ({"j": -0.5}, "j"),
-    ],
-)
-def test_bad_cylinder(change, name):
-    with pytest.raises(vr.ParameterError, match=f"^{name} = ") as caught:
-        vr.Cylinder(**(SI | change))
-    assert "\n" not in str(caught.value)
+BAD_CYLINDERS = [
+    *(({name: bad}, name) for name in ("R", "m", "E", "mu", "T_sigma") for bad in (0.0, -1.0, math.nan)),
+    ({"nu": 0.51}, "nu"),
+    ({"nu": -1.0}, "nu"),
+    ({"T_epsilon": 0.5}, "T_epsilon"),
+    ({"plane": "bent"}, "plane"),
+    ({"R": [0.1, 0.2]}, "R"),
+    ({"g": 0.0}, "g"),
+    ({"j": -0.5}, "j"),
+]
+
+
+def test_bad_cylinder():
+    for change, name in BAD_CYLINDERS:
+        assert refused(partial(vr.Cylinder, **SI | change), f"{name} = ").startswith(name)
 
 
 def test_limits_that_are_allowed():
@@ -195,35 +191,30 @@ def test_limits_that_are_allowed():
     assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
 
 
-@pytest.mark.parametrize(
-    ("changed", "field"),
-    [
-        ({"R": 1e-172, "m": 1e-172}, "kappa"),
-        ({"R": 1e-300, "m": 1e300, "E": 1e-300}, "kappa"),
-        ({"T_epsilon": 1e200, "T_sigma": 1e199}, "gamma"),
-        ({"T_epsilon": 1e300, "T_sigma": 1e-300}, "alpha"),
-    ],
-)
-def test_cylinders_beyond_the_doubles(changed, field):
+BEYOND_DOUBLES = [
+    ({"R": 1e-172, "m": 1e-172}, "kappa"),
+    ({"R": 1e-300, "m": 1e300, "E": 1e-300}, "kappa"),
+    ({"T_epsilon": 1e200, "T_sigma": 1e199}, "gamma"),
+    ({"T_epsilon": 1e300, "T_sigma": 1e-300}, "alpha"),
+]
+
+
+def test_cylinders_beyond_the_doubles():
     """Products that underflow or overflow are refused by the field that they spoil, without a warning."""
-    cylinder = vr.Cylinder(
-        **({"R": 0.1, "m": 35.5, "E": 2e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 1.0, "mu": 0.2} | changed)
-    )
-    with pytest.raises(vr.ParameterError, match=field):
-        cylinder.scene()
+    for changed, field in BEYOND_DOUBLES:
+        refused(vr.Cylinder(**(SI | {"E": 2e5, "T_sigma": 1.0} | changed)).scene, field)
 
 
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [
-        ({"alpha": 1.1e12}, "alpha"), ({"alpha": [11.0, 1e20]}, "alpha"), ({"mu": 1e-200, "kappa": 1e150}, "mu/kappa"),
-        ({"mu": [0.2, 1e200], "kappa": 1e-150}, "mu/kappa"),
-    ],
-)  # fmt: skip
-def test_parameters_beyond_the_range_of_the_law(changes, named):
+BEYOND_LAW = [
+    ({"alpha": 1.1e12}, "alpha"), ({"alpha": [11.0, 1e20]}, "alpha"), ({"mu": 1e-200, "kappa": 1e150}, "mu/kappa"),
+    ({"mu": [0.2, 1e200], "kappa": 1e-150}, "mu/kappa"),
+]  # fmt: skip
+
+
+def test_parameters_beyond_the_range_of_the_law():
     """From alpha of some 1e18 on roots did not converge or were NaN; delta_star was 0 or infinite."""
-    with pytest.raises(vr.ParameterError, match=f"{named} = "):
-        vr.PAPER_SECTION_5.replace(**changes)
+    for changes, named in BEYOND_LAW:
+        refused(partial(vr.PAPER_SECTION_5.replace, **changes), f"{named} = ")
 
 
 def test_law_at_the_ends_of_its_range():

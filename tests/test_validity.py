@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 import tolerances as tol
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.validity import REACH_LIMIT, WAVE_LIMIT
@@ -15,12 +17,10 @@ SCENE = vr.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
 
 
-@pytest.mark.parametrize("alpha", [1.0, 11.0, 81.5])
-def test_numbers_are_those_of_the_contact(alpha):
+def test_numbers_are_those_of_the_contact():
     """The far end of the contact is delta_star/mu from the axis, by Eqs. (8), (9)."""
-    scene = SCENE.replace(alpha=alpha)
-    state = vr.contact(scene, V, delta=0.0)
-    found = scene.validity(V)
+    scene = SCENE.replace(alpha=np.array([1.0, 11.0, 81.5])[:, None])
+    state, found = vr.contact(scene, V, delta=0.0), scene.validity(V)
     np.testing.assert_allclose(found.small_contact.value, state.delta_star / scene.mu, rtol=tol.CONTACT)
     np.testing.assert_allclose(found.under_axis.value, state.epsilon, rtol=tol.CONTACT, atol=1e-300)
     assert np.array_equal(found.under_axis.holds, state.epsilon <= 1.0)
@@ -55,21 +55,21 @@ def test_wave_speed():
     assert found.sentence.startswith("the speed is 20 % of that of shear waves")
 
 
-@pytest.mark.parametrize(("V", "density"), [(3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324)])
-def test_speeds_and_densities_beyond_all_bounds(V, density):
+def test_speeds_and_densities_beyond_all_bounds():
     """No NaN, no warning: a ratio that no double can hold is infinite."""
-    found = vr.PAPER_CYLINDER.validity(V, density)
-    assert found.quasistatic.holds == (V < 1.0)
-    assert not np.isnan(found.quasistatic.value)
-    assert "nan" not in str(found)
+    for V, density in ((3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324)):
+        found = vr.PAPER_CYLINDER.validity(V, density)
+        assert found.quasistatic.holds == (V < 1.0)
+        assert not np.isnan(found.quasistatic.value)
+        assert "nan" not in str(found)
 
 
-@pytest.mark.parametrize("kappa", [1e-300, 1e300])
-def test_scenes_beyond_all_bounds(kappa):
-    found = vr.Scene(11.0, kappa, 0.2 * kappa).validity([0.0, 1e-300, 1.0, 1e300])
-    assert np.isfinite(found.small_contact.value).all()
-    assert found.small_contact.holds.all() == (kappa > 1.0)
-    assert "nan" not in str(found)
+def test_scenes_beyond_all_bounds():
+    for kappa in (1e-300, 1e300):
+        found = vr.Scene(11.0, kappa, 0.2 * kappa).validity([0.0, 1e-300, 1.0, 1e300])
+        assert np.isfinite(found.small_contact.value).all()
+        assert found.small_contact.holds.all() == (kappa > 1.0)
+        assert "nan" not in str(found)
 
 
 def test_a_sentence_each():
@@ -79,11 +79,8 @@ def test_a_sentence_each():
     assert SCENE.validity(1.0).same_material.holds is None
 
 
-@pytest.mark.parametrize("density", [0.0, -1.0, math.nan, [1.0, 2.0], "heavy"])
-def test_bad_input(density):
-    with pytest.raises(vr.ParameterError, match="density"):
-        vr.PAPER_CYLINDER.validity(1.0, density)
-    with pytest.raises(vr.ParameterError, match="V = nan"):
-        SCENE.validity(math.nan)
-    with pytest.raises(vr.ParameterError, match="broadcast"):
-        SCENE.replace(alpha=[1.0, 2.0]).validity([1.0, 2.0, 3.0])
+def test_bad_input():
+    for density in (0.0, -1.0, math.nan, [1.0, 2.0], "heavy"):
+        refused(partial(vr.PAPER_CYLINDER.validity, 1.0, density), "density")
+    refused(lambda: SCENE.validity(math.nan), "V = nan")
+    refused(lambda: SCENE.replace(alpha=[1.0, 2.0]).validity([1.0, 2.0, 3.0]), "broadcast")

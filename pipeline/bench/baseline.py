@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law.bracket import narrowed, secant
 from viscoroll.kernels.motion.stepper import GAMMA, STAGES, A, C, dense, dense_terms
+from viscoroll.kernels.numerics.bracket import narrowed, secant
 from viscoroll.kernels.printed.law import (
     direct_contact_length,
     direct_delta_star,

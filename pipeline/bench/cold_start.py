@@ -6,7 +6,7 @@ import subprocess
 import sys
 from typing import Any
 
-from .timing import alternating
+from ..timing import alternating
 
 _PROCESSES = {
     "bare_python": ("-c", "pass"),

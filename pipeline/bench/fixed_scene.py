@@ -10,7 +10,7 @@ from tqdm import tqdm
 import viscoroll as vr
 from viscoroll.motion import flow
 
-from .timing import nanoseconds, rounds, seconds_of
+from ..timing import nanoseconds, rounds, seconds_of
 
 #: error of the integrator that is allowed for, in rtol: see the docstring of viscoroll.roll
 _INTEGRATOR = 30

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -25,8 +27,8 @@ from viscoroll.kernels.law.material import Material, generators
 from viscoroll.kernels.motion.partial_slip import slip_differences
 from viscoroll.reference import contact_precise
 
+from ..timing import nanoseconds, rounds
 from .jit import compiled
-from .timing import nanoseconds, rounds
 
 FIELDS = ("Q", "M")
 #: states of a block, and the rows of what a block holds
@@ -132,59 +134,36 @@ def law(sizes: dict[str, Any]) -> dict[str, Any]:
     alpha = np.exp(rng.uniform(np.log(1.1), np.log(100.0), n))
     each = scene.replace(alpha=alpha)
     V, s = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n)), rng.uniform(0.0, 1.0, n)
-    carter = scene.replace(alpha=1.0)
-    calls, tried = {}, {}
-    few = slice(0, max(n // sizes["direct_share"], 1))
-    cases = (
-        ("one_alpha", scene, "table"), ("an_alpha_each", each, "table"), ("alpha_1", carter, "table"),
+    star = s * vr.contact(each, V, delta=0.0, fields="delta_star").delta_star
+    calls, states, few = {}, {}, slice(0, max(n // sizes["direct_share"], 1))
+    for name, which, method in (
+        ("one_alpha", scene, "table"), ("an_alpha_each", each, "table"), ("alpha_1", scene.replace(alpha=1.0), "table"),
         ("direct_one_alpha", scene, "direct"), ("direct_an_alpha_each", each, "direct"),
-    )  # fmt: skip
-    for name, which, method in cases:
+    ):  # fmt: skip
         part = few if method == "direct" else slice(None)
         own = which if which.shape == () else which.replace(alpha=alpha[part])
         delta = s[part] * vr.contact(own, V[part], delta=0.0, fields="delta_star").delta_star
         given = {"scene": own, "V": V[part], "delta": delta, "fields": FIELDS, "method": method}
-        calls[name] = lambda given=given: vr.contact(**given)
-        tried[name] = (own, V[part], delta)
-    state = vr.contact(each, V, delta=tried["an_alpha_each"][2], fields=("zeta", "beta"))
-    zeta, eta = state.zeta, state.beta * state.zeta
-    Q, M = np.empty((2, n))
+        calls[name] = lambda given=given: vr.contact(**given).as_dict()
+        states[name] = np.broadcast_arrays(own.alpha, scene.kappa, scene.mu, V[part], delta)
+    state = vr.contact(each, V, delta=star, fields=("zeta", "beta"))
+    zeta, eta, found = state.zeta, state.beta * state.zeta, dict(zip(FIELDS, np.empty((2, n))))
+    exact = [explicit_state(*one, scene.kappa, scene.mu)[:2] for one in zip(zeta, eta, alpha)]
     for name, kernel in (("explicit_batched", explicit_batch), ("explicit_scalar", explicit_chain)):
-        calls[name] = lambda kernel=kernel: kernel(zeta, eta, alpha, scene.kappa, scene.mu, Q, M)
-    for call in calls.values():
-        call()
+        calls[name] = lambda kernel=kernel: kernel(zeta, eta, alpha, scene.kappa, scene.mu, *found.values()) or found
+        states[name] = np.broadcast_arrays(alpha, scene.kappa, scene.mu, *np.transpose(exact))
+    # at the first states; an explicit kernel is held against the law at the (V, delta) that it stands for
+    errors = {name: _errors(zip(*states[name]), call(), sizes["exact_states"]) for name, call in calls.items()}
     seconds = rounds(calls, sizes["repeats"])
-    counts = {name: tried[name][1].size if name in tried else n for name in calls}
-    found = {name: _error(calls[name](), *tried[name], sizes["exact_states"]) for name in tried}
-    for name in calls.keys() - tried.keys():
-        calls[name]()
-        found[name] = _explicit_error(zeta, eta, alpha, scene, {"Q": Q, "M": M}, sizes["exact_states"])
-    return {name: nanoseconds(seconds[name], counts[name]) | {"error": found[name]} for name in calls}
+    return {name: nanoseconds(seconds[name], states[name][0].size) | {"error": errors[name]} for name in calls}
 
 
-def _error(values: Any, scene: vr.Scene, V: NDArray, delta: NDArray, count: int) -> dict[str, float]:
-    """Largest relative error of Q and M against 50 digits over the first states."""
-    alpha = np.broadcast_to(scene.alpha, V.shape)
-    worst = dict.fromkeys(FIELDS, 0.0)
-    for i in range(min(count, V.size)):
-        exact = contact_precise(alpha[i], scene.kappa, scene.mu, V[i], delta[i], 50)
-        for name in FIELDS:
-            worst[name] = max(worst[name], _relative(getattr(values, name)[i], exact[name]))
+def _errors(states: Iterable[tuple[Any, ...]], tried: dict[str, NDArray], count: int) -> dict[str, float]:
+    """Largest relative error of what was tried at the first states (alpha, kappa, mu, V, delta), against 50 digits."""
+    worst = dict.fromkeys(tried, 0.0)
+    for i, state in enumerate(islice(states, count)):
+        exact = contact_precise(*map(float, state), 50)
+        for name, values in tried.items():
+            off = abs(float(values[i]) - exact[name])
+            worst[name] = max(worst[name], float(off / abs(exact[name]) if exact[name] else off))
     return worst
-
-
-def _explicit_error(
-    zeta: NDArray, eta: NDArray, alpha: NDArray, scene: vr.Scene, filled: dict[str, NDArray], count: int
-) -> dict[str, float]:
-    """The same for what an explicit kernel has filled in, at the (V, delta) of ``explicit_state``."""
-    worst = dict.fromkeys(FIELDS, 0.0)
-    for i in range(min(count, zeta.size)):
-        V, delta, _, _ = explicit_state(zeta[i], eta[i], alpha[i], scene.kappa, scene.mu)
-        exact = contact_precise(alpha[i], scene.kappa, scene.mu, V, delta, 50)
-        for name, values in filled.items():
-            worst[name] = max(worst[name], _relative(values[i], exact[name]))
-    return worst
-
-
-def _relative(value: float, exact: Any) -> float:
-    return float(abs(float(value) - exact) / abs(exact)) if exact else abs(float(value))

@@ -8,50 +8,47 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
-from peers import lsoda_compiled, paper_method, scipy_peers
 
 import viscoroll as vr
 
+from ..peers import lsoda_compiled, paper_method, scipy_peers
+from ..stage import ROOT
 from . import baseline
 from .problem import Method, Outcome, Problem
 
-ROOT = Path(__file__).parents[2]
 ATLAS = ROOT / "data/tables/atlas.nc"
 #: right-hand sides after which a peer gives up: 15 s of the paper's method, 1 min of scipy's
 _MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000
 
 
-def ensemble_method(**options) -> Callable[[Problem, float], Callable[[], Outcome]]:
+Call = Callable[[], Outcome]
+
+
+def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
     """This package: :func:`viscoroll.ensemble` on one thread."""
 
-    def prepare(problem: Problem, rtol: float) -> Callable[[], Outcome]:
-        def call() -> Outcome:
-            result = vr.ensemble(
-                problem.scene, problem.V0, problem.omega0, problem.t,
-                rtol=rtol, fields=("V", "omega"), threads=1, **options,
-            )  # fmt: skip
-            return Outcome(result.V, result.omega)
+    def call() -> Outcome:
+        result = vr.ensemble(
+            problem.scene, problem.V0, problem.omega0, problem.t,
+            rtol=rtol, method=method, fields=("V", "omega"), threads=1,
+        )  # fmt: skip
+        return Outcome(result.V, result.omega)
 
-        call()  # compiles, and builds what is built once
-        return call
-
-    return prepare
+    call()  # compiles, and builds what is built once
+    return call
 
 
-def _baseline(which: int) -> Callable[[Problem, float], Callable[[], Outcome]]:
-    def prepare(problem: Problem, rtol: float) -> Callable[[], Outcome]:
-        atlas = _atlas() if which == baseline.ATLAS else baseline.no_atlas()
-        baseline.run(which, problem.take(slice(1)), 1e-2, atlas)
-        return lambda: Outcome(*baseline.run(which, problem, rtol, atlas))
-
-    return prepare
+def _baseline(problem: Problem, rtol: float, which: int) -> Call:
+    atlas = _atlas() if which == baseline.ATLAS else baseline.no_atlas()
+    baseline.run(which, problem.take(slice(1)), 1e-2, atlas)
+    return lambda: Outcome(*baseline.run(which, problem, rtol, atlas))
 
 
-@lru_cache(maxsize=1)
+@cache
 def _atlas() -> baseline.Atlas:
     return baseline.load_atlas(ATLAS)
 
@@ -60,46 +57,36 @@ def _atlas_missing() -> str | None:
     return None if ATLAS.exists() else f"{ATLAS.relative_to(ROOT)} is not there: make tables"
 
 
-def _paper_method(name: str) -> Callable[[Problem, float], Callable[[], Outcome]]:
-    def prepare(problem: Problem, rtol: float) -> Callable[[], Outcome]:
-        program, starts = _program(), np.column_stack([problem.V0, problem.omega0])
-        given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST_COMPILED)
-        return lambda: Outcome(*paper_method.run(*given))
-
-    return prepare
+def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
+    program, starts = paper_method.build(Path(_build_folder().name)), np.column_stack([problem.V0, problem.omega0])
+    given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST_COMPILED)
+    return lambda: Outcome(*paper_method.run(*given))
 
 
-_build_folder: list[tempfile.TemporaryDirectory] = []
+@cache
+def _build_folder() -> tempfile.TemporaryDirectory:
+    return tempfile.TemporaryDirectory(prefix="viscoroll-peers-")
 
 
-@lru_cache(maxsize=1)
-def _program() -> Path:
-    _build_folder.append(tempfile.TemporaryDirectory(prefix="viscoroll-peers-"))
-    return paper_method.build(Path(_build_folder[0].name))
+def _scipy(problem: Problem, rtol: float, name: str) -> Call:
+    columns = np.array(problem.parameters()).T.tolist()
+    starts = list(zip(problem.V0.tolist(), problem.omega0.tolist()))
 
+    def call() -> Outcome:
+        rolled = [
+            scipy_peers.roll(name, tuple(parameters), start, problem.t, rtol, _MOST_PYTHON)
+            for parameters, start in zip(columns, starts)
+        ]
+        V, omega, evaluations = zip(*rolled)
+        return Outcome(np.array(V), np.array(omega), evaluations=float(sum(evaluations)))
 
-def _scipy(name: str) -> Callable[[Problem, float], Callable[[], Outcome]]:
-    def prepare(problem: Problem, rtol: float) -> Callable[[], Outcome]:
-        columns = np.array(problem.parameters()).T.tolist()
-        starts = list(zip(problem.V0.tolist(), problem.omega0.tolist()))
-
-        def call() -> Outcome:
-            rolled = [
-                scipy_peers.roll(name, tuple(parameters), start, problem.t, rtol, _MOST_PYTHON)
-                for parameters, start in zip(columns, starts)
-            ]
-            V, omega, evaluations = zip(*rolled)
-            return Outcome(np.array(V), np.array(omega), evaluations=float(sum(evaluations)))
-
-        return call
-
-    return prepare
+    return call
 
 
 _stuck: dict[int, tuple[Problem, lsoda_compiled.Stuck]] = {}
 
 
-def _lsoda(problem: Problem, rtol: float) -> Callable[[], Outcome]:
+def _lsoda(problem: Problem, rtol: float) -> Call:
     if id(problem) not in _stuck:
         stuck = lsoda_compiled.prepare(problem.scene, problem.V0, problem.omega0, problem.t)
         _stuck[id(problem)] = problem, stuck  # holding the problem keeps its id its own
@@ -110,16 +97,16 @@ def _lsoda(problem: Problem, rtol: float) -> Callable[[], Outcome]:
 
 METHODS = (
     Method(
-        "flow", "viscoroll, flow map", ensemble_method(method="flow"),
+        "flow", "viscoroll, flow map", partial(_ensemble, method="flow"),
         note="a fixed scene only; building the map is in setup_s; its error is the map's, whatever rtol",
     ),
-    Method("table", "viscoroll, integrated", ensemble_method(method="integrate")),
+    Method("table", "viscoroll, integrated", partial(_ensemble, method="integrate")),
     Method(
-        "direct", "root solves + RODAS5P", _baseline(baseline.DIRECT),
+        "direct", "root solves + RODAS5P", partial(_baseline, which=baseline.DIRECT),
         note="printed equations by Brent-Dekker in numba, pipeline/bench/baseline.py",
     ),
     Method(
-        "atlas", "3-D atlas spline + RODAS5P", _baseline(baseline.ATLAS), _atlas_missing,
+        "atlas", "3-D atlas spline + RODAS5P", partial(_baseline, which=baseline.ATLAS), _atlas_missing,
         note="ends at kappa V = 1e-3: below, its law is held, 1e-3 in M; pipeline/bench/baseline.py",
     ),
     Method(
@@ -128,13 +115,13 @@ METHODS = (
         most_motions=1_000_000_000 if lsoda_compiled.ENGINE == "numbalsoda" else 20,
     ),
     Method(
-        "gsl-adams", "the paper's method (GSL Adams)", _paper_method("adams"), paper_method.missing,
+        "gsl-adams", "the paper's method (GSL Adams)", partial(_paper_method, name="adams"), paper_method.missing,
         note="Brent-Dekker in each right-hand side, C; time measured inside the program",
     ),
     Method(
-        "gsl-bdf", "GSL BDF, root solves", _paper_method("bdf"), paper_method.missing,
+        "gsl-bdf", "GSL BDF, root solves", partial(_paper_method, name="bdf"), paper_method.missing,
         note="Brent-Dekker in each right-hand side, C; time measured inside the program",
     ),
-    Method("scipy-lsoda", "scipy LSODA, brentq", _scipy("LSODA")),
-    Method("scipy-radau", "scipy Radau, brentq", _scipy("Radau")),
+    Method("scipy-lsoda", "scipy LSODA, brentq", partial(_scipy, name="LSODA")),
+    Method("scipy-radau", "scipy Radau, brentq", partial(_scipy, name="Radau")),
 )  # fmt: skip

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
 
+from ..timing import printed
+
 #: one size in a process of its own, so that the peak is its own: prints {"seconds", "peak_mb", "before_mb"}.  Starts
 #: are drawn and distances added up block by block, which is part of the time: nothing is kept of a block
 _CHILD = """
-import json, sys, time
-import numpy as np
-import viscoroll as vr
-count, threads, rtol, end, seed, block, options = json.loads(sys.argv[1])
+count, threads, rtol, end, seed, block, options = given
 scene = vr.PAPER_SECTION_5_ROUNDED
 def run(count):
     total = 0.0
@@ -28,12 +24,10 @@ def run(count):
     return total
 run(10)
 vr.ensemble(scene, [1.0], [0.5], end, method="integrate")  # compiles what the map's few others need
-def peak():  # of this process alone: ru_maxrss is inherited from the parent
-    with open("/proc/self/status") as status:
-        return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) / 1024
-before, start = peak(), time.perf_counter()
+before, start = memory("VmHWM"), time.perf_counter()
 run(count)
-print(json.dumps({"seconds": time.perf_counter() - start, "peak_mb": peak(), "before_mb": before}))
+seconds = time.perf_counter() - start
+print(json.dumps({"seconds": seconds, "peak_mb": memory("VmHWM") / 1e6, "before_mb": before / 1e6}))
 """
 
 
@@ -58,6 +52,4 @@ def scaling(sizes: dict[str, Any]) -> dict[str, Any]:
 
 
 def _child(count: int, threads: int, sizes: dict[str, Any], options: dict[str, Any]) -> dict[str, float]:
-    given = json.dumps([count, threads, sizes["rtol"], sizes["end"], sizes["seed"], sizes["block"], options])
-    result = subprocess.run([sys.executable, "-c", _CHILD, given], check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)
+    return printed(_CHILD, count, threads, *(sizes[name] for name in ("rtol", "end", "seed", "block")), options)

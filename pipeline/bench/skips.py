@@ -8,7 +8,7 @@ import numpy as np
 
 import viscoroll as vr
 
-from .timing import alternating
+from ..timing import alternating
 
 
 def skips(sizes: dict[str, Any]) -> dict[str, Any]:

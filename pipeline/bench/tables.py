@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 import viscoroll as vr
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
 
+from ..timing import alternating
 from .baseline import Atlas, atlas_law, atlas_splines
 from .jit import compiled
 from .law import explicit_batch
 from .splines import at_1, basis, scratch, spline
-from .timing import alternating
 
 #: ends of ln x of the ratio splines
 _ENDS = (np.log(1e-6), np.log(1e8))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
+from ..timing import seconds_of, steady_seconds
 from .methods import METHODS
 from .problem import (
     Method,
@@ -20,7 +21,6 @@ from .problem import (
     reference,
     reference_difference,
 )
-from .timing import seconds_of, steady_seconds
 
 
 def work_precision(sizes: dict[str, Any]) -> dict[str, Any]:

@@ -10,18 +10,20 @@ the package, and none of that is timed.  A motion whose full slip returns is bey
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.util import find_spec
 from typing import NamedTuple
 
 import numba
 import numpy as np
-from bench.jit import compiled
 from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.law.material import Material
 from viscoroll.kernels.motion.partial_slip import partial_rhs, partial_speeds, slow_D
 from viscoroll.kernels.motion.records import Scene
+
+from ..bench.jit import compiled
 
 ENGINE = "numbalsoda" if find_spec("numbalsoda") else "scipy"
 #: share of rtol that the absolute tolerance is; 1e-3 and less cost half as much again for the same error
@@ -97,13 +99,9 @@ def _put(unknowns, first, direction, par, V, omega):
                 V[i, m], omega[i, m] = direction[i] * speed, direction[i] * speed * (1.0 + delta)
 
 
+@cache
 def _engine():
-    if not _cached:
-        _cached.append(_by_numbalsoda() if ENGINE == "numbalsoda" else _by_scipy)
-    return _cached[0]
-
-
-_cached: list = []
+    return _by_numbalsoda() if ENGINE == "numbalsoda" else _by_scipy
 
 
 def _by_numbalsoda():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ def missing() -> str | None:
     return None
 
 
+@cache
 def build(folder: Path) -> Path:
     """The program, compiled into ``folder``.
 

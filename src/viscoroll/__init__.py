@@ -7,9 +7,14 @@ imports neither numba nor xarray nor matplotlib.
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import Any
 
+if sys.version_info < (3, 11):  # noqa: UP036 (a copy that pip did not install)
+    raise ImportError("viscoroll needs Python 3.11 or newer, this is " + sys.version.split()[0])
+
+#: the one place of it: the metadata of the package are made from this line
 __version__ = "0.1.0"
 
 _HOME = {
@@ -31,6 +36,7 @@ _HOME = {
     "OutputError": "errors",
     "ConfigError": "errors",
     "ConvergenceError": "errors",
+    "MissingDependencyError": "errors",
     "MotionStatus": "errors",
     "MOTION_STATUS": "errors",
 }

@@ -58,12 +58,21 @@ def thread_count(threads: int | None = None) -> int:
     if threads is None:
         asked = os.environ.get("VISCOROLL_THREADS") or "0"
         try:
-            threads = int(asked) or len(os.sched_getaffinity(0))
+            threads = int(asked) or cores()
         except ValueError:
             raise ParameterError("VISCOROLL_THREADS", repr(asked), "a whole number") from None
     elif isinstance(threads, bool) or not isinstance(threads, (int, np.integer)):
         raise ParameterError("threads", repr(threads), "a whole number, or None")
     return max(1, int(threads))
+
+
+def cores() -> int:
+    """Cores that this process may use, as far as the system tells."""
+    if hasattr(os, "process_cpu_count"):  # Python 3.13
+        return os.process_cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def run_blocks(

@@ -8,6 +8,7 @@ Which error when:
 - :class:`TableError`: a file that is missing, damaged, of another schema, or not a table.
 - :class:`OutputError`: a result that cannot be written.
 - :class:`ConfigError`: a TOML file with a misspelt key or a value of the wrong type.
+- :class:`MissingDependencyError`: a package of an extra is not installed.
 - :class:`ConvergenceError`: an iteration that hit its cap.
 
 Kernels never raise; they return a status.  Motions carry one each, with a sentence
@@ -66,6 +67,14 @@ class OutputError(FileProblem):
 
 class ConfigError(FileProblem):
     """The TOML file cannot be read as what was asked for."""
+
+
+class MissingDependencyError(ViscorollError):
+    """A ``package`` that belongs to an ``extra`` of the installation is not there."""
+
+    def __init__(self, package: str, extra: str) -> None:
+        self.package, self.extra = package, extra
+        super().__init__(f"{package} is not installed: pip install 'viscoroll[{extra}]'")
 
 
 class ConvergenceError(ViscorollError):

@@ -59,7 +59,7 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
     Notes
     -----
     The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
-    strata of every quantity, for "sobol" where n is a power of two (``tests/motion/test_ensemble.py``).
+    strata of every quantity, for "sobol" where n is a power of two (``tests/test_sampling.py``).
     """
     from scipy.stats import qmc
 

@@ -116,7 +116,7 @@ def test_relative_links_exist(page):
 
 
 def test_files_named_in_the_text_exist():
-    named = r"`((?:tests|pipeline|kernels|data/reference)/[\w./]+\.\w+)`"
+    named = r"`((?:tests|pipeline|kernels|data/reference)/[\w./]+(?:\.\w+|/))`"
     for page in PAGES:
         for name in re.findall(named, page.read_text(encoding="utf-8")):
             found = ROOT / "src/viscoroll" / name if name.startswith("kernels/") else ROOT / name
@@ -124,22 +124,22 @@ def test_files_named_in_the_text_exist():
 
 
 def test_blocks_show_the_measured_numbers():
-    result = run("pipeline/document.py", "--check")
+    result = run("-m", "pipeline.document", "--check")
     assert result.returncode == 0, result.stdout + result.stderr
 
 
 def test_document_fills_and_refuses(tmp_path):
     page = tmp_path / "page.md"
     page.write_text("before\n<!-- measured:stress -->\nold\n<!-- end -->\nafter\n", encoding="utf-8")
-    assert run("pipeline/document.py", "--check", str(page)).returncode == 1
-    assert run("pipeline/document.py", str(page)).returncode == 0
+    assert run("-m", "pipeline.document", "--check", str(page)).returncode == 1
+    assert run("-m", "pipeline.document", str(page)).returncode == 0
     filled = page.read_text(encoding="utf-8")
     assert re.fullmatch(r"before\n.*\nafter\n", filled, re.DOTALL)
     assert "old" not in filled
-    assert run("pipeline/document.py", "--check", str(page)).returncode == 0
+    assert run("-m", "pipeline.document", "--check", str(page)).returncode == 0
     for text in ("<!-- measured:stress -->\n", "<!-- measured:nothing -->\n<!-- end -->\n"):
         page.write_text(text, encoding="utf-8")
-        result = run("pipeline/document.py", str(page))
+        result = run("-m", "pipeline.document", str(page))
         assert result.returncode == 2
         assert result.stderr.startswith("document: ")
         assert page.read_text(encoding="utf-8") == text
@@ -147,19 +147,19 @@ def test_document_fills_and_refuses(tmp_path):
 
 def test_measure_runs_and_document_reads_it(tmp_path):
     results, page = tmp_path / "measured.json", tmp_path / "README.md"
-    result = run("pipeline/measure.py", "--quick", "-o", str(results))
+    result = run("-m", "pipeline.measure", "--quick", "-o", str(results))
     assert result.returncode == 0, result.stderr
     measured = json.loads(results.read_text(encoding="utf-8"))
     committed = json.loads((ROOT / "data/results/measured.json").read_text(encoding="utf-8"))
     assert measured.keys() == committed.keys()
     assert all(field["worst"] <= tol.MEASURED_CONTACT for field in measured["contact_error"].values())
     page.write_text("<!-- measured:headline -->\n<!-- end -->\n", encoding="utf-8")
-    assert run("pipeline/document.py", "--results", str(results), str(page)).returncode == 0
+    assert run("-m", "pipeline.document", "--results", str(results), str(page)).returncode == 0
 
 
 def test_measure_refuses_a_configuration_without_its_section(tmp_path):
     (tmp_path / "empty.toml").write_text("", encoding="utf-8")
-    result = run("pipeline/measure.py", "--config", str(tmp_path / "empty.toml"), "-o", str(tmp_path / "out.json"))
+    result = run("-m", "pipeline.measure", "--config", str(tmp_path / "empty.toml"), "-o", str(tmp_path / "out.json"))
     assert result.returncode == 2
     assert "[measure]" in result.stderr
     assert not (tmp_path / "out.json").exists()

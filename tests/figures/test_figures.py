@@ -248,8 +248,8 @@ class Page(HTMLParser):
 
 
 def stage(name: str, *arguments: str) -> subprocess.CompletedProcess:
-    script = str(ROOT / "pipeline" / f"{name}.py")
-    return subprocess.run([sys.executable, script, *arguments], capture_output=True, text=True, check=False)
+    command = [sys.executable, "-m", f"pipeline.demo.{name}", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="module")
@@ -330,7 +330,9 @@ def test_stage_refuses_in_one_line(demo, tmp_path, name, old, new, words):
     assert result.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize(("name", "words"), [("figures", "ensemble.nc"), ("summary", "run pipeline/tabulate.py first")])
+@pytest.mark.parametrize(
+    ("name", "words"), [("figures", "ensemble.nc"), ("summary", "run pipeline.demo.tabulate first")]
+)
 def test_stage_says_what_has_to_run_first(demo, tmp_path, name, words):
     result = stage(name, "--config", str(demo[0]), "-o", str(tmp_path))
     assert result.returncode == 2
@@ -339,12 +341,9 @@ def test_stage_says_what_has_to_run_first(demo, tmp_path, name, words):
 
 
 def test_production_configuration_is_read():
-    sys.path.insert(0, str(ROOT / "pipeline"))
-    try:
-        import stage as shared
-    finally:
-        sys.path.pop(0)
     import tomllib
+
+    from pipeline import stage as shared
 
     content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
     assert {"validate", "motions", "ensemble", "figures", "summary"} <= content.keys()

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import math
 import tracemalloc
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,11 +14,9 @@ import tolerances as tol
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from places import DATA
+from refusals import refused
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import Material
-from viscoroll.kernels.motion.partial_slip import creep_speeds, slow_D
-from viscoroll.kernels.motion.records import Scene
 from viscoroll.motion import single
 from viscoroll.scene import PAPER_STARTS
 
@@ -95,13 +95,11 @@ PAPER_NUMBERS = [
 ]
 
 
-@pytest.mark.parametrize(("t", "name", "ours", "papers"), PAPER_NUMBERS)
-def test_numbers_of_section_5(t, name, ours, papers):
-    motion = vr.roll(UNROUNDED, *PAPER_STARTS["IC1"], [t])
-    value = getattr(motion.contact(fields=name), name)[0]
-    assert value == pytest.approx(ours[0], abs=1.001 * ours[1])
-    if papers is not None:
-        assert value == pytest.approx(papers[0], abs=papers[1])
+def test_numbers_of_section_5():
+    for t, name, ours, papers in PAPER_NUMBERS:
+        value = getattr(vr.roll(UNROUNDED, *PAPER_STARTS["IC1"], [t]).contact(fields=name), name)[0]
+        assert value == pytest.approx(ours[0], abs=1.001 * ours[1]), (t, name)
+        assert papers is None or value == pytest.approx(papers[0], abs=papers[1]), (t, name)
 
 
 def test_onset_of_section_5():
@@ -131,37 +129,32 @@ def random_motions(count: int, seed: int) -> list[tuple[vr.Scene, float, float, 
     return motions
 
 
-@pytest.mark.parametrize(("scene", "V0", "omega0", "end"), random_motions(15, seed=2))
-def test_error_is_proportional_to_rtol(scene, V0, omega0, end):
+def test_error_is_proportional_to_rtol():
     """At most 30 rtol of V, omega (relative to the larger), x and the onset time, for every rtol."""
-    t = np.linspace(0.0, end, 12)[1:]
-    exact = vr.roll(scene, V0, omega0, t, rtol=1e-12)
-    speed = np.maximum(abs(exact.V), abs(exact.omega))
-    path = np.maximum.accumulate(abs(exact.x))
-    for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        motion = vr.roll(scene, V0, omega0, t, rtol=rtol)
-        worst = max(
-            (abs(motion.V - exact.V) / speed).max(),
-            (abs(motion.omega - exact.omega) / speed).max(),
-            (abs(motion.x - exact.x) / path).max(),
-        )
-        if math.isfinite(exact.onset_time):
-            worst = max(worst, abs(motion.onset_time / exact.onset_time - 1.0))
-        assert worst <= tol.MOTION_RTOL * rtol, rtol
+    for scene, V0, omega0, end in random_motions(15, seed=2):
+        t = np.linspace(0.0, end, 12)[1:]
+        exact = vr.roll(scene, V0, omega0, t, rtol=1e-12)
+        speed = np.maximum(abs(exact.V), abs(exact.omega))
+        path = np.maximum.accumulate(abs(exact.x))
+        for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
+            motion = vr.roll(scene, V0, omega0, t, rtol=rtol)
+            errors = [(motion.V - exact.V) / speed, (motion.omega - exact.omega) / speed, (motion.x - exact.x) / path]
+            if math.isfinite(exact.onset_time):
+                errors.append(motion.onset_time / exact.onset_time - 1.0)
+            worst = max(np.max(np.abs(error)) for error in errors)
+            assert worst <= tol.MOTION_RTOL * rtol, (scene, V0, omega0, rtol)
 
 
-@pytest.mark.parametrize("ic", PAPER_STARTS)
-@pytest.mark.parametrize("params", SCENES)
-def test_default_rtol_down_to_tiny_speeds(ic, params):
+def test_default_rtol_down_to_tiny_speeds():
     """rtol 1e-8: global relative error of V and omega <= 1e-7 down to |V| = 1e-6."""
     t = np.linspace(0.0, 7e-3, 71)[1:]
-    exact = vr.roll(SCENES[params], *PAPER_STARTS[ic], t, rtol=1e-12)
-    motion = vr.roll(SCENES[params], *PAPER_STARTS[ic], t)
-    kept = abs(exact.V) >= 1e-6
-    assert abs(exact.V).min() < 1e-5
-    for name in ("V", "omega"):
-        error = abs(getattr(motion, name) / getattr(exact, name) - 1.0)[kept]
-        assert error.max() <= tol.MOTION_DEFAULT
+    for scene, start in itertools.product(SCENES.values(), PAPER_STARTS.values()):
+        exact, motion = vr.roll(scene, *start, t, rtol=1e-12), vr.roll(scene, *start, t)
+        kept = abs(exact.V) >= 1e-6
+        assert abs(exact.V).min() < 1e-5
+        for name in ("V", "omega"):
+            error = abs(getattr(motion, name) / getattr(exact, name) - 1.0)[kept]
+            assert error.max() <= tol.MOTION_DEFAULT, (name, start)
 
 
 def test_dense_output_is_as_good_as_the_steps():
@@ -175,51 +168,52 @@ def test_dense_output_is_as_good_as_the_steps():
 
 
 @pytest.mark.parametrize("ic", PAPER_STARTS)
-@pytest.mark.parametrize("scene", [ROUNDED, RETURNING], ids=["paper", "slip returns"])
+@pytest.mark.parametrize("scene", [ROUNDED, RETURNING, ROUNDED.replace(alpha=1.0)], ids=["paper", "returns", "elastic"])
 def test_momentum_and_energy(ic, scene):
     """(V - j omega)' = 2 gamma Q, (V + j omega)' = -gamma M and the energy balance, by quadrature."""
-    end = 4e-3
-    motion = vr.roll(scene, *PAPER_STARTS[ic], end, rtol=1e-10)
-    corners = [s.t for s in motion.switches]
+    end, start, gamma, j = 4e-3, PAPER_STARTS[ic], scene.gamma, scene.j
+    motion = vr.roll(scene, *start, end, rtol=1e-10)
     creep_zeros = motion.t[:-1][np.diff(np.sign(motion.delta)) != 0.0]
+    assert creep_zeros.size <= 4 or scene.alpha == 1.0  # where delta ends in rounding
     node, weight = np.polynomial.legendre.leggauss(10)
-    edges = np.unique([*motion.t, *corners])
-    t = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (1.0 + node)).ravel()
-    weight = (0.5 * np.diff(edges)[:, None] * weight).ravel()
-    along = motion.at(t)
-    state = along.contact()
-    V, omega, gamma, j = along.V, along.omega, scene.gamma, scene.j
-    ends = motion.at([0.0, end])
-    scale = max(map(abs, PAPER_STARTS[ic]))
-    assert creep_zeros.size <= 4
+    edges = np.unique([*motion.t, *(s.t for s in motion.switches)])
+    width = 0.5 * np.diff(edges)[:, None]
+    along, weight = motion.at((edges[:-1, None] + width * (1.0 + node)).ravel()), (width * weight).ravel()
+    state, ends = along.contact(), motion.at([0.0, end])
+    scale = max(map(abs, start))
     small = tol.MOTION_IDENTITY * scale
     assert np.diff(ends.V - j * ends.omega)[0] == pytest.approx(weight @ (2 * gamma * state.Q), abs=small)
     assert np.diff(ends.V + j * ends.omega)[0] == pytest.approx(-weight @ (gamma * state.M), abs=small)
+    slip = gamma * (weight @ ((along.omega - along.V) * state.Q))
+    rolling = gamma * (weight @ (0.5 * (along.V + along.omega) * state.M))
     energy = 0.5 * (ends.V**2 + j * ends.omega**2)
-    power = gamma * ((omega - V) * state.Q + 0.5 * (V + omega) * state.M)
-    assert np.diff(energy)[0] == pytest.approx(-weight @ power, abs=small * scale)
-    assert ends.x[1] == pytest.approx(weight @ V, abs=small * end)
-    assert ends.angle[1] == pytest.approx(weight @ omega, abs=small * end)
+    assert np.diff(energy)[0] == pytest.approx(-(slip + rolling), abs=small * scale)
+    assert ends.x[1] == pytest.approx(weight @ along.V, abs=small * end)
+    assert ends.angle[1] == pytest.approx(weight @ along.omega, abs=small * end)
+    # what the package takes from the balance of energy
+    lost = vr.ensemble(scene, *start, [0.0, end], rtol=1e-10, fields=("slip_loss", "rolling_loss"))
+    assert lost.slip_loss[0] == pytest.approx([0.0, slip], abs=small * scale)
+    assert lost.rolling_loss[0] == pytest.approx([0.0, rolling], abs=small * scale)
 
 
-@pytest.mark.parametrize(("scene", "V0", "omega0", "end"), random_motions(6, seed=12))
-def test_kinetic_energy_never_rises(scene, V0, omega0, end):
+def test_kinetic_energy_never_rises():
     """Friction and rolling resistance take energy as long as V omega >= 0."""
-    motion = vr.roll(scene, V0, omega0, np.linspace(0.0, end, 400))
-    energy = 0.5 * (motion.V**2 + scene.j * motion.omega**2)
-    forward = (motion.V * motion.omega >= 0.0)[:-1] & (motion.V * motion.omega >= 0.0)[1:]
-    assert np.all(np.diff(energy)[forward] <= tol.MOTION_DEFAULT * energy[:-1][forward])
+    for scene, V0, omega0, end in random_motions(6, seed=12):
+        motion = vr.roll(scene, V0, omega0, np.linspace(0.0, end, 400))
+        energy = 0.5 * (motion.V**2 + scene.j * motion.omega**2)
+        forward = (motion.V * motion.omega >= 0.0)[:-1] & (motion.V * motion.omega >= 0.0)[1:]
+        assert np.all(np.diff(energy)[forward] <= tol.MOTION_DEFAULT * energy[:-1][forward]), scene
 
 
-@pytest.mark.parametrize(("scene", "V0", "omega0", "end"), [*random_motions(4, seed=3), (RETURNING, 1.0, 1.0, 4e-3)])
-def test_mirror_bit_for_bit(scene, V0, omega0, end):
-    t = np.linspace(0.0, end, 9)
-    here, mirror = vr.roll(scene, V0, omega0, t), vr.roll(scene, -V0, -omega0, t)
-    for name in ("V", "omega", "x", "angle"):
-        assert np.array_equal(getattr(mirror, name), -getattr(here, name))
-    assert np.array_equal(mirror.delta, here.delta)
-    assert mirror.switches == here.switches
-    assert np.array_equal([mirror.onset_time], [here.onset_time], equal_nan=True)
+def test_mirror_bit_for_bit():
+    for scene, V0, omega0, end in [*random_motions(4, seed=3), (RETURNING, 1.0, 1.0, 4e-3)]:
+        t = np.linspace(0.0, end, 9)
+        here, mirror = vr.roll(scene, V0, omega0, t), vr.roll(scene, -V0, -omega0, t)
+        for name in ("V", "omega", "x", "angle"):
+            assert np.array_equal(getattr(mirror, name), -getattr(here, name)), scene
+        assert np.array_equal(mirror.delta, here.delta), scene
+        assert mirror.switches == here.switches
+        assert np.array_equal([mirror.onset_time], [here.onset_time], equal_nan=True)
 
 
 def test_gamma_only_scales_time():
@@ -246,25 +240,24 @@ def test_slow_manifold():
 
 
 @pytest.mark.parametrize("j", [0.5, 1.5])
-@pytest.mark.parametrize("zeta", [1e4, 1e6])
-def test_slow_manifold_to_leading_order(j, zeta):
+def test_slow_manifold_to_leading_order(j):
     """V'/V = omega'/omega on it, so that (1 + 1/j) Q = -(1/j - 1) M/2; what is left out is of order 1/zeta."""
-    alpha, kappa, mu = ROUNDED.alpha, ROUNDED.kappa, ROUNDED.mu
-    scene = Scene(Material(alpha, (alpha - 1.0) / alpha), kappa, mu, j)
-    y = math.log(zeta)
-    V, delta = creep_speeds(y, slow_D(y, scene)[0], scene)
-    state = vr.contact(ROUNDED, V, delta=delta)
-    assert (1.0 + 1.0 / j) * state.Q == pytest.approx(-(1.0 / j - 1.0) * 0.5 * state.M, rel=5.0 / zeta, abs=0.0)
+    scene = ROUNDED.replace(j=j)
+    motion = vr.roll(scene, 1.0, 1.0, np.array([22.0, 27.0]) * decay_time(scene), rtol=1e-12)
+    zeta = 0.5 / (scene.kappa * motion.V)
+    off = (1.0 + 1.0 / j) * motion.contact("Q").Q / (-(1.0 / j - 1.0) * 0.5 * motion.contact("M").M) - 1.0
+    assert zeta.min() > 1e3
+    assert np.all(abs(off) < 5.0 / zeta), (off, zeta)
 
 
-@pytest.mark.parametrize("share", [-0.9, -0.3, 0.3, 0.9])
 @pytest.mark.parametrize("V0", [1.0, -0.2])
-def test_a_start_inside_the_stick_zone_goes_on_from_there(V0, share):
+def test_a_start_inside_the_stick_zone_goes_on_from_there(V0):
     """Creep of either sign relaxes at a rate of about gamma (1 + 1/j) 4 kappa/V, and moves no further at once."""
-    delta = share * vr.contact(ROUNDED, V0, delta=0.0, fields="delta_star").delta_star
+    star = vr.contact(ROUNDED, V0, delta=0.0, fields="delta_star").delta_star
     t = 1e-6 * abs(V0) / (ROUNDED.gamma * (1.0 + 1.0 / ROUNDED.j) * 4.0 * ROUNDED.kappa)
-    motion = vr.roll(ROUNDED, V0, V0 * (1.0 + delta), [0.0, t])
-    assert motion.delta == pytest.approx(delta, rel=1e-5)
+    for share in (-0.9, -0.3, 0.3, 0.9):
+        motion = vr.roll(ROUNDED, V0, V0 * (1.0 + share * star), [0.0, t])
+        assert motion.delta == pytest.approx(share * star, rel=1e-5)
 
 
 @pytest.mark.parametrize("share", [-1.3, -1.001, 1.001, 1.3])
@@ -304,15 +297,15 @@ def test_outputs_end_where_slip_returns():
 
 
 @pytest.mark.parametrize("method", ["integrate", "flow"])
-@pytest.mark.parametrize("shift", [-1e-15, -(2.0**-53), 0.0, 2.0**-52, 1e-15, 1e-12])
 @pytest.mark.parametrize("alpha", [1.0, 1.0 + 1e-15])
-def test_outputs_end_where_V_passes_zero(alpha, shift, method):
+def test_outputs_end_where_V_passes_zero(alpha, method):
     """V = V0 - mu t in full slip of an elastic cylinder; it sticks much later."""
     scene = vr.Scene(alpha=alpha, kappa=1.0, mu=1.0, gamma=1.0, j=2.0)
-    found = vr.ensemble(scene, 1.0, -257.0, 1.0 + shift, method=method, rtol=1e-3)
-    assert found.status[0] == vr.MotionStatus.DONE
-    assert found.V[0, -1] == pytest.approx(-shift, abs=1e-14)
-    assert found.omega[0, -1] == pytest.approx(-257.0 + 0.5, rel=1e-12)
+    for shift in (-1e-15, -(2.0**-53), 0.0, 2.0**-52, 1e-15, 1e-12):
+        found = vr.ensemble(scene, 1.0, -257.0, 1.0 + shift, method=method, rtol=1e-3)
+        assert found.status[0] == vr.MotionStatus.DONE, shift
+        assert found.V[0, -1] == pytest.approx(-shift, abs=1e-14)
+        assert found.omega[0, -1] == pytest.approx(-257.0 + 0.5, rel=1e-12)
 
 
 def test_nothing_crosses_a_threshold_that_is_not_there():
@@ -321,14 +314,14 @@ def test_nothing_crosses_a_threshold_that_is_not_there():
     assert np.isnan(vr.roll(ROUNDED, 0.0, 0.0, [0.0, 1.0]).rest_time)
 
 
-@pytest.mark.parametrize(("excess", "returns"), [(1e-2, 0), (2e-3, 0), (0.0, 1), (-1e-4, 1), (-2e-3, 1), (-5e-2, 1)])
-def test_threshold_of_the_return_of_slip(excess, returns):
+def test_threshold_of_the_return_of_slip():
     """alpha = 11, j = 1/2: slip returns, once, where mu kappa < 0.0411 (the next order in V adds about 1e-3 to it)."""
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=(1.0 + excess) * THRESHOLD / 2.91, gamma=1.1e4, j=0.5)
-    motion = vr.roll(scene, 2.0, 2.0, 1e-2)
-    assert motion.status == vr.MotionStatus.DONE
-    assert motion.steps < 2000
-    assert [s.regime for s in motion.switches] == returns * ["full slip", "partial slip"]
+    for excess, returns in ((1e-2, 0), (2e-3, 0), (0.0, 1), (-1e-4, 1), (-2e-3, 1), (-5e-2, 1)):
+        scene = vr.Scene(alpha=11.0, kappa=2.91, mu=(1.0 + excess) * THRESHOLD / 2.91, gamma=1.1e4, j=0.5)
+        motion = vr.roll(scene, 2.0, 2.0, 1e-2)
+        assert motion.status == vr.MotionStatus.DONE, excess
+        assert motion.steps < 2000, excess
+        assert [s.regime for s in motion.switches] == returns * ["full slip", "partial slip"], excess
 
 
 def test_nothing_stops():
@@ -408,46 +401,15 @@ def test_elastic_pure_rolling_is_untouched():
     assert motion.x[1] == pytest.approx(-0.7e6, rel=1e-12)
 
 
-NASTY = {
-    "both zero": (0.0, 0.0),
-    "V = 0": (0.0, 1.0),
-    "V = 0, backward": (0.0, -1.0),
-    "omega = 0": (1.0, 0.0),
-    "V + j omega = 0": (0.5, -1.0),
-    "V + j omega = 1e-16": (0.5, -1.0 + 2e-16),
-    "V + j omega = -1e-16": (0.5, -1.0 - 2e-16),
-    "inside partial slip": (1.0, 1.005),
-    "subnormal V": (5e-324, 1.0),
-    "both small": (1e-140, -3e-140),
-    "large": (1e6, -2e6),
-}
 ELASTIC = ROUNDED.replace(alpha=1.0)
-NASTY_SCENES = {"paper": ROUNDED, "slip returns": RETURNING, "elastic": ELASTIC, "ring": ROUNDED.replace(j=1.0)}
 
 
-@pytest.mark.parametrize(
-    ("scene", "start"),
-    [
-        pytest.param(scene, start, id=f"{name}-{what}")
-        for name, scene in NASTY_SCENES.items()
-        for what, start in NASTY.items()
-        if not (name == "elastic" and what.startswith("V + j omega"))  # test_elastic_cylinder_left_with_nothing
-    ],
-)
-def test_nasty_starts(scene, start):
-    """Finite, done, in a bounded number of steps; every identity at the end that needs no quadrature."""
-    V0, omega0 = start
-    motion = vr.roll(scene, V0, omega0, np.linspace(0.0, 5e-3, 11), max_steps=5000)
-    assert motion.status == vr.MotionStatus.DONE
-    assert motion.steps < 2000
-    for name in ("V", "omega", "x", "angle"):
-        assert np.all(np.isfinite(getattr(motion, name))), name
-    assert (motion.V[0], motion.omega[0]) == pytest.approx((V0, omega0), rel=1e-15, abs=0.0)
-    energy = motion.V**2 + scene.j * motion.omega**2
-    assert energy[-1] <= energy[0]
-    if scene.alpha == 1.0:
-        drift = abs((motion.V + scene.j * motion.omega) - (V0 + scene.j * omega0))
-        assert drift.max() <= tol.MOTION_DEFAULT * max(abs(V0), abs(omega0))
+def test_elastic_start_inside_partial_slip():
+    """V + j omega stays, energy falls, the creep relaxes to 0."""
+    motion = vr.roll(ELASTIC, 1.0, 1.005, np.linspace(0.0, 5e-3, 11))
+    np.testing.assert_allclose(motion.V + ELASTIC.j * motion.omega, 1.5025, rtol=tol.MOTION_DEFAULT)
+    assert np.all(np.diff(motion.V**2 + ELASTIC.j * motion.omega**2) <= tol.ENERGY)
+    assert abs(motion.delta[-1]) < 1e-6
 
 
 def test_elastic_cylinder_left_with_nothing():
@@ -466,11 +428,18 @@ def test_reversal_of_the_smallest_normal_speed(alpha):
     assert np.all(np.isfinite(motion.omega))
 
 
-@pytest.mark.parametrize("start", [(1e-300, 5e-324), (1e-200, -3e-200)])
-def test_speeds_whose_squares_underflow(start):
+def test_speeds_whose_squares_underflow():
     """They can only fall."""
-    motion = vr.roll(ELASTIC, *start, [1e-3])
-    assert max(abs(motion.V[0]), abs(motion.omega[0])) <= max(map(abs, start))
+    for start in ((1e-300, 5e-324), (1e-200, -3e-200)):
+        motion = vr.roll(ELASTIC, *start, [1e-3])
+        assert max(abs(motion.V[0]), abs(motion.omega[0])) <= max(map(abs, start))
+
+
+@pytest.mark.xfail(strict=True, reason="takes every step that it is allowed, here 100,000")
+@pytest.mark.filterwarnings("ignore:roll")
+def test_a_slide_that_leaves_a_speed_of_rounding():
+    """|V| is 4.4e-16 at the onset of partial slip; neighbours of this spin take some seventy steps."""
+    assert vr.roll(ROUNDED, -1.0, 1.4692137743888738, 1e-2, max_steps=5000).status == vr.MotionStatus.DONE
 
 
 def test_rest_stays_rest():
@@ -487,16 +456,13 @@ def test_a_spin_without_speed_starts_to_roll():
     assert motion.V[0] == pytest.approx(1e-5 * ROUNDED.gamma * ROUNDED.mu, rel=1e-1)
 
 
-@pytest.mark.parametrize("ulp", [-1, 0, 1])
-def test_start_on_the_stick_boundary(ulp):
+def test_start_on_the_stick_boundary():
     star = vr.contact(ROUNDED, 1.0, delta=0.0, fields="delta_star").delta_star
-    omega = 1.0 + star
-    for _ in range(abs(ulp)):
-        omega = np.nextafter(omega, ulp * math.inf)
-    motion = vr.roll(ROUNDED, 1.0, omega, [1e-6, 1e-3])
     exact = vr.roll(ROUNDED, 1.0, 1.0 + star, [1e-6, 1e-3], rtol=1e-12)
-    assert motion.regime.tolist() == [PARTIAL, PARTIAL]
-    np.testing.assert_allclose(motion.V, exact.V, rtol=tol.MOTION_DEFAULT)
+    for omega in (np.nextafter(1.0 + star, 0.0), 1.0 + star, np.nextafter(1.0 + star, 2.0)):
+        motion = vr.roll(ROUNDED, 1.0, omega, [1e-6, 1e-3])
+        assert motion.regime.tolist() == [PARTIAL, PARTIAL], omega
+        np.testing.assert_allclose(motion.V, exact.V, rtol=tol.MOTION_DEFAULT)
 
 
 SPEEDS = st.floats(-3.0, 3.0).map(lambda speed: speed if abs(speed) > 1e-140 else 0.0)
@@ -537,11 +503,11 @@ def test_output_times():
     assert twice.V[0] == twice.V[1]
 
 
-@pytest.mark.parametrize("t", [0.0, [0.0], [0.0, 0.0]])
-def test_no_time_at_all(t):
-    instant = vr.roll(ROUNDED, 1.5, 0.5, t)
-    assert instant.V == pytest.approx(1.5, rel=1e-15)
-    assert instant.omega == pytest.approx(0.5, rel=1e-15)
+def test_no_time_at_all():
+    for t in (0.0, [0.0], [0.0, 0.0]):
+        instant = vr.roll(ROUNDED, 1.5, 0.5, t)
+        assert instant.V == pytest.approx(1.5, rel=1e-15)
+        assert instant.omega == pytest.approx(0.5, rel=1e-15)
 
 
 def test_at():
@@ -621,38 +587,31 @@ def test_a_high_step_limit_takes_no_memory():
     assert most < 10_000_000  # bytes; a double a step would be 80 MB
 
 
-BAD_CALLS = {
-    "V0 nan": (math.nan, 0.5, 1e-3, {}, "V0 = nan: must be a finite number"),
-    "omega0 inf": (1.0, math.inf, 1e-3, {}, "omega0 = inf: must be a finite number"),
-    "V0 text": ("fast", 0.5, 1e-3, {}, "V0 = 'fast': must be"),
-    "V0 huge": (1e200, 0.5, 1e-3, {}, "V0 = 1e+200: must be at most 1e+100"),
-    "both subnormal": (5e-324, 0.0, 1e-3, {}, "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
-    "V0 array": ([1.0, 2.0], 0.5, 1e-3, {}, "for many use ensemble"),
-    "t negative": (1.0, 0.5, -1e-3, {}, "t = -0.001: must be finite and >= 0"),
-    "t nan": (1.0, 0.5, [0.0, math.nan], {}, "t = nan"),
-    "t unsorted": (1.0, 0.5, [2e-3, 1e-3], {}, "must be in ascending order"),
-    "t empty": (1.0, 0.5, [], {}, "one end time or a vector"),
-    "t table": (1.0, 0.5, [[1e-3]], {}, "one end time or a vector"),
-    "rtol loose": (1.0, 0.5, 1e-3, {"rtol": 0.1}, "rtol = 0.1: must be a number in [1e-12, 0.01]"),
-    "rtol tight": (1.0, 0.5, 1e-3, {"rtol": 1e-13}, "rtol = 1e-13"),
-    "rtol nan": (1.0, 0.5, 1e-3, {"rtol": math.nan}, "rtol = nan"),
-    "rest": (1.0, 0.5, 1e-3, {"rest": 0.0}, "rest = 0.0: must be finite and > 0"),
-    "max_steps": (1.0, 0.5, 1e-3, {"max_steps": 0}, "max_steps = 0: must be a whole number >= 1"),
-    "max_steps huge": (1.0, 0.5, 1e-3, {"max_steps": 10**30}, "must be a whole number >= 1, <= 10000000"),
-}
+BAD_CALLS = [
+    (math.nan, 0.5, 1e-3, {}, "V0 = nan: must be a finite number"),
+    (1.0, math.inf, 1e-3, {}, "omega0 = inf: must be a finite number"),
+    ("fast", 0.5, 1e-3, {}, "V0 = 'fast': must be"),
+    (1e200, 0.5, 1e-3, {}, "V0 = 1e+200: must be at most 1e+100"),
+    (5e-324, 0.0, 1e-3, {}, "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
+    ([1.0, 2.0], 0.5, 1e-3, {}, "for many use ensemble"),
+    (1.0, 0.5, -1e-3, {}, "t = -0.001: must be finite and >= 0"),
+    (1.0, 0.5, [0.0, math.nan], {}, "t = nan"),
+    (1.0, 0.5, [2e-3, 1e-3], {}, "must be in ascending order"),
+    (1.0, 0.5, [], {}, "one end time or a vector"),
+    (1.0, 0.5, [[1e-3]], {}, "one end time or a vector"),
+    (1.0, 0.5, 1e-3, {"rtol": 0.1}, "rtol = 0.1: must be a number in [1e-12, 0.01]"),
+    (1.0, 0.5, 1e-3, {"rtol": 1e-13}, "rtol = 1e-13"),
+    (1.0, 0.5, 1e-3, {"rtol": math.nan}, "rtol = nan"),
+    (1.0, 0.5, 1e-3, {"rest": 0.0}, "rest = 0.0: must be finite and > 0"),
+    (1.0, 0.5, 1e-3, {"max_steps": 0}, "max_steps = 0: must be a whole number >= 1"),
+    (1.0, 0.5, 1e-3, {"max_steps": 10**30}, "must be a whole number >= 1, <= 10000000"),
+]
 
 
-@pytest.mark.parametrize(("V0", "omega0", "t", "options", "text"), BAD_CALLS.values(), ids=BAD_CALLS)
-def test_bad_input(V0, omega0, t, options, text):
-    with pytest.raises(vr.ParameterError) as caught:
-        vr.roll(ROUNDED, V0, omega0, t, **options)
-    assert text in str(caught.value)
-    assert "\n" not in str(caught.value)
-
-
-def test_a_scene_of_arrays_is_refused():
-    with pytest.raises(vr.ParameterError, match="for many use ensemble"):
-        vr.roll(ROUNDED.replace(mu=[0.1, 0.2]), 1.0, 1.0, 1e-3)
+def test_bad_input():
+    for V0, omega0, t, options, text in BAD_CALLS:
+        refused(partial(vr.roll, ROUNDED, V0, omega0, t, **options), text)
+    refused(lambda: vr.roll(ROUNDED.replace(mu=[0.1, 0.2]), 1.0, 1.0, 1e-3), "for many use ensemble")
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-11])

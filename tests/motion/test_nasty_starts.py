@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 import tolerances as tol
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
-from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -31,18 +32,7 @@ SCENES = {
 }
 #: a motion with several changes of regime takes some hundred
 STEPS = 2000
-
-
-@pytest.fixture(autouse=True, scope="module")
-def own_cache(tmp_path_factory):
-    """Maps of this file are its own; compiled kernels stay where they are."""
-    patch = pytest.MonkeyPatch()
-    folder = tmp_path_factory.mktemp("maps")
-    patch.setattr(flow_store, "folder", lambda: folder)
-    flow._recent.clear()
-    yield
-    patch.undo()
-    flow._recent.clear()
+pytestmark = pytest.mark.usefixtures("maps_of_this_file")
 
 
 def decay_time(scene: vr.Scene) -> float:
@@ -124,34 +114,28 @@ def test_elastic_cylinder_rolls_for_ever():
     np.testing.assert_allclose(many.x, many.V * t, rtol=tol.MOTION_DEFAULT)
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize(
-    ("start", "text"),
-    [
-        ((1e308, 1.0), "V0 = 1e+308: must be at most 1e+100"),
-        ((1.0, -1e308), "omega0 = -1e+308: must be at most 1e+100"),
-        ((5e-324, 5e-324), "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
-        ((0.0, -1e-310), "max(|V0|, |omega0|) = 1e-310: must be 0, or at least 1e-300"),
-        ((math.inf, 1.0), "V0 = inf: must be a finite number"),
-    ],
-)
-def test_refused(start, text, method):
-    with pytest.raises(vr.ParameterError) as caught:
-        vr.ensemble(SCENE, [1.0, start[0]], [1.0, start[1]], 1.0, method=method)
-    assert text in str(caught.value)
+def test_refused():
+    for method in METHODS:
+        for V0, omega0, text in (
+            (1e308, 1.0, "V0 = 1e+308: must be at most 1e+100"),
+            (1.0, -1e308, "omega0 = -1e+308: must be at most 1e+100"),
+            (5e-324, 5e-324, "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
+            (0.0, -1e-310, "max(|V0|, |omega0|) = 1e-310: must be 0, or at least 1e-300"),
+            (math.inf, 1.0, "V0 = inf: must be a finite number"),
+        ):
+            refused(partial(vr.ensemble, SCENE, [1.0, V0], [1.0, omega0], 1.0, method=method), text)
 
 
-@pytest.mark.parametrize("speed", [2e-300, 1e-150, 1e-10, 1e10, 1e50, 1e99])
 @pytest.mark.parametrize("name", ["paper", "elastic", "return of slip, -0.5"])
-def test_speeds_of_any_size(name, speed):
+def test_speeds_of_any_size(name):
     """All directions in the plane, from sliding to rest."""
-    scene = SCENES[name]
-    angle = np.linspace(0.0, 2.0 * math.pi, 33)
-    V0, omega0 = speed * np.cos(angle), speed * np.sin(angle)
-    slide = speed / (scene.gamma * scene.mu)
-    t = np.unique(np.outer([slide, decay_time(scene)], [1e-3, 0.3, 1.0, 3.0, 1e3]))
-    many = vr.ensemble(scene, V0, omega0, t, fields=FIELDS, rtol=1e-6, max_steps=STEPS)
-    assert (many.status == MotionStatus.DONE).all()
-    for field in ("V", "omega", "x", "angle"):
-        assert np.isfinite(getattr(many, field)).all(), field
-    assert (np.maximum(np.abs(many.V), np.abs(many.omega)) <= (1.0 + tol.MOTION_DEFAULT) * 1.5 * speed).all()
+    scene, angle = SCENES[name], np.linspace(0.0, 2.0 * math.pi, 33)
+    for speed in (2e-300, 1e-150, 1e-10, 1e10, 1e50, 1e99):
+        V0, omega0 = speed * np.cos(angle), speed * np.sin(angle)
+        slide = speed / (scene.gamma * scene.mu)
+        t = np.unique(np.outer([slide, decay_time(scene)], [1e-3, 0.3, 1.0, 3.0, 1e3]))
+        many = vr.ensemble(scene, V0, omega0, t, fields=FIELDS, rtol=1e-6, max_steps=STEPS)
+        assert (many.status == MotionStatus.DONE).all(), speed
+        for field in ("V", "omega", "x", "angle"):
+            assert np.isfinite(getattr(many, field)).all(), (field, speed)
+        assert (np.maximum(np.abs(many.V), np.abs(many.omega)) <= (1.0 + tol.MOTION_DEFAULT) * 1.5 * speed).all(), speed

@@ -13,7 +13,7 @@ OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "pipeline/benchmark.py", *arguments]
+    command = [sys.executable, "-m", "pipeline.bench", *arguments]
     return subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True)
 
 

@@ -9,16 +9,12 @@ import sys
 import numpy as np
 import pytest
 import tolerances as tol
-from places import PIPELINE, ROOT
+from places import ROOT
 
 
 @pytest.fixture(scope="module")
 def independent():
-    sys.path.insert(0, str(PIPELINE))
-    try:
-        yield importlib.import_module("independent")
-    finally:
-        sys.path.remove(str(PIPELINE))
+    return importlib.import_module("pipeline.prove.independent")
 
 
 def worst(off: dict[str, np.ndarray]) -> dict[str, float]:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
-from places import PIPELINE, ROOT
+from places import ROOT
 
 import viscoroll as vr
 from viscoroll.reference import MissingDependencyError, contact_enclosure, contact_precise
@@ -150,10 +150,12 @@ def test_check_values_sample_is_enclosed():
 
 def test_check_values_are_made_again(tmp_path):
     """The stage with the same seed begins with the same rows."""
-    text = (PIPELINE / "config/production.toml").read_text(encoding="utf-8").replace("states = 2000", "states = 40")
+    text = (
+        (ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8").replace("states = 2000", "states = 40")
+    )
     (tmp_path / "few.toml").write_text(text, encoding="utf-8")
     result = run(
-        str(PIPELINE / "check_values.py"), "--config", str(tmp_path / "few.toml"),
+        "-m", "pipeline.reference.check_values", "--config", str(tmp_path / "few.toml"),
         "--folder", str(tmp_path), "-o", str(tmp_path),
     )  # fmt: skip
     assert result.returncode == 0, result.stderr
@@ -168,7 +170,7 @@ def test_check_values_are_made_again(tmp_path):
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     output = tmp_path_factory.mktemp("prove") / "proofs.json"
-    result = run(str(PIPELINE / "prove.py"), "--quick", "-o", str(output))
+    result = run("-m", "pipeline.prove", "--quick", "-o", str(output))
     assert result.returncode in (0, 1), result.stderr
     return {name: part["rows"] for name, part in json.loads(output.read_text(encoding="utf-8"))["parts"].items()}
 
@@ -192,10 +194,9 @@ def test_a_planted_error_of_1e_9_fails_the_proof():
     In higher orders a term is itself too small for that; tests/test_ratios.py fits every coefficient anew.
     """
     script = """
-import flint, sys
+import flint
 import numpy as np
-sys.path.insert(0, sys.argv[1])
-import proofs_ratios
+from pipeline.prove import ratios as proof
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel import ratios
 table = ratios._ROWS.reshape(-1)  # the bins come first
@@ -215,13 +216,13 @@ while tried < 60:
         if 1e-9 * abs(share) < 10 * np.spacing(abs(value)):
             continue
         tried += 1
-        assert dict(proofs_ratios.compared(x))[size] <= proofs_ratios.RATIO_ULP
+        assert dict(proof.compared(x))[size] <= proof.RATIO_ULP
         table[at + order] = good * (1.0 + 1e-9)
-        seen += dict(proofs_ratios.compared(x))[size] > proofs_ratios.RATIO_ULP
+        seen += dict(proof.compared(x))[size] > proof.RATIO_ULP
         table[at + order] = good
 print(seen, tried)
 """
-    result = run("-c", script, str(PIPELINE), NUMBA_DISABLE_JIT="1")
+    result = run("-c", script, NUMBA_DISABLE_JIT="1")
     assert result.returncode == 0, result.stderr
     seen, tried = map(int, result.stdout.split())
     assert seen == tried
@@ -230,7 +231,7 @@ print(seen, tried)
 def test_error_maps_are_below_what_is_stated(tmp_path):
     """The committed maps, and new ones of few cells."""
     files = [tmp_path / "maps.nc", tmp_path / "maps.png"]
-    result = run(str(PIPELINE / "error_maps.py"), "--quick", "-o", str(files[0]), "--figure", str(files[1]))
+    result = run("-m", "pipeline.prove.error_maps", "--quick", "-o", str(files[0]), "--figure", str(files[1]))
     assert result.returncode == 0, result.stderr
     assert files[1].stat().st_size > 0
     for path in (files[0], ROOT / "data/results/error-maps.nc"):

@@ -18,8 +18,8 @@ SLOWEST, MOST_MEMORY = 5.0, 1000.0
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
     output = tmp_path_factory.mktemp("torture") / "torture.json"
-    command = [sys.executable, ROOT / "pipeline/torture.py", "--quick", "--only", "tables", "-o", output]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-m", "pipeline.torture", "--quick", "--only", "tables", "-o", output]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode in (0, 1), done.stderr
     return json.loads(output.read_text(encoding="utf-8"))["parts"]["tables"]["rows"]
 

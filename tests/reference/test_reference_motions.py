@@ -145,11 +145,24 @@ def test_roll_has_the_check_motions(rtol):
         assert len(motion.switches) == rows[0]["switches"]
 
 
+def test_flow_map_has_the_check_motions():
+    """The paper's IC1-IC3, of one scene: speeds over the larger of the two, to the error that a map may have."""
+    for rows in check_motions()[:3]:
+        scene, V0, omega0, t = inputs(rows)
+        found = vr.ensemble(scene, [V0], [omega0], t, method="flow")
+        best = {name: np.array([row[name] for row in rows]) for name in ("V", "omega")}
+        size = np.maximum(abs(best["V"]), abs(best["omega"]))
+        assert found.flow.all()
+        for name in best:
+            assert np.all(abs(getattr(found, name)[0] - best[name]) <= tol.FLOW_SPEED * size), (name, rows[0])
+        assert abs(found.onset_time[0] / rows[0]["onset_time"] - 1.0) <= tol.FLOW_ONSET
+
+
 def test_picture_of_tolerance_and_error(tmp_path):
     """From the stored proofs."""
     picture = tmp_path / "errors.png"
-    script = [sys.executable, str(ROOT / "pipeline/proof_figures.py"), "-o", str(picture)]
-    result = subprocess.run(script, check=False, capture_output=True, text=True)
+    script = [sys.executable, "-m", "pipeline.prove.figures", "-o", str(picture)]
+    result = subprocess.run(script, cwd=ROOT, check=False, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     assert picture.read_bytes()[1:4] == b"PNG"
 

@@ -12,11 +12,11 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from places import DOCS
+from refusals import refused
 from scipy import stats
 
 import viscoroll as vr
 from viscoroll.cli import main
-from viscoroll.errors import ParameterError
 from viscoroll.figures import sobol_bars
 from viscoroll.runs import read_run
 from viscoroll.runs.sensitivity import sobol_indices
@@ -126,15 +126,14 @@ def product_variance() -> float:
     return np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod([law.mean() ** 2 for law in FACTORS.values()])
 
 
-@pytest.mark.parametrize("k", [0, 1])
-@pytest.mark.parametrize(("name", "share"), [("V", lambda t: (1.0, GAMMA * t)), ("x", lambda t: (t, GAMMA * t**2 / 2))])
-def test_a_linear_motion_shares_its_variance(sliding, name, share, k):
-    slopes = share(sliding["t"].values[k])
+def test_a_linear_motion_shares_its_variance(sliding):
     spread = (stats.uniform(1.0, 0.2).var(), stats.truncnorm(-1.0, 0.5, 0.2, 0.1).var())
-    parts = np.square(slopes) * spread
-    for name_of_input, exact in zip(("V0", "mu"), parts / parts.sum(), strict=True):
-        assert inside(sliding, name, "S1", name_of_input, exact, k)
-        assert inside(sliding, name, "ST", name_of_input, exact, k)
+    for k, t in enumerate(sliding["t"].values):
+        for name, slopes in (("V", (1.0, GAMMA * t)), ("x", (t, GAMMA * t**2 / 2))):
+            parts = np.square(slopes) * spread
+            for name_of_input, exact in zip(("V0", "mu"), parts / parts.sum(), strict=True):
+                assert inside(sliding, name, "S1", name_of_input, exact, k)
+                assert inside(sliding, name, "ST", name_of_input, exact, k)
 
 
 def test_first_indices_of_a_linear_motion_add_to_one(sliding):
@@ -231,42 +230,23 @@ def test_rounding_is_no_variation():
     assert np.isfinite(indices["lost_S1"][1]).all()
 
 
-@pytest.mark.parametrize("n", [0, 15, 65537])
-def test_number_of_base_points(n):
-    with pytest.raises(ParameterError, match=rf"n = {n}: must be a whole number in \[16, 65536\]"):
-        sobol_indices(run_of(SLIDING), n)
+def test_refused():
+    def refuse(text: str, words: str, n: int = N) -> None:
+        run = run_of(text)
+        refused(lambda: sobol_indices(run, n), words)
 
-
-def test_more_than_the_memory_holds_is_refused():
+    for n in (0, 15, 65537):
+        refuse(SLIDING, f"n = {n}: must be a whole number in [16, 65536]", n)
     many = SLIDING.replace("t = [5e-5, 1e-4]", "t = { low = 0.0, high = 1e-4, count = 40000 }")
-    with pytest.raises(ParameterError, match="n = 1024: must be less, or t shorter: 80000 quantities and times"):
-        sobol_indices(run_of(many), N)
-
-
-def test_nothing_left_is_refused():
+    refuse(many, "n = 1024: must be less, or t shorter: 80000 quantities and times")
     still = SLIDING.replace("t = [5e-5, 1e-4]", "t = 0.0").replace('["V", "x"]', '["x"]')
-    with pytest.raises(ParameterError, match="summaries = x at t = 0: it varies by no more than"):
-        sobol_indices(run_of(still), 16)
-
-
-def test_correlation_is_refused():
-    text = SLIDING + "\n[correlation]\nV0.mu = 0.5\n"
-    with pytest.raises(ParameterError, match=r"\[correlation\] = mu, V0: must be left out"):
-        sobol_indices(run_of(text), N)
-
-
-def test_a_joint_sample_is_refused_by_its_sections():
+    refuse(still, "summaries = x at t = 0: it varies by no more than", 16)
+    refuse(SLIDING + "\n[correlation]\nV0.mu = 0.5\n", "[correlation] = mu, V0: must be left out")
+    refuse(re.sub(r"\{ distribution = .*\}", "2.0", SLIDING), "run file = no uncertain input")
     Path("rows.csv").write_text("a,b\n0.2,1.0\n0.21,1.1\n", encoding="utf-8")
     text = re.sub(r"mu = \{.*\}", 'mu = { file = "rows.csv", column = "a" }', SLIDING)
     text = re.sub(r"V0 = \{.*\}", 'V0 = { file = "rows.csv", column = "b" }', text)
-    with pytest.raises(ParameterError, match=r"\[scene\] mu, \[start\] V0 = rows of rows.csv: must be distributions"):
-        sobol_indices(run_of(text), N)
-
-
-def test_nothing_uncertain_is_refused():
-    text = re.sub(r"\{ distribution = .*\}", "2.0", SLIDING)
-    with pytest.raises(ParameterError, match="run file = no uncertain input"):
-        sobol_indices(run_of(text), N)
+    refuse(text, "[scene] mu, [start] V0 = rows of rows.csv: must be distributions")
 
 
 # --- figure and command ---
@@ -328,23 +308,18 @@ def test_example_of_the_help_runs(here, capsys):
     assert {path.name for path in here.iterdir()} == {"run.toml", "sensitivity.nc", "sensitivity.png"}
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["-n", "8"], "n = 8: must be"),
-        (["--plot", "s.xlsx"], "'s.xlsx' must end in .png or .pdf or .svg"),
-        (["-o", "missing/s.nc"], "its folder does not exist"),
-        (["run.toml"], "unrecognized arguments"),
-    ],
-)
-def test_command_refuses_in_one_line(here, capsys, options, words):
+def test_command_refuses_in_one_line(here, capsys):
     run_of(ONSET)
-    assert main(["sensitivity", "run.toml", *options]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert re.fullmatch(r"viscoroll: error: [^\n]+\n", err)
-    assert words in err
-    assert [path.name for path in here.iterdir()] == ["run.toml"]
+    for options, words in (
+        (["-n", "8"], "n = 8: must be"), (["--plot", "s.xlsx"], "'s.xlsx' must end in .png or .pdf or .svg"),
+        (["-o", "missing/s.nc"], "its folder does not exist"), (["run.toml"], "unrecognized arguments"),
+    ):  # fmt: skip
+        assert main(["sensitivity", "run.toml", *options]) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert re.fullmatch(r"viscoroll: error: [^\n]+\n", err)
+        assert words in err
+        assert [path.name for path in here.iterdir()] == ["run.toml"]
 
 
 def test_the_documented_run_file(capsys):

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
-from places import PIPELINE
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll import files
@@ -31,7 +31,6 @@ ATLAS_GRID = vr.tables.AtlasGrid(nodes=(16, 40, 32), block=(4, 8, 8), allowed=(1
 LITERAL_GRID = vr.tables.LiteralGrid(
     kappa=2.91, mu=0.2, V=np.geomspace(1e-3, 2.0, 21), delta=np.linspace(-0.04, 0.04, 33), alpha=[1.0, 3.0, 11.0]
 )
-TABULATE = PIPELINE / "tabulate.py"
 
 
 @pytest.fixture(scope="module")
@@ -58,25 +57,19 @@ def saved(literal: xr.Dataset, tmp_path: Path) -> Path:
 
 def error_of(path: Path | str) -> str:
     """Text of the error that loading raises: one line that names the file."""
-    with pytest.raises(vr.TableError) as caught:
-        vr.tables.load(path)
-    text = str(caught.value)
-    assert str(path) in text
-    assert "\n" not in text
-    return text
+    return refused(partial(vr.tables.load, path), str(path), error=vr.TableError)
 
 
 # --- coordinates ---
 
 
-@pytest.mark.parametrize("name", grids.ATLAS_MAPS)
-def test_coordinate_maps_are_inverse(name: str) -> None:
-    forward, back = grids.ATLAS_MAPS[name]
-    values = {"alpha": np.geomspace(1, 1e4, 99), "kappa_V": np.geomspace(1e-7, 1e5, 99), "s": np.linspace(0, 1, 99)}[
-        name
-    ]
-    np.testing.assert_allclose(back(forward(values)), values, rtol=tol.TABLE_MAP, atol=0)
-    assert (np.diff(forward(values)) > 0).all()
+def test_coordinate_maps_are_inverse() -> None:
+    for name, values in (
+        ("alpha", np.geomspace(1, 1e4, 99)), ("kappa_V", np.geomspace(1e-7, 1e5, 99)), ("s", np.linspace(0, 1, 99)),
+    ):  # fmt: skip
+        forward, back = grids.ATLAS_MAPS[name]
+        np.testing.assert_allclose(back(forward(values)), values, rtol=tol.TABLE_MAP, atol=0)
+        assert (np.diff(forward(values)) > 0).all(), name
 
 
 def test_s_is_graded_toward_full_slip(atlas: xr.Dataset) -> None:
@@ -202,12 +195,12 @@ def test_literal_interpolation_keeps_its_stated_error(literal: xr.Dataset) -> No
     assert all(check.passed for check in check_table(literal, 2000, 0))
 
 
-@pytest.mark.parametrize("V", [[0.5], [0.1, 2.0]])
-def test_a_coarse_literal_table_states_what_its_validation_finds(V: list[float]) -> None:
+def test_a_coarse_literal_table_states_what_its_validation_finds() -> None:
     """Between -delta and delta the error of Q is odd: none in the middle, which once was all that was looked at."""
-    table = vr.tables.build(vr.tables.LiteralGrid(kappa=3.0, mu=0.2, V=V, delta=[-0.01, 0.01], alpha=[1.0, 11.0]))
-    assert table.Q.attrs["interpolation_error"] > 1e-3
-    assert [check.name for seed in range(3) for check in check_table(table, 500, seed) if not check.passed] == []
+    for V in ([0.5], [0.1, 2.0]):
+        table = vr.tables.build(vr.tables.LiteralGrid(kappa=3.0, mu=0.2, V=V, delta=[-0.01, 0.01], alpha=[1.0, 11.0]))
+        assert table.Q.attrs["interpolation_error"] > 1e-3
+        assert [check.name for seed in range(3) for check in check_table(table, 500, seed) if not check.passed] == []
 
 
 def test_one_alpha_is_enough() -> None:
@@ -225,90 +218,58 @@ def test_scalars_give_scalars_and_arrays_the_same(atlas: xr.Dataset) -> None:
     assert one.kappa_M == many.kappa_M[0, 1]
 
 
-@pytest.mark.parametrize(
-    ("points", "text"),
-    [
+def test_bad_points_are_refused(atlas: xr.Dataset) -> None:
+    good = {"alpha": 2.0, "kappa_V": 1.0, "s": 0.5}
+    for points, text in (
         ({"alpha": 101.0}, "alpha = 101: must be within the table's range [1, 100]"),
         ({"kappa_V": [0.1, 1e-4]}, "kappa_V = 0.0001: must be within the table's range [0.001, 1000]"),
         ({"s": 1.5}, "s = 1.5: must be within the table's range [0, 1]"),
-    ],
-)
-def test_points_outside_name_the_range(atlas: xr.Dataset, points: dict, text: str) -> None:
-    with pytest.raises(vr.OutOfTableError) as caught:
-        vr.tables.interpolate(atlas, **{"alpha": 2.0, "kappa_V": 1.0, "s": 0.5} | points)
-    assert str(caught.value) == text
-
-
-@pytest.mark.parametrize(
-    ("fields", "points", "text"),
-    [
-        ("Q", {"alpha": 2.0, "kappa_V": 1.0, "s": 0.5}, "'Q'"),
+    ):
+        call = partial(vr.tables.interpolate, atlas, **good | points)
+        assert refused(call, error=vr.OutOfTableError) == text
+    for fields, points, text in (
+        ("Q", good, "'Q'"),
         (None, {"alpha": 2.0, "kappa_V": 1.0}, "alpha, kappa_V, s"),
-        (None, {"alpha": 2.0, "kappa_V": 1.0, "s": 0.5, "V": 1.0}, "alpha, kappa_V, s"),
-        (None, {"alpha": np.nan, "kappa_V": 1.0, "s": 0.5}, "alpha = nan"),
-        (None, {"alpha": [2.0, 3.0], "kappa_V": [1.0, 1.0, 1.0], "s": 0.5}, "broadcastable"),
-    ],
-)
-def test_bad_points_are_refused(atlas: xr.Dataset, fields: str | None, points: dict, text: str) -> None:
-    with pytest.raises(vr.ParameterError, match=text):
-        vr.tables.interpolate(atlas, fields, **points)
+        (None, good | {"V": 1.0}, "alpha, kappa_V, s"),
+        (None, good | {"alpha": np.nan}, "alpha = nan"),
+        (None, good | {"alpha": [2.0, 3.0], "kappa_V": [1.0, 1.0, 1.0]}, "broadcastable"),
+    ):
+        refused(partial(vr.tables.interpolate, atlas, fields, **points), text)
 
 
-@pytest.mark.parametrize("not_a_table", [None, xr.Dataset()])
-def test_only_tables_are_interpolated_and_saved(not_a_table: object, tmp_path: Path) -> None:
-    with pytest.raises(vr.TableError, match="not a viscoroll table"):
-        vr.tables.interpolate(not_a_table, alpha=1.0)
-    with pytest.raises(vr.TableError, match="not a viscoroll table"):
-        vr.tables.save(not_a_table, tmp_path / "x.nc")
+def test_only_tables_are_interpolated_and_saved(tmp_path: Path) -> None:
+    for thing in (None, xr.Dataset()):
+        for call in (
+            partial(vr.tables.interpolate, thing, alpha=1.0),
+            partial(vr.tables.save, thing, tmp_path / "x.nc"),
+        ):
+            refused(call, "not a viscoroll table", error=vr.TableError)
     assert not list(tmp_path.iterdir())
 
 
 # --- grids ---
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
+def test_bad_grids_are_refused() -> None:
+    for arguments, *words in (
         ({"alpha": (0.5, 100.0)}, "alpha = 0.5: must be finite and >= 1"),
         ({"alpha": (5.0, 5.0)}, "high = 5.0: must be > low = 5"),
         ({"kappa_V": (0.0, 1.0)}, "low = 0.0: must be finite and > 0"),
         ({"kappa_V": (1.0, np.inf)}, "high = inf: must be a finite number"),
-        ({"nodes": (3, 8, 8)}, "nodes = .*integers >= 4"),
-        ({"nodes": (8, 8)}, "nodes = .*3 numbers"),
-        ({"nodes": (10**4, 10**4, 10)}, "nodes = .*at most"),
-        ({"block": (0, 1, 1)}, "block = .*integers >= 1"),
+        ({"nodes": (3, 8, 8)}, "nodes = ", "integers >= 4"),
+        ({"nodes": (8, 8)}, "nodes = ", "3 numbers"),
+        ({"nodes": (10**4, 10**4, 10)}, "nodes = ", "at most"),
+        ({"block": (0, 1, 1)}, "block = ", "integers >= 1"),
         ({"allowed": (np.nan, 1e-6)}, "allowed = nan"),
-    ],
-)
-def test_bad_atlas_grids_are_refused(arguments: dict, text: str) -> None:
-    with pytest.raises(vr.ParameterError, match=text):
-        vr.tables.AtlasGrid(**arguments)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"kappa": 0.0},
-        {"kappa": [1.0, 2.0]},
-        {"mu": -0.2},
-        {"V": [0.0, 1.0]},
-        {"V": [[1.0]]},
-        {"delta": [0.1, 0.0]},
-        {"delta": []},
-        {"alpha": [0.9]},
-        {"mu": 1e-200, "kappa": 1e200},
-        {"kappa": 1e308, "mu": 1e200},
-    ],
-)
-def test_bad_literal_grids_are_refused(changes: dict) -> None:
+    ):
+        refused(partial(vr.tables.AtlasGrid, **arguments), *words)
     good = {"kappa": 2.91, "mu": 0.2, "V": [0.1, 0.2], "delta": [0.0, 0.1], "alpha": [11.0]}
-    with pytest.raises(vr.ParameterError, match=next(iter(changes))):
-        vr.tables.LiteralGrid(**good | changes)
-
-
-def test_build_wants_a_grid() -> None:
-    with pytest.raises(vr.ParameterError, match="AtlasGrid or a LiteralGrid"):
-        vr.tables.build({"kappa": 2.91})
+    for changes in (
+        {"kappa": 0.0}, {"kappa": [1.0, 2.0]}, {"mu": -0.2}, {"V": [0.0, 1.0]}, {"V": [[1.0]]}, {"delta": [0.1, 0.0]},
+        {"delta": []}, {"alpha": [0.9]}, {"mu": 1e-200, "kappa": 1e200}, {"kappa": 1e308, "mu": 1e200},
+    ):  # fmt: skip
+        refused(partial(vr.tables.LiteralGrid, **good | changes), next(iter(changes)))
+    refused(partial(vr.tables.build, {"kappa": 2.91}), "AtlasGrid or a LiteralGrid")
 
 
 # --- what a file says ---
@@ -432,14 +393,13 @@ FOREIGN: dict[str, tuple[Callable[[h5py.File], object], str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("change", "text"), FOREIGN.values(), ids=FOREIGN)
-def test_what_is_no_table_is_refused_before_an_array_is_read(
-    saved: Path, change: Callable[[h5py.File], object], text: str
-) -> None:
-    with h5py.File(saved, "a") as file:
-        change(file)
-    with pytest.raises(vr.TableError, match=text):
-        survey(saved.read_bytes(), saved)
+def test_what_is_no_table_is_refused_before_an_array_is_read(saved: Path) -> None:
+    content = saved.read_bytes()
+    for change, text in FOREIGN.values():
+        saved.write_bytes(content)
+        with h5py.File(saved, "a") as file:
+            change(file)
+        refused(partial(survey, saved.read_bytes(), saved), text, error=vr.TableError)
 
 
 def test_what_the_rehearsal_finds_is_told(saved: Path) -> None:
@@ -475,12 +435,12 @@ rehearsal.main()
         rehearsal.rehearse(saved.read_bytes(), saved, verify=True)
 
 
-@pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.9, 0.99])
-def test_truncated(saved: Path, share: float) -> None:
+def test_truncated(saved: Path) -> None:
     content = saved.read_bytes()
-    saved.write_bytes(content[: int(share * len(content))])
-    text = error_of(saved)
-    assert "damaged" in text or "is not an HDF5 file" in text
+    for share in (0.001, 0.1, 0.5, 0.9, 0.99):
+        saved.write_bytes(content[: int(share * len(content))])
+        text = error_of(saved)
+        assert "damaged" in text or "is not an HDF5 file" in text, share
 
 
 def test_a_file_without_its_seal_is_read_with_care(saved: Path, literal: xr.Dataset) -> None:
@@ -552,13 +512,13 @@ def test_edited_content_is_refused_unless_asked(saved: Path) -> None:
     assert vr.tables.load(saved, verify=False).M.attrs["long_name"] == "something else"
 
 
-@pytest.mark.parametrize("version", ["2.0", "0.9", "", 7, None])
-def test_other_schema_versions_are_refused(saved: Path, version: object) -> None:
-    with h5py.File(saved, "a") as file:
-        del file.attrs["schema_version"]
-        if version is not None:
-            file.attrs["schema_version"] = version
-    assert "reads 1.x; rebuild the table" in error_of(saved)
+def test_other_schema_versions_are_refused(saved: Path) -> None:
+    for version in ("2.0", "0.9", "", 7, None):
+        with h5py.File(saved, "a") as file:
+            file.attrs.pop("schema_version", None)
+            if version is not None:
+                file.attrs["schema_version"] = version
+        assert "reads 1.x; rebuild the table" in error_of(saved), version
 
 
 def test_missing_variables_are_named(literal: xr.Dataset, tmp_path: Path) -> None:
@@ -598,7 +558,7 @@ def test_a_symbolic_link_is_followed(literal: xr.Dataset, tmp_path: Path) -> Non
     vr.tables.load(link)
 
 
-# --- pipeline/tabulate.py ---
+# --- pipeline/demo/tabulate.py ---
 
 CONFIG = """
 [tables.atlas]
@@ -618,10 +578,9 @@ alpha = [1.0, 11.0]
 def tabulate(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, config: str) -> int:
     (tmp_path / "run.toml").write_text(config)
     folders = ["--tables", str(tmp_path / "out"), "-o", str(tmp_path / "run")]
-    monkeypatch.setattr(sys, "argv", [str(TABULATE), "--config", str(tmp_path / "run.toml"), *folders])
-    monkeypatch.syspath_prepend(str(TABULATE.parent))
+    monkeypatch.setattr(sys, "argv", ["tabulate", "--config", str(tmp_path / "run.toml"), *folders])
     with pytest.raises(SystemExit) as exit_:
-        runpy.run_path(str(TABULATE), run_name="__main__")
+        runpy.run_module("pipeline.demo.tabulate", run_name="__main__")
     return int(exit_.value.code or 0)
 
 

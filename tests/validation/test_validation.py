@@ -166,13 +166,12 @@ def test_refused(options, words):
         validate(**options)
 
 
-# --- pipeline/validate.py ---
+# --- pipeline/demo/validate.py ---
 
 
 def stage(*arguments: str) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [sys.executable, str(ROOT / "pipeline/validate.py"), *arguments], capture_output=True, text=True, check=False
-    )
+    command = [sys.executable, "-m", "pipeline.demo.validate", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
 def config(path: Path, table: Path, **changes) -> Path:

@@ -3,6 +3,7 @@
 Rooms, each standing on those before it:
 
     compile    the decorator, its cache, fused arithmetic
+    numerics   nodes and matrices of interpolation and quadrature, brackets, loops over arrays
     bessel     the ratios r = I1/I0, k = K0/K1, i2 = I2/I0
     law        the contact law, explicit in (zeta, eta), its inverses and slopes, stresses
     motion     Eq. (22): full slip, the boundary layer, the slow manifold, and what hands a motion from one to the next

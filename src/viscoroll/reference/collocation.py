@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConvergenceError
-from .precise import imported
+from ..extras import imported
 
 _MOST_ITERATIONS = 15
 #: a correction below this share leaves one of its square, or of 1e-14 of it, to be made
@@ -53,7 +53,7 @@ class Radau:
 
     def step(self, system: System, start: Sequence[Any], guess: list[list[Any]], h: Any) -> list[list[Any]] | None:
         """Values at the nodes of one step of length ``h``; None where the iteration does not converge."""
-        arb_mat = imported("flint", "python-flint").arb_mat
+        arb_mat = imported("flint", "python-flint", "dev").arb_mat
         n, size, length = len(self.nodes), len(start), float(h)
         values, taus = guess, [h * c for c in self.nodes]
         for _ in range(_MOST_ITERATIONS):
@@ -103,7 +103,7 @@ class Radau:
 @functools.cache
 def radau(count: int, bits: int) -> Radau:
     """The method with ``count`` nodes, order 2 count - 1."""
-    flint = imported("flint", "python-flint")
+    flint = imported("flint", "python-flint", "dev")
     with flint.ctx.workprec(4 * bits + 20 * count):
         nodes = _nodes(flint, count)
         points = [flint.arb(0), *nodes]

@@ -16,8 +16,8 @@ from typing import Any
 
 from ..checks import checked
 from ..errors import ConvergenceError, ParameterError
+from ..extras import imported
 from ..scene import Scene
-from .precise import imported
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14
@@ -313,4 +313,4 @@ def _root(function: Callable[[Any], tuple[Any, Any]], y: Any, guess: Any) -> Any
 
 
 def _flint() -> Any:
-    return imported("flint", "python-flint")
+    return imported("flint", "python-flint", "dev")

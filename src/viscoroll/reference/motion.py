@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import ConvergenceError, ParameterError
+from ..extras import imported
 from ..scene import Scene
 from .collocation import Radau, radau
 from .phases import Sliding, Sticking, begin
-from .precise import imported
 from .zones import Law
 
 _MOST_STEPS = 5000
@@ -96,7 +96,7 @@ def roll_precise(
     """
     if V0 == 0.0 and omega0 == 0.0:
         raise ParameterError("V0, omega0", "0, 0", "not both 0")
-    flint = imported("flint", "python-flint")
+    flint = imported("flint", "python-flint", "dev")
     arb = flint.arb
     with flint.ctx.workprec(bits):
         alpha, kappa, mu, gamma, j, V, omega = (

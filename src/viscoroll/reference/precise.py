@@ -7,12 +7,12 @@ trapezoidal rule (mpmath's own K is slow at integer order), roots by bracketing.
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from typing import Any
 
 from ..checks import checked
-from ..errors import ConvergenceError, ParameterError, ViscorollError
+from ..errors import ConvergenceError, ParameterError
+from ..extras import imported
 from ..scene import Scene
 
 #: Digits that the printed forms may lose: lam^-2 - 1 as V -> 0, lam^2 - 1/alpha as V grows
@@ -20,26 +20,6 @@ from ..scene import Scene
 _GUARD = 30
 _LEAST_DIGITS = 15
 _MOST_STEPS = 1000
-
-
-class MissingDependencyError(ViscorollError):
-    """A package that only the reference values need is not installed."""
-
-
-def imported(module: str, package: str) -> Any:
-    """A module that only the reference values need.
-
-    Raises
-    ------
-    MissingDependencyError
-        If it is not installed.
-    """
-    try:
-        return importlib.import_module(module)
-    except ModuleNotFoundError:
-        raise MissingDependencyError(
-            f"viscoroll.reference needs {package}, which is not installed: pip install 'viscoroll[dev]'"
-        ) from None
 
 
 def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: float, digits: int = 50) -> dict[str, Any]:
@@ -82,7 +62,7 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
         raise ParameterError("V", 0.0, "different from 0")
     if digits < _LEAST_DIGITS:
         raise ParameterError("digits", digits, f">= {_LEAST_DIGITS}")
-    mp = imported("mpmath", "mpmath")
+    mp = imported("mpmath", "mpmath", "dev")
     with mp.workdps(digits + _GUARD):
         given = (mp.mpf(float(value)) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep)))
         state = printed_state(mp, *given)

@@ -17,6 +17,7 @@ from urllib.parse import urlsplit
 
 from ..blocks import thread_count
 from ..errors import OutputError, ParameterError, ViscorollError
+from ..extras import imported
 from .runfile import Run
 from .store import Store, locked
 
@@ -63,7 +64,9 @@ def run_ensemble(
         The folder holds something else or cannot be written, another process writes to it, or
         the cluster went away.
     ParameterError
-        An unknown cluster, dask not installed, or inputs that a motion does not allow.
+        An unknown cluster, or inputs that a motion does not allow.
+    MissingDependencyError
+        If zarr, or dask for a cluster, is not installed.
 
     Notes
     -----
@@ -71,6 +74,8 @@ def run_ensemble(
     of kills (``tests/runs/test_run_store.py``); a motion is as exact as :func:`viscoroll.ensemble` makes it.
     """
     store = Store(Path(path).absolute(), run)
+    imported("zarr", "zarr", "runs")
+    store.refuse_other()
     with locked(store.root):
         store.begin()
         with _executor(cluster, threads) as (pool, workers, given), _bar(run, progress) as advance:
@@ -120,10 +125,7 @@ def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Execut
         return
     if cluster != "local" and not _is_address(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
-    try:
-        import distributed
-    except ImportError:
-        raise ParameterError("cluster", repr(cluster), "left out, or: pip install 'viscoroll[cluster]'") from None
+    distributed = imported("distributed", "distributed", "cluster")
     try:
         with _silent("distributed", "distributed.client"), _client(distributed, cluster, threads) as client:
             workers = sum(client.nthreads().values())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import resource
+import sys
 import time
 from dataclasses import dataclass, replace
 
@@ -19,6 +19,8 @@ from .units import scales
 
 #: motions of the trial, mapped and integrated: some tenths of a second
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
+#: bytes that a process holds after it: libraries, machine code, the trial
+_USUAL_RESIDENT = 4e8
 
 
 @dataclass(frozen=True)
@@ -58,12 +60,21 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     seconds = time.perf_counter() - begun
     record = len(encoded(Record("", {}, summary=summary)))
     stored = sum(map(len, chunks.values())) * (run.settings.n / trial) + record * run.blocks
-    resident = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 - trial * run.bytes_a_motion
+    resident = _most_resident() - trial * run.bytes_a_motion
     memory = resident + workers * run.block * run.bytes_a_motion
     return Estimate(
         run.settings.n, run.blocks, run.block, run.method, workers, trial,
         seconds * run.settings.n / trial / workers, memory, stored,
     )  # fmt: skip
+
+
+def _most_resident() -> float:
+    """Bytes that this process has held at most; where the system does not tell, what it takes on Linux."""
+    try:
+        import resource
+    except ImportError:
+        return _USUAL_RESIDENT
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 def _duration(seconds: float) -> str:

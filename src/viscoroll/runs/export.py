@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import TableError
+from ..extras import imported
 from ..files import replacing
 from .store import MOTIONS
 from .verify import open_summaries, verify
 
 #: most that deflate makes of incompressible bytes, and room for a chunk in the index and for the head of an array
 _LARGER, _ENTRY, _HEAD = 1.002, 512, 1 << 16
+#: bytes at a time where the system reserves no room by itself
+_PIECE = 1 << 24
 
 
 def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None:
@@ -49,7 +52,8 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 
 def _append_motions(store: Path, path: Path) -> None:
     import h5netcdf
-    import zarr
+
+    zarr = imported("zarr", "zarr", "runs")
 
     source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
     arrays = dict(source.arrays())
@@ -80,8 +84,10 @@ def _room(array: Any) -> int:
 
 def _reserve(path: Path, room: int) -> None:
     """Lengthen a file: HDF5 2.0 may crash on a full disk, so it must not meet one.  It cuts off what it leaves."""
-    descriptor = os.open(path, os.O_RDWR)
-    try:
-        os.posix_fallocate(descriptor, path.stat().st_size, room)
-    finally:
-        os.close(descriptor)
+    with path.open("r+b") as file:
+        start = file.seek(0, os.SEEK_END)
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(file.fileno(), start, room)
+            return
+        for written in range(0, room, _PIECE):
+            file.write(bytes(min(_PIECE, room - written)))

@@ -14,8 +14,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import __version__
 from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..extras import imported
 from .evaluate import roll_inputs
 from .inputs import LARGEST, SMALLEST, Inputs
 from .quantities import QUANTITIES, valued
@@ -118,7 +120,7 @@ def _power_of_two(n: int) -> int:
 
 def _points(problem: dict[str, Any], base: int, seed: int) -> NDArray[np.float64]:
     """Saltelli's points (motion, input) of the unit cube."""
-    from SALib.sample import sobol
+    sobol = imported("SALib.sample.sobol", "SALib", "runs")
 
     drawn = sobol.sample(problem, base, calc_second_order=False, seed=seed)
     return np.clip(drawn, SMALLEST, LARGEST)
@@ -154,7 +156,7 @@ def _indices(
     run: Run, problem: dict[str, Any], name: str, outcomes: NDArray[np.float64], refused: list[str]
 ) -> NDArray[np.float64]:
     """The rows of ``_INDICES`` over (t, input); NaN where there are none, and why goes into ``refused``."""
-    from SALib.analyze import sobol
+    sobol = imported("SALib.analyze.sobol", "SALib", "runs")
 
     found = np.full((len(_INDICES), len(outcomes), problem["num_vars"]), np.nan)
     noise = run.settings.rtol * np.abs(outcomes, where=np.isfinite(outcomes), out=np.zeros_like(outcomes)).max()
@@ -200,7 +202,7 @@ def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float
     }
     provenance = about(run) | {
         "title": "Sobol indices of motions of a viscoelastic cylinder",
-        "source": f"viscoroll {version('viscoroll')}, SALib {version('SALib')}",
+        "source": f"viscoroll {__version__}, SALib {version('SALib')}",
         "design": "Saltelli's, on a scrambled Sobol sequence",
     }
     cut = ("motions_a_block", "blocks")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ConfigError
+from ..extras import imported
 from ..scene import HIGHEST_ALPHA
 from ..sections import fault, hint, refuse_unknown
 from .inputs import Distribution, Inputs, Joint
@@ -140,7 +141,7 @@ class _Reader:
             raise self.fault(name, f"{name}: file and column must be texts")
         try:
             values = read_column(self.path.parent / file, column)
-        except (OSError, ValueError, KeyError, ImportError) as error:
+        except (OSError, ValueError, KeyError) as error:
             text = " ".join(str(error).split())
             raise self.fault(name, f"{name}: column {column!r} of {file} cannot be read ({text:.200})") from error
         if values.size == 0 or not all(map(allowed.holds, (values.min(), values.max()))):
@@ -176,6 +177,7 @@ def read_column(path: Path, column: str) -> NDArray[np.float64]:
     if path.suffix == ".csv":
         values = pd.read_csv(path, usecols=[column])[column].to_numpy()
     elif path.suffix == ".parquet":
+        imported("pyarrow", "pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
     elif path.suffix == ".nc":
         import xarray as xr

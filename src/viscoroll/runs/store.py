@@ -11,10 +11,8 @@ where or in which order the blocks were worked on: two stores of one run are the
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -35,6 +33,7 @@ from .summaries import Summary, merged, summarise, summary_dataset
 from .units import attributes, scales
 
 RECORDS, MOTIONS = "records", "motions"
+_LOCK = ".lock"
 _EACH = ("onset_time", "rest_time", "status", "flow")
 _ADVICE = "give another folder with -o, or delete this one"
 
@@ -54,11 +53,34 @@ class Store:
         OutputError
             A folder that holds anything else, or cannot be written.
         """
-        _refuse_other(self)
+        self.refuse_other()
         make_folder(self.root / RECORDS)
         self._sweep()
         made = Record(identity(self.run), put(self.root, self._metadata()), about(self.run))
         write_record(_path(self.root, "start"), made)
+
+    def refuse_other(self) -> None:
+        """Raise OutputError unless the folder is new, or begun by the same run."""
+        root = self.root
+        if not root.exists():
+            return
+        if not root.is_dir():
+            raise OutputError(root, f"is a file: {_ADVICE}")
+        record = read_record(_path(root, "start"))
+        if record is None:
+            whole = map(read_record, sorted((root / RECORDS).glob("[0-9e]*")))
+            record = next((found for found in whole if found is not None), None)
+        if record is None:
+            others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
+            if others:
+                raise OutputError(root, f"is no results store, it holds {', '.join(others[:3])}: {_ADVICE}")
+        elif record.run != identity(self.run):
+            versions = record.about.get("versions", json.dumps(_software()))
+            if versions != json.dumps(_software()):
+                raise OutputError(
+                    root, f"was begun with other versions, {versions}: finish it with those, or {_ADVICE}"
+                )
+            raise OutputError(root, f"holds the results of another run file: {_ADVICE}")
 
     def missing(self) -> Iterator[int]:
         """Blocks that are not there, or not whole: their records and all their files are read."""
@@ -171,28 +193,6 @@ def _path(root: Path, name: str | int) -> Path:
     return root / RECORDS / (name if isinstance(name, str) else f"{name:09d}")
 
 
-def _refuse_other(store: Store) -> None:
-    """Raise OutputError unless the folder is new, or begun by the same run."""
-    root = store.root
-    if not root.exists():
-        return
-    if not root.is_dir():
-        raise OutputError(root, f"is a file: {_ADVICE}")
-    record = read_record(_path(root, "start"))
-    if record is None:
-        whole = map(read_record, sorted((root / RECORDS).glob("[0-9e]*")))
-        record = next((found for found in whole if found is not None), None)
-    if record is None:
-        others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
-        if others:
-            raise OutputError(root, f"is no results store, it holds {', '.join(others[:3])}: {_ADVICE}")
-    elif record.run != identity(store.run):
-        versions = record.about.get("versions", json.dumps(_software()))
-        if versions != json.dumps(_software()):
-            raise OutputError(root, f"was begun with other versions, {versions}: finish it with those, or {_ADVICE}")
-        raise OutputError(root, f"holds the results of another run file: {_ADVICE}")
-
-
 @contextmanager
 def locked(root: Path) -> Iterator[None]:
     """Keep other processes from starting to work on the store.
@@ -202,15 +202,17 @@ def locked(root: Path) -> Iterator[None]:
     OutputError
         If another process has it.
     """
-    make_folder(root)
-    descriptor = os.open(root, os.O_RDONLY)
+    from filelock import FileLock, Timeout
+
+    make_folder(root / RECORDS)
+    lock = FileLock(root / RECORDS / _LOCK, timeout=0)
     try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise OutputError(root, "another process is writing to it") from None
-        except OSError as error:  # some network disks
-            raise OutputError(root, f"cannot be locked ({error.strerror})") from error
+        lock.acquire()
+    except Timeout:
+        raise OutputError(root, "another process is writing to it") from None
+    except (OSError, NotImplementedError) as error:  # some network disks
+        raise OutputError(root, f"cannot be locked ({getattr(error, 'strerror', None) or error})") from error
+    try:
         yield
     finally:
-        os.close(descriptor)
+        lock.release()

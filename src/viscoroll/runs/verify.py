@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import TableError
+from ..extras import imported
 from .records import read_record
 from .store import RECORDS, problems
 
@@ -85,6 +86,7 @@ def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
     """
     import xarray as xr
 
+    imported("zarr", "zarr", "runs")
     root = Path(path)
     start = read_record(root / RECORDS / "start")
     if start is None:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..extras import imported
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -23,7 +25,7 @@ def metadata(
     about: dict[str, Any],
 ) -> dict[str, bytes]:  # fmt: skip
     """The group of all motions without its chunks; ``columns`` show names, types and dimensions."""
-    import zarr
+    zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=about)
@@ -36,7 +38,7 @@ def metadata(
 
 def chunks(columns: Mapping[str, NDArray], number: int, count: int, block: int) -> dict[str, bytes]:
     """The chunks of one block, by their path in the group."""
-    import zarr
+    zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2)
@@ -47,7 +49,7 @@ def chunks(columns: Mapping[str, NDArray], number: int, count: int, block: int) 
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
     """All files of a small dataset."""
-    import zarr
+    zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
     dataset.to_zarr(zarr.storage.MemoryStore(files), zarr_format=2, consolidated=False)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import mpmath as mp
 import numpy as np
@@ -12,7 +11,6 @@ import pytest
 import tolerances as tol
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from places import PIPELINE
 
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
@@ -87,9 +85,8 @@ def check_point(x: float) -> None:
         assert precise.ulps(value, exact) <= bound, (name, x, value)
 
 
-@pytest.mark.parametrize("points", [seams, scattered])
-def test_within_two_ulp_of_40_digits(points):
-    for x in points():
+def test_within_two_ulp_of_40_digits():
+    for x in [*seams(), *scattered()]:
         check_point(float(x))
 
 
@@ -120,41 +117,32 @@ def test_slopes_against_differences():
             assert error <= tol.RATIO_SLOPE * (abs(difference) + 1 / (1 + mp.mpf(x))), (x, ratio)
 
 
-@pytest.mark.parametrize("ratio", [ratio_r, ratio_k, lambda x: (ratio_i2(x, ratio_r(x)[0]),)])
-def test_monotone(ratio):
+def test_monotone():
     """Never falls by more than rounding, from any double to its neighbour and across every seam."""
     x = np.sort(np.concatenate([seams(), scattered(), np.geomspace(1e-12, 1e12, 4000)]))
-    values = np.array([ratio(at)[0] for at in x])
-    assert np.all(np.diff(values) >= -tol.RATIO_ULP * np.spacing(values[1:]))
+    values = np.array([(r := ratio_r(at)[0], ratio_k(at)[0], ratio_i2(at, r)) for at in x])
+    assert np.all(np.diff(values, axis=0) >= -tol.RATIO_ULP * np.spacing(values[1:]))
 
 
 # --- the table ---
 
 
-def refit() -> np.ndarray:
-    """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
-    source = PIPELINE / "ratios.py"
-    spec = importlib.util.spec_from_file_location("pipeline_ratios", source)
-    assert spec is not None
-    assert spec.loader is not None
-    pipeline = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(pipeline)
-    points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * pipeline.NODES)) for i in range(pipeline.NODES)]
-    rows = []
+def bins() -> Iterator[tuple[str, Callable[[mp.mpf], mp.mpf]]]:
+    """In the order of the table: the function of every bin, and the argument at t in [-1/32, 1/32]."""
     for segment in layout.SEGMENTS:
         for octave in range(segment.low, segment.high):
             for index in range(layout.BINS):
                 centre = 1 + (2 * index + 1) * mp.mpf(HALF_BIN)
-                values = [EXACT[segment.function]((centre + t) * mp.mpf(2) ** octave) for t in points]
-                rows += [float(m) for m in pipeline.chebyshev_fit(values, mp.mpf(HALF_BIN))]
-    return np.array(rows)
+                yield segment.function, lambda t, c=centre, o=octave: (c + mp.mpf(t)) * mp.mpf(2) ** o
 
 
-def table_value(table: np.ndarray, segment: int, octave: int, index: int, t: float) -> float:
-    """The polynomial of one bin, in numpy."""
-    bins_before = (octave - layout.SEGMENTS[segment].low) * layout.BINS + index
-    at = layout.segment_start(segment) + bins_before * layout.COEFFICIENTS
-    return float(np.polynomial.polynomial.polyval(t, table[at : at + layout.COEFFICIENTS]))
+def refit() -> np.ndarray:
+    """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
+    from pipeline.reference.ratios import NODES, chebyshev_fit
+
+    points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * NODES)) for i in range(NODES)]
+    values = ([EXACT[function](at(t)) for t in points] for function, at in bins())
+    return np.array([float(m) for each in values for m in chebyshev_fit(each, mp.mpf(HALF_BIN))])
 
 
 def test_every_coefficient_is_the_rounded_fit():
@@ -167,14 +155,10 @@ def test_every_coefficient_is_the_rounded_fit():
 
 def test_every_bin_at_its_ends_and_middle():
     """Truncation shows at the ends of a bin, where |t| = 1/32."""
-    for number, segment in enumerate(layout.SEGMENTS):
-        for octave in range(segment.low, segment.high):
-            for index in range(layout.BINS):
-                for t in (-HALF_BIN, 0.4 * HALF_BIN):
-                    x = mp.mpf(2) ** octave * (1 + (2 * index + 1) * mp.mpf(HALF_BIN) + mp.mpf(t))
-                    value = table_value(TABLE, number, octave, index, t)
-                    off = precise.ulps(value, EXACT[segment.function](x))
-                    assert off <= tol.RATIO_BIN_ULP, (segment, octave, index, t)
+    for (function, at), row in zip(bins(), TABLE.reshape(-1, layout.COEFFICIENTS), strict=True):
+        for t in (-HALF_BIN, 0.4 * HALF_BIN):
+            value, exact = np.polynomial.polynomial.polyval(t, row), EXACT[function](at(t))
+            assert precise.ulps(value, exact) <= tol.RATIO_BIN_ULP, (function, at(t))
 
 
 def test_a_planted_error_of_1e_9_in_any_coefficient_is_noticed():
@@ -187,13 +171,7 @@ def test_a_planted_error_of_1e_9_in_any_coefficient_is_noticed():
     powers = (-HALF_BIN) ** np.arange(layout.COEFFICIENTS)
     planted = rows[:, None, :] * (1.0 + 1e-9 * np.eye(layout.COEFFICIENTS))  # bin, order of the planted one, order
     values = np.polynomial.polynomial.polyval(-HALF_BIN, np.moveaxis(planted, -1, 0))
-    starts = [
-        (segment.function, mp.mpf(2) ** octave * (1 + 2 * index * mp.mpf(HALF_BIN)))
-        for segment in layout.SEGMENTS
-        for octave in range(segment.low, segment.high)
-        for index in range(layout.BINS)
-    ]
-    exact = [EXACT[function](x) for function, x in starts]
+    exact = [EXACT[function](at(-HALF_BIN)) for function, at in bins()]
     visible = 1e-9 * abs(rows * powers) >= 4 * np.spacing(abs(np.array(exact, dtype=float)))[:, None]
     assert np.all(visible[:, :3])
     for n, order in np.argwhere(visible):

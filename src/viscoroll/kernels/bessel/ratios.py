@@ -5,7 +5,7 @@
 Piecewise polynomials indexed by the bits of the argument (:mod:`layout`, no
 logarithm), the power series below them and the asymptotic series above, economized to the
 same degree: every positive double is served by one polynomial, chosen without a branch.
-Relative error at most 2.4 ULP (``pipeline/prove.py``; on the points of
+Relative error at most 2.4 ULP (``pipeline/prove/``; on the points of
 ``tests/kernels/bessel/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati equations
 
     r' = 1 - r/x - r^2      k' = k^2 + k/z - 1
@@ -15,13 +15,14 @@ and cost no further Bessel function.
 
 from __future__ import annotations
 
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
-from numpy.polynomial import Chebyshev, Polynomial
 
 from ..compile.fma import fma, septic
 from ..compile.jit import kernel
+from ..numerics.nodes import Interpolation, chebyshev, horner, in_many_digits
 from . import layout
 
 TABLE = np.load(Path(__file__).with_name("ratios.npy"))
@@ -51,9 +52,9 @@ def _r_power_series(terms: int) -> list[float]:
     return c
 
 
-def _asymptotic_series(sign: int, terms: int) -> list[float]:
+def _asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     """a_n of r (sign = -1) or k (sign = +1) = sum a_n x^-n, from the Riccati equations."""
-    a = [1.0]
+    a = [Decimal(1)]
     for n in range(1, terms):
         products = sum(a[i] * a[n - i] for i in range(1, n))
         step = (n - 2) * a[-1] if sign < 0 else -n * a[-1]
@@ -66,11 +67,12 @@ _NEAR, _FAR = 0.0625, 64.0
 K_LEAST = 2.0**-30
 
 
+@in_many_digits
 def _tail(sign: int) -> np.ndarray:
-    """x (1 - r) or z (1 - k) above 64 as a polynomial in the inverse, economized from the asymptotic series."""
-    series = Polynomial(-np.array(_asymptotic_series(sign, 17))[1:])
-    short = series.convert(domain=[0.0, 1.0 / _FAR], kind=Chebyshev).truncate(layout.COEFFICIENTS)
-    return short.convert(kind=Polynomial, domain=[-1.0, 1.0], window=[-1.0, 1.0]).coef
+    """x (1 - r) or z (1 - k) above 64 as a polynomial in the inverse: the asymptotic series at Chebyshev's nodes."""
+    series = [-a for a in _asymptotic_series(sign, 17)[1:]]
+    nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
+    return Interpolation(nodes).coefficients([horner(series, w) for w in nodes])
 
 
 _POWERS = np.array(_r_power_series(layout.COEFFICIENTS + 1))

@@ -1,1 +1,1 @@
-"""How kernels are compiled: the decorator and its cache, arithmetic in one rounding, plain assignments."""
+"""How kernels are compiled: the decorator and its cache, arithmetic in one rounding."""

@@ -70,13 +70,12 @@ class DiskCache:
             stored = self._path(signature, target.codegen()).read_bytes()
         except OSError:  # not there, or not to be read: saving will say so
             return None
-        try:
-            if hashlib.sha256(stored[_DIGEST_SIZE:]).digest() != stored[:_DIGEST_SIZE]:
-                raise ValueError("not what was written")
-            return CompileResult._rebuild(target, *pickle.loads(stored[_DIGEST_SIZE:]))
-        except Exception:  # compile again, save_overload then replaces the file
-            note_trouble(f"the cache of compiled kernels is damaged ({self._folder})")
-            return None
+        digest, content = stored[:_DIGEST_SIZE], stored[_DIGEST_SIZE:]
+        if hashlib.sha256(content).digest() == digest:
+            with suppress(Exception):  # written by whatever calls itself the same numba
+                return CompileResult._rebuild(target, *pickle.loads(content))
+        note_trouble(f"the cache of compiled kernels is damaged ({self._folder})")
+        return None  # save_overload then replaces the file
 
     def save_overload(self, signature: Any, compiled: CompileResult) -> None:
         """Store machine code: the file is whole or not there."""

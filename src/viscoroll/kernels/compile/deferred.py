@@ -11,7 +11,10 @@ kernels, the same bits, some three times the time.
 
 from __future__ import annotations
 
+import gc
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import Any, Callable
 
@@ -29,6 +32,11 @@ class EntryPipeline:
         self._given = given
 
     def compile_extra(self, function: Callable) -> Any:
+        """What numba makes of the function."""
+        with _garbage_kept():
+            return self._compiled(function)
+
+    def _compiled(self, function: Callable) -> Any:
         """The one guard of the names inside numba."""
         global _deferring
         if not _deferring:
@@ -43,14 +51,26 @@ class EntryPipeline:
         except Exception:  # numba was right
             _deferring = True
             raise
-        reason_line = " ".join(str(reason).split())
+        told = f"{type(reason).__name__}: {' '.join(str(reason).split())}"
         warnings.warn(
-            f"numba {numba.__version__} does not compile {function.__name__} together with what it calls "
-            f"({type(reason).__name__}: {reason_line}); kernels are compiled one by one, which takes longer",
+            f"numba {numba.__version__} does not compile {function.__name__} with what it calls ({told}); "
+            "kernels are compiled one by one, which takes longer",
             RuntimeWarning,
             stacklevel=2,
         )
         return compiled
+
+
+@contextmanager
+def _garbage_kept() -> Iterator[None]:
+    """numba makes millions of small objects that live until it is done: to look for dead ones takes a tenth."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
 
 
 def defer(whole: Any, options: dict[str, Any]) -> None:
@@ -108,7 +128,6 @@ def _pipelines() -> tuple[type, type]:
 
         def finalize(self) -> None:
             for library in below(self):
-                self._reload_init.update(library._reload_init)
                 self._final_module.link_in(alone(library), preserve=True)
             self._linking_libraries = []
             super().finalize()

@@ -6,11 +6,13 @@ equation collocated on them from the right end of a bin to the left is solved st
 
 from __future__ import annotations
 
+from decimal import Decimal
+
 import numpy as np
-from numpy.polynomial import legendre
 
 from ..compile.fma import fma, septic
 from ..compile.jit import kernel
+from ..numerics.nodes import Interpolation, radau
 from . import layout
 
 N = layout.COEFFICIENTS
@@ -23,42 +25,14 @@ ONE = 1023 << 52
 _HALF_BIN = 1 << (_SHIFT - 1)
 
 
-def _radau(n: int) -> np.ndarray:
-    """Left Radau nodes on [-1, 1]: -1 and the other zeros of P_(n-1) + P_n."""
-    nodes = legendre.legroots([0.0] * (n - 1) + [1.0, 1.0])
-    nodes[0] = -1.0
-    return np.ascontiguousarray(nodes)
-
-
-def fit_matrix(nodes: np.ndarray, half: float) -> np.ndarray:
-    """Node values -> coefficients in t = half * node."""
-    return np.ascontiguousarray(
-        np.linalg.inv(np.vander(nodes, increasing=True)) / half ** np.arange(nodes.size)[:, None]
-    )
-
-
-def _integrals(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Integrals from -1 to each node, and to 1, of the polynomials that are 1 at one node."""
-    basis = legendre.legvander(nodes, nodes.size - 1)
-    whole = np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(nodes.size)])
-    to_nodes = legendre.legvander(nodes, nodes.size) @ whole.T
-    to_end = legendre.legvander(np.ones(1), nodes.size) @ whole.T
-    inverse = np.linalg.inv(basis)
-    return np.ascontiguousarray(to_nodes @ inverse), np.ascontiguousarray((to_end @ inverse)[0])
-
-
-def _derivative(nodes: np.ndarray) -> np.ndarray:
-    """Values at (1, nodes) -> derivatives at the nodes."""
-    points = np.append(1.0, nodes)
-    basis = legendre.legvander(points, nodes.size)
-    slopes = np.array([legendre.legder(row) for row in np.eye(points.size)])
-    return np.ascontiguousarray(legendre.legvander(nodes, nodes.size - 1) @ slopes.T @ np.linalg.inv(basis))
-
-
-NODES = _radau(N)
-FIT = fit_matrix(NODES, HALF)
-TO_NODES, TO_END = _integrals(NODES)
-DERIVATIVE = _derivative(NODES)
+_NODES = Interpolation(radau(N, -1))
+NODES = _NODES.nodes
+#: values at the nodes to the coefficients of powers of t
+FIT = _NODES.powers(HALF)
+#: values at the nodes to the integrals from -1 to each node, and to 1
+TO_NODES, TO_END = _NODES.integrals(_NODES.exact), _NODES.integrals([Decimal(1)])[0]
+#: values at (1, nodes) to the slopes at the nodes
+DERIVATIVE = Interpolation((Decimal(1), *_NODES.exact)).slopes(_NODES.exact)
 
 
 @kernel(inline=True)

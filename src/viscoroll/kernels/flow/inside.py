@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.bracket import narrowed, secant
+from ..numerics.bracket import narrowed, secant
 from . import layout
 from .read import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, SPEEDS, layer_state, slow_creep
 

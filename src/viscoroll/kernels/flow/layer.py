@@ -14,21 +14,22 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.bracket import narrowed, secant
 from ..law.length import contact_length
 from ..law.material import generator_slopes
 from ..motion import dop853
 from ..motion.partial_slip import branch_rates
+from ..numerics.arrays import copy, fill
+from ..numerics.bracket import narrowed, secant
+from ..numerics.nodes import Interpolation, chebyshev
 from . import layout
-from .fit import BINS, N, bin_of, fit_matrix, node, put, value
+from .fit import BINS, N, bin_of, node, put, value
 from .read import slow_entry, slow_loss, slow_path
 
 _LONGEST = 0.5
 _SPEED_N, _FAST_N = layout.SPEED_COEFFICIENTS, layout.FAST_COEFFICIENTS
-_SPEED_NODES = -np.cos(np.pi * (np.arange(_SPEED_N) + 0.5) / _SPEED_N)
-_FAST_NODES = -np.cos(np.pi * (np.arange(_FAST_N) + 0.5) / _FAST_N)
-_SPEED_FIT = fit_matrix(_SPEED_NODES, 0.5)
-_FAST_FIT_OCTAVE, _FAST_FIT_HALF = fit_matrix(_FAST_NODES, 0.5), fit_matrix(_FAST_NODES, 0.25)
+_SPEED, _FAST = Interpolation(chebyshev(_SPEED_N)), Interpolation(chebyshev(_FAST_N))
+_SPEED_NODES, _FAST_NODES = _SPEED.nodes, _FAST.nodes
+_SPEED_FIT, _FAST_FIT_OCTAVE, _FAST_FIT_HALF = _SPEED.powers(0.5), _FAST.powers(0.5), _FAST.powers(0.25)
 #: columns of a layer's table
 LN_V, SLIP, X_EXCESS, ANGLE_EXCESS, LOSS = range(layout.LAYER_COLUMNS)
 _WHOLE = layout.ENTRY_COLUMNS - 1
@@ -110,11 +111,11 @@ def _roll(V0, entering, sign, low, scene, values, crossing):
                 h = min(target - E, _LONGEST, max(E, bend) if entering else _LONGEST)
                 _advance(u, h, sign, V0, 1.0 / rate, scene, K, new)
                 if entering and crossing[0] < 0.0 and sign * new[1] <= 0.0:
-                    trial[:] = new
+                    copy(new, trial)
                     crossing[0] = E + _crossing(u, h, sign, V0, 1.0 / rate, scene, K, trial)
                     crossing[1] = np.log(branch_rates(trial[0], 0.0, sign, scene)[2] / V0)
-                    crossing[2:] = trial[2:]
-                u[:] = new
+                    copy(trial[2:], crossing[2:])
+                copy(new, u)
                 E = target if h == target - E else E + h
             _, _, V, delta, _ = branch_rates(u[0], u[1], sign, scene)
             if not np.exp(u[0]) > sign * u[1]:
@@ -166,7 +167,7 @@ def _join_slow(v, E, V, x, angle, loss, scene, table, whole):
     whole[0] = lam - slow_entry(v, table)[0]
     whole[1], whole[2] = scale * (E + x) - slow_x, scale * (E + angle) - slow_angle
     whole[3] = V0 * V0 * loss - (slow_loss(lam, table) - slow_loss(lam_end, table))
-    whole[4:] = 0.0
+    fill(0.0, whole[4:])
 
 
 @kernel
@@ -231,9 +232,10 @@ def _fit_entry(whole, first, octave, crosses, scene, table, entry):
             rows[layout.ENTRY_LAMBDA, n] = fine[0] + slow_entry(v, table)[0]
             rows[layout.ENTRY_X, n], rows[layout.ENTRY_ANGLE, n], rows[layout.ENTRY_LOSS, n] = fine[1], fine[2], fine[3]
             rows[layout.RATE, n] = stiff_rate(v / scene.kappa, scene)
-            rows[layout.CROSSING :, n] = fine[4:]
+            copy(fine[4:], rows[layout.CROSSING :, n])
         for column in range(layout.ENTRY_COLUMNS):
             put(entry, b, column, rows[column])
         if not crosses:
-            entry[b, layout.CROSSING :] = 0.0
+            for column in range(layout.CROSSING, layout.ENTRY_COLUMNS):
+                fill(0.0, entry[b, column])
             entry[b, layout.CROSSING, 0] = np.inf

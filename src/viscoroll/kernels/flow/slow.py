@@ -13,6 +13,8 @@ from ..compile.jit import kernel
 from ..law.length import contact_length
 from ..law.material import at_contact
 from ..motion.partial_slip import partial_jacobian, partial_rhs, partial_speeds
+from ..numerics.arrays import fill
+from ..numerics.linear import eliminate
 from . import layout
 from .fit import BINS, DERIVATIVE, HALF, NODES, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
 
@@ -34,7 +36,7 @@ def _collocate(v, y, half, offset_end, offset, scene):
     """Solve for ``offset`` at the nodes v of a bin, given its value at the right end; False if it fails."""
     f, slope = np.empty(N), np.empty(N)
     matrix, residual = np.empty((N, N)), np.empty(N)
-    offset[:] = offset_end
+    fill(offset_end, offset)
     last = np.inf
     for _ in range(_ITERATIONS):
         for n in range(N):
@@ -54,11 +56,11 @@ def _collocate(v, y, half, offset_end, offset, scene):
                 matrix[n, m] = DERIVATIVE[n, m + 1] * scale
             matrix[n, n] -= slope[n] * scale
             residual[n] = (f[n] - total) * scale
-        change = np.linalg.solve(matrix, residual)
+        eliminate(matrix, residual)
         worst = 0.0
         for n in range(N):
-            offset[n] += change[n]
-            worst = max(worst, abs(change[n]) * np.exp(-y[n]))
+            offset[n] += residual[n]
+            worst = max(worst, abs(residual[n]) * np.exp(-y[n]))
         if not worst < 1e300:
             return False
         if worst < 1e-14 or (worst < 1e-11 and worst > 0.5 * last):
@@ -140,7 +142,8 @@ def _integrals(rate, V, delta, power, pace, table):
             ends[3] += weight * power[b, m]
         for column in range(5):
             put(table, b, column, rows[column])
-    table[:, layout.LAMBDA, 0] -= start
+    for b in range(table.shape[0]):
+        table[b, layout.LAMBDA, 0] -= start
 
 
 @kernel

@@ -20,6 +20,7 @@ import numpy as np
 
 from ..bessel.layout import BINS, COEFFICIENTS
 from ..compile.jit import kernel
+from ..numerics.nodes import chebyshev, rounded, to_chebyshev
 from .length import OK, contact_length
 from .material import generator_slopes, generators, moment_factor
 from .standard import standard
@@ -29,12 +30,10 @@ LENGTH, SHIFT, CREEP, MOMENT = range(4)
 SHARE, PRESS, RISE = range(3)
 
 _HALF_BIN = 0.5 / BINS
-_ANGLES = np.pi * (np.arange(COEFFICIENTS) + 0.5) / COEFFICIENTS
 #: Chebyshev nodes, the middle one at the centre of the bin
-_NODES = np.where(np.arange(COEFFICIENTS) == COEFFICIENTS // 2, 0.0, np.cos(_ANGLES))
+_NODES = rounded(chebyshev(COEFFICIENTS))
 #: from values at the nodes to Chebyshev coefficients
-_TO_CHEBYSHEV = np.cos(np.outer(np.arange(COEFFICIENTS), _ANGLES)) * (2.0 / COEFFICIENTS)
-_TO_CHEBYSHEV[0] *= 0.5
+_TO_CHEBYSHEV = to_chebyshev(COEFFICIENTS)
 #: from these to coefficients of powers of the offset from the centre of the bin
 _TO_POWERS = np.zeros((COEFFICIENTS, COEFFICIENTS))
 for _n in range(COEFFICIENTS):

@@ -8,14 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..numerics.nodes import gauss
 from .length import MAX_STEPS, NOT_CONVERGED, OK, small_step
 from .material import generator_slopes, generators, second_slopes
 
 #: 5-point Gauss-Legendre rule on [0, 1]
-GAUSS_X = np.array([0.046910077030668004, 0.23076534494715845, 0.5, 0.7692346550528415, 0.953089922969332])
-GAUSS_W = np.array(
-    [0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454]
-)
+GAUSS_X, GAUSS_W = gauss(5)
 #: below this (zeta - eta)/zeta differences of g and h are integrals of their slopes
 CLOSE = 0.1
 #: below this d/F(zeta) zeta - eta starts from the slopes at zeta

@@ -23,9 +23,9 @@ import numpy as np
 
 from ..bessel.ratios import ratio_k, ratio_r
 from ..compile.jit import kernel
+from ..numerics.nodes import gauss
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(28)
-_NODES, _WEIGHTS = 0.5 * (1.0 + _NODES), 0.5 * _WEIGHTS
+_NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
 _DEEP = 38.0
 

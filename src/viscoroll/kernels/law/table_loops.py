@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..numerics.arrays import copy
 from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
 from .length import OK, contact_solution, near_length
 from .material import moment_of
@@ -63,5 +64,6 @@ def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
         worst = max(worst, status)
         for m in range(plane.shape[0]):
             plane[m, i] = out[m, 0]
-        volume[:, i] = out[plane.shape[0] :]
+        for m in range(volume.shape[0]):
+            copy(out[plane.shape[0] + m], volume[m, i])
     return worst

@@ -2,43 +2,32 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
+
 import numpy as np
-from numpy.polynomial import legendre
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
+from ..numerics.nodes import Interpolation, radau
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
 N = 9
 
 
-def _radau_nodes() -> np.ndarray:
-    """-1 and the zeros of P_N - P_(N-1), of which the last is 1."""
-    series = np.zeros(N + 1)
-    series[N - 1 :] = -1.0, 1.0
-    roots = np.sort(legendre.legroots(series).real)
-    slope = legendre.legder(series)
-    for _ in range(3):
-        roots -= legendre.legval(roots, series) / legendre.legval(roots, slope)
-    roots[-1] = 1.0
-    return np.concatenate(([-1.0], roots))
-
-
-NODES = _radau_nodes()
-_POWERS = np.vander(NODES, increasing=True)
+_INNER = Interpolation(radau(N, 1))
+_ALL = Interpolation((Decimal(-1), *_INNER.exact))
+NODES = _ALL.nodes
 #: values at all nodes to the coefficients of powers
-TO_POWERS = np.linalg.inv(_POWERS)
-_SLOPES = np.hstack((np.zeros((N + 1, 1)), _POWERS[:, :-1] * np.arange(1, N + 1)))
+TO_POWERS = _ALL.powers()
 #: values at all nodes to slopes at nodes 1 ... N
-SLOPES = (_SLOPES @ TO_POWERS)[1:]
-_INNER = np.linalg.inv(_POWERS[1:, :-1])
+SLOPES = _ALL.slopes(_INNER.exact)
 #: values at nodes 1 ... N to the coefficients of powers, to slopes there (column 0 is that of node 0)
-INNER_POWERS = _INNER
-SMOOTH_SLOPES = np.hstack((np.zeros((N, 1)), _SLOPES[1:, :-1] @ _INNER))
+INNER_POWERS = _INNER.powers()
+SMOOTH_SLOPES = np.hstack((np.zeros((N, 1)), _INNER.slopes(_INNER.exact)))
 #: values at nodes 1 ... N to the integrals from -1 to each of them, and to the value at -1
-INTEGRALS = np.array([[(x ** (k + 1) - (-1.0) ** (k + 1)) / (k + 1) for k in range(N)] for x in NODES[1:]]) @ _INNER
+INTEGRALS = _INNER.integrals(_INNER.exact)
 INTEGRAL = INTEGRALS[N - 1].copy()
-TO_START = (-1.0) ** np.arange(N) @ _INNER
+TO_START = _INNER.values([Decimal(-1)])[0]
 
 
 @kernel

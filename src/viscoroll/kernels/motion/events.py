@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy
 from ..compile.jit import kernel
-from ..law.bracket import narrowed, secant
+from ..numerics.arrays import copy
+from ..numerics.bracket import narrowed, secant
 from .explicit import explicit_dense_terms, explicit_step, slope_at
 from .full_slip import sliding_speed
 from .partial_slip import partial_speeds, signed_D

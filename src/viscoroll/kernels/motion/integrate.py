@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
 from ..law.length import OK
 from ..law.stick import stick_length
+from ..numerics.arrays import fill
 from .collocation import N
 from .dop853 import EXTENDED
 from .events import AT_REST, NO_EVENT, SLIP, STICK, speeds

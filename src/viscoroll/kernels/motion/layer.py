@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import fill
 from ..compile.jit import kernel
+from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRAL, INTEGRALS, NODES, SMOOTH_SLOPES, TO_START, N, integral_terms
 from .partial_slip import creep_rates
 from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.tabulated import KEPT, Tabulated
-from ..numerics.quarters import COEFFICIENTS
+from ..law.material import standard
+from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .output import OUTPUTS
 from .records import Scene
@@ -23,24 +23,19 @@ def motion_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps
     """
     one = np.empty((OUTPUTS, t.size))
     switches, step_ends = np.empty((0, 2)), np.empty(0)
-    numbers, pieces = np.full(KEPT, -1), np.empty((KEPT, COEFFICIENTS, 4))
-    last = 0.0
     for i in range(start, stop):
-        a = alpha[min(i, alpha.size - 1)]
-        if a != last:
-            numbers[:] = -1
-            last = a
         scene = Scene(
-            Tabulated(a, (a - 1.0) / a, numbers, pieces), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
+            standard(alpha[min(i, alpha.size - 1)]), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
             j[min(i, j.size - 1)],
         )  # fmt: skip
-        one[:] = np.nan
+        for row in one:
+            fill(np.nan, row)
         result = integrate(
             scene, gamma[min(i, gamma.size - 1)],
             V0[min(i, V0.size - 1)], omega0[min(i, omega0.size - 1)],
             t, rtol, rest, max_steps, one, switches, step_ends,
         )  # fmt: skip
         for n in range(rows.size):
-            out[n, i, :] = one[rows[n], :]
+            copy(one[rows[n]], out[n, i])
         info[i, 0], info[i, 1], info[i, 2] = result[0], result[1], result[2]
         info[i, 3], info[i, 4] = result[3], result[4]

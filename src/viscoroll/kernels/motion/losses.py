@@ -16,6 +16,7 @@ from ..compile.jit import kernel
 from ..law.contact_loop import ROWS as CONTACT_ROWS
 from ..law.contact_loop import Q, contact_state
 from ..law.stick import GAUSS_W, GAUSS_X
+from ..numerics.arrays import fill
 from .integrate import integrate
 from .output import OUTPUTS
 from .stepper import PARTIAL
@@ -47,12 +48,17 @@ def _panels(step_ends, t):
     count = 0
     while count < step_ends.size and (count == 0 or step_ends[count] > 0.0):
         count += 1
-    edges = np.zeros(1 + t.size + count)
-    edges[1 : 1 + t.size] = t
-    for n in range(count):
-        edges[1 + t.size + n] = min(step_ends[n], t[t.size - 1])
-    step_ends[:count] = 0.0
-    return np.sort(edges)
+    edges, last = np.zeros(1 + t.size + count), t[t.size - 1]
+    m = n = 0
+    for k in range(1, edges.size):
+        if n == count or (m < t.size and t[m] <= step_ends[n]):
+            edges[k] = t[m]
+            m += 1
+        else:
+            edges[k] = min(step_ends[n], last)
+            n += 1
+    fill(0.0, step_ends[:count])
+    return edges
 
 
 @kernel(allocates=True)
@@ -68,7 +74,9 @@ def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_end
         for k in range(_POINTS):
             times[n * _POINTS + k] = edges[n] + (edges[n + 1] - edges[n]) * GAUSS_X[k]
     times[panels * _POINTS] = t[t.size - 1]
-    points = np.full((OUTPUTS, times.size), np.nan)
+    points = np.empty((OUTPUTS, times.size))
+    for row in points:
+        fill(np.nan, row)
     integrate(scene, gamma, V0, omega0, times, rtol, rest, max_steps, points, np.empty((0, 2)), np.empty(0))
     state = np.empty(len(CONTACT_ROWS))
     lost, n = 0.0, 0

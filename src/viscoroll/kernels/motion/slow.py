@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy, fill
 from ..compile.jit import kernel
+from ..numerics.arrays import copy, fill
+from ..numerics.linear import eliminate
 from .collocation import INTEGRAL, NODES, TO_POWERS, TO_START, N, integral_terms, polynomial, rise_at
 from .partial_slip import partial_rates
 
@@ -32,23 +33,6 @@ def _evaluate(i, y, values, scene):
         values[i, _RATE], values[i, _DRIFT], values[i, _V], values[i, _DELTA], values[i, _DECAY],
         values[i, _RATE_D], values[i, _DRIFT_D], values[i, _DELTA_D], values[i, _D],
     ) = partial_rates(y, values[i, _OFFSET], scene)  # fmt: skip
-
-
-@kernel
-def _eliminate(matrix, right):
-    """Solve in place, without pivoting: what that spoils, Newton's convergence shows."""
-    for i in range(N):
-        inverse = 1.0 / matrix[i, i]
-        for row in range(i + 1, N):
-            factor = matrix[row, i] * inverse
-            for column in range(i + 1, N):
-                matrix[row, column] -= factor * matrix[i, column]
-            right[row] -= factor * right[i]
-    for i in range(N - 1, -1, -1):
-        total = right[i]
-        for column in range(i + 1, N):
-            total -= matrix[i, column] * right[column]
-        right[i] = total / matrix[i, i]
 
 
 @kernel
@@ -76,7 +60,7 @@ def slow_solve(y, length, tolerance, slopes, values, matrix, right, scene):
                 matrix[i, n] = rate * slopes[i, n + 1] / half
             matrix[i, i] += slope * values[i + 1, _RATE_D] - values[i + 1, _DRIFT_D]
             right[i] = values[i + 1, _DRIFT] - rate * slope
-        _eliminate(matrix, right)
+        eliminate(matrix, right)
         change = 0.0
         for i in range(N):
             shift = right[i]

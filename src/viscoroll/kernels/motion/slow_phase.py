@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy
 from ..compile.jit import kernel
+from ..numerics.arrays import copy
 from .collocation import NODES, SLOPES, N, place, rise_at
 from .control import SHARE, creep_weight, path_error, slip_share
 from .events import AT_REST, NO_EVENT

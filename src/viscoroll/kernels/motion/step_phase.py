@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.arrays import copy
 from ..compile.jit import kernel
+from ..numerics.arrays import copy
 from .control import (
     SHARE,
     creep_weight,

@@ -1,1 +1,1 @@
-"""What the kernels compute with: numbers, polynomials, roots."""
+"""What any numerical method needs: nodes and matrices of interpolation, brackets, loops over arrays."""

@@ -1,0 +1,1 @@
+"""The stages behind the Makefile; README.md shows which makes what from what."""

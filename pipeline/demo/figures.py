@@ -1,0 +1,57 @@
+"""Stage 5: every figure -> out/figures/*.png; the error maps from the atlas, the distribution from the ensemble.
+
+python -m pipeline.demo.figures [--config FILE] [-o FOLDER]
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import xarray as xr
+from tqdm import tqdm
+
+import viscoroll as vr
+from viscoroll.errors import FileProblem
+from viscoroll.figures import FIGURES, save
+
+from .. import stage
+
+
+class Figures(msgspec.Struct, forbid_unknown_fields=True):
+    """[figures]: the atlas, seen from the root of the project."""
+
+    atlas: str
+
+
+def load_ensemble(path: Path) -> xr.Dataset:
+    """What pipeline/demo/ensemble.py wrote.
+
+    Raises
+    ------
+    FileProblem
+        If it is not there or cannot be read.
+    """
+    try:
+        return xr.load_dataset(path, engine="h5netcdf")
+    except (OSError, ValueError) as error:
+        raise FileProblem(path, f"cannot be read ({error}); run pipeline.demo.ensemble first") from error
+
+
+def work(settings: Figures, out: Path) -> stage.Outcome:
+    ensemble = load_ensemble(out / "ensemble.nc")
+    shown: dict[str, tuple[Any, ...]] = {
+        "atlas-errors": (vr.tables.load(stage.ROOT / settings.atlas),),
+        "ensemble": (ensemble, ensemble),
+    }
+    folder, files = stage.make_folder(out / "figures"), []
+    for name, draw in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):
+        files.append(folder / f"{name}.png")
+        save(draw(*shown.get(name, ())), files[-1])
+    return stage.Outcome(files)
+
+
+if __name__ == "__main__":
+    sys.exit(stage.run("figures", Figures, work, __doc__))

@@ -1,0 +1,158 @@
+"""Stage 6: one page over all that was made -> out/index.html.
+
+    python -m pipeline.demo.summary [--config FILE] [-o FOLDER] [--show]
+
+With --show nothing is written: prints where everything is, the headline errors and the times.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import sys
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+import viscoroll as vr
+from viscoroll.errors import FileProblem
+from viscoroll.files import write_text
+from viscoroll.tables import schema
+
+from .. import stage
+
+STAGES = {
+    "tabulate": "Building the tables",
+    "validate": "Against direct solves of the printed equations",
+    "motions": "The paper's motions IC1-IC3",
+    "ensemble": "Random starts",
+    "figures": "Figures",
+}
+_STYLE = (
+    "body{font:16px/1.45 sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#111}"
+    "table{border-collapse:collapse;margin:.6em 0}td,th{border:1px solid #bbb;padding:.2em .6em;text-align:left}"
+    "td.n{text-align:right;font-variant-numeric:tabular-nums}img{max-width:100%;border:1px solid #ddd}"
+    "figure{margin:1.5em 0}pre{overflow-x:auto;background:#f4f4f4;padding:.8em;font-size:12px}.bad{font-weight:bold}"
+)
+
+
+class Summary(msgspec.Struct, forbid_unknown_fields=True):
+    """[summary]: the table files that the page links to, seen from the root of the project."""
+
+    tables: list[str]
+
+
+def records(out: Path) -> dict[str, dict[str, Any]]:
+    """What the stages left under <out>/stages.
+
+    Raises
+    ------
+    FileProblem
+        If one of them has not run, or its record is damaged.
+    """
+    found = {}
+    for name in STAGES:
+        path = out / "stages" / f"{name}.json"
+        try:
+            found[name] = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise FileProblem(path, f"cannot be read ({error}); run pipeline.demo.{name} first") from error
+    return found
+
+
+def table_facts(path: Path) -> dict[str, Any]:
+    """Size in MB, grid, and the stated interpolation errors of a table file."""
+    table = vr.tables.load(path)
+    fields = schema.FIELDS[table.attrs[schema.KIND]]
+    errors = {name: float(table[name].attrs["interpolation_error"]) for name in fields}
+    megabytes = path.stat().st_size / 1e6
+    return {"MB": megabytes, "title": table.attrs["title"], "grid": table.attrs["grid"], "errors": errors}
+
+
+def rows(pairs: dict[str, Any]) -> str:
+    """A two-column HTML table."""
+    lines = (
+        f'<tr><td>{escape(str(name))}</td><td class="n">{escape(stage.readable(value))}</td></tr>'
+        for name, value in pairs.items()
+    )
+    return f"<table>{''.join(lines)}</table>"
+
+
+def link(path: Path, out: Path) -> str:
+    """A link as seen from the page."""
+    target = Path(os.path.relpath(path, out)).as_posix()
+    return f'<a href="{escape(target)}">{escape(path.name)}</a>'
+
+
+def picture(path: Path, out: Path) -> str:
+    """A figure with its image in the page itself."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    source = f"data:image/png;base64,{data}"
+    return f'<figure><img src="{source}" alt="{escape(path.stem)}"><figcaption>{link(path, out)}</figcaption></figure>'
+
+
+def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> str:
+    """The whole page."""
+    failed = found["validate"]["failed"]
+    verdict = '<span class="bad">a stated tolerance is exceeded</span>' if failed else "every check passed"
+    parts = [
+        "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>viscoroll</title>',
+        f"<style>{_STYLE}</style></head><body>", "<h1>viscoroll: what was computed</h1>",
+        f"<p>viscoroll {escape(vr.__version__)}.  Everything is dimensionless.  Validation: {verdict}.</p>",
+        "<h2>Times, s</h2>", rows({name: record["seconds"] for name, record in found.items()}), "<h2>Tables</h2>",
+    ]  # fmt: skip
+    for path, facts in tables.items():
+        parts.append(f"<h3>{link(path, out)} ({facts['MB']:.1f} MB)</h3>")
+        parts.append(f"<p>{escape(facts['title'])}.  {escape(facts['grid'])}.</p>")
+        parts.append("<p>Largest interpolation error off the nodes, absolute:</p>" + rows(facts["errors"]))
+    for name, title in STAGES.items():
+        parts.append(f"<h2>{escape(title)}</h2>")
+        files = [out / file for file in found[name]["files"]]
+        if found[name]["headline"]:
+            parts.append(rows(found[name]["headline"]))
+        pictures = [path for path in files if path.suffix == ".png"]
+        others = [link(path, out) for path in files if path not in pictures]
+        parts.append(f"<p>{', '.join(others)}</p>" if others else "")
+        parts += [picture(path, out) for path in pictures]
+    report = (out / "validation.txt").read_text(encoding="utf-8")
+    parts.append(f"<h2>All checks</h2><pre>{escape(report)}</pre></body></html>")
+    return "\n".join(part for part in parts if part) + "\n"
+
+
+def show(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> None:
+    """Print the same in short: files, headline numbers, times."""
+    for path, facts in tables.items():
+        worst = ", ".join(f"{name} {error:.2g}" for name, error in facts["errors"].items())
+        print(f"{stage.shown(path)} ({facts['MB']:.1f} MB): errors between nodes: {worst}")
+    for name, record in found.items():
+        files = [stage.shown(out / file) for file in record["files"]]
+        where = f"{len(files)} pictures in {stage.shown(out / 'figures')}" if name == "figures" else ", ".join(files)
+        print(f"{name} ({record['seconds']:.1f} s): {where}")
+        for text, value in record["headline"].items():
+            print(f"  {text}: {stage.readable(value)}")
+    print(f"Everything on one page: {stage.shown(out / 'index.html')}")
+
+
+def summarise(config: Path, out: Path, print_only: bool) -> None:
+    """Write the page, or print the same in short."""
+    settings = stage.read_section(config, "summary", Summary)
+    found = records(out)
+    tables = {stage.ROOT / name: table_facts(stage.ROOT / name) for name in settings.tables}
+    if print_only:
+        return show(out, found, tables)
+    write_text(out / "index.html", page(out, found, tables))
+    print(f"summary: {stage.shown(out / 'index.html')}")
+
+
+def main() -> int:
+    parser = stage.parser(__doc__)
+    parser.add_argument("--show", action="store_true", help="print files, errors and times; write nothing")
+    arguments = parser.parse_args()
+    return stage.told("summary", lambda: summarise(arguments.config, arguments.output, arguments.show))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

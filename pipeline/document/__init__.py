@@ -1,0 +1,1 @@
+"""Results in words: the marked blocks of README.md and docs/."""

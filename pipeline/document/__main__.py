@@ -1,0 +1,106 @@
+"""Put measured numbers into the text: data/results/ -> marked blocks of README.md and docs/.
+
+    python -m pipeline.document [--check] [--results FILE] [FILE ...]
+
+A block is what stands between <!-- measured:NAME --> and <!-- end -->; NAME is a block of STAGES.
+Nothing else is touched, and a second run changes nothing.  With --check nothing is written: exit code 1
+if a block is out of date.  Exit code 2 for results that are missing or incomplete, and for broken marks.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from viscoroll import ViscorollError
+from viscoroll.files import write_text
+
+from ..results import RESULTS, Results
+from ..stage import ROOT, told
+from . import bench, ensembles, tables
+
+#: who measures what a block shows
+STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
+    "measure": {
+        "headline": tables.headline, "contact": tables.contact, "direct": tables.direct, "stress": tables.stress,
+        "motion": tables.motion, "times": tables.times,
+    },
+    "measure.large": {"large": tables.large},
+    "measure.loading": {"loading": tables.loading, "loading_steps": tables.loading_steps},
+    "measure.ensembles": {
+        "ensembles": ensembles.rates, "ensembles_cluster": ensembles.cluster, "ensembles_plan": ensembles.plan,
+    },
+    "prove": {"proofs": tables.proofs},
+    "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},
+    "torture": {"torture": tables.torture},
+    "bench": {
+        "bench_peers": bench.peers, "bench_all": bench.headline, "bench_fixed_scene": bench.fixed_scene,
+        "bench_own": bench.own_parameters, "bench_agreement": bench.agreement, "bench_law": bench.law,
+        "bench_scaling": bench.scaling, "bench_skips": bench.skips, "bench_cold_start": bench.cold_start,
+    },
+}  # fmt: skip
+BLOCKS = {name: (stage, text) for stage, texts in STAGES.items() for name, text in texts.items()}
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+_BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+_MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")
+
+
+class DocumentError(ViscorollError):
+    """Results that are missing or incomplete, or marks that do not pair."""
+
+
+def filled(text: str, results: Results, name: str) -> str:
+    """``text`` of the page ``name`` with every block filled.
+
+    Raises
+    ------
+    DocumentError
+        Marks that do not pair, an unknown block, or results that lack a number.
+    """
+
+    def fill(match: re.Match[str]) -> str:
+        if match[2] not in BLOCKS:
+            raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}")
+        stage, block = BLOCKS[match[2]]
+        try:
+            return f"{match[1]}{block(results)}{match[3]}"
+        except (KeyError, TypeError) as error:
+            raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline.{stage}") from error
+
+    result, count = _BLOCK.subn(fill, text)
+    if len(_MARK.findall(text)) != 2 * count:
+        raise DocumentError(f"{name}: a mark <!-- measured:NAME --> or <!-- end --> has no partner")
+    return result
+
+
+def document(files: list[Path], measured: Path, check: bool) -> int:
+    """Fill the blocks of ``files``, or only see whether they are up to date: 1 if they are not."""
+    results, stale = Results(measured.parent, RESULTS), []
+    results["measured"] = json.loads(measured.read_text(encoding="utf-8"))
+    for path in files:
+        old = path.read_text(encoding="utf-8")
+        new = filled(old, results, path.name)
+        if new != old:
+            stale.append(path.name)
+            if not check:
+                write_text(path, new)
+    if stale:
+        print(f"{', '.join(stale)}: {'out of date: run pipeline.document' if check else 'filled'}")
+    return int(check and bool(stale))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a block is out of date")
+    parser.add_argument("--results", type=Path, default=RESULTS / "measured.json", help="those of pipeline.measure")
+    parser.add_argument("files", nargs="*", type=Path, default=DOCUMENTS, metavar="FILE")
+    arguments = parser.parse_args()
+    return told("document", lambda: document(arguments.files, arguments.results, arguments.check))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Errors, times and memory that the text states."""

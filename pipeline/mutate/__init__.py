@@ -1,0 +1,1 @@
+"""Defects planted in the kernels, and whether the tests notice."""

@@ -1,0 +1,98 @@
+"""The defects that pipeline/mutate/ plants, each in one place of the kernels, and the tests that should notice."""
+
+# ruff: noqa: E501
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Mutant(NamedTuple):
+    """``old`` occurs once in the kernel ``file`` and becomes ``new``; for a table, ``old`` is the coefficient's number."""
+
+    file: str
+    old: str
+    new: str
+    tests: str
+
+
+_LAW, _RATIOS, _STRESS = "tests/test_contact.py", "tests/kernels/bessel/test_ratios.py", "tests/test_stress.py"
+_DIRECT, _SLICE, _MOTION = (
+    "tests/kernels/printed/test_direct.py",
+    "tests/test_alpha_slice.py",
+    "tests/motion/test_motion.py",
+)
+
+LAW = [
+    ("law/material.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
+    ("law/material.py", "dp = dr * k + r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", "dp = dr * k - r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", _LAW),
+    ("law/material.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _LAW),
+    ("law/stick.py", "return D, (1.0 + ratio) * D\n", "return D, ratio * D\n", _LAW),
+    ("law/stick.py", "return zeta - d, d, (2.0 - d / zeta) * d, OK", "return zeta - d, 0.5 * d, (2.0 - d / zeta) * d, OK", _MOTION),
+    ("law/stick.py", "slope_zh += GAUSS_W[n] * (h + z * dh)", "slope_zh += GAUSS_W[n] * (h + zeta * dh)", _LAW),
+    ("numerics/nodes.py", "weights = [1 / ((1 - x * x)", "weights = [(1 + Decimal('1e-9')) / ((1 - x * x)", _LAW),
+    ("law/stick.py", "CLOSE = 0.1\n", "CLOSE = 0.9\n", _LAW),
+    ("law/material.py", "return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g", "return lam * ratio_i2(alpha * zeta, h / rest) * rest + g", _LAW),
+    ("law/length.py", "_CUBED = 3e-6\n", "_CUBED = 3e-3\n", _LAW),
+    ("law/length.py", "_SLOW, _FAST = 1e-17, 1e-9\n", "_SLOW, _FAST = 1e-7, 1e-9\n", _LAW),
+    ("law/stick.py", "low, high = max(y - 0.5 * material.c, 0.0), y", "low, high = max(y - 0.25 * material.c, 0.0), y", _LAW),
+    ("law/contact_loop.py", "direction = -1.0 if V < 0.0 else 1.0", "direction = 1.0", _LAW),
+    ("law/contact_loop.py", "delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa", "delta_star = 0.5 * mu * lam / kappa", _LAW),
+    ("law/contact_loop.py", "full_slip = abs(delta) >= delta_star", "full_slip = abs(delta) > delta_star", _LAW),
+    ("law/contact_loop.py", "return 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "return np.copysign(np.inf, slip)", _LAW),
+    ("law/contact_loop.py", "bracket = -share * H + H * fall / A + 0.5 * A_eta * d", "bracket = -share * H + H * fall / A - 0.5 * A_eta * d", _LAW),
+    ("law/contact_loop.py", "out[DQ_DV] -= dQ_ddelta * (1.0 + delta) / speed", "out[DQ_DV] -= dQ_ddelta / speed", _LAW),
+    ("law/contact_loop.py", "out[M], out[DM_DV] = c * V, c\n", "out[M], out[DM_DV] = V, c\n", _LAW),
+    ("law/material.py", "d_i2 = alpha * 2.0 * (r * r - i2) * per_x", "d_i2 = alpha * 2.0 * (r - i2) * per_x", _LAW),
+    ("law/slopes.py", "(ddH * dF - dH * ddg)", "(ddH * dF + dH * ddg)", _LAW),
+    ("bessel/ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
+    ("bessel/ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
+    ("bessel/ratios.py", "return k if z < 1.0 else", "return k if z <= 1.0 else", _RATIOS),
+    ("bessel/ratios.py", "return complement * (1.0 + r) - r / x", "return complement * (1.0 - r) - r / x", _RATIOS),
+    ("bessel/ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),
+    ("bessel/ratios.py", "K_LEAST = 2.0**-30\n", "K_LEAST = 2.0**-20\n", _RATIOS),
+    ("bessel/ratios.py", "r_complement * (1.0 + r) - r * per_x", "r_complement * (1.0 - r) - r * per_x", _LAW),
+    ("compile/fma.py", "fma(t, c5, c4)", "fma(t, c4, c5)", _RATIOS),
+    ("law/lockstep.py", "small_step(lam, new)", "small_step(lam, lam)", _LAW),
+    ("law/lockstep.py", "small_step(z, new)", "small_step(z, z)", _LAW),
+]  # fmt: skip
+STRESS = [
+    ("law/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _STRESS),
+    ("law/stress.py", "_DEEP = 38.0\n", "_DEEP = 12.0\n", _STRESS),
+    ("law/stress.py", "offset = w - r_complement", "offset = w + r_complement", _STRESS),
+    ("law/stress.py", "scale = lam / (8.0 * np.pi * kappa)", "scale = lam / (8.0 * np.pi * kappa * (1.0 + 1e-9))", _STRESS),
+    ("law/stress.py", "u = (1.0 - y) + epsilon", "u = (1.0 - y) - epsilon", _STRESS),
+    ("law/stress.py", "2.0 - u / beta, beta * zeta", "2.0 - u / beta, zeta", _STRESS),
+    ("printed/law.py", "bracket = 1.0 + epsilon - beta - 2.0", "bracket = 1.0 - beta - 2.0", _DIRECT),
+    ("printed/law.py", "0.5 * epsilon * (1.0 - lam * lam) + 0.5", "0.5 * epsilon * (1.0 + lam * lam) + 0.5", _DIRECT),
+]  # fmt: skip
+SLICE = [
+    ("law/slice_fit.py", "share * (eta + 2.0 * h) / y", "share * (eta + 2.0 * h) / (y * (1.0 + 1e-9))", _SLICE),
+    ("law/slice_fit.py", "lam * (1.0 + g / zeta)", "lam * (1.0 + g / zeta * (1.0 + 1e-9))", _SLICE),
+    ("law/slice_loop.py", "share = 1.0 - w * w * at_y", "share = 1.0 - w * at_y", _SLICE),
+    ("law/slice_loop.py", "EDGE = 2.0**-20\n", "EDGE = 2.0**-2\n", _SLICE),
+]  # fmt: skip
+MOTION = [
+    ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),
+    ("motion/full_slip.py", "return V, sigma * mu - half_M, per_s", "return V, sigma * mu + half_M, per_s", _MOTION),
+    ("motion/full_slip.py", "return V, mu * half_lam * (1.0 + g * s) * V", "return V, 0.98 * mu * half_lam * (1.0 + g * s) * V", _MOTION),
+    ("motion/slide.py", "- sigma * (1.0 / j - 1.0) * I", "+ sigma * (1.0 / j - 1.0) * I", _MOTION),
+    ("motion/slide.py", "(omega - (push - mean) / j) * tau", "(omega - push / j) * tau", _MOTION),
+    ("motion/partial_slip.py", "factor = -(1.0 - j) / (8.0", "factor = (1.0 - j) / (8.0", _MOTION),
+    ("motion/partial_slip.py", "rate = q_over_V - 0.5 * m\n", "rate = q_over_V - 0.5 * m * (1.0 + 1e-6)\n", _MOTION),
+    ("motion/partial_slip.py", "0.5 * m) * (per_V / mu) - 2.0 * d * rate", "0.5 * m) * (per_V / mu)", _MOTION),
+    ("motion/events.py", "return 1.0 - abs(signed_D(u0, u1, scene)) * np.exp(-u0)", "return 2.0 - abs(signed_D(u0, u1, scene)) * np.exp(-u0)", _MOTION),
+    ("motion/slide_phase.py", "event = REVERSAL\n", "event = STICK\n", "tests/kernels/motion/test_slide.py"),
+    ("motion/collocation.py", "total = fma(t, total, powers[row, k])", "total = fma(t, total, powers[row, k] * (1.0 + 1e-7))", _MOTION),
+    ("motion/slow.py", "return half * tau, half * X, half * (X + turn)", "return half * tau, half * X, half * (X - turn)", _MOTION),
+    ("motion/layer.py", "creep_rates(y, S + e, scene)", "creep_rates(y, S - e, scene)", "tests/kernels/motion/test_layer.py"),
+    ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/motion/test_ensemble.py"),
+    ("flow/layer.py", "V * (1.0 + delta) / V0 - 1.0", "V * (1.0 - delta) / V0 - 1.0", "tests/motion/test_flow.py"),
+    ("motion/integrate.py", "return FULL, -direction, -sigma\n", "return FULL, -direction, sigma\n", _MOTION),
+    ("motion/integrate.py", "u[1] = sigma * D - slow_D(u[0], scene)[0]", "u[1] = D - slow_D(u[0], scene)[0]", _MOTION),
+    ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),
+]  # fmt: skip
+#: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
+COEFFICIENTS = [
+    ("bessel/ratios.npy", str(n), "1e-9 of it more", _RATIOS) for n in (0, 1, 302, 1203, 2104, 3005, 4006, 5007)
+]
+MUTANTS = [Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *COEFFICIENTS)]

@@ -1,0 +1,1 @@
+"""Law and motions against enclosures, extended precision, and what others computed."""

@@ -1,0 +1,107 @@
+"""The fields of contact() against certified enclosures, state by state and by way of the slice of one alpha."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import flint
+import numpy as np
+from flint import arb
+from tqdm import tqdm
+
+import viscoroll as vr
+from viscoroll.alpha_slice import WORTHWHILE
+from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
+
+from ..reference.check_values import EDGE_ALPHAS, chosen_state
+from .claim import Claim, at
+
+FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
+#: relative error where the condition number leaves it, else that many roundings of the inputs
+WELL, ROUNDINGS, UNIT = 1e-13, 4.0, 2.0**-53
+#: the two bounds meet here
+WELL_CONDITIONED = WELL / (ROUNDINGS * UNIT)
+#: ULP of delta_star: where full slip begins, against where it should
+SLIP_ULP = 2.0
+SLIP = "full_slip: distance from delta_star where wrong, ULP"
+#: the last subnormals have no relative accuracy: their spacing, some times over
+_LEAST = 8 * 5e-324
+
+
+def one_by_one(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
+    """Calls with too few states for a slice."""
+    parts = [states[i : i + WORTHWHILE - 1] for i in range(0, len(states), WORTHWHILE - 1)]
+    found = []
+    for part in parts:
+        alpha, kappa, mu, V, delta = np.array(part).T
+        found.append(vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip")).as_dict())
+    return vr.rolling_contact.Values({name: np.concatenate([part[name] for part in found]) for name in found[0]})
+
+
+def by_slice(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
+    """One call for states of one alpha, filled up with copies to the number from which on a slice is used."""
+    alpha, kappa, mu, V, delta = (np.resize(column, max(WORTHWHILE, len(states))) for column in np.array(states).T)
+    state = vr.contact(vr.Scene(float(alpha[0]), kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
+    return vr.rolling_contact.Values({name: value[: len(states)] for name, value in state.as_dict().items()})
+
+
+class Tally(dict[str, Claim]):
+    """The claims of one way."""
+
+    def __init__(self, way: str) -> None:
+        super().__init__()
+        self.way = way
+
+    def add(self, claim: str, bound: float, error: float, state: tuple[float, ...]) -> None:
+        row = self.setdefault(claim, Claim(f"{claim} ({self.way})", DOMAIN, bound))
+        row.add(error, at(**dict(zip(INPUTS, state, strict=True))))
+
+
+DOMAIN = "alpha in [1, 1e6], kappa V in [1e-300, 1e300], kappa, mu in [1e-6, 1e6], s from 1e-300 to 1 and beyond"
+_WELL_CLAIM = f"{{}}, relative, condition below {WELL_CONDITIONED:.0f}"
+_ILL_CLAIM = f"{{}}, over condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f}"
+
+
+def compare(tally: Tally, state: tuple[float, ...], found: dict[str, float]) -> None:
+    """One state into the tally: full_slip, then each field over its bound."""
+    exact = contact_enclosure(*state)
+    if found["full_slip"] != exact["full_slip"]:
+        star = exact["delta_star"]
+        off = abs(arb(abs(state[4])) - star) / arb(float(np.spacing(float(star))))
+        tally.add(SLIP, SLIP_ULP, float(off.upper()), state)
+        return
+    tally.add(SLIP, SLIP_ULP, 0.0, state)
+    condition = condition_numbers({name: arb(abs(value)) for name, value in zip(INPUTS, state, strict=True)})
+    for name in FIELDS:
+        error, factor = relative_error(found[name], exact[name]), condition[name]
+        if factor <= WELL_CONDITIONED:
+            tally.add(_WELL_CLAIM.format(name), WELL, error, state)
+        else:
+            tally.add(_ILL_CLAIM.format(name), ROUNDINGS, error / (factor * UNIT), state)
+
+
+def relative_error(value: float, exact: Any) -> float:
+    """|value - exact|/|exact|, less what the last subnormals cannot hold."""
+    with flint.ctx.workprec(200):
+        off = abs(arb(value) - exact)
+        if off <= _LEAST:
+            return 0.0
+        return math.inf if exact.contains(0) else float((off / abs(exact)).upper())
+
+
+def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    rng = np.random.default_rng(sizes["seed"] + 1)
+    batches = {"one by one": [([chosen_state(rng) for _ in range(sizes["states"])], one_by_one)], "slice": []}
+    alphas = [*EDGE_ALPHAS[1:], *(10.0 ** rng.uniform(0.0, 6.0, sizes["slices"])).tolist()]
+    for alpha in alphas[: sizes["slices"]]:
+        batches["slice"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_slice))
+    result = []
+    for way, parts in batches.items():
+        tally = Tally(way)
+        for states, method in tqdm(parts, desc=f"contact, {way}", delay=1.0, leave=False):
+            values = method(states).as_dict()
+            for i, state in enumerate(tqdm(states, desc="states", delay=1.0, leave=False)):
+                compare(tally, state, {name: column[i] for name, column in values.items()})
+        result += sorted((claim.row for claim in tally.values()), key=lambda row: row["claim"])
+    return result

@@ -1,0 +1,1 @@
+"""Files and caches that are killed, flipped, cut, starved and fuzzed."""

@@ -1,0 +1,249 @@
+"""Ensembles under torture: killed runs, workers and schedulers, a full disk, damaged files of a store.
+
+After each the same call goes on; a row's "unharmed" are those whose store then equals an
+uninterrupted one bit for bit, with every block that was whole left as it was.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from tqdm import tqdm
+
+from viscoroll import ViscorollError
+from viscoroll.errors import OutputError
+from viscoroll.runs import Run, export_netcdf, read_run, run_ensemble, verify
+
+from .damage import enlarge, flip, row, small_disk, truncate
+
+RUN = """
+preset = "paper-section-5"
+[scene]
+mu = { distribution = "uniform", loc = 0.1, scale = 0.2 }
+[start]
+V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
+omega0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
+[run]
+n = 6400
+seed = 20
+t = [1e-3, 2e-3, 3e-3]
+rtol = 1e-6
+block = 400
+keep = "all"
+"""
+THREADS = 2
+#: seconds that a cluster is given to fail or to finish
+PATIENCE = 180.0
+NO_TMPFS = "no tmpfs can be had"
+
+
+def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """What was done to stores and what came of it."""
+    rng = np.random.default_rng(sizes["seed"])
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "run.toml").write_text(RUN, encoding="utf-8")
+        run = read_run(folder / "run.toml")
+        child(run, folder / "whole.zarr")  # compiles, and shows how long a run takes
+        shutil.rmtree(folder / "whole.zarr")
+        begun = time.perf_counter()
+        child(run, folder / "whole.zarr")
+        seconds = time.perf_counter() - begun
+        ensemble = Ensemble(run, content(folder / "whole.zarr"), folder, rng)
+        return [
+            row("SIGKILL of an ensemble", ensemble.kills(sizes["ensembles"], seconds)),
+            row("SIGKILL of a dask worker", ensemble.workers(sizes["clusters"])),
+            row("SIGKILL of the dask scheduler", ensemble.schedulers(sizes["clusters"])),
+            row("ensemble on a full disk", ensemble.full_disks(sizes["full_ensembles"])),
+            row("export of a store to a full disk", ensemble.full_exports(sizes["full_ensembles"])),
+            row("one bit of a file of a store flipped", ensemble.damage(sizes["stores"], flip)),
+            row("a file of a store truncated", ensemble.damage(sizes["stores"], truncate)),
+        ]
+
+
+class Ensemble:
+    """A run, the files that it should leave, and ways to disturb it."""
+
+    def __init__(self, run: Run, expected: dict[str, bytes], folder: Path, rng: np.random.Generator) -> None:
+        self.run, self.expected, self.folder, self.rng = run, expected, folder, rng
+        self.store = folder / "store.zarr"
+
+    def outcome(self) -> str:
+        """Go on in a process of its own, and compare."""
+        whole = {path: path.stat().st_mtime_ns for path in self.store.glob("records/0*")}
+        if child(self.run, self.store):
+            return "does not go on"
+        if {path: path.stat().st_mtime_ns for path in whole} != whole:
+            return "blocks that were whole are made again"
+        return "unharmed" if content(self.store) == self.expected else "other files"
+
+    def kills(self, count: int, seconds: float) -> Iterator[str]:
+        """At any moment."""
+        for _ in tqdm(range(count), desc="kills", delay=1.0, leave=False):
+            code = 0
+            while code != -signal.SIGKILL:
+                shutil.rmtree(self.store, ignore_errors=True)
+                process = get_context("fork").Process(target=run_ensemble, args=(self.run, self.store))
+                process.start()
+                time.sleep(self.rng.uniform(0.0, seconds))
+                process.kill()
+                process.join()
+                code = process.exitcode or 0
+            yield self.outcome()
+
+    def workers(self, count: int) -> Iterator[str]:
+        """The run goes on by itself: dask gives the block to another worker."""
+        for _ in tqdm(range(count), desc="workers", delay=1.0, leave=False):
+            with self.cluster() as (_, workers, process):
+                workers[int(self.rng.integers(len(workers)))].kill()
+                code = process.wait(PATIENCE)
+            yield self.outcome() if code == 0 else f"exit code {code}"
+
+    def schedulers(self, count: int) -> Iterator[str]:
+        """The run ends with an error of its own, and the same command goes on."""
+        for _ in tqdm(range(count), desc="schedulers", delay=1.0, leave=False):
+            with self.cluster() as (scheduler, _, process):
+                scheduler.kill()
+                code = process.wait(PATIENCE)
+            yield self.outcome() if code in (0, 2) else f"exit code {code}"
+
+    @contextmanager
+    def cluster(self) -> Iterator[tuple[subprocess.Popen, list[subprocess.Popen], subprocess.Popen]]:
+        """(scheduler, workers, program) at work on a fresh store, somewhere in the middle."""
+        shutil.rmtree(self.store, ignore_errors=True)
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            address = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
+        dask = [sys.executable, "-m", "distributed.cli.dask_spec", "--spec"]
+        scheduler = (
+            f'{{"cls": "distributed.Scheduler", "opts": {{"port": {address.rpartition(":")[2]}, "dashboard": false}}}}'
+        )
+        worker = '{"cls": "distributed.Nanny", "opts": {"nthreads": 1}}'
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        processes = [subprocess.Popen([*dask, scheduler], **quiet)]
+        try:
+            time.sleep(2.0)
+            processes += [subprocess.Popen([*dask, worker, address], **quiet) for _ in range(THREADS)]
+            time.sleep(3.0)
+            command = ["-m", "viscoroll", "ensemble", self.folder / "run.toml", "-o", self.store, "--cluster", address]
+            processes.append(subprocess.Popen([sys.executable, *command], **quiet))
+            stop = int(self.rng.integers(1, self.run.blocks))
+            while processes[-1].poll() is None and len(list(self.store.glob("records/0*"))) < stop:
+                time.sleep(0.01)
+            yield processes[0], processes[1:-1], processes[-1]
+        finally:
+            for process in processes:
+                process.kill()
+                process.wait()
+
+    def full_disks(self, count: int) -> Iterator[str]:
+        """On a tmpfs of any size; where none can be had, that is the outcome, and counts as wrong."""
+        size = sum(map(len, self.expected.values()))
+        for _ in tqdm(range(count), desc="full disks", delay=1.0, leave=False):
+            shutil.rmtree(self.store, ignore_errors=True)
+            self.store.mkdir()
+            room = int(self.rng.uniform(0.05, 0.9) * size)
+            with small_disk(self.store, room) as mounted:
+                outcome = self.on_full_disk() if mounted else NO_TMPFS
+            yield outcome
+
+    def on_full_disk(self) -> str:
+        code = child(self.run, self.store)
+        if code == 2:
+            enlarge(self.store)
+        return self.outcome() if code == 2 else f"exit code {code}"
+
+    def full_exports(self, count: int) -> Iterator[str]:
+        """To a tmpfs that is too small: refused, and the file that is there stays; then it is large enough."""
+        restore(self.store, self.expected)
+        disk, whole = self.folder / "disk", self.folder / "whole.nc"
+        disk.mkdir()
+        export_netcdf(self.store, whole)
+        for _ in tqdm(range(count), desc="full exports", delay=1.0, leave=False):
+            with small_disk(disk, int(self.rng.uniform(0.01, 0.9) * whole.stat().st_size)) as mounted:
+                outcome = self.exported(disk / "all.nc", whole) if mounted else NO_TMPFS
+            yield outcome
+
+    def exported(self, path: Path, whole: Path) -> str:
+        """To a full disk, then to one that is large enough."""
+        path.write_bytes(b"as it was")
+        code = exit_code(export_netcdf, self.store, path)
+        kept = path.read_bytes() == b"as it was" and len(list(path.parent.iterdir())) == 1
+        enlarge(path.parent)
+        again = exit_code(export_netcdf, self.store, path)
+        if code == 2 and kept and again == 0 and all(map(xr.Dataset.identical, datasets(path), datasets(whole))):
+            return "unharmed"
+        return f"exit code {code}, " + (f"then {again}" if kept else "the file damaged")
+
+    def damage(self, count: int, change: Any) -> Iterator[str]:
+        """Of any file: it must be found, and the same command must put it right."""
+        names = sorted(self.expected)
+        restore(self.store, self.expected)
+        for _ in tqdm(range(count), desc="damage", delay=1.0, leave=False):
+            path = self.store / names[int(self.rng.integers(len(names)))]
+            path.write_bytes(change(path.read_bytes(), self.rng))
+            yield self.found_and_mended()
+            restore(self.store, self.expected)
+
+    def found_and_mended(self) -> str:
+        try:
+            if verify(self.store).ok:
+                return "not found"
+        except ViscorollError:
+            pass
+        run_ensemble(self.run, self.store)
+        return "unharmed" if content(self.store) == self.expected else "other files"
+
+
+def child(run: Run, store: Path) -> int:
+    """Exit code of a run in a process of its own."""
+    return exit_code(partial(run_ensemble, threads=THREADS), run, store)
+
+
+def exit_code(do: Callable, *arguments: Any) -> int:
+    """Of a call in a process of its own: 2 for an error of the package, 1 for any other."""
+
+    def work() -> None:
+        try:
+            do(*arguments)
+        except OutputError:
+            os._exit(2)
+
+    process = get_context("fork").Process(target=work)
+    process.start()
+    process.join()
+    return process.exitcode or 0
+
+
+def content(store: Path) -> dict[str, bytes]:
+    """Every file of a store."""
+    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
+def datasets(path: Path) -> list[xr.Dataset]:
+    """The summaries and the motions of an exported file."""
+    return [xr.load_dataset(path, group=group, engine="h5netcdf") for group in (None, "motions")]
+
+
+def restore(store: Path, files: dict[str, bytes]) -> None:
+    """Put every file as it was."""
+    for name, data in files.items():
+        path = store / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if not path.exists() or path.read_bytes() != data:
+            path.write_bytes(data)

@@ -1,0 +1,109 @@
+"""Coverage-guided fuzzing of the loaders: TOML scenes and grids (config.py), and table files (tables/content.py).
+
+    python -m pipeline.torture.fuzz_loaders toml|table [--seconds N] [--corpus FOLDER]
+
+Whatever the bytes, a loader returns or raises one of the package's own errors, in one line.  Anything
+else is a finding: exit code 77 of libFuzzer, and the input in ./crash-*.  Wants atheris (pip install
+-e '.[fuzz]'); without it says so and ends well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+SCENES = (
+    b'preset = "paper-section-5"\n',
+    b"[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\ngamma = 1.1e4\nj = 0.5\n",
+    b"[cylinder]\nR = 0.1\nm = 35.5\nE = 2e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 1\nmu = 0.2\nplane = 'stress'\n",
+    b"[tables.atlas]\nalpha = [1.0, 9.0]\nnodes = [8, 8, 8]\nblock = [2, 2, 2]\n",
+    b'[tables.paper]\nkappa = 2.91\nV = { low = 1e-3, high = 2.0, count = 5, spacing = "log" }\ndelta = [-0.1, 0.0]\n',
+)
+#: bytes of the largest input: a small table
+LONGEST = 1 << 17
+
+
+def read_toml(path: Path) -> None:
+    from viscoroll import ViscorollError
+    from viscoroll.config import read_grids, read_scene
+
+    for read in (read_scene, read_grids):
+        try:
+            read(path)
+        except ViscorollError as error:
+            own(error)
+
+
+def read_table(path: Path) -> None:
+    """What ``tables.load`` does behind the seal and the rehearsal, in which a crash of HDF5 harms nobody."""
+    from viscoroll import ViscorollError
+    from viscoroll.tables.content import read
+
+    for verify in (True, False):
+        try:
+            read(path.read_bytes(), path, verify)
+        except ViscorollError as error:
+            own(error)
+
+
+def own(error: Exception) -> None:
+    if not str(error) or "\n" in str(error):
+        raise AssertionError(f"not one line: {error!r}")
+
+
+def seeds(what: str, folder: Path) -> None:
+    """Files that the fuzzer starts from."""
+    if what == "toml":
+        for n, content in enumerate(SCENES):
+            (folder / f"{n}.toml").write_bytes(content)
+    else:
+        from viscoroll.tables import AtlasGrid, LiteralGrid, build, save
+
+        save(build(LiteralGrid(2.91, 0.2, [0.1, 0.2], [0.0, 0.01], [1.0, 11.0])), folder / "literal")
+        save(build(AtlasGrid(nodes=(4, 4, 4))), folder / "atlas")
+
+
+def fuzz(what: str, seconds: int, corpus: Path) -> None:
+    """Never returns: libFuzzer ends the process."""
+    import atheris
+
+    with atheris.instrument_imports(include=["viscoroll", "tomllib", "h5netcdf"]):
+        import viscoroll.config
+        import viscoroll.tables.content  # noqa: F401
+    seeds(what, corpus)
+    read: Callable[[Path], None] = {"toml": read_toml, "table": read_table}[what]
+    path = Path(tempfile.mkdtemp()) / "input"
+
+    def one(data: bytes) -> None:
+        path.write_bytes(data)
+        read(path)
+
+    options = [f"-max_total_time={seconds}", f"-max_len={LONGEST}", "-timeout=20", "-rss_limit_mb=4096"]
+    atheris.Setup([sys.argv[0], *options, str(corpus)], one)
+    atheris.Fuzz()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("what", choices=("toml", "table"))
+    parser.add_argument("--seconds", type=int, default=60)
+    parser.add_argument(
+        "--corpus", type=Path, help="folder that keeps what was found worth keeping; default: none kept"
+    )
+    arguments = parser.parse_args()
+    try:
+        import atheris  # noqa: F401
+    except ImportError:
+        print("fuzz_loaders: skipped, atheris is not installed (pip install -e '.[fuzz]')")
+        return 0
+    corpus = arguments.corpus or Path(tempfile.mkdtemp())
+    corpus.mkdir(parents=True, exist_ok=True)
+    fuzz(arguments.what, arguments.seconds, corpus)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

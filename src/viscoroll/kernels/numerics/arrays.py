@@ -1,0 +1,19 @@
+"""Assignments between arrays, element by element: numba's own prepare for shapes that differ."""
+
+from __future__ import annotations
+
+from ..compile.jit import kernel
+
+
+@kernel
+def copy(source, target):
+    """Put ``source`` into ``target``; both have one axis and the same length."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
+@kernel
+def fill(value, target):
+    """Put ``value`` into every element of ``target``, which has one axis."""
+    for i in range(target.size):
+        target[i] = value

@@ -1,0 +1,360 @@
+"""Compiling: deferred to the call from Python, cached on disk, plain where numba's inner names fail."""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import importlib
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+from numba.core.codegen import JITCodeLibrary
+from ordinary_user import as_ordinary_user, let_in
+
+from viscoroll.kernels.compile import cache as cache_module
+from viscoroll.kernels.compile import deferred
+from viscoroll.kernels.compile.jit import kernel
+
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
+
+FACTOR = 3.0
+
+
+def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", code]
+    return subprocess.run(
+        command, env=os.environ | environment, capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+@pytest.fixture(autouse=True)
+def _anew(monkeypatch):
+    """Whatever is told once is told again; what fell back is forgotten."""
+    cache_module.note_trouble.cache_clear()
+    monkeypatch.setattr(deferred, "_deferring", True)
+    yield
+    cache_module.note_trouble.cache_clear()
+
+
+# --- deferred compiling ---
+
+
+def cubed(x):
+    return square(x) * x
+
+
+def square(x):
+    return power(x, 2)
+
+
+def power(x, n):
+    y = 1.0
+    for _ in range(n):
+        y *= x
+    return y
+
+
+@pytest.fixture
+def kernels(tmp_path, monkeypatch):
+    """The three functions above as kernels, compiled afresh."""
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
+    for function in (power, square, cubed):
+        monkeypatch.setitem(globals(), function.__name__, kernel(function))
+    return tmp_path
+
+
+def test_only_what_python_calls_is_compiled_to_machine_code(kernels):
+    assert cubed(2.0) == 8.0
+    assert [path.name.split("-")[0] for path in kernels.rglob("*.nbc")] == [
+        f"{__name__.partition('kernels.')[2]}.cubed"
+    ]
+    assert square(3.0) == 9.0
+    assert len([*kernels.rglob("*.nbc")]) == 2
+
+
+def test_literal_integers_are_compiled_once(kernels):
+    @kernel
+    def sum_of_powers(x):
+        return power(x, 1) + power(x, 2) + power(x, 3)
+
+    compiled = []
+    numba.core.event.register("numba:compile", listener := Compiles(compiled))
+    assert sum_of_powers(2.0) == 14.0
+    numba.core.event.unregister("numba:compile", listener)
+    assert sorted(compiled) == ["power", "sum_of_powers"]
+
+
+class Compiles(numba.core.event.Listener):
+    def __init__(self, names: list[str]) -> None:
+        self.names = names
+
+    def on_start(self, event) -> None:
+        self.names.append(event.data["dispatcher"].py_func.__name__)
+
+    def on_end(self, event) -> None:
+        pass
+
+
+def test_an_ordinary_function_between_kernels_works(kernels):
+    """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it misses."""
+    between = numba.njit(lambda x: square(x) + 1.0)
+
+    @kernel
+    def top(x):
+        return between(x) + square(x)
+
+    assert between(2.0) == 5.0
+    assert top(2.0) == 9.0
+
+
+def test_numpy_functions_that_numba_compiles_itself_work(kernels):
+    @kernel(allocates=True)
+    def middle(x):
+        return np.median(x) + square(x[0])
+
+    assert middle(np.array([3.0, 1.0, 2.0])) == 11.0
+
+
+def test_a_symbol_that_is_missing_is_an_exception(kernels, monkeypatch):
+    """Not the end of the process; the function is named, and numba's own way taken."""
+    whole = deferred._pipelines()[1]
+    monkeypatch.setattr(deferred, "_pipelines", lambda: (deferred.Compiler, whole))
+    monkeypatch.setattr(JITCodeLibrary, "_get_module_for_linking", empty_module)
+    with pytest.raises(RuntimeError, match=r"cubed calls _ZN\w*square\w*, which was not compiled with it"):
+        whole(*given(cubed, numba.float64)).compile_extra(cubed.py_func)
+
+
+def empty_module(library):
+    from llvmlite import binding
+
+    return binding.parse_assembly(str(library._codegen._create_empty_module("nothing")))
+
+
+def given(dispatcher, *args):
+    """What numba gives a pipeline."""
+    compiler = dispatcher._compiler
+    context = compiler.targetdescr
+    flags = compiler._customize_flags(numba.core.compiler.Flags())
+    return context.typing_context, context.target_context, None, args, None, flags, {}
+
+
+@pytest.mark.parametrize(
+    ("holder", "name"),
+    [
+        ("numba.core.codegen", "JITCodeLibrary"),
+        ("numba.core.compiler_machinery", "register_pass"),
+        ("numba.core.typed_passes", "NativeLowering"),
+    ],
+)
+def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypatch, holder, name):
+    deferred._pipelines.cache_clear()
+    monkeypatch.delattr(f"{holder}.{name}")
+    with pytest.warns(RuntimeWarning, match=r"does not compile cubed with what it calls \(.*one by one"):
+        assert cubed(2.0) == 8.0
+    assert square(2.0) == 4.0  # told once, and warnings are errors here
+    deferred._pipelines.cache_clear()
+
+
+def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
+    @kernel
+    def wrong(x):
+        return x.nothing_of_the_kind
+
+    with pytest.raises(numba.TypingError, match="nothing_of_the_kind"):
+        wrong(1.0)
+    assert deferred._deferring
+
+
+def test_garbage_is_collected_again_after_compiling(kernels):
+    @kernel
+    def wrong(x):
+        return x.nothing_of_the_kind
+
+    with pytest.raises(numba.TypingError):
+        wrong(1.0)
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        assert cubed(2.0) == 8.0
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+
+
+# --- the cache ---
+
+
+def scaled(x):
+    return FACTOR * x
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch) -> Path:
+    """A cache folder of its own that holds ``scaled`` for one signature."""
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path))
+    assert fresh() == 0
+    return tmp_path / f"kernels-{cache_module.sources_digest()}"
+
+
+def fresh() -> int:
+    """Use the kernel as a new process would: the value is right; returns the number of cache hits."""
+    function = kernel(scaled)
+    assert function(2.0) == 6.0
+    return sum(function.stats.cache_hits.values())
+
+
+def test_second_use_is_from_the_cache(cache):
+    assert fresh() == 1
+    assert len([*cache.iterdir()]) == 1
+
+
+def flipped(content: bytes, share: float, mask: int) -> bytes:
+    """``content`` with the bits of ``mask`` flipped in one byte."""
+    spoilt = bytearray(content)
+    spoilt[int(share * len(content))] ^= mask
+    return bytes(spoilt)
+
+
+DAMAGE = {
+    "flipped early": lambda content: flipped(content, 0.05, 255),
+    "flipped middle": lambda content: flipped(content, 0.5, 1),
+    "flipped late": lambda content: flipped(content, 0.97, 16),
+    "truncated": lambda content: content[: len(content) // 2],
+    "one byte short": lambda content: content[:-1],
+    "empty": lambda content: b"",
+    "zeros": lambda content: bytes(len(content)),
+    "text": lambda content: b"not a cache file\n",
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
+def test_a_damaged_file_is_replaced(cache, damage):
+    """The value is right, and the time after that it comes from the cache again."""
+    (path,) = cache.iterdir()
+    path.write_bytes(damage(path.read_bytes()))
+    with pytest.warns(RuntimeWarning, match="cache of compiled kernels is damaged"):
+        assert fresh() == 0
+    assert fresh() == 1
+
+
+def test_what_is_not_machine_code_is_replaced(cache):
+    """Whole, but not what this numba writes."""
+    (path,) = cache.iterdir()
+    content = pickle.dumps(("another", "numba"))
+    path.write_bytes(hashlib.sha256(content).digest() + content)
+    with pytest.warns(RuntimeWarning, match="cache of compiled kernels is damaged"):
+        assert fresh() == 0
+    assert fresh() == 1
+
+
+def test_a_missing_file_is_replaced(cache):
+    for path in cache.iterdir():
+        path.unlink()
+    assert fresh() == 0
+    assert fresh() == 1
+
+
+def used_from_the_cache() -> None:
+    assert fresh() == 1
+
+
+def test_a_read_only_cache_is_used(cache):
+    let_in(cache.parent)
+    for path in (*cache.iterdir(), cache):
+        path.chmod(0o555)
+    assert as_ordinary_user(used_from_the_cache) == ""
+    cache.chmod(0o755)
+
+
+def compiled_with_a_note() -> None:
+    cache_module.note_trouble.cache_clear()
+    with pytest.warns(RuntimeWarning, match=r"compiled kernels are not cached \(.*Permission denied"):
+        assert fresh() == 0
+
+
+def test_an_empty_read_only_folder_only_warns(cache):
+    let_in(cache.parent)
+    for path in cache.iterdir():
+        path.unlink()
+    cache.chmod(0o555)
+    assert as_ordinary_user(compiled_with_a_note) == ""
+
+
+def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
+    """A file where the folder should be: stops even the superuser."""
+    obstacle = tmp_path / "file"
+    obstacle.write_text("in the way")
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(obstacle))
+    with pytest.warns(RuntimeWarning, match="compiled kernels are not cached"):
+        assert fresh() == 0
+    assert fresh() == 0  # once is enough
+
+
+def test_a_process_with_a_damaged_cache(tmp_path):
+    """The real thing, end to end: a kernel that calls others, every file of its cache spoilt."""
+    code = """
+from viscoroll.kernels.bessel.ratios import ratio_r
+print(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))
+"""
+    first = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+    assert first.stdout == "0.4463899658965345 0\n", first.stderr
+    for path in tmp_path.rglob("*.nbc"):
+        content = bytearray(path.read_bytes())
+        content[len(content) // 3] ^= 255
+        path.write_bytes(content)
+    for hits in (0, 1):
+        again = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+        assert again.stdout == f"0.4463899658965345 {hits}\n", again.stderr
+        assert again.stderr.count("RuntimeWarning: the cache of compiled kernels is damaged") == 1 - hits
+
+
+def test_a_process_without_a_cache_folder(tmp_path):
+    obstacle = tmp_path / "file"
+    obstacle.write_text("in the way")
+    code = "from viscoroll.kernels.bessel.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
+    done = run(code, VISCOROLL_CACHE_DIR=str(obstacle))
+    assert done.stdout == "0.4463899658965345\n", done.stderr
+    assert done.stderr.count("RuntimeWarning: compiled kernels are not cached") == 1
+
+
+@pytest.mark.parametrize("name", ["law/length.py", "bessel/ratios.npy", "compile/jit.py"])
+def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, name):
+    """numba's own cache would not notice a change in a function called from another module."""
+    copy = tmp_path / "kernels"
+    shutil.copytree(cache_module.HERE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    digest = cache_module.sources_digest.__wrapped__
+    before = digest()
+    monkeypatch.setattr(cache_module, "HERE", copy)
+    assert digest() == before
+    with (copy / name).open("ab") as file:
+        file.write(b" ")
+    assert digest() != before
+
+
+def test_bits_cannot_follow_the_history_of_the_cache():
+    """No kernel is granted numerical freedom: what LLVM makes of that depends on what is compiled together."""
+    kernels = [
+        each
+        for path in cache_module.HERE.glob("*/[!_]*.py")
+        for each in vars(importlib.import_module(f"viscoroll.kernels.{path.parent.name}.{path.stem}")).values()
+        if hasattr(each, "targetoptions")
+    ]
+    assert len(kernels) > 100
+    assert not any(kernel.targetoptions.get("fastmath") for kernel in kernels)
+
+
+def test_cache_folder_follows_the_environment(monkeypatch):
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", "/somewhere/else")
+    assert cache_module.cache_root() == Path("/somewhere/else")
+    monkeypatch.delenv("VISCOROLL_CACHE_DIR")
+    monkeypatch.setenv("XDG_CACHE_HOME", "/xdg")
+    assert cache_module.cache_root() == Path("/xdg/viscoroll")
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    assert cache_module.cache_root() == Path.home() / ".cache" / "viscoroll"

@@ -1,0 +1,153 @@
+"""What is not there everywhere: packages of an extra, what only POSIX has, a newer Python, the name of the version."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+import viscoroll as vr
+from viscoroll.cli import main
+from viscoroll.extras import imported
+from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble
+from viscoroll.runs.sensitivity import sobol_indices
+
+RUN = """
+preset = "paper-section-5"
+[start]
+V0 = { distribution = "uniform", loc = 0.5, scale = 1.0 }
+omega0 = 0.5
+[run]
+n = 200
+t = [1e-4]
+rtol = 1e-6
+"""
+MISSING = {"zarr": "zarr", "SALib": "SALib", "distributed": "distributed", "pyarrow": "pyarrow"}
+
+
+@pytest.fixture
+def run_file(tmp_path: Path) -> Path:
+    (tmp_path / "run.toml").write_text(RUN, encoding="utf-8")
+    return tmp_path / "run.toml"
+
+
+@pytest.fixture
+def bare(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after `pip install viscoroll`: no extra."""
+    for name in MISSING:
+        for loaded in [each for each in sys.modules if each.partition(".")[0] == name]:
+            monkeypatch.delitem(sys.modules, loaded)
+        monkeypatch.setitem(sys.modules, name, None)
+
+
+# --- extras ---
+
+
+def test_a_missing_extra_is_named(bare, run_file, tmp_path):
+    run, store = read_run(run_file), tmp_path / "store.zarr"
+    calls = {
+        "zarr": [lambda: run_ensemble(run, store), lambda: open_summaries(store), lambda: export_netcdf(store, "x.nc")],
+        "SALib": [lambda: sobol_indices(run, 16)],
+    }
+    for package, each in calls.items():
+        for call in each:
+            with pytest.raises(vr.MissingDependencyError, match=rf"{package} is not .*pip install 'viscoroll\[runs\]'"):
+                call()
+    assert not store.exists()
+
+
+def test_cluster_and_parquet_are_extras_too(bare, run_file, tmp_path, monkeypatch):
+    monkeypatch.delitem(sys.modules, "zarr")
+    with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[cluster\]"):
+        run_ensemble(read_run(run_file), tmp_path / "store.zarr", cluster="local")
+    (tmp_path / "a.parquet").touch()
+    run_file.write_text(RUN.replace("omega0 = 0.5", 'omega0 = { file = "a.parquet", column = "a" }'))
+    with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[parquet\]"):
+        read_run(run_file)
+
+
+@pytest.mark.parametrize("words", [["ensemble", "-o", "store.zarr"], ["sensitivity", "-o", "s.nc"]])
+def test_the_program_names_a_missing_extra_in_one_line(bare, run_file, tmp_path, monkeypatch, capsys, words):
+    monkeypatch.chdir(tmp_path)
+    assert main([words[0], str(run_file), *words[1:]]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("viscoroll: error:")
+    assert line.endswith("is not installed: pip install 'viscoroll[runs]'")
+
+
+def test_what_an_extra_itself_misses_is_not_the_extra(tmp_path, monkeypatch):
+    (tmp_path / "broken_extra.py").write_text("import not_there_at_all")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ModuleNotFoundError, match="not_there_at_all"):
+        imported("broken_extra", "broken", "runs")
+
+
+# --- systems that are not POSIX ---
+
+NOT_POSIX = """
+import importlib, os, pkgutil, sys
+import filelock, h5netcdf, h5py, matplotlib.pyplot, msgspec, numba, numpy, SALib, scipy.stats, tqdm, xarray, zarr
+for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "syslog"):
+    sys.modules[name] = None
+for name in set(dir(os)) & set(sys.argv[1].split()):
+    delattr(os, name)
+import viscoroll
+for module in pkgutil.walk_packages(viscoroll.__path__, "viscoroll."):
+    if not module.name.endswith("__main__"):
+        importlib.import_module(module.name)
+from viscoroll.runs import estimate, export_netcdf, read_run, run_ensemble
+run = read_run("run.toml")
+run_ensemble(run, "store.zarr")
+export_netcdf("store.zarr", "store.nc")
+print(estimate(run).memory > 1e8)
+"""
+#: of os, on no Windows
+POSIX_ONLY = """
+O_CLOEXEC O_DIRECTORY O_NOFOLLOW chown fchmod fchown fork forkpty getegid geteuid getgid getgroups getpgid getpgrp
+getpriority getresgid getresuid getsid getuid killpg lchown lockf mkfifo mknod nice openpty pipe2 posix_fadvise
+posix_fallocate posix_spawn pread pwrite register_at_fork sched_getaffinity sched_setaffinity sendfile setgid setpgid
+setsid setuid statvfs sync sysconf uname wait wait3 wait4 process_cpu_count
+"""
+
+
+def test_every_module_loads_and_a_run_ends_without_posix(run_file, tmp_path):
+    command = [sys.executable, "-c", NOT_POSIX, " ".join(POSIX_ONLY.split())]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
+    assert done.stdout == "True\n", done.stderr
+    assert (tmp_path / "store.nc").exists()
+
+
+# --- Pythons and versions ---
+
+
+def test_an_older_python_is_told_in_one_line(tmp_path):
+    code = "import sys; sys.version_info = (3, 10, 13); import viscoroll"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr.splitlines()[-1].startswith("ImportError: viscoroll needs Python 3.11 or newer, this is 3.")
+    make = shutil.which("make")
+    if make is None:
+        pytest.skip("make is not installed")
+    old = tmp_path / "python"
+    old.write_text(f"#!/bin/sh\nshift\nexec {sys.executable} -c 'import sys; sys.version_info = (3, 10, 13)\n'\"$1\"")
+    old.chmod(0o755)
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    (tmp_path / "Makefile").write_text(makefile, encoding="utf-8")
+    for name in ("pyproject.toml", "constraints.txt"):
+        (tmp_path / name).touch()
+    (tmp_path / "src").mkdir()
+    done = subprocess.run([make, "setup", f"PYTHON={old}"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[0] == f"viscoroll needs Python 3.11 or newer, {old} is 3.10: make PYTHON=..."
+
+
+def test_one_version():
+    """The metadata are made from it; the citation says the same."""
+    assert f"\nversion: {vr.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    if Path(vr.__file__).is_relative_to(Path(os.__file__).parent):  # installed, not a tree on PYTHONPATH
+        assert importlib.metadata.version("viscoroll") == vr.__version__

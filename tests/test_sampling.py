@@ -1,0 +1,82 @@
+"""Random inputs (sampling.py): designs, distributions, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+import tolerances as tol
+from refusals import refused
+from scipy import stats
+
+import viscoroll as vr
+from viscoroll.sampling import DESIGNS, Sample, sample
+
+
+@pytest.mark.parametrize("design", DESIGNS)
+def test_sampling_is_reproducible(design):
+    quantities = {"V0": stats.uniform(-1.0, 2.0), "omega0": stats.norm(0.5, 0.1), "mu": 0.2}
+    first, again, other = (sample(64, seed=seed, design=design, **quantities) for seed in (3, 3, 4))
+    assert isinstance(first, Sample)
+    assert (first.seed, first.design) == (3, design)
+    assert list(first) == ["V0", "omega0", "mu"]
+    for name in first:
+        assert first[name].shape == (64,)
+        assert np.array_equal(first[name], again[name])
+    assert not np.array_equal(first["V0"], other["V0"])
+    assert np.all(first["mu"] == 0.2)
+    assert np.all(abs(first["V0"]) <= 1.0)
+    assert not np.array_equal(first["V0"], first["omega0"])
+
+
+def test_designs_fill_their_strata():
+    """A Latin hypercube and a Sobol sequence of 64 have one point in each 64th."""
+    for design in ("latin", "sobol"):
+        V0 = sample(64, seed=0, design=design, V0=stats.uniform(0.0, 1.0), omega0=stats.uniform(0.0, 1.0))["V0"]
+        assert np.array_equal(np.sort(np.floor(64 * V0)), np.arange(64))
+
+
+def test_sample_follows_its_distribution():
+    drawn = sample(4096, seed=1, V0=stats.norm(2.0, 0.5))["V0"]
+    assert stats.kstest(drawn, stats.norm(2.0, 0.5).cdf).pvalue > tol.KOLMOGOROV
+
+
+def test_a_sample_feeds_an_ensemble():
+    drawn = sample(8, seed=5, design="sobol", V0=stats.uniform(0.5, 1.0), omega0=0.5, mu=stats.uniform(0.1, 0.2))
+    result = vr.ensemble(vr.PAPER_SECTION_5.replace(mu=drawn["mu"]), drawn["V0"], drawn["omega0"], [0.0, 3e-3])
+    assert result.messages() == {vr.MOTION_STATUS[vr.MotionStatus.DONE]: 8}
+
+
+def test_constants_alone():
+    assert sample(3, seed=0, design="sobol", V0=1.0)["V0"].tolist() == [1.0, 1.0, 1.0]
+    assert sample(5, seed=0, design="sobol", V0=stats.uniform())["V0"].shape == (5,)
+    assert sample(1, seed=0, design="sobol", V0=stats.uniform())["V0"].shape == (1,)
+
+
+BAD = [
+    ({"n": 0}, "n = 0: must be a whole number >= 1"),
+    ({"n": 2.5}, "n = 2.5"),
+    ({"seed": -1}, "seed = -1: must be a whole number >= 0"),
+    ({"seed": None}, "seed = None"),
+    ({"design": "grid"}, "design = 'grid': must be out of random, latin, sobol"),
+    ({"V0": math.nan}, "V0 = nan: must be a finite number or a frozen scipy.stats distribution"),
+    ({"V0": "fast"}, "V0 = fast"),
+    ({"V0": [1.0, 2.0]}, "V0 = [1.0, 2.0]"),
+    ({"V0": None}, "V0 = None"),
+    ({"V0": {}}, "V0 = {}"),
+    ({"V0": 1j}, "V0 = 1j"),
+    ({"V0": True}, "V0 = True"),
+    ({"V0": stats.uniform([0.0, 1.0], 1.0)}, "V0 = <scipy"),
+    ({"V0": stats.norm(0.0, -1.0)}, "V0 = <scipy"),
+    ({"V0": stats.gamma}, "V0 = <scipy"),
+    ({"V0": stats.norm(0.0, 1e308), "n": 64}, "inf: must be a finite number"),
+    ({"n": True}, "n = True: must be a whole number >= 1"),
+    ({"n": 2**30 + 1, "design": "sobol"}, "n = 1073741825: must be at most 2^30 for design 'sobol'"),
+]
+
+
+def test_bad_sampling():
+    for change, text in BAD:
+        refused(partial(sample, **{"n": 4, "seed": 0, "V0": stats.uniform()} | change), text)
