@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..material_tables import material
 from ..rolling_contact import flattened
 from ..scene import Scene
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
@@ -198,7 +199,7 @@ def ensemble(
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    steps = _integrate_others(answer, flat, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar)
+    steps = _integrate_others(answer, flat, np.ndim(scene.alpha) > 0, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar)
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
@@ -217,22 +218,27 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
 
 
 def _integrate_others(
-    answer: Answer, flat: list[NDArray], times: NDArray, rtol: float, rest: float, max_steps: int,
+    answer: Answer, flat: list[NDArray], own: bool, times: NDArray, rtol: float, rest: float, max_steps: int,
     rows: tuple[int, ...], mapped: bool, threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
-    """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each."""
+    """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each.
+
+    ``own``: whether each has an alpha of its own.
+    """
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
+        from ..kernels.law.material import Own
         from ..kernels.motion.loop import INFO
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
-        inputs = [flattened(array[left], left.shape) if array.size > 1 else array for array in flat]
+        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
+        materials = Own(alpha) if own else material(alpha.item())
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
         loop = _loop(tuple(FIELDS[row] for row in rows))
-        loop(*inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
+        loop(materials, *inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks
+from ..material_tables import material
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .flow_store import FlowMap, load, path_of, save
@@ -114,6 +115,7 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
         layers, entry = getattr(parts, f"layer_{which}"), getattr(parts, f"entry_{which}")
 
         def work(start: int, stop: int) -> None:
+            scene = kernel_scene(*parameters)  # of this thread
             for n in range(start, stop):
                 if not flow_layer.layer_octave(
                     top, n, entering, sign, entering and sign == far, parts.entry_cross, scene, table,
@@ -171,9 +173,9 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
+    scene = (np.array([value]) for value in (kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
-    loss_loop(*scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
+    loss_loop(material(alpha), *scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
@@ -215,15 +217,14 @@ def ask(
     from ..kernels.flow.loop import flow_loop
     from ..kernels.flow.read import lambda_at_rest
 
-    scene = kernel_scene(*chosen.parameters)
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     answer = Answer.empty(len(rows), count, times.size)
-    rest_lambda = lambda_at_rest(rest, chosen.table, scene) if rest > 0.0 else 0.0
+    rest_lambda = lambda_at_rest(rest, chosen.table, kernel_scene(*chosen.parameters)) if rest > 0.0 else 0.0
 
     def work(start: int, stop: int) -> None:
         flow_loop(
-            scene, gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
+            kernel_scene(*chosen.parameters), gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
             np.array(rows, np.int64), answer.out, answer.status, answer.onset, answer.rest, answer.switches,
             start, stop,
         )  # fmt: skip

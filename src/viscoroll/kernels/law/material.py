@@ -1,13 +1,16 @@
 """A material as the contact law sees it: three functions of z, and their slopes.
 
-    F = z + g      H = z^2 + 2 z h      m = M/V
+    F = z + g      H = z^2 + 2 z h      M = V m, Eq. (16)
 
-All that the law, the motion and the stresses know of a material they read here, from one of two
-kinds of record: :class:`Standard`, by Bessel ratios at an alpha, and :class:`Tabulated`, by
-polynomials that are made where they are met.
+All that the law and the motion know of a material they read here, from one of two kinds of record:
+:class:`Standard`, an alpha, whose functions are Bessel ratios; and :class:`Tabulated`, polynomials in a table.
+Which one a call has is settled when it is compiled.  Where many states or motions each have an alpha of their own
+the ratios serve, and where one material serves all, the table.
 """
 
 from __future__ import annotations
+
+from typing import Any, Callable, NamedTuple
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
@@ -17,26 +20,48 @@ from .standard import Standard, standard
 from .tabulated import Tabulated
 
 
-def _either(name, at=1):
+class Own(NamedTuple):
+    """An alpha for each state or motion."""
+
+    alpha: Any
+
+
+def _either(name: str, at: int) -> Callable:
     return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, getattr(table, name)))
 
 
 #: (g, h) at z; 0 for z <= 0 (no stick zone)
-generators = _either("generators")
-#: (g, h, g', h')
-generator_slopes = _either("generator_slopes")
-#: (g, h, g', h', g'', h'')
-second_slopes = _either("second_slopes")
+generators = _either("generators", 1)
+#: (g, h, g', h') at z, all 0 for z <= 0
+generator_slopes = _either("generator_slopes", 1)
+#: (g, h, g', h', g'', h'') at z, all 0 for z <= 0
+second_slopes = _either("second_slopes", 1)
 #: (g, h, g', h', g'', h'', m, m') at z = zeta
-at_contact = _either("at_contact")
+at_contact = _either("at_contact", 1)
 #: (g, h, h', m) at z > 0
-at_slide = _either("at_slide")
-#: m from zeta, lam, g and h there
-moment_of = _either("moment_of", at=4)
+at_slide = _either("at_slide", 1)
+#: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D
+mean_slopes = _either("mean_slopes", 2)
+#: m at zeta, from zeta, lam, g and h
+moment_of = _either("moment_of", 4)
+
+
+@kernel(inline=True)
+def _shared(material, i):
+    return material
+
+
+@kernel(inline=True)
+def _own(material, i):
+    return standard(material.alpha[min(i, material.alpha.size - 1)])
+
+
+#: the material of state or motion i, from what is given for all
+material_of = by_record(0, (Tabulated, _shared), (Own, _own))
 
 
 @kernel
 def moment_factor(zeta, lam, material):
-    """M/V of Eq. (16); c as V -> 0."""
+    """m at zeta; c as V -> 0."""
     g, h = generators(zeta, material)
     return moment_of(zeta, lam, g, h, material)

@@ -11,6 +11,10 @@ from typing import NamedTuple
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
 from ..compile.jit import kernel
+from ..numerics.nodes import gauss
+
+#: 5-point Gauss-Legendre rule on [0, 1]
+GAUSS_X, GAUSS_W = gauss(5)
 
 
 class Standard(NamedTuple):
@@ -126,3 +130,15 @@ def at_slide(z, material):
     lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
     m = share * (lam2 * ratio_i2(x, r) + p)
     return share * p, h, share * whole * (alpha * s - r * r * dk), m
+
+
+@kernel(inline=True)
+def mean_slopes(zeta, D, material):
+    """Means of g' and of (z h)' over [zeta - D, zeta]."""
+    slope_g, slope_zh = 0.0, 0.0
+    for n in range(5):
+        z = zeta - D * GAUSS_X[n]
+        _, h, dg, dh = generator_slopes(z, material)
+        slope_g += GAUSS_W[n] * dg
+        slope_zh += GAUSS_W[n] * (h + z * dh)
+    return slope_g, slope_zh

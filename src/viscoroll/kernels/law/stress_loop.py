@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .standard import standard
+from .material import standard
 from .stress import stress_at
 
 

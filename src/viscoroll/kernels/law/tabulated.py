@@ -1,79 +1,77 @@
-"""A material by polynomials in z: g, h and m, and their slopes, whatever they cost to compute.
-
-A bin is a quarter of an octave of z; in it each function is a polynomial of degree 11.  Bins are made
-where they are met, and kept in a table by the last bits of their numbers: any z is served.
-"""
+"""A material by polynomials of z, whatever g, h and m cost: :func:`values_at` alone knows what it is made of."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
-from ..numerics import quarters
+from ..numerics import quartet
+from ..numerics.bins import offset_slope
 from . import standard
-from .standard import Standard
-
-#: bins kept: 64 octaves
-KEPT = 256
+from .standard import GAUSS_W, GAUSS_X, Standard
 
 
 class Tabulated(NamedTuple):
-    """alpha and c as of :class:`Standard`; numbers of the bins that are kept, and their polynomials."""
+    """alpha and c as of :class:`Standard`; g, h and m of z in a table (:mod:`quartet`)."""
 
     alpha: float
     c: float
-    numbers: np.ndarray
-    pieces: np.ndarray
+    table: Any
 
 
-def tabulated(alpha):
-    return Tabulated(alpha, (alpha-1)/alpha, np.full(KEPT, -1), np.empty((KEPT, quarters.COEFFICIENTS, 4)))
+def tabulated(alpha: float) -> Tabulated:
+    """The material of this alpha, with nothing in its table."""
+    return Tabulated(*standard.standard.py_func(alpha), quartet.empty_table())
 
 
 @kernel
-def fill(number, slot, material):
-    """Make a bin."""
-    solid, pieces = Standard(material.alpha, material.c), material.pieces
-    for n in range(quarters.COEFFICIENTS):
-        z = quarters.node(number, n)
-        g, h = standard.generators(z, solid)
-        lam = 1.0 / np.sqrt(1.0 + 2.0 * h / z)
-        pieces[slot, n, 0], pieces[slot, n, 1], pieces[slot, n, 3] = g, h, 0.0
-        pieces[slot, n, 2] = standard.moment_of(z, lam, g, h, solid)
-    quarters.fit(pieces, slot)
-    material.numbers[slot] = number
+def values_at(z, material):
+    """(g, h, m) at z."""
+    solid = Standard(material.alpha, material.c)
+    g, h = standard.generators(z, solid)
+    return g, h, standard.moment_of(z, (1.0 + 2.0 * h / z) ** -0.5, g, h, solid)
+
+
+@kernel
+def _make(row, z, material):
+    """Make the bin of z."""
+    for n in range(quartet.TERMS):
+        g, h, m = values_at(quartet.node(z, n), material)
+        quartet.put(material.table, row, n, g, h, m, 0.0)
+    quartet.finish(material.table, row, z)
 
 
 @kernel(inline=True)
-def place(z, material):
-    number = quarters.bin_number(z)
-    slot = number & (KEPT - 1)
-    if material.numbers[slot] != number:
-        fill(number, slot, material)
-    return slot
+def _row(z, material):
+    """Row of the bin of z, which is made if it is not there."""
+    row, there = quartet.row_of(z, material.table)
+    if not there:
+        _make(row, z, material)
+    return row
 
 
 @kernel(inline=True)
 def generators(z, material):
+    """(g, h) at z; 0 for z <= 0 (no stick zone)."""
     if z <= 0.0:
         return 0.0, 0.0
-    g, h, _, _ = quarters.values(material.pieces, place(z, material), quarters.bin_offset(z))
+    g, h, _, _ = quartet.values(material.table, _row(z, material), quartet.offset(z))
     return g, h
 
 
 @kernel(inline=True)
 def generator_slopes(z, material):
+    """(g, h, g', h') at z, all 0 for z <= 0."""
     if z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    g, h, _, _, dg, dh, _, _ = quarters.slopes(material.pieces, place(z, material), quarters.bin_offset(z))
-    per = quarters.scale(z)
+    g, h, _, _, dg, dh, _, _ = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
+    per = offset_slope(z)
     return g, h, dg * per, dh * per
 
 
 @kernel(inline=True)
 def second_slopes(z, material):
+    """(g, h, g', h', g'', h'') at z, all 0 for z <= 0."""
     if z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     g, h, dg, dh, ddg, ddh, _, _ = at_contact(z, material)
@@ -82,19 +80,46 @@ def second_slopes(z, material):
 
 @kernel(inline=True)
 def at_contact(z, material):
-    g, h, m, _, dg, dh, dm, _, ddg, ddh, _, _ = quarters.second_slopes(material.pieces, place(z, material), quarters.bin_offset(z))
-    per = quarters.scale(z)
-    per2 = per*per
-    return g, h, dg * per, dh * per, ddg * per2, ddh * per2, m, dm * per
+    """(g, h, g', h', g'', h'', m, m') at z = zeta."""
+    found = quartet.second_slopes(material.table, _row(z, material), quartet.offset(z))
+    g, h, m, _, dg, dh, dm, _, ddg, ddh, _, _ = found
+    per = offset_slope(z)
+    return g, h, dg * per, dh * per, (ddg * per) * per, (ddh * per) * per, m, dm * per
 
 
 @kernel(inline=True)
 def at_slide(z, material):
-    g, h, m, _, dg, dh, _, _ = quarters.slopes(material.pieces, place(z, material), quarters.bin_offset(z))
-    return g, h, dh * quarters.scale(z), m
+    """(g, h, h', m) at z."""
+    g, h, m, _, _, dh, _, _ = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
+    return g, h, dh * offset_slope(z), m
 
 
 @kernel(inline=True)
 def moment_of(zeta, lam, g, h, material):
-    _, _, m, _ = quarters.values(material.pieces, place(zeta, material), quarters.bin_offset(zeta))
-    return m
+    """m at zeta."""
+    return quartet.values(material.table, _row(zeta, material), quartet.offset(zeta))[2]
+
+
+@kernel
+def _gauss_slopes(zeta, D, material):
+    """``mean_slopes`` where the ends lie in two bins."""
+    slope_g = slope_zh = 0.0
+    for n in range(GAUSS_X.size):
+        z = zeta - D * GAUSS_X[n]
+        _, h, dg, dh = generator_slopes(z, material)
+        slope_g += GAUSS_W[n] * dg
+        slope_zh += GAUSS_W[n] * (h + z * dh)
+    return slope_g, slope_zh
+
+
+@kernel
+def mean_slopes(zeta, D, material):
+    """Means of g' and of (z h)' over [zeta - D, zeta]."""
+    eta = zeta - D
+    if quartet.same_bin(zeta, eta):
+        dg, dh, _, _ = quartet.secants(
+            material.table, _row(zeta, material), quartet.offset(zeta), quartet.offset(eta)
+        )
+        per = offset_slope(zeta)
+        return dg * per, generators(zeta, material)[1] + eta * (dh * per)
+    return _gauss_slopes(zeta, D, material)

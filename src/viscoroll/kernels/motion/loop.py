@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import standard
+from ..law.material import material_of
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .output import OUTPUTS
@@ -16,7 +16,7 @@ INFO = ("status", "steps", "switches", "onset_time", "rest_time")
 
 
 @kernel(allocates=True)
-def motion_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
+def motion_loop(material, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
     """Motions start..stop; parameters hold one value or one a motion.
 
     ``rows`` picks the output quantities of ``integrate`` into out[quantity, motion, time].
@@ -25,7 +25,7 @@ def motion_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps
     switches, step_ends = np.empty((0, 2)), np.empty(0)
     for i in range(start, stop):
         scene = Scene(
-            standard(alpha[min(i, alpha.size - 1)]), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
+            material_of(material, i), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
             j[min(i, j.size - 1)],
         )  # fmt: skip
         for row in one:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import standard
+from ..law.material import material_of
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .losses import SLIP_LOSS, add_losses
@@ -17,14 +17,14 @@ _ENDS = 1000
 
 
 @kernel(allocates=True)
-def loss_loop(alpha, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
+def loss_loop(material, kappa, mu, gamma, j, V0, omega0, t, rtol, rest, max_steps, rows, out, info, start, stop):
     """Motions start..stop; as ``motion_loop``, but ``rows`` may name those of :mod:`losses` too."""
     one, losses = np.empty((OUTPUTS, t.size)), np.empty((2, t.size))
     wanted = rows.max() >= SLIP_LOSS
     switches, step_ends = np.empty((0, 2)), np.zeros(_ENDS)
     for i in range(start, stop):
         scene = Scene(
-            standard(alpha[min(i, alpha.size - 1)]), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
+            material_of(material, i), kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
             j[min(i, j.size - 1)],
         )  # fmt: skip
         scale = gamma[min(i, gamma.size - 1)]
