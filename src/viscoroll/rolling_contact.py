@@ -175,8 +175,8 @@ def _compute(
 
     wanted = set(names)
     need = Need(
-        bool(wanted & _NEEDS_SHIFT), bool(wanted & _NEEDS_STICK), bool(wanted & {"M", "dM_dV"}),
-        bool(wanted & set(SLOPES)),
+        bool(wanted & _NEEDS_SHIFT), bool(wanted & _NEEDS_STICK), "beta" in wanted,
+        bool(wanted & {"M", "dM_dV"}), bool(wanted & set(SLOPES)),
     )  # fmt: skip
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)

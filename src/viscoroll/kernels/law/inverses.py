@@ -31,6 +31,11 @@ class Inverses(NamedTuple):
     stick: Any
 
 
+def inverses_of(material: Tabulated) -> Inverses:
+    """With nothing in its tables."""
+    return Inverses(material, quartet.empty_table(), quartet.empty_table())
+
+
 @kernel
 def _make_speed(row, u, inverses):
     """Make the bin of u; returns a status."""

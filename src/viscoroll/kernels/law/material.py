@@ -46,7 +46,7 @@ mean_slopes = _either("mean_slopes", 2)
 moment_of = _either("moment_of", 4)
 
 
-@kernel(inline=True)
+@kernel(inline=True, allocates=True)  # what it returns holds a reference to the table
 def _shared(material, i):
     return material
 

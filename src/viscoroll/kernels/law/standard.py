@@ -44,6 +44,19 @@ def generators(z, material):
 
 
 @kernel(inline=True)
+def values(z, material):
+    """(g, h, m) at z > 0."""
+    alpha, c = material.alpha, material.c
+    x = alpha * z
+    r, _ = ratio_r(x)
+    k, _ = ratio_k(z)
+    p = r * k
+    share = c / (1.0 + p)
+    h = share * r
+    return share * p, h, share * (ratio_i2(x, r) / (1.0 + 2.0 * h / z) + p)
+
+
+@kernel(inline=True)
 def generator_slopes(z, material):
     """(g, h, g', h') at z, all 0 for z <= 0."""
     alpha, c = material.alpha, material.c

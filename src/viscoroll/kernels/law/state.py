@@ -51,10 +51,11 @@ class States(NamedTuple):
 
 
 class Need(NamedTuple):
-    """Whether epsilon and delta_star, the stick zone and Q, M, and slopes are wanted."""
+    """Whether epsilon and delta_star, beta or Q, beta, M, and slopes are wanted."""
 
     shift: bool
     stick: bool
+    beta: bool
     moment: bool
     slopes: bool
 

@@ -53,7 +53,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
 @kernel(allocates=True)
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
-    need = Need(True, True, True, False)
+    need = Need(True, True, True, True, False)
     rows = np.array([LAM, EPSILON, M, DELTA_STAR, BETA, Q])
     kappas, mus, out = np.full(1, kappa), np.full(1, mu), np.empty((rows.size, delta.size))
     worst = OK

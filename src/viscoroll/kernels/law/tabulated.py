@@ -27,9 +27,7 @@ def tabulated(alpha: float) -> Tabulated:
 @kernel
 def values_at(z, material):
     """(g, h, m) at z."""
-    solid = Standard(material.alpha, material.c)
-    g, h = standard.generators(z, solid)
-    return g, h, standard.moment_of(z, (1.0 + 2.0 * h / z) ** -0.5, g, h, solid)
+    return standard.values(z, Standard(material.alpha, material.c))
 
 
 @kernel

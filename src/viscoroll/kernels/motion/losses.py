@@ -23,7 +23,7 @@ from .stepper import PARTIAL
 
 #: rows that follow those of :mod:`output`, and the number of all
 SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
-_NEED = Need(True, True, False, False)
+_NEED = Need(True, True, False, False, False)
 _POINTS = GAUSS_X.size
 
 

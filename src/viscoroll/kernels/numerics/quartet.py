@@ -19,15 +19,16 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from ..compile.fma import fma
 from ..compile.jit import kernel
 from .bins import bin_number, bin_offset, bin_place
 from .nodes import chebyshev, rounded, to_chebyshev
 
 BITS, TERMS = 2, 12
 _BINS = 1 << BITS
-#: rows of a table: 64 octaves
-KEPT = 256
-#: a row: number of the bin, and from here on the coefficients, those of one power together
+#: bins that a table keeps: 32 octaves
+KEPT = 128
+#: a row: number of the bin (its bits), and from here on the coefficients, those of one power together
 FIRST = 4
 WIDTH = FIRST + 4 * TERMS
 
@@ -52,7 +53,7 @@ def row_of(x, table):
     """(row, whether it holds the bin of x)."""
     number = bin_number(x, BITS)
     row = number & (KEPT - 1)
-    return row, table[np.uint64(row), np.uint64(0)] == number
+    return row, np.float64(table[np.uint64(row), np.uint64(0)]).view(np.int64) == number
 
 
 @kernel(inline=True)
@@ -73,11 +74,24 @@ def node(x, n):
     return bin_place(bin_number(x, BITS), BITS, _FRACTIONS[n])
 
 
-@kernel
+@kernel(inline=True)
 def put(table, row, n, a, b, c, d):
     """Values of the functions at node ``n``."""
     at = FIRST + 4 * n
     table[row, at], table[row, at + 1], table[row, at + 2], table[row, at + 3] = a, b, c, d
+
+
+@kernel(inline=True)
+def _combine(table, source, start, weights, target, n):
+    """Sum of the quadruples of a row from ``start`` on, each times its weight, into number ``n`` of another."""
+    s0 = s1 = s2 = s3 = 0.0
+    for k in range(start, TERMS):
+        weight, at = weights[k], FIRST + 4 * k
+        s0 = fma(weight, table[source, at], s0)
+        s1 = fma(weight, table[source, at + 1], s1)
+        s2 = fma(weight, table[source, at + 2], s2)
+        s3 = fma(weight, table[source, at + 3], s3)
+    put(table, target, n, s0, s1, s2, s3)
 
 
 @kernel
@@ -87,20 +101,18 @@ def finish(table, row, x):
     Only the differences from one of the values are fitted, and by way of the rapidly falling
     Chebyshev coefficients: both keep rounding out of the powers.
     """
-    middle = FIRST + 4 * (TERMS // 2)
-    for f in range(4):
-        centre = table[row, middle + f]
-        for k in range(TERMS):
-            total = 0.0
-            for n in range(TERMS):
-                total += _TO_CHEBYSHEV[k, n] * (table[row, FIRST + 4 * n + f] - centre)
-            table[KEPT, FIRST + 4 * k + f] = total
-        for m in range(TERMS):
-            total = 0.0
-            for k in range(m, TERMS):
-                total += _TO_POWERS[m, k] * table[KEPT, FIRST + 4 * k + f]
-            table[row, FIRST + 4 * m + f] = total + (centre if m == 0 else 0.0)
-    table[row, 0] = bin_number(x, BITS)
+    centre = FIRST + 4 * (TERMS // 2)
+    c0, c1, c2, c3 = table[row, centre], table[row, centre + 1], table[row, centre + 2], table[row, centre + 3]
+    for n in range(TERMS):
+        at = FIRST + 4 * n
+        put(table, row, n, table[row, at] - c0, table[row, at + 1] - c1, table[row, at + 2] - c2, table[row, at + 3] - c3)
+    for k in range(TERMS):
+        _combine(table, row, 0, _TO_CHEBYSHEV[k], KEPT, k)
+    for m in range(TERMS):
+        _combine(table, KEPT, m, _TO_POWERS[m], row, m)
+    at = FIRST
+    put(table, row, 0, table[row, at] + c0, table[row, at + 1] + c1, table[row, at + 2] + c2, table[row, at + 3] + c3)
+    table[row, 0] = np.int64(bin_number(x, BITS)).view(np.float64)
 
 
 _FOUR, _INT = ir.VectorType(ir.DoubleType(), 4), ir.IntType(64)
