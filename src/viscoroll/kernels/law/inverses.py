@@ -16,6 +16,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
+from ..compile.rarely import rarely
 from ..numerics import quartet
 from .length import OK, contact_length
 from .material import Tabulated, generator_slopes, generators, moment_of
@@ -73,7 +74,9 @@ def _make_stick(row, y, inverses):
 def at_speed(u, inverses):
     """(lam, epsilon, L, M/V, status) at u = kappa |V|."""
     row, there = quartet.row_of(u, inverses.speed)
-    status = OK if there else _make_speed(row, u, inverses)
+    status = OK
+    if rarely(not there):
+        status = _make_speed(row, u, inverses)
     lam, epsilon, L, m = quartet.values(inverses.speed, row, quartet.offset(u))
     return lam, epsilon, L, m, status
 
@@ -82,7 +85,9 @@ def at_speed(u, inverses):
 def at_stick(y, inverses):
     """(eta/y, H(eta)/y^2, A, status) at y = F(eta)."""
     row, there = quartet.row_of(y, inverses.stick)
-    status = OK if there else _make_stick(row, y, inverses)
+    status = OK
+    if rarely(not there):
+        status = _make_stick(row, y, inverses)
     share, press, rise, _ = quartet.values(inverses.stick, row, quartet.offset(y))
     return share, press, rise, status
 
