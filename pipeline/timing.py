@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import json
-import resource
 import subprocess
 import sys
 import time
@@ -77,8 +76,10 @@ def printed(program: str, *given: Any) -> Any:
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
-def usages() -> list[resource.struct_rusage]:
-    """Of this process and of those that it has waited for."""
+def usages() -> list[Any]:
+    """Of this process and of those that it has waited for; POSIX only."""
+    import resource
+
     return [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
 
 

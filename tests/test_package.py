@@ -1,32 +1,24 @@
-"""The public interface, light imports, one-way layers, and the wheel."""
+"""The public interface, light imports (layers: `make check`), and the wheel."""
 
 from __future__ import annotations
 
 import ast
 import dataclasses
 import inspect
-import os
 import shutil
 import subprocess
 import sys
-import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
 from places import ROOT
+from processes import printed
 
 import viscoroll as vr
 
 PACKAGE = Path(vr.__file__).parent
 HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}
-
-
-def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", code]
-    return subprocess.run(
-        command, env=os.environ | environment, capture_output=True, text=True, timeout=120, check=False
-    )
 
 
 # --- the public interface ---
@@ -100,43 +92,8 @@ def test_the_table_of_coefficients_ships_small():
     ["import viscoroll", "import viscoroll as vr; vr.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.ParameterError"],
 )
 def test_import_is_light(code):
-    done = run(f"{code}\nimport sys\nprint(*{{name.split('.')[0] for name in sys.modules}})")
-    assert done.returncode == 0, done.stderr
-    assert not HEAVY & set(done.stdout.split())
-
-
-def imports_of(path: Path) -> set[str]:
-    """First components, within the package, of everything the module imports, inside functions too."""
-    inside = path.relative_to(PACKAGE).parts[:-1]
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {alias.name.split(".")[1] for alias in node.names if alias.name.startswith("viscoroll.")}
-        elif isinstance(node, ast.ImportFrom) and node.level:
-            base = inside[: len(inside) - node.level + 1]
-            whole = (*base, *(node.module.split(".") if node.module else ()))
-            found |= {whole[0]} if whole else {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("viscoroll."):
-            found.add(node.module.split(".")[1])
-    return found - {"__version__"}
-
-
-def test_layers_point_one_way():
-    """The contract of pyproject.toml, by a reader of its own: highest layer first, | between those of one layer."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    (contract,) = project["tool"]["importlinter"]["contracts"]
-    level = {
-        name.strip().removeprefix("viscoroll."): -n
-        for n, names in enumerate(contract["layers"])
-        for name in names.split("|")
-    }
-    for path in PACKAGE.rglob("*.py"):
-        home = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
-        if home == "__init__":
-            continue
-        assert home in level, f"{home} has no layer"
-        for name in imports_of(path) - {home}:
-            assert level[name] < level[home], f"{path.name} in {home} imports {name}"
+    loaded = printed(f"{code}\nimport sys\nprint(*{{name.split('.')[0] for name in sys.modules}})")
+    assert not HEAVY & set(loaded.split())
 
 
 def test_kernels_import_numpy_and_numba_only():
@@ -166,8 +123,6 @@ def test_a_wheel_alone_answers(tmp_path):
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path / "site")
     code = "import viscoroll as vr; print(vr.__file__); print(vr.contact(vr.PAPER_SECTION_5, 0.5, delta=1e-3).Q)"
-    answer = run(code, PYTHONPATH=str(tmp_path / "site"))
-    assert answer.returncode == 0, answer.stderr
-    where, Q = answer.stdout.split()
+    where, Q = printed(code, PYTHONPATH=str(tmp_path / "site")).split()
     assert where.startswith(str(tmp_path))
     assert float(Q) == vr.contact(vr.PAPER_SECTION_5, 0.5, delta=1e-3).Q

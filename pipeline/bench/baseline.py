@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.motion.stepper import GAMMA, STAGES, A, C, dense, dense_terms
 from viscoroll.kernels.numerics.bracket import narrowed, secant
 from viscoroll.kernels.printed.law import (
     direct_contact_length,
@@ -27,6 +26,7 @@ from viscoroll.kernels.printed.law import (
 )
 
 from .jit import compiled
+from .rodas5p import GAMMA, STAGES, A, C, dense, dense_terms
 from .splines import at_2, at_3, basis, scratch, spline
 
 DIRECT, ATLAS = 0, 1
@@ -61,6 +61,15 @@ def no_atlas() -> Atlas:
     return Atlas(*(np.zeros(shape) for shape in (8, 8, 8, (1, 1), (1, 1), (1, 1, 1))))
 
 
+class Law(NamedTuple):
+    """What a right-hand side reads: DIRECT or ATLAS, (alpha, kappa, mu, gamma, j), splines, room for their bases."""
+
+    which: int
+    par: tuple[float, float, float, float, float]
+    atlas: Atlas
+    w: NDArray
+
+
 @compiled
 def atlas_law(alpha, kappa, mu, speed, delta, atlas, w):
     """(|Q|, |M|, delta_star) from the splines; beyond the table M goes on in proportion to V, the rest is held."""
@@ -92,17 +101,17 @@ def direct_law(alpha, kappa, mu, speed, delta):
 
 
 @compiled
-def rates(which, sticking, u0, u1, sigma, par, atlas, w):
+def rates(law, sticking, u0, u1, sigma):
     """(u0', u1', event function, stick limit of |delta|) of the regime."""
-    alpha, kappa, mu, gamma, j = par
+    alpha, kappa, mu, gamma, j = law.par
     speed = np.exp(u0) if sticking else abs(u0)
     delta = u1 * speed if sticking else np.inf
     if speed == 0.0:
         Q, M, limit = mu, 0.0, 0.0
-    elif which == DIRECT:
+    elif law.which == DIRECT:
         Q, M, limit = direct_law(alpha, kappa, mu, speed, abs(delta))
     else:
-        Q, M, limit = atlas_law(alpha, kappa, mu, speed, abs(delta), atlas, w)
+        Q, M, limit = atlas_law(alpha, kappa, mu, speed, abs(delta), law.atlas, law.w)
     if not sticking:
         M *= np.sign(u0)
         dV = gamma * (sigma * mu - 0.5 * M)
@@ -114,22 +123,22 @@ def rates(which, sticking, u0, u1, sigma, par, atlas, w):
 
 
 @compiled
-def difference_jacobian(which, sticking, u, sigma, par, atlas, w):
+def difference_jacobian(law, sticking, u, sigma):
     """(J00, J01, J10, J11) by forward differences."""
-    f0, f1, _, limit = rates(which, sticking, u[0], u[1], sigma, par, atlas, w)
+    f0, f1, _, limit = rates(law, sticking, u[0], u[1], sigma)
     if sticking:
         d0, d1 = _NUDGE, _NUDGE * (abs(u[1]) + 0.01 * limit * np.exp(-u[0]))
     else:
         d0, d1 = _NUDGE * (abs(u[0]) + abs(u[1])), _NUDGE * abs(u[1])
-    a0, a1, _, _ = rates(which, sticking, u[0] + d0, u[1], sigma, par, atlas, w)
+    a0, a1, _, _ = rates(law, sticking, u[0] + d0, u[1], sigma)
     if not sticking:
         return (a0 - f0) / d0, 0.0, (a1 - f1) / d0, 0.0
-    b0, b1, _, _ = rates(which, sticking, u[0], u[1] + d1, sigma, par, atlas, w)
+    b0, b1, _, _ = rates(law, sticking, u[0], u[1] + d1, sigma)
     return (a0 - f0) / d0, (b0 - f0) / d1, (a1 - f1) / d0, (b1 - f1) / d1
 
 
 @compiled
-def step(which, sticking, u, h, J, sigma, par, atlas, w, K, new):
+def step(law, sticking, u, h, J, sigma, K, new):
     """One step of RODAS5P; the last stage in K is the error estimate."""
     diagonal = 1.0 / (h * GAMMA)
     a, d = diagonal - J[0], diagonal - J[3]
@@ -141,7 +150,7 @@ def step(which, sticking, u, h, J, sigma, par, atlas, w, K, new):
             s1 += A[i, n] * K[n, 1]
             r0 += C[i, n] / h * K[n, 0]
             r1 += C[i, n] / h * K[n, 1]
-        f0, f1, _, _ = rates(which, sticking, s0, s1, sigma, par, atlas, w)
+        f0, f1, _, _ = rates(law, sticking, s0, s1, sigma)
         r0 += f0
         r1 += f1
         K[i, 0], K[i, 1] = (d * r0 + J[1] * r1) * inverse, (a * r1 + J[2] * r0) * inverse
@@ -164,21 +173,21 @@ def error_norm(sticking, u, K, limit, rtol, sigma, j):
 
 
 @compiled
-def locate(which, sticking, u, h, J, sigma, par, atlas, w, K, new):
+def locate(law, sticking, u, h, J, sigma, K, new):
     """Length of the step whose end lies on the event (Illinois); fills ``new``."""
     low, high, side = 0.0, h, 0
-    at_low = max(rates(which, sticking, u[0], u[1], sigma, par, atlas, w)[2], 1e-300)
-    at_high = rates(which, sticking, new[0], new[1], sigma, par, atlas, w)[2]
+    at_low = max(rates(law, sticking, u[0], u[1], sigma)[2], 1e-300)
+    at_high = rates(law, sticking, new[0], new[1], sigma)[2]
     for _ in range(_LOCATE_CAP):
         if high - low <= 4e-16 * high or at_high == 0.0:
             break
         middle = secant(low, high, at_low, at_high)
         if not (low < middle < high):
             middle = 0.5 * (low + high)
-        step(which, sticking, u, middle, J, sigma, par, atlas, w, K, new)
-        value = rates(which, sticking, new[0], new[1], sigma, par, atlas, w)[2]
+        step(law, sticking, u, middle, J, sigma, K, new)
+        value = rates(law, sticking, new[0], new[1], sigma)[2]
         low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, middle, value)
-    step(which, sticking, u, high, J, sigma, par, atlas, w, K, new)
+    step(law, sticking, u, high, J, sigma, K, new)
     return high
 
 
@@ -192,6 +201,14 @@ def speeds(sticking, direction, sigma, u0, u1):
 
 
 @compiled
+def unknowns(sticking, V, omega, u):
+    """What the regime is integrated in, into u."""
+    u[0], u[1] = V, abs(omega - V)
+    if sticking:
+        u[0], u[1] = np.log(abs(V)), (omega - V) / V / abs(V)
+
+
+@compiled
 def first_length(sticking, u, J, rtol, par):
     """Length of the first step in a regime."""
     if not sticking:
@@ -201,27 +218,26 @@ def first_length(sticking, u, J, rtol, par):
 
 
 @compiled
-def roll(which, par, V0, omega0, t, rtol, atlas, w, V, omega):
+def roll(law, V0, omega0, t, rtol, V, omega):
     """One motion into V, omega (times,), which keep what they held where the step limit came first."""
     K, new, u, terms = np.zeros((STAGES, 4)), np.empty(4), np.empty(4), np.zeros((6, 4))
     new[:], u[:] = 0.0, 0.0
     sigma = 1.0 if omega0 >= V0 else -1.0
     direction = 1.0 if V0 >= 0.0 else -1.0
     u[0], u[1] = V0, abs(omega0 - V0)
-    sticking = V0 != 0.0 and rates(which, False, u[0], u[1], sigma, par, atlas, w)[2] < 0.0
-    if sticking:
-        u[0], u[1] = np.log(abs(V0)), (omega0 - V0) / V0 / abs(V0)
+    sticking = V0 != 0.0 and rates(law, False, u[0], u[1], sigma)[2] < 0.0
+    unknowns(sticking, V0, omega0, u)
     now, at, switches, rejected = 0.0, 0, 0, 0
-    J = difference_jacobian(which, sticking, u, sigma, par, atlas, w)
-    h = first_length(sticking, u, J, rtol, par)
+    J = difference_jacobian(law, sticking, u, sigma)
+    h = first_length(sticking, u, J, rtol, law.par)
     for _ in range(_MOST_STEPS):
         if at == t.size or switches > _MOST_SWITCHES or rejected > 50:
             break
         last = h >= t[t.size - 1] - now
         length = t[t.size - 1] - now if last else h
-        step(which, sticking, u, length, J, sigma, par, atlas, w, K, new)
-        _, _, value, limit = rates(which, sticking, new[0], new[1], sigma, par, atlas, w)
-        error = error_norm(sticking, new, K, limit, rtol, sigma, par[4])
+        step(law, sticking, u, length, J, sigma, K, new)
+        _, _, value, limit = rates(law, sticking, new[0], new[1], sigma)
+        error = error_norm(sticking, new, K, limit, rtol, sigma, law.par[4])
         if not error <= 1.0:
             rejected += 1
             h = length * (max(0.1, 0.9 * error**-0.2) if error < 1e300 else 0.1)
@@ -230,7 +246,7 @@ def roll(which, par, V0, omega0, t, rtol, atlas, w, V, omega):
         h = length * min(6.0, 0.9 * (error + 1e-30) ** -0.2)
         event = value < 0.0
         if event:
-            length, last = locate(which, sticking, u, length, J, sigma, par, atlas, w, K, new), False
+            length, last = locate(law, sticking, u, length, J, sigma, K, new), False
         dense_terms(K, terms)
         while at < t.size and (last or t[at] < now + length):
             theta = min((t[at] - now) / length, 1.0)
@@ -244,12 +260,10 @@ def roll(which, par, V0, omega0, t, rtol, atlas, w, V, omega):
             speed, turn = speeds(sticking, direction, sigma, u[0], u[1])
             direction, sigma = np.sign(speed), np.sign(turn - speed)
             sticking = not sticking
-            u[0], u[1] = speed, abs(turn - speed)
-            if sticking:
-                u[0], u[1] = np.log(abs(speed)), (turn - speed) / speed / abs(speed)
-        J = difference_jacobian(which, sticking, u, sigma, par, atlas, w)
+            unknowns(sticking, speed, turn, u)
+        J = difference_jacobian(law, sticking, u, sigma)
         if event:
-            h = first_length(sticking, u, J, rtol, par)
+            h = first_length(sticking, u, J, rtol, law.par)
 
 
 @compiled
@@ -257,8 +271,8 @@ def roll_all(which, parameters, V0, omega0, t, rtol, atlas, w, V, omega):
     """All motions."""
     for i in range(V0.size):
         p = parameters[i]
-        par = (p[0], p[1], p[2], p[3], p[4])
-        roll(which, par, V0[i], omega0[i], t, rtol, atlas, w, V[i], omega[i])
+        law = Law(which, (p[0], p[1], p[2], p[3], p[4]), atlas, w)
+        roll(law, V0[i], omega0[i], t, rtol, V[i], omega[i])
 
 
 def run(which: int, problem: Any, rtol: float, atlas: Atlas) -> tuple[NDArray, NDArray]:

@@ -11,6 +11,7 @@ import viscoroll as vr
 from viscoroll.motion import flow
 
 from ..timing import nanoseconds, rounds, seconds_of
+from .problem import Outcome, speed_error
 
 #: error of the integrator that is allowed for, in rtol: see the docstring of viscoroll.roll
 _INTEGRATOR = 30
@@ -41,14 +42,10 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     calls = {name: (lambda given=given: roll(*given)) for name, given in kinds.items()}
     answered = {name: float(call().flow.mean()) for name, call in calls.items()}
     seconds = rounds(calls | {"load": load}, sizes["repeats"])
-    best = vr.ensemble(
-        scene, V0[: sizes["exact"]], omega0[: sizes["exact"]], t, method="integrate", rtol=1e-11, fields=("V", "omega")
-    )
+    few = slice(sizes["exact"])
+    best = vr.ensemble(scene, V0[few], omega0[few], t, method="integrate", rtol=1e-11, fields=("V", "omega"))
     found = roll(t, ("V", "omega"))
-    by_map = found.flow[: sizes["exact"]]
-    speed = np.maximum(np.abs(best.V), np.abs(best.omega))
-    off = np.maximum(np.abs(found.V[: sizes["exact"]] - best.V), np.abs(found.omega[: sizes["exact"]] - best.omega))
-    off /= speed
+    by_map, off = found.flow[few], speed_error(Outcome(found.V[few], found.omega[few]), best)
     return {
         "rows": {
             name: nanoseconds(seconds[name], V0.size) | {"answered": answered[name]} for name in kinds
@@ -75,8 +72,7 @@ def agreement(sizes: dict[str, Any]) -> dict[str, Any]:
         given = {"fields": ("V", "omega"), "threads": sizes["threads"]}
         quick = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-3, **given)
         slow = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=sizes["rtol"], **given)
-        off = np.maximum(np.abs(quick.V - slow.V), np.abs(quick.omega - slow.omega))
-        off = (off / np.maximum(np.abs(slow.V), np.abs(slow.omega)))[quick.flow]
+        off = speed_error(quick, slow)[quick.flow]
         rows.append(
             {name: getattr(scene, name) for name in ("alpha", "kappa", "mu", "j")}
             | {"by_map": float(quick.flow.mean()), "why_not": quick.flow_problem, "stated": quick.flow_error}

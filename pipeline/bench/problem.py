@@ -141,6 +141,12 @@ def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[
     return {"motions": motions, "second_method": "root solves of the printed equations, DOP853 and LSODA"} | difference
 
 
+def speed_error(tried: Any, best: Any) -> NDArray:
+    """Difference of (V, omega) over the larger of the two."""
+    off = np.maximum(np.abs(tried.V - best.V), np.abs(tried.omega - best.omega))
+    return off / np.maximum(np.abs(best.V), np.abs(best.omega))
+
+
 def errors(tried: Outcome, best: Outcome) -> dict[str, Any]:
     """Relative error of (V, omega), over the larger of the two, worst over time; over the motions that were finished.
 
@@ -148,9 +154,8 @@ def errors(tried: Outcome, best: Outcome) -> dict[str, Any]:
     failed: motions that were given up.
     """
     n = len(tried.V)
-    V, omega = best.V[:n], best.omega[:n]
-    size = np.maximum(np.abs(V), np.abs(omega))
-    each = np.maximum(np.abs(tried.V - V), np.abs(tried.omega - omega)) / size
+    best = Outcome(best.V[:n], best.omega[:n])
+    each, size = speed_error(tried, best), np.maximum(np.abs(best.V), np.abs(best.omega))
     done = np.isfinite(each).all(axis=1)
     if not done.any():
         return {"failed": n}

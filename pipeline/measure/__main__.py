@@ -25,6 +25,7 @@ from viscoroll.validation.states import differences
 from viscoroll.validation.stresses import closures
 
 from ..bench.cold_start import cold_start
+from ..bench.problem import speed_error
 from ..results import run
 from ..timing import alternating
 
@@ -140,7 +141,7 @@ def motion_difference(motion: Any, best: Any) -> dict[str, float]:
     in V, however well it is computed.  x: over the longest way so far.  onset: over itself.
     """
     size = np.maximum(np.abs(best.V), np.abs(best.omega))
-    speed = np.maximum(np.abs(motion.V - best.V), np.abs(motion.omega - best.omega)) / size
+    speed = speed_error(motion, best)
     state, scene = best.contact(("Q", "M")), best.scene
     rate = scene.gamma * np.maximum(np.abs(state.Q - 0.5 * state.M), np.abs(state.Q + 0.5 * state.M) / scene.j)
     errors = {

@@ -17,6 +17,7 @@ import viscoroll as vr
 from viscoroll.errors import MotionStatus
 from viscoroll.reference import roll_precise
 
+from ..bench.problem import speed_error
 from ..reference.random_motions import DOMAIN, ChosenMotion, chosen_motion
 from ..stage import ROOT, read_rows
 from .claim import Claim
@@ -67,13 +68,11 @@ def precise(motion: ChosenMotion) -> Track:
 
 def errors(tried: Track, best: Track, end: float) -> dict[str, float]:
     """V and omega over the larger of the two; x over the longest way so far, of axis or circumference; onset."""
-    size = np.maximum(abs(best.V), abs(best.omega))
     path = np.maximum.accumulate(np.maximum(abs(best.x), abs(best.angle)))
-    off = np.maximum(abs(tried.V - best.V), abs(tried.omega - best.omega))
     # an onset beyond the end is known to be no earlier than that
     early, late = np.fmin(tried.onset, end), np.fmin(best.onset, end)
     return {
-        "speed": float((off / size).max()), "x": float((abs(tried.x - best.x) / path).max()),
+        "speed": float(speed_error(tried, best).max()), "x": float((abs(tried.x - best.x) / path).max()),
         "onset": float(abs(early / late - 1.0)),
     }  # fmt: skip
 
@@ -93,8 +92,7 @@ def condition(motion: ChosenMotion, best: Track) -> float:
         track = rolled(other, _CHANGED_RTOL, t)
         if track is None:
             return math.inf
-        change = np.maximum(abs(track.V - best.V), abs(track.omega - best.omega))
-        total += change / np.maximum(abs(best.V), abs(best.omega)) / _CHANGE
+        total += speed_error(track, best) / _CHANGE
     return float(total.max())
 
 

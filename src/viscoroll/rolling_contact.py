@@ -23,6 +23,8 @@ SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 _BLOCK = 1 << 15
+#: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
+WORTHWHILE = 4096
 _FASTEST = 1e300
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
@@ -105,11 +107,11 @@ def contact(
     alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
     its condition number (``tests/test_contact.py``, ``tests/test_alpha_slice.py``).
 
-    At one alpha (a number) the law is read from polynomials in one variable, which are made where
-    they are met and kept for later calls; at an array of alphas from Bessel ratios.  The two agree
-    to 2e-14 and not bit for bit; full slip begins at the delta_star that the call reports, within
-    16 units in the last place of the other.  A state's result depends on nothing else in the call
-    but the kind of alpha, and whether slopes are asked for.
+    From 4096 states on with one alpha > 1, and no slopes, the law is read from polynomials of one
+    variable, which are made where they are met and kept for later calls.  Such a call agrees with
+    calls of single states to 2e-14 and not bit for bit; full slip begins at the delta_star that
+    the call reports, within 16 units in the last place of the other.  Either way a state's
+    result depends on nothing else in the call but the number of states and the fields.
 
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
     however they broadcast (``tests/test_hostile.py``).
@@ -181,7 +183,7 @@ def _compute(
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
-    loop = _loop_for(arrays[0], method)
+    loop = _chosen_loop(arrays[0], need.slopes, count, method)
     alphas, *parts = (elements(array, shape) for array in arrays)
     failures: list[int] = []
 
@@ -198,21 +200,23 @@ def _compute(
     return out
 
 
-def _loop_for(alpha: NDArray, method: str) -> Callable:
-    """The kernel for a call; in place of its material it takes the alphas of a block."""
+def _chosen_loop(alpha: NDArray, slopes: bool, count: int, method: str) -> Callable:
+    """The kernel for a call, which takes the alphas of a block in place of its material."""
+    from .kernels.law.contact_loop import contact_loop, state_loop
+    from .kernels.law.lockstep import TOGETHER
     from .kernels.law.material import Own
 
     if method == "direct":
         from .kernels.printed.loop import direct_loop
 
         return lambda alphas, *rest: direct_loop(Own(alphas), *rest)
-    if alpha.ndim == 0:
+    # at alpha = 1 the law has closed forms
+    if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not slopes:
         from .kernels.law.inverse_loop import inverse_loop
 
-        return lambda alphas, *rest: inverse_loop(inverses(alpha.item()), *rest)
-    from .kernels.law.contact_loop import contact_loop
-
-    return lambda alphas, *rest: contact_loop(Own(alphas), *rest)
+        return lambda alphas, *rest: inverse_loop(inverses(alphas.item()), *rest)
+    loop = state_loop if count < TOGETHER else contact_loop
+    return lambda alphas, *rest: loop(Own(alphas), *rest)
 
 
 def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:

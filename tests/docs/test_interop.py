@@ -151,7 +151,7 @@ def test_stage_makes_the_check_values_again(tables, tmp_path, monkeypatch):
     ]
     monkeypatch.setattr(sys, "argv", ["loading.py", *folders, f"--config={_few_points(tmp_path)}"])
     with pytest.raises(SystemExit) as ended:
-        runpy.run_module("pipeline.measure.loading", run_name="__main__")
+        runpy.run_module("pipeline.measure.loading", run_name="__main__", alter_sys=True)
     assert ended.value.code == 0
     assert (tmp_path / "check_paper.csv").read_text() == (LOADING / "check_paper.csv").read_text()
     made, kept = (rows_of(folder / "check_atlas.csv") for folder in (tmp_path, LOADING))

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
+import tomllib
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,9 +12,10 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from matplotlib.figure import Figure
-from places import ROOT
+from processes import made, printed, stage_refused
 
 import viscoroll as vr
+from pipeline import stage as shared
 from viscoroll.errors import OutputError
 from viscoroll.figures import (
     FIGURES,
@@ -30,23 +30,16 @@ from viscoroll.figures import (
 )
 from viscoroll.figures.run_distributions import even_bars
 from viscoroll.runs import open_summaries, read_run, run_ensemble
-from viscoroll.tables import AtlasGrid
 
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {"figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble"}
-_SMALL_ATLAS = AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2))
 
 
 @pytest.fixture(scope="module")
-def atlas() -> xr.Dataset:
-    return vr.tables.build(_SMALL_ATLAS)
-
-
-@pytest.fixture(scope="module")
-def drawn(atlas) -> dict[str, Figure]:
+def drawn(small_atlas) -> dict[str, Figure]:
     starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
     few = vr.ensemble(vr.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
-    given = {"atlas-errors": (atlas,), "ensemble": (few.summary(), few.to_xarray())}
+    given = {"atlas-errors": (small_atlas,), "ensemble": (few.summary(), few.to_xarray())}
     return {name: draw(*given.get(name, ())) for name, draw in FIGURES.items()}
 
 
@@ -60,33 +53,30 @@ def test_names():
     assert set(FIGURES) == NAMES
 
 
-@pytest.mark.parametrize("name", sorted(NAMES))
-def test_titled_and_labelled(drawn, name):
-    figure = drawn[name]
-    assert figure.get_suptitle()
-    panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
-    assert panels
-    assert any("$" in axes.get_xlabel() for axes in panels)
-    for axes in panels:
-        shared_below = axes.get_shared_x_axes().get_siblings(axes) != [axes]
-        shared_left = axes.get_shared_y_axes().get_siblings(axes) != [axes]
-        assert axes.get_xlabel() or shared_below
-        assert axes.get_ylabel() or shared_left
+def test_titled_and_labelled(drawn):
+    for name, figure in drawn.items():
+        assert figure.get_suptitle(), name
+        panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+        assert any("$" in axes.get_xlabel() for axes in panels), name
+        for axes in panels:
+            shared_below = axes.get_shared_x_axes().get_siblings(axes) != [axes]
+            shared_left = axes.get_shared_y_axes().get_siblings(axes) != [axes]
+            assert axes.get_xlabel() or shared_below, name
+            assert axes.get_ylabel() or shared_left, name
 
 
-@pytest.mark.parametrize("name", sorted(NAMES))
-def test_saved_without_a_warning(drawn, name, tmp_path):
-    path = tmp_path / f"{name}.png"
-    save(drawn[name], path)
-    assert path.read_bytes().startswith(PNG)
-    assert [item.name for item in tmp_path.iterdir()] == [path.name]
+def test_saved_without_a_warning(drawn, tmp_path):
+    for name, figure in drawn.items():
+        save(figure, tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(PNG), name
+    assert {item.stem for item in tmp_path.iterdir()} == NAMES
 
 
-@pytest.mark.parametrize("name", ["figure-2", "figure-3", "figure-5", "figure-6"])
-def test_lines_differ_without_colour(drawn, name):
-    labelled = [one for one in drawn[name].axes[0].get_lines() if not one.get_label().startswith("_")]
-    styles = {(str(one._unscaled_dash_pattern), str(one.get_marker())) for one in labelled}
-    assert len(styles) == len(labelled)
+def test_lines_differ_without_colour(drawn):
+    for name in ("figure-2", "figure-3", "figure-5", "figure-6"):
+        labelled = [one for one in drawn[name].axes[0].get_lines() if not one.get_label().startswith("_")]
+        styles = {(str(one._unscaled_dash_pattern), str(one.get_marker())) for one in labelled}
+        assert len(styles) == len(labelled), name
 
 
 def test_even_bars_of_what_lies_close_together():
@@ -99,24 +89,22 @@ def test_even_bars_of_what_lies_close_together():
     assert np.isfinite(bars).all()
 
 
-@pytest.mark.parametrize(
-    ("start", "wanted", "empty"),
-    [
-        ("V0 = 2.0\nomega0 = 0.0", '["V", "onset_time", "rest_time"]', {"onset_time", "rest_time"}),
-        ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', set()),
-        ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', {"delta"}),
-    ],
-    ids=["none has stuck", "all at rest", "infinite delta"],
-)
-def test_a_run_without_values(tmp_path, start, wanted, empty):
+def test_a_run_without_values(tmp_path):
     """A panel without values says so; all values at one point are one bar."""
-    text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
-    (tmp_path / "run.toml").write_text(text, encoding="utf-8")
-    run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / "run.zarr", threads=1)
-    figure = run_distributions(open_summaries(tmp_path / "run.zarr"))
-    titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
-    assert {name for name, title in titles.items() if title == "no values"} == empty
-    save(figure, tmp_path / "run.png")
+    for n, (start, wanted, empty) in enumerate(
+        (
+            ("V0 = 2.0\nomega0 = 0.0", '["V", "onset_time", "rest_time"]', {"onset_time", "rest_time"}),  # none stuck
+            ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', set()),  # all at rest
+            ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', {"delta"}),  # infinite
+        )
+    ):
+        text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
+        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+        run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / f"{n}.zarr", threads=1)
+        figure = run_distributions(open_summaries(tmp_path / f"{n}.zarr"))
+        titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
+        assert {name for name, title in titles.items() if title == "no values"} == empty
+        save(figure, tmp_path / "run.png")
 
 
 def test_figure_2_shows_the_limits():
@@ -180,11 +168,10 @@ def test_save_is_whole_or_not_at_all(drawn, tmp_path):
 
 
 def test_import_is_light_and_pyplot_is_left_alone():
-    code = (
+    printed(
         "import sys; from viscoroll.figures import FIGURES; assert 'matplotlib' not in sys.modules; "
         "assert 'numba' not in sys.modules; FIGURES['figure-2'](); assert 'matplotlib.pyplot' not in sys.modules"
     )
-    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 # --- pipeline: motions, ensemble, figures, summary ---
@@ -247,11 +234,6 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
 
-def stage(name: str, *arguments: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", f"pipeline.demo.{name}", *arguments]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-
-
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory) -> tuple[Path, Path]:
     """Configuration and output folder of a small run of every stage."""
@@ -259,9 +241,8 @@ def demo(tmp_path_factory) -> tuple[Path, Path]:
     config, out = folder / "small.toml", folder / "out"
     config.write_text(_SMALL.format(atlas=folder / "atlas.nc"), encoding="utf-8")
     for name in ("tabulate", "validate", "motions", "ensemble", "figures", "summary"):
-        tables = ["--tables", str(folder)] if name == "tabulate" else []
-        result = stage(name, "--config", str(config), "-o", str(out), *tables)
-        assert result.returncode == 0, result.stdout + result.stderr
+        tables = ["--tables", folder] if name == "tabulate" else []
+        made(f"demo.{name}", "--config", config, "-o", out, *tables)
     return config, out
 
 
@@ -304,47 +285,31 @@ def test_summary_page(demo):
     assert {"motions.nc", "ensemble.nc", "validation.nc", "validation.txt"} <= set(page.links)
     assert all((out / target).exists() for target in page.links)
     before = (out / "index.html").stat().st_mtime_ns
-    shown = stage("summary", "--config", str(config), "-o", str(out), "--show")
-    assert shown.returncode == 0, shown.stderr
+    shown = made("demo.summary", "--config", config, "-o", out, "--show")
     assert (out / "index.html").stat().st_mtime_ns == before
     for word in ("atlas.nc", "motions.nc", "ensemble.nc", "index.html", "time per motion"):
-        assert word in shown.stdout
+        assert word in shown
 
 
-@pytest.mark.parametrize(
-    ("name", "old", "new", "words"),
-    [
+def test_stage_refuses_in_one_line(demo, tmp_path):
+    config, small = tmp_path / "bad.toml", demo[0].read_text(encoding="utf-8")
+    for name, old, new, words in (
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
         ("motions", '"paper-section-5"', '"paper"', "preset = 'paper'"),
         ("figures", "[figures]", "[pictures]", "section [figures] is missing"),
         ("summary", "[summary]", "[summary", "is not TOML"),
-    ],
-)
-def test_stage_refuses_in_one_line(demo, tmp_path, name, old, new, words):
-    config = tmp_path / "bad.toml"
-    config.write_text(demo[0].read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
-    result = stage(name, "--config", str(config), "-o", str(tmp_path / "out"))
-    assert result.returncode == 2
-    assert words in result.stderr
-    assert result.stderr.count("\n") == 1
+    ):
+        config.write_text(small.replace(old, new), encoding="utf-8")
+        assert words in stage_refused(f"demo.{name}", "--config", config, "-o", tmp_path / "out")
 
 
-@pytest.mark.parametrize(
-    ("name", "words"), [("figures", "ensemble.nc"), ("summary", "run pipeline.demo.tabulate first")]
-)
-def test_stage_says_what_has_to_run_first(demo, tmp_path, name, words):
-    result = stage(name, "--config", str(demo[0]), "-o", str(tmp_path))
-    assert result.returncode == 2
-    assert words in result.stderr
-    assert result.stderr.count("\n") == 1
+def test_stage_says_what_has_to_run_first(demo, tmp_path):
+    for name, words in (("figures", "ensemble.nc"), ("summary", "run pipeline.demo.tabulate first")):
+        assert words in stage_refused(f"demo.{name}", "--config", demo[0], "-o", tmp_path)
 
 
 def test_production_configuration_is_read():
-    import tomllib
-
-    from pipeline import stage as shared
-
     content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
     assert {"validate", "motions", "ensemble", "figures", "summary"} <= content.keys()
     assert content["ensemble"]["motions"] == 1_000_000

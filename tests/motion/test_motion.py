@@ -227,26 +227,23 @@ def test_gamma_only_scales_time():
     assert fast.onset_time == here.onset_time / 8.0
 
 
-def test_slow_manifold():
-    """After onset Q = -M (1 - j)/(2 (1 + j)) to leading order in V."""
-    for j in (0.3, 0.5, 1.0):
-        motion = vr.roll(ROUNDED.replace(j=j), 1.5, 0.5, np.linspace(1e-3, 5e-3, 30), rtol=1e-12)
-        state = motion.contact(fields=("Q", "M"))
-        leading = -state.M * (1.0 - j) / (2.0 * (1.0 + j))
-        assert np.all(abs(state.Q - leading) <= tol.MANIFOLD * abs(motion.V * state.M))
-
-
 # --- regimes ---
 
 
-@pytest.mark.parametrize("j", [0.5, 1.5])
+@pytest.mark.parametrize("j", [0.3, 0.5, 1.0, 1.5])
 def test_slow_manifold_to_leading_order(j):
     """V'/V = omega'/omega on it, so that (1 + 1/j) Q = -(1/j - 1) M/2; what is left out is of order 1/zeta."""
     scene = ROUNDED.replace(j=j)
-    motion = vr.roll(scene, 1.0, 1.0, np.array([22.0, 27.0]) * decay_time(scene), rtol=1e-12)
-    zeta = 0.5 / (scene.kappa * motion.V)
-    off = (1.0 + 1.0 / j) * motion.contact("Q").Q / (-(1.0 / j - 1.0) * 0.5 * motion.contact("M").M) - 1.0
+    # of a moderate speed, some stiff times behind the onset
+    motion = vr.roll(scene, 1.5, 0.5, np.linspace(1e-3, 5e-3, 30), rtol=1e-12)
+    state = motion.contact(fields=("Q", "M"))
+    assert np.all(abs(state.Q + state.M * (1.0 - j) / (2.0 * (1.0 + j))) <= tol.MANIFOLD * abs(motion.V * state.M))
+    if j == 1.0:
+        return
+    late = vr.roll(scene, 1.0, 1.0, np.array([22.0, 27.0]) * decay_time(scene), rtol=1e-12)
+    state, zeta = late.contact(fields=("Q", "M")), 0.5 / (scene.kappa * late.V)
     assert zeta.min() > 1e3
+    off = (1.0 + 1.0 / j) * state.Q / (-(1.0 / j - 1.0) * 0.5 * state.M) - 1.0
     assert np.all(abs(off) < 5.0 / zeta), (off, zeta)
 
 
@@ -433,13 +430,6 @@ def test_speeds_whose_squares_underflow():
     for start in ((1e-300, 5e-324), (1e-200, -3e-200)):
         motion = vr.roll(ELASTIC, *start, [1e-3])
         assert max(abs(motion.V[0]), abs(motion.omega[0])) <= max(map(abs, start))
-
-
-@pytest.mark.xfail(strict=True, reason="takes every step that it is allowed, here 100,000")
-@pytest.mark.filterwarnings("ignore:roll")
-def test_a_slide_that_leaves_a_speed_of_rounding():
-    """|V| is 4.4e-16 at the onset of partial slip; neighbours of this spin take some seventy steps."""
-    assert vr.roll(ROUNDED, -1.0, 1.4692137743888738, 1e-2, max_steps=5000).status == vr.MotionStatus.DONE
 
 
 def test_rest_stays_rest():

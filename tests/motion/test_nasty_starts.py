@@ -107,13 +107,6 @@ def test_the_map_serves_nasty_starts():
     assert vr.ensemble(SCENE, *nasty(SCENE).T, 1e-3, method="flow").flow.mean() > 0.5
 
 
-def test_elastic_cylinder_rolls_for_ever():
-    t = np.array([1.0, 1e12]) * decay_time(SCENES["elastic"])
-    many = vr.ensemble(SCENES["elastic"], [1.0, -0.3], [1.0, -0.3], t)
-    assert many.V.tolist() == [[1.0, 1.0], [-0.3, -0.3]]
-    np.testing.assert_allclose(many.x, many.V * t, rtol=tol.MOTION_DEFAULT)
-
-
 def test_refused():
     for method in METHODS:
         for V0, omega0, text in (
@@ -139,3 +132,13 @@ def test_speeds_of_any_size(name):
         for field in ("V", "omega", "x", "angle"):
             assert np.isfinite(getattr(many, field)).all(), (field, speed)
         assert (np.maximum(np.abs(many.V), np.abs(many.omega)) <= (1.0 + tol.MOTION_DEFAULT) * 1.5 * speed).all(), speed
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+def test_speeds_that_vanish_together(rtol):
+    """Within 80 ULP of the omega for which V and omega slide to zero at once, onset lies near V = 1e-16: what relaxes
+    there takes no time that the clock could tell.  Found where matrices of other digits moved the onset."""
+    omega = 1.4692137743888392 * (1.0 + np.arange(-80, 81) * np.finfo(float).eps)
+    ended = vr.ensemble(SCENE, -1.0, omega, [1e-3, 3e-3], rtol=rtol, method="integrate")
+    assert (ended.status == MotionStatus.DONE).all()
+    assert (np.abs(ended.V) < 1e-14).all()

@@ -1,20 +1,14 @@
 """The benchmark runs at smoke sizes: results complete, errors sane.  Its times are of no interest here."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import tolerances as tol
-from places import ROOT
+from places import RESULTS
+from processes import made, stage, stage_refused
 
 OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
-
-
-def run(*arguments: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-m", "pipeline.bench", *arguments]
-    return subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True)
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +17,7 @@ def folder(tmp_path_factory):
 
 
 def measured(folder: Path, *parts: str) -> list[dict]:
-    result = run(*parts, "--quick", "-o", str(folder), "--figures", str(folder))
-    assert result.returncode == 0, result.stdout + result.stderr
+    made("bench", *parts, "--quick", "-o", folder, "--figures", folder)
     files = [json.loads((folder / f"bench-{part}.json").read_text(encoding="utf-8")) for part in parts]
     assert all({"cpu", "cores", "date", "numba", "python"} <= file["machine"].keys() for file in files)
     return [file["measured"] for file in files]
@@ -76,17 +69,25 @@ def test_law_tables_and_the_rest(folder):
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
 
 
+def test_first_calls(folder):
+    """Compiled where the cache is empty, and nothing where it is full."""
+    (first,) = measured(folder, "first-calls")
+    (empty,), (full,) = first["empty"], first["full"]
+    assert full["cpu_s"] < empty["cpu_s"]
+    assert full["peak_mb"] < empty["peak_mb"]
+    assert full["files"] == empty["files"] == 1
+    assert 0.0 < full["cache_mb"] == empty["cache_mb"]
+
+
 def test_committed_error_of_the_map_is_below_the_stated_one():
-    fixed = json.loads((ROOT / "data/results/bench-fixed-scene.json").read_text(encoding="utf-8"))["measured"]
+    fixed = json.loads((RESULTS / "bench-fixed-scene.json").read_text(encoding="utf-8"))["measured"]
     assert fixed["error"]["all_times"] <= fixed["stated_error"]
     assert fixed["not_in_map"] < tol.BENCH_NOT_IN_MAP * fixed["compared"]
 
 
 def test_refuses_what_it_cannot_do(tmp_path):
-    assert "unknown part speed" in run("speed").stderr
+    assert "unknown part speed" in stage("bench", "speed").stderr
     broken = tmp_path / "broken.toml"
     broken.write_text("[bench]\n", encoding="utf-8")
-    result = run("law", "--config", str(broken), "-o", str(tmp_path))
-    assert result.returncode == 2
-    assert result.stderr.startswith("benchmark: ")
+    assert stage_refused("bench", "law", "--config", broken, "-o", tmp_path).startswith("benchmark: ")
     assert not list(tmp_path.glob("*.json"))

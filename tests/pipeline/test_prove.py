@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
-import os
-import subprocess
 import sys
+from functools import partial
 
 import flint
 import mpmath as mp
@@ -14,24 +13,15 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
-from places import ROOT
+from places import DATA, PIPELINE, RESULTS
+from processes import made, printed, stage
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll.reference import MissingDependencyError, contact_enclosure, contact_precise
 from viscoroll.reference.enclosures import INPUTS, slope_changes, slopes
 
-CHECK_VALUES = ROOT / "data/reference/check_values.csv"
-
-
-def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [sys.executable, *arguments],
-        check=False,
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        env=os.environ | environment,
-    )
+CHECK_VALUES = DATA / "reference/check_values.csv"
 
 
 # --- enclosures ---
@@ -47,23 +37,22 @@ STATES = [
 ]
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_enclosures_hold_the_printed_law(state):
+def test_enclosures_hold_the_printed_law():
     """Reduced form in balls against the equations as printed in mpmath: no code in common but the series of K."""
-    balls, printed = contact_enclosure(*state), contact_precise(*state, digits=40)
-    for name, value in printed.items():
-        ball = balls[name]
-        assert ball.is_zero() or ball.rel_accuracy_bits() >= 100, name
-        with mp.workdps(60), flint.ctx.workdps(60):
-            wide = ball + flint.arb(0, abs(ball) * flint.arb(10) ** -38)  # the digits of the printed one
-            assert wide.contains(flint.arb(mp.nstr(value, 50))), name
-    assert balls["full_slip"] == (printed["beta"] == 0)
+    for state in STATES:
+        balls, printed_law = contact_enclosure(*state), contact_precise(*state, digits=40)
+        for name, value in printed_law.items():
+            ball = balls[name]
+            assert ball.is_zero() or ball.rel_accuracy_bits() >= 100, (name, state)
+            with mp.workdps(60), flint.ctx.workdps(60):
+                wide = ball + flint.arb(0, abs(ball) * flint.arb(10) ** -38)  # the digits of the printed one
+                assert wide.contains(flint.arb(mp.nstr(value, 50))), (name, state)
+        assert balls["full_slip"] == (printed_law["beta"] == 0), state
 
 
 def test_enclosures_refuse():
     for bad in ((0.5, 1, 1, 1, 0), (2, 1, 1, 0.0, 0), (2, 1, 1, 1, float("nan")), (2, 1, 1, [1.0, 2.0], 0)):
-        with pytest.raises(vr.ParameterError):
-            contact_enclosure(*bad)
+        refused(partial(contact_enclosure, *bad))
 
 
 def test_enclosures_without_flint(monkeypatch):
@@ -150,15 +139,9 @@ def test_check_values_sample_is_enclosed():
 
 def test_check_values_are_made_again(tmp_path):
     """The stage with the same seed begins with the same rows."""
-    text = (
-        (ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8").replace("states = 2000", "states = 40")
-    )
-    (tmp_path / "few.toml").write_text(text, encoding="utf-8")
-    result = run(
-        "-m", "pipeline.reference.check_values", "--config", str(tmp_path / "few.toml"),
-        "--folder", str(tmp_path), "-o", str(tmp_path),
-    )  # fmt: skip
-    assert result.returncode == 0, result.stderr
+    text = (PIPELINE / "config/production.toml").read_text(encoding="utf-8")
+    (tmp_path / "few.toml").write_text(text.replace("states = 2000", "states = 40"), encoding="utf-8")
+    made("reference.check_values", "--config", tmp_path / "few.toml", "--folder", tmp_path, "-o", tmp_path)
     again = (tmp_path / "check_values.csv").read_text(encoding="utf-8").splitlines()
     assert len(again) == 41
     assert again == CHECK_VALUES.read_text(encoding="utf-8").splitlines()[:41]
@@ -170,8 +153,7 @@ def test_check_values_are_made_again(tmp_path):
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     output = tmp_path_factory.mktemp("prove") / "proofs.json"
-    result = run("-m", "pipeline.prove", "--quick", "-o", str(output))
-    assert result.returncode in (0, 1), result.stderr
+    assert stage("prove", "--quick", "-o", output).returncode in (0, 1)
     return {name: part["rows"] for name, part in json.loads(output.read_text(encoding="utf-8"))["parts"].items()}
 
 
@@ -181,7 +163,7 @@ def test_quick_proofs_hold(quick):
 
 
 def test_committed_proofs_are_of_the_same_claims(quick):
-    committed = json.loads((ROOT / "data/results/proofs.json").read_text(encoding="utf-8"))["parts"]
+    committed = json.loads((RESULTS / "proofs.json").read_text(encoding="utf-8"))["parts"]
     for name, rows in quick.items():
         held = [(row["claim"], row["bound"]) for row in committed[name]["rows"]]
         assert all((row["claim"], row["bound"]) in held for row in rows)
@@ -222,19 +204,16 @@ while tried < 60:
         table[at + order] = good
 print(seen, tried)
 """
-    result = run("-c", script, NUMBA_DISABLE_JIT="1")
-    assert result.returncode == 0, result.stderr
-    seen, tried = map(int, result.stdout.split())
+    seen, tried = map(int, printed(script, NUMBA_DISABLE_JIT="1").split())
     assert seen == tried
 
 
 def test_error_maps_are_below_what_is_stated(tmp_path):
     """The committed maps, and new ones of few cells."""
     files = [tmp_path / "maps.nc", tmp_path / "maps.png"]
-    result = run("-m", "pipeline.prove.error_maps", "--quick", "-o", str(files[0]), "--figure", str(files[1]))
-    assert result.returncode == 0, result.stderr
+    made("prove.error_maps", "--quick", "-o", files[0], "--figure", files[1])
     assert files[1].stat().st_size > 0
-    for path in (files[0], ROOT / "data/results/error-maps.nc"):
+    for path in (files[0], RESULTS / "error-maps.nc"):
         with xr.open_dataset(path, engine="h5netcdf") as maps:
             assert len(maps.data_vars) == 8
             for name, errors in maps.data_vars.items():

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import tomllib
 
 import pytest
-from places import ROOT
+from places import PIPELINE, RESULTS
+from processes import stage
 
-COMMITTED = json.loads((ROOT / "data/results/torture.json").read_text(encoding="utf-8"))
+COMMITTED = json.loads((RESULTS / "torture.json").read_text(encoding="utf-8"))
 #: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
 SLOWEST, MOST_MEMORY = 5.0, 1000.0
 
@@ -18,9 +17,7 @@ SLOWEST, MOST_MEMORY = 5.0, 1000.0
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
     output = tmp_path_factory.mktemp("torture") / "torture.json"
-    command = [sys.executable, "-m", "pipeline.torture", "--quick", "--only", "tables", "-o", output]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode in (0, 1), done.stderr
+    assert stage("torture", "--quick", "--only", "tables", "-o", output).returncode in (0, 1)
     return json.loads(output.read_text(encoding="utf-8"))["parts"]["tables"]["rows"]
 
 
@@ -37,7 +34,7 @@ def test_damage_is_done(quick: list[dict]) -> None:
 
 
 def test_committed_results_are_of_the_long_run() -> None:
-    section = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["torture"]
+    section = tomllib.loads((PIPELINE / "config/production.toml").read_text(encoding="utf-8"))["torture"]
     del section["quick"]
     parts = COMMITTED["parts"]
     assert set(parts) == {"tables", "ensembles", "cache"}

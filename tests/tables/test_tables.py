@@ -580,7 +580,7 @@ def tabulate(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, config: str) -> in
     folders = ["--tables", str(tmp_path / "out"), "-o", str(tmp_path / "run")]
     monkeypatch.setattr(sys, "argv", ["tabulate", "--config", str(tmp_path / "run.toml"), *folders])
     with pytest.raises(SystemExit) as exit_:
-        runpy.run_module("pipeline.demo.tabulate", run_name="__main__")
+        runpy.run_module("pipeline.demo.tabulate", run_name="__main__", alter_sys=True)
     return int(exit_.value.code or 0)
 
 

@@ -223,22 +223,24 @@ def _integrate_others(
 ) -> NDArray[np.int64]:  # fmt: skip
     """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each.
 
-    ``own``: whether each has an alpha of its own.
+    ``own``: each has an alpha of its own.
     """
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
         from ..kernels.law.material import Own
         from ..kernels.motion.loop import INFO
+        from ..kernels.motion.records import Batch, Limits
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
-        materials = Own(alpha) if own else material(alpha.item())
+        given = Own(alpha) if own else material(alpha.item())
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
         loop = _loop(tuple(FIELDS[row] for row in rows))
-        loop(materials, *inputs, times, rtol, rest, max_steps, np.array(rows, np.int64), out, info, 0, left.size)
+        limits = Limits(rtol, rest, max_steps)
+        loop(Batch(given, *inputs), times, limits, np.array(rows, np.int64), out, info, 0, left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,10 +84,11 @@ def build(parameters: tuple[float, ...], octave: int, threads: int | None = None
 
 def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
     """Fill the tables; returns what stands against it, or nothing."""
-    from ..kernels.flow import layer as flow_layer
     from ..kernels.flow import slide as flow_slide
     from ..kernels.flow import slow as flow_slow
-    from ..kernels.flow.layout import CROSS_MARGIN, views
+    from ..kernels.flow.layout import BINS, ENTRY_OCTAVES, views
+    from ..kernels.flow.octave import layer_octave
+    from ..kernels.flow.read import CROSS, MINUS, PLUS
 
     alpha, kappa, _, j = parameters
     scene, parts = kernel_scene(*parameters), views(table)
@@ -96,39 +98,28 @@ def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: i
         flow_slide.slide_table(1.0, scene, parts.slide_up) and flow_slide.slide_table(-1.0, scene, parts.slide_down)
     ):
         return "rolling resistance can hold the sliding cylinder at a speed"
-    try:
-        lasting = flow_slow.slow_table(scene, parts.slow)
-    except np.linalg.LinAlgError:  # a singular matrix: no such motion either
-        lasting = False
-    if not lasting:
+    if not flow_slow.slow_table(scene, parts.slow):
         return "full slip returns"
     flow_slide.time_table(parts.slide_up, scene, parts.time_up)
     flow_slide.time_table(parts.slide_down, scene, parts.time_down)
     flow_slide.onset_table(parts.slide_up, scene, parts.onset_up)
     flow_slide.onset_table(parts.slide_down, scene, parts.onset_down)
-    flow_slow.late_table(parts.slow, kappa, parts.late)
-    flow_slow.early_table(parts.slow, kappa, parts.early)
-    far = float(np.sign(1.0 - j))  # the sign of the creep that turns on its way to the slow manifold
+    flow_slow.lambda_table(parts.slow, kappa, True, parts.late)
+    flow_slow.lambda_table(parts.slow, kappa, False, parts.early)
+    families = {CROSS: "cross", PLUS: "plus", MINUS: "minus"}
     failed: list[int] = []
 
-    def layer(top: int, entering: bool, sign: float, which: str) -> None:
-        layers, entry = getattr(parts, f"layer_{which}"), getattr(parts, f"entry_{which}")
+    def work(family: int, layers: NDArray, entry: NDArray, start: int, stop: int) -> None:
+        own = kernel_scene(*parameters)  # of this thread
+        for n in range(start, stop):
+            if not layer_octave(family, n, octave - ENTRY_OCTAVES, own, table, layers, entry):
+                failed.append(n)
 
-        def work(start: int, stop: int) -> None:
-            scene = kernel_scene(*parameters)  # of this thread
-            for n in range(start, stop):
-                if not flow_layer.layer_octave(
-                    top, n, entering, sign, entering and sign == far, parts.entry_cross, scene, table,
-                    layers, entry,
-                ):  # fmt: skip
-                    failed.append(n)
-
-        run_blocks(work, entry.shape[0] // flow_layer.BINS, 1, threads=threads)
-
-    if far:
-        layer(octave + CROSS_MARGIN, False, -far, "cross")
-    layer(octave, True, 1.0, "plus")
-    layer(octave, True, -1.0, "minus")
+    for family, name in families.items():
+        if family == CROSS and j == 1.0:
+            continue  # no motion passes delta = 0 on its way to the slow manifold
+        layers, entry = getattr(parts, f"layer_{name}"), getattr(parts, f"entry_{name}")
+        run_blocks(partial(work, family, layers, entry), entry.shape[0] // BINS, 1, threads=threads)
     return "the stick zone does not always last" if failed else ""
 
 
@@ -156,13 +147,15 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
     from ..kernels.flow.layer import stiff_rate
     from ..kernels.motion.loss_loop import loss_loop
+    from ..kernels.motion.records import Batch, Limits
 
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
-    start = np.array([V0]), np.array([omega0])
+    # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
+    batch = Batch(material(alpha), *(flattened(np.array([x]), (1,)) for x in (kappa, mu, 1.0, j, V0, omega0)))
 
     def flow(times: NDArray) -> Answer:
-        return ask(made, 1.0, 0.0, *start, times, rows)
+        return ask(made, 1.0, 0.0, batch.V0, batch.omega0, times, rows)
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
@@ -173,9 +166,9 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    scene = (np.array([value]) for value in (kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
-    loss_loop(material(alpha), *scene, *start, times, _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, np.array(rows), rolled, info, 0, 1)
+    limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
+    loss_loop(batch, times, limits, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out

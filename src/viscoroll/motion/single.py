@@ -196,13 +196,14 @@ def _step_times(
     """0, the ends of the steps and the nodes between them, and the end time."""
     from ..kernels.motion.integrate import integrate
     from ..kernels.motion.output import OUTPUTS
+    from ..kernels.motion.records import Limits
 
     ends = np.empty(0)
     while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
         ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
         integrate(
-            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end, rtol, rest,
-            max_steps, np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
+            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end,
+            Limits(rtol, rest, max_steps), np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
         )  # fmt: skip
     return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
@@ -212,13 +213,14 @@ def _integrate(
 ) -> Motion:
     from ..kernels.motion.integrate import integrate
     from ..kernels.motion.output import OUTPUTS
+    from ..kernels.motion.records import Limits
 
     asked = times if times[-1] == end else np.append(times, end)
     out = np.full((OUTPUTS, asked.size), np.nan)
     switches = np.empty((_SWITCHES_KEPT, 2))
     status, steps, turns, onset_time, rest_time = integrate(
-        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked, rtol, rest,
-        max_steps, out, switches, np.empty(0),
+        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked,
+        Limits(rtol, rest, max_steps), out, switches, np.empty(0),
     )  # fmt: skip
     rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
     regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]

@@ -5,33 +5,27 @@ from __future__ import annotations
 import gc
 import hashlib
 import importlib
-import os
 import pickle
+import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numba
 import numpy as np
 import pytest
 from numba.core.codegen import JITCodeLibrary
 from ordinary_user import as_ordinary_user, let_in
+from processes import python
 
 from viscoroll.kernels.compile import cache as cache_module
-from viscoroll.kernels.compile import deferred
+from viscoroll.kernels.compile import deferred, notice
 from viscoroll.kernels.compile.jit import kernel
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
 
 FACTOR = 3.0
-
-
-def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", code]
-    return subprocess.run(
-        command, env=os.environ | environment, capture_output=True, text=True, timeout=120, check=False
-    )
 
 
 @pytest.fixture(autouse=True)
@@ -303,14 +297,14 @@ def test_a_process_with_a_damaged_cache(tmp_path):
 from viscoroll.kernels.bessel.ratios import ratio_r
 print(ratio_r(1.0)[0], sum(ratio_r.stats.cache_hits.values()))
 """
-    first = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+    first = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path))
     assert first.stdout == "0.4463899658965345 0\n", first.stderr
     for path in tmp_path.rglob("*.nbc"):
         content = bytearray(path.read_bytes())
         content[len(content) // 3] ^= 255
         path.write_bytes(content)
     for hits in (0, 1):
-        again = run(code, VISCOROLL_CACHE_DIR=str(tmp_path))
+        again = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path))
         assert again.stdout == f"0.4463899658965345 {hits}\n", again.stderr
         assert again.stderr.count("RuntimeWarning: the cache of compiled kernels is damaged") == 1 - hits
 
@@ -319,7 +313,7 @@ def test_a_process_without_a_cache_folder(tmp_path):
     obstacle = tmp_path / "file"
     obstacle.write_text("in the way")
     code = "from viscoroll.kernels.bessel.ratios import ratio_r\nprint(ratio_r(1.0)[0])"
-    done = run(code, VISCOROLL_CACHE_DIR=str(obstacle))
+    done = python("-c", code, VISCOROLL_CACHE_DIR=str(obstacle))
     assert done.stdout == "0.4463899658965345\n", done.stderr
     assert done.stderr.count("RuntimeWarning: compiled kernels are not cached") == 1
 
@@ -358,3 +352,58 @@ def test_cache_folder_follows_the_environment(monkeypatch):
     assert cache_module.cache_root() == Path("/xdg/viscoroll")
     monkeypatch.delenv("XDG_CACHE_HOME")
     assert cache_module.cache_root() == Path.home() / ".cache" / "viscoroll"
+
+
+# --- what is said ---
+
+SCENE = "import numpy as np; import viscoroll as vr; scene = vr.PAPER_SECTION_5\n"
+NOTICE = r"viscoroll: compiling kernels, once for this machine, about \d+ s; `viscoroll warmup` does it ahead\n"
+
+
+def test_who_waits_is_told_once_a_process(tmp_path):
+    code = SCENE + "print(*(np.size(vr.contact(scene, V, delta=0.01).Q) for V in (0.5, [0.5] * 100)))"
+    first = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="")
+    assert re.fullmatch(NOTICE, first.stderr)
+    assert first.stdout == "1 100\n"
+    assert python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="").stderr == ""
+
+
+@pytest.fixture
+def untold(monkeypatch):
+    monkeypatch.setattr(notice, "told", False)
+    monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
+
+
+def test_what_is_said(untold, capsys):
+    notice.tell(0.5)
+    assert capsys.readouterr() == ("", "")
+    notice.tell(12.0)
+    notice.tell(20.0)
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert re.fullmatch(NOTICE, said.err)
+
+
+def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
+    with monkeypatch.context() as quiet:
+        quiet.setenv("VISCOROLL_QUIET", "1")
+        notice.tell(12.0)
+    with monkeypatch.context() as child:
+        child.setattr(notice.multiprocessing, "parent_process", lambda: "this process has one")
+        notice.tell(12.0)
+    with monkeypatch.context() as worker:
+        worker.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask"))
+        notice.tell(12.0)
+    with monkeypatch.context() as window:
+        window.setattr(sys, "stderr", None)
+        notice.tell(12.0)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
+    def get_worker():
+        raise ValueError("No worker found")
+
+    monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
+    notice.tell(12.0)
+    assert re.fullmatch(NOTICE, capsys.readouterr().err)

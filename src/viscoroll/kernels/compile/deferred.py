@@ -22,17 +22,20 @@ import numba
 from numba.core import types
 from numba.core.compiler import Compiler
 
+from .notice import tell
+
 _deferring = True
 
 
 class EntryPipeline:
     """What numba calls to compile a kernel that Python calls."""
 
-    def __init__(self, *given: Any) -> None:
-        self._given = given
+    def __init__(self, seconds: float, *given: Any) -> None:
+        self._seconds, self._given = seconds, given
 
     def compile_extra(self, function: Callable) -> Any:
         """What numba makes of the function."""
+        tell(self._seconds)
         with _garbage_kept():
             return self._compiled(function)
 
@@ -158,7 +161,7 @@ def _pipelines() -> tuple[type, type]:
 
 def _pipeline(library_class: type) -> type:
     """numba's default pipeline, lowering into this class of library."""
-    from numba.core.compiler import CompilerBase, DefaultPassBuilder
+    from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
     from numba.core.compiler_machinery import register_pass
     from numba.core.typed_passes import NativeLowering
 
@@ -171,7 +174,19 @@ def _pipeline(library_class: type) -> type:
             state.library.enable_object_caching()
             return super().run_pass(state)
 
+    class ShortFlags(Flags):
+        """numba looks its flags up at every call that it types, all forty of them: here those that are set."""
+
+        def __hash__(self) -> int:
+            return hash(frozenset(self._values))
+
+        def __eq__(self, other: object) -> bool:
+            return isinstance(other, ShortFlags) and self._values == other._values
+
     class Compiler(CompilerBase):
+        def __init__(self, typing: Any, target: Any, library: Any, args: tuple, returns: Any, flags: Any, known: dict):
+            super().__init__(typing, target, library, args, returns, ShortFlags(flags), known)
+
         def define_pipelines(self) -> list[Any]:
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
             passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in passes.passes]

@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.integrate import DONE, RESTED
 from ..motion.losses import ROLLING_LOSS, ROWS, SLIP_LOSS, kinetic_energy_lost
-from ..motion.stepper import FULL, PARTIAL, REST
+from ..motion.records import FULL, PARTIAL, REST
 from . import layout
 from .inside import earlier_entry
 from .read import (
@@ -184,7 +184,7 @@ def flow_motion(V0, omega0, tau_out, rest, rest_lambda, first, need, table, scen
     return RESTED, onset_time, resting
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=3)
 def flow_loop(
     scene, gamma, first, rest, rest_lambda, table, V0, omega0, t, rows,
     out, status, onset, resting, switches, start, stop,

@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from . import lockstep
 from .length import OK
 from .material import material_of
-from .state import FAR, NEAR, ROWS, contact_state_at, creep_ratio, signed_slip, state_of
+from .state import FAR, NEAR, ROWS, contact_state, contact_state_at, creep_ratio, signed_slip, state_of
 from .stick import slight
 
 
@@ -42,7 +42,18 @@ def _solve(first, count, own, states, need, block, place, some):
         lockstep.solve_roots(_slipping(first, count, states, block, some), some, block, place)
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=3)
+def state_loop(own, states, need, rows, out, start, stop):
+    """``contact_loop`` for fewer states than a block, one after another: the same bits, and less to compile."""
+    state, worst = np.empty(len(ROWS)), OK
+    for n in range(start, stop):
+        worst = max(worst, contact_state(material_of(own, n), state_of(states, n), need, state))
+        for m in range(rows.size):
+            out[m, n] = state[rows[m]]
+    return worst
+
+
+@kernel(allocates=True, seconds=5)
 def contact_loop(own, states, need, rows, out, start, stop):
     """States start..stop; ``rows`` picks the output."""
     state = np.empty(len(ROWS))

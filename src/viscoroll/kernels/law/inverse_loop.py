@@ -6,7 +6,7 @@ reads y = F(eta) = w/(2 u) with w = L - D, and Eq. (15)
     Q = mu (1 - w^2 H(eta)/y^2)        or, where D is a small part of L and this would cancel,
     Q = mu Int_0^D 2 w A(w/(2 u)) dD,  A = H'(eta)/(2 y F'(eta)).
 
-Slopes, and states at the ends of the doubles, take the way of :mod:`state`.
+A state at the ends of the doubles, or closer to delta_star than :data:`EDGE`, takes the way of :mod:`state`.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from .stick import CLOSE
 
 #: kappa |V| that the tables serve: products of the functions stay within the doubles
 _SLOWEST, _FASTEST = 1e-100, 1e100
-#: least F(eta)/F(zeta) served
-_EDGE = 2.0**-20
+#: least F(eta)/F(zeta) served; below, beta is the small difference of L and D over them
+EDGE = 2.0**-20
 
 
 @kernel(inline=True)
@@ -79,7 +79,7 @@ def _from_tables(inverses, state, per, need, at, out, n):
     if need.stick:
         beta, part, stick_status = 0.0, 1.0, OK
         if not full_slip:
-            if not L - D >= _EDGE * L:
+            if not L - D >= EDGE * L:
                 return OK, False
             beta, part, stick_status = _traction(inverses, u, lam, L, D, need, D > CLOSE * L)
         status = max(status, stick_status)
@@ -96,19 +96,18 @@ def _from_tables(inverses, state, per, need, at, out, n):
     return status, True
 
 
-@kernel(allocates=True)
+@kernel(allocates=True, seconds=4)
 def inverse_loop(inverses, states, need, rows, out, start, stop):
-    """``contact_loop`` at one material."""
+    """``contact_loop`` at one material; no slopes."""
     state, at, worst = np.empty(len(ROWS)), np.full(len(ROWS), -1), OK
     for m in range(rows.size):
         at[rows[m]] = m
     alike, per = states.kappa.size == 1 and states.mu.size == 1, (0.0, 0.0)
     for n in range(start, stop):
-        here, status, served = state_of(states, n), OK, False
+        here = state_of(states, n)
         if n == start or not alike:
             per = 0.5 * here.mu / here.kappa, 2.0 * here.kappa / here.mu
-        if not need.slopes:
-            status, served = _from_tables(inverses, here, per, need, at, out, n)
+        status, served = _from_tables(inverses, here, per, need, at, out, n)
         if not served:
             status = contact_state(inverses.material, here, need, state)
             for m in range(rows.size):

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
+from ..numerics.arrays import fill
 from ..numerics.nodes import Interpolation, radau
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
@@ -19,6 +20,8 @@ _ALL = Interpolation((Decimal(-1), *_INNER.exact))
 NODES = _ALL.nodes
 #: values at all nodes to the coefficients of powers
 TO_POWERS = _ALL.powers()
+#: the same, node by node
+BY_NODE = np.ascontiguousarray(TO_POWERS.T)
 #: values at all nodes to slopes at nodes 1 ... N
 SLOPES = _ALL.slopes(_INNER.exact)
 #: values at nodes 1 ... N to the coefficients of powers, to slopes there (column 0 is that of node 0)
@@ -40,25 +43,27 @@ def polynomial(t, powers, row):
 
 
 @kernel
+def fit_terms(values, powers):
+    """Coefficients for :func:`polynomial` of the interpolant of all nodes; the sums of all powers side by side."""
+    fill(0.0, powers)
+    for i in range(N + 1):
+        for k in range(N + 1):
+            powers[k] += BY_NODE[i, k] * values[i]
+
+
+@kernel
 def integral_terms(values, half, powers, row):
     """Coefficients for :func:`rise_at` of the integral of the interpolant of all nodes, scaled by ``half``."""
-    for k in range(N + 1):
-        total = 0.0
-        for i in range(N + 1):
-            total += TO_POWERS[k, i] * values[i]
-        powers[row, k + 1] = total * half / (k + 1.0)
+    fit_terms(values, powers[row])
+    for k in range(N, -1, -1):
+        powers[row, k + 1] = powers[row, k] * half / (k + 1.0)
     _divide(powers, row)
 
 
 @kernel
 def rise_terms(values, powers, row):
     """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
-    powers[row, N + 1] = 0.0
-    for k in range(1, N + 1):
-        total = 0.0
-        for i in range(N + 1):
-            total += TO_POWERS[k, i] * values[i]
-        powers[row, k] = total
+    fit_terms(values, powers[row])
     _divide(powers, row)
 
 

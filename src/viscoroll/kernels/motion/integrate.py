@@ -1,9 +1,8 @@
 """One motion from start to end: one phase after the other, and the switches between full and partial slip.
 
-The regime changes only at a located event (:mod:`events`); nothing re-tests it between.
-Full slip is :mod:`slide_phase`.  Partial slip is entered through its boundary layer (:mod:`layer_phase`)
-and left for the slow manifold (:mod:`slow_phase`), then for the closed form of the last decay; :mod:`step_phase` is for
-where the two give up.
+The regime changes only at a located event; nothing re-tests it between.  Full slip is :mod:`slide_phase`.  Partial
+slip is entered through its boundary layer (:mod:`layer_phase`) and left for the slow manifold (:mod:`slow_phase`),
+then for the closed form of the last decay; :mod:`radau_phase` is for where the two give up.
 """
 
 from __future__ import annotations
@@ -13,21 +12,33 @@ import numpy as np
 from ..compile.jit import kernel
 from ..law.length import OK
 from ..law.stick import stick_length
-from ..numerics.arrays import fill
 from .collocation import N
-from .dop853 import EXTENDED
-from .events import AT_REST, NO_EVENT, SLIP, STICK, speeds
-from .full_slip import stick_limit
-from .layer import ROWS
+from .full_slip import sliding_speed, stick_limit
 from .layer_phase import layer_phase
-from .output import at_rest, coast, put
-from .partial_slip import signed_D, slow_D
-from .slide import SLIDE_ROWS
+from .output import coast, put, put_rest, put_to_end, speeds
+from .partial_slip import slow_D
+from .path import ROWS
+from .radau_phase import radau_phase
+from .records import (
+    AT_REST,
+    FULL,
+    NO_EVENT,
+    PARTIAL,
+    REST,
+    REVERSAL,
+    SLIP,
+    STICK,
+    STUCK,
+    Case,
+    Clock,
+    Frame,
+    Sink,
+    State,
+    Workspace,
+)  # fmt: skip
 from .slide_phase import slide_phase
 from .slow import COLUMNS
-from .slow_phase import slow_phase
-from .step_phase import PACE, step_phase
-from .stepper import FULL, PARTIAL, REST
+from .slow_phase import FAR, slow_phase
 
 DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 
@@ -35,152 +46,159 @@ DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 _TINY = 1e-150
 #: least 1/zeta at which stick begins
 _LEAST = 1e-300
-#: beyond this zeta (kappa V < 1e-17) the slow motion is exponential to rounding
-_COAST = 1e17
+#: share of the whole time that rounding may leave of it behind an event
+_AT_THE_END = 2.0**-51
 
 
 @kernel
-def start(V, omega, scene, u):
-    """Put (V, omega) into the unknowns of its regime: (regime, direction, sigma, status)."""
-    material, kappa, mu, j = scene
-    fill(0.0, u)
+def rolling(momentum, scene):
+    """(y, D) once the fast transient is over, which at vanishing speed lasts a time of order V: V + j omega is kept."""
+    y = -np.log(2.0 * scene.kappa * momentum / (1.0 + scene.j))
+    return y, slow_D(y, scene)[0]
+
+
+@kernel
+def start(V, omega, scene):
+    """(V, omega) in the unknowns of its regime: (state, frame, status)."""
+    material, _, mu, j = scene
     if max(abs(V), abs(omega)) < _TINY:
         # sliding ends within a time of that order: V + j omega is kept
         V = omega = (V + j * omega) / (1.0 + j)
     elif abs(V) < _TINY:
         V = 0.0
     if V == 0.0 and omega == 0.0:
-        return REST, 1.0, 0.0, OK
+        return State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Frame(REST, 1.0, 0.0), OK
     direction = np.sign(V) if V != 0.0 else np.sign(omega)
     V, omega = direction * V, direction * omega
     slip = omega - V
     sigma = 1.0 if slip >= 0.0 else -1.0
     limit, zeta = stick_limit(V, scene)
     if V == 0.0 or abs(slip) >= limit:
-        u[0], u[1] = 1.0 / zeta if V > 0.0 else 0.0, V - j * omega
-        return FULL, direction, sigma, OK
-    if zeta > _COAST:
-        # the fast transient lasts a time of order V: it is over, V + j omega is kept
-        u[0] = -np.log(2.0 * kappa * (V + j * omega) / (1.0 + j))
-        u[1] = 0.0
-        return PARTIAL, direction, sigma, OK
-    _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
-    u[0] = np.log(zeta)
-    u[1] = sigma * D - slow_D(u[0], scene)[0]
-    return PARTIAL, direction, sigma, status
+        s = 1.0 / zeta if V > 0.0 else 0.0
+        return State(s, V - j * omega, 0.0, 0.0, 0.0, 0.0), Frame(FULL, direction, sigma), OK
+    if np.log(zeta) > FAR:
+        y, D = rolling(V + j * omega, scene)
+        status = OK
+    else:
+        y = np.log(zeta)
+        _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
+        D *= sigma
+    return State(y, D, 0.0, 0.0, 0.0, 0.0), Frame(PARTIAL, direction, sigma), status
 
 
 @kernel
-def switch(event, direction, sigma, u, scene, offset):
-    """Enter the regime behind an event: (regime, direction, sigma).  ``offset`` keeps x and angle."""
-    for m in range(2):
-        offset[m] += direction * u[2 + m]
-        u[2 + m] = 0.0
-    j = scene.j
+def switch(event, state, frame, scene):
+    """Enter the regime behind an event: (state, frame)."""
+    first, second, X, angle, way, turned = state
     if event == STICK:
         # both speeds may end at once, to rounding
-        u[0] = -np.log(max(u[0], _LEAST))
-        u[1] = sigma * np.exp(u[0]) - slow_D(u[0], scene)[0]
-        return PARTIAL, direction, sigma
+        y = -np.log(max(first, _LEAST))
+        D = frame.sigma * np.exp(y)
+        momentum = 2.0 * sliding_speed(first, scene) - second
+        if y > FAR and momentum > 0.0:
+            y, D = rolling(momentum, scene)
+        return State(y, D, X, angle, way, turned), Frame(PARTIAL, frame.direction, frame.sigma)
     if event == SLIP:
-        sigma = np.sign(signed_D(u[0], u[1], scene))
-        V, omega, _ = speeds(PARTIAL, u[0], u[1], scene)
-        u[0], u[1] = np.exp(-u[0]), V - j * omega
-        return FULL, direction, sigma
+        V, omega, _ = speeds(state, PARTIAL, scene)
+        w = V - scene.j * omega
+        return State(np.exp(-first), w, X, angle, way, turned), Frame(FULL, frame.direction, np.sign(second))
     # REVERSAL: V = 0; look from the other side, where V rises
-    u[0], u[1] = 0.0, -u[1]
-    return FULL, -direction, -sigma
+    return State(0.0, -second, -X, -angle, way, turned), Frame(FULL, -frame.direction, -frame.sigma)
 
 
 @kernel
-def finish_coasting(at, tau_out, tau, u, direction, scene, gamma, offset, rest, out):
-    """Outputs of the closed form from here on; (status, rest time)."""
-    at, crossing = coast(tau_out, at, tau, u, direction, scene, gamma, offset, rest, out)
-    if crossing > tau_out[tau_out.size - 1]:
+def finish_coasting(state, frame, clock, case):
+    """Outputs of the closed form from here on: (status, rest time)."""
+    sink = case.sink
+    clock, crossing, way = coast(state, frame, clock, case)
+    if crossing > sink.tau[sink.tau.size - 1]:
         return DONE, np.nan
-    V, _, _ = speeds(PARTIAL, u[0], u[1], scene)
-    length = direction * (V - rest) * (1.0 + scene.j) / scene.material.c
-    at_rest(out, at, offset[0] + direction * u[2] + length, offset[1] + direction * u[3] + length, gamma)
-    return RESTED, crossing / gamma
+    there = State(0.0, 0.0, state.X + way, state.angle + way, 0.0, 0.0)
+    put_rest(there, frame, clock, case)
+    return RESTED, crossing / sink.gamma
 
 
-@kernel(allocates=True)
-def integrate(scene, gamma, V0, omega0, t_out, rtol, rest, max_steps, out, switches, step_ends):
+@kernel
+def partial_phase(entering, try_at, state, frame, clock, case):
+    """Partial slip: (event, state, clock, when to try the slow manifold again, whether the closed form holds).
+
+    The boundary layer where it is ``entering``, else steps; from there the slow manifold, where it is near.
+    """
+    if entering:
+        near, event, state, clock = layer_phase(state, frame, clock, case)
+    else:
+        event, near, state, clock = radau_phase(try_at, state, frame, clock, case)
+    # without rolling resistance nothing moves on the slow manifold
+    coasts = near and case.scene.material.c == 0.0
+    if near and not coasts:
+        event, state, clock, try_at = slow_phase(state, frame, clock, case)
+    return event, state, clock, try_at, coasts or state.first >= FAR
+
+
+@kernel
+def follow(state, frame, clock, case, switches):
+    """From phase to phase until outputs end: (status, clock, switches, onset time, rest time)."""
+    sink, gamma = case.sink, case.sink.gamma
+    tau_end = sink.tau[sink.tau.size - 1]
+    onset_time, turns, try_at = np.nan, 0, 0.0
+    slipped, entering, coasts = False, True, frame.regime == PARTIAL and state.first >= FAR
+    while clock.at < sink.tau.size:
+        if coasts:
+            status, rest_time = finish_coasting(state, frame, clock, case)
+            return status, clock, turns, onset_time, rest_time
+        if tau_end - clock.tau <= _AT_THE_END * tau_end:
+            clock = put_to_end(state, frame, clock, case)
+            break
+        if clock.steps >= case.limits.max_steps:
+            return STEP_LIMIT, clock, turns, onset_time, np.nan
+        if frame.regime == FULL:
+            event, state, clock = slide_phase(slipped, state, frame, clock, case)
+        else:
+            event, state, clock, try_at, coasts = partial_phase(entering, try_at, state, frame, clock, case)
+            entering = False
+        if event == AT_REST:
+            put_rest(state, frame, clock, case)
+            return RESTED, clock, turns, onset_time, clock.tau / gamma
+        if event == STUCK:
+            return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
+        if event == NO_EVENT:
+            continue
+        state, frame = switch(event, state, frame, case.scene)
+        slipped, entering, coasts = event == SLIP, event == STICK, frame.regime == PARTIAL and state.first >= FAR
+        if event == REVERSAL:
+            continue
+        if turns < switches.shape[0]:
+            switches[turns, 0], switches[turns, 1] = clock.tau / gamma, frame.regime
+        turns += 1
+        onset_time = clock.tau / gamma if event == STICK and np.isnan(onset_time) else onset_time
+    return DONE, clock, turns, onset_time, np.nan
+
+
+@kernel(allocates=True, seconds=12)
+def integrate(scene, gamma, V0, omega0, t_out, limits, out, switches, step_ends):
     """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
 
     ``switches`` (k, 2) receives (t, regime behind) of the regime changes, ``step_ends`` the
-    times behind the steps and at the nodes of the layer and the slow manifold; what does not fit is not kept.
+    times behind the panels and at their nodes; what does not fit is not kept.
     Returns (status, steps, switches, onset time, rest time).
     """
-    tau_out = t_out * gamma
-    u, slope, offset, travelled, pace = np.zeros(4), np.zeros(4), np.zeros(2), np.zeros(2), np.zeros(PACE)
-    buffers = np.zeros(4), np.zeros(4), np.zeros((EXTENDED, 4)), np.zeros((6, 4))
-    work = np.empty((N + 2, COLUMNS)), np.empty((N, N)), np.empty(N), np.empty((5, N + 2))
-    nodes, slow = np.empty((max(ROWS, SLIDE_ROWS), N + 1)), np.empty(N + 2)
-    steps = turns = at = ends = 0
-    onset_time = rest_time = np.nan
-    if max(abs(V0), abs(omega0)) < rest:
-        at_rest(out, 0, 0.0, 0.0, gamma)
-        return RESTED, steps, turns, onset_time, 0.0
-    regime, direction, sigma, start_status = start(V0, omega0, scene, u)
-    if start_status != OK:
-        return NOT_CONVERGED, steps, turns, onset_time, rest_time
-    if regime == REST:
-        at_rest(out, 0, 0.0, 0.0, gamma)
-        return DONE, steps, turns, onset_time, rest_time
-    while at < tau_out.size and tau_out[at] == 0.0:
-        _, _, delta = speeds(regime, u[0], u[1], scene)
-        put(out, at, 1.0, regime, V0, omega0, delta, 0.0, 0.0, gamma)
-        at += 1
-    status, tau, far, slipped = DONE, 0.0, np.log(_COAST), False
-    # alpha = 1: nothing moves on the slow manifold, which both phases need
-    layer_ahead, try_at = scene.material.c > 0.0, 0.0 if scene.material.c > 0.0 else np.inf
-    while at < tau_out.size:
-        event, ready, stuck = NO_EVENT, False, False
-        if regime == FULL:
-            event, tau, at, steps, ends = slide_phase(
-                u, tau, slipped, tau_out, at, direction, sigma, scene, gamma, offset, travelled, rtol, rest, max_steps,
-                steps, out, step_ends, ends, work[3], nodes,
-            )  # fmt: skip
-            stuck = event == NO_EVENT
-        elif u[0] >= far:
-            status, rest_time = finish_coasting(at, tau_out, tau, u, direction, scene, gamma, offset, rest, out)
-            break
-        elif layer_ahead:
-            layer_ahead = False
-            ready, tau, at, steps, ends = layer_phase(
-                u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, max_steps, steps, out,
-                step_ends, ends, work, nodes, slow,
-            )  # fmt: skip
-        else:
-            event, ready, tau, at, steps, ends = step_phase(
-                u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, far, try_at, max_steps,
-                steps, out, step_ends, ends, pace, slope, buffers,
-            )  # fmt: skip
-            stuck = event == NO_EVENT and not ready and u[0] < far
-        if ready:
-            event, tau, at, steps, ends, try_at = slow_phase(
-                u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, far, max_steps, steps,
-                out, step_ends, ends, work,
-            )  # fmt: skip
-        if event == NO_EVENT:
-            if at < tau_out.size and (steps >= max_steps or stuck):
-                status = STEP_LIMIT if steps >= max_steps else STEP_TOO_SMALL
-                break
-            continue
-        if event == AT_REST:
-            at_rest(out, at, offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)
-            status, rest_time = RESTED, tau / gamma
-            break
-        regime, direction, sigma = switch(event, direction, sigma, u, scene, offset)
-        slipped = event == SLIP
-        if event == STICK or event == SLIP:
-            if turns < switches.shape[0]:
-                switches[turns, 0], switches[turns, 1] = tau / gamma, regime
-            turns += 1
-        if event == STICK:
-            layer_ahead = scene.material.c > 0.0
-            fill(0.0, pace)
-            if np.isnan(onset_time):
-                onset_time = tau / gamma
-    return status, steps, turns, onset_time, rest_time
+    work = Workspace(
+        np.empty((ROWS, N + 1)), np.empty((5, N + 2)), np.empty((N + 2, COLUMNS)), np.empty(N + 2),
+        np.empty((2 * N, 2 * N)), np.empty(2 * N),
+    )  # fmt: skip
+    case = Case(scene, limits, Sink(t_out * gamma, out, step_ends, gamma), work)
+    clock = Clock(0.0, 0, 0, 0)
+    state, frame, status = start(V0, omega0, scene)
+    if status != OK:
+        return NOT_CONVERGED, 0, 0, np.nan, np.nan
+    slow = max(abs(V0), abs(omega0)) < limits.rest
+    if slow or frame.regime == REST:
+        put_rest(State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), frame, clock, case)
+        return RESTED if slow else DONE, 0, 0, np.nan, 0.0 if slow else np.nan
+    first = Frame(frame.regime, 1.0, frame.sigma)
+    while clock.at < t_out.size and t_out[clock.at] == 0.0:
+        delta = speeds(state, frame.regime, scene)[2]
+        put(case.sink, clock.at, first, (V0, omega0, delta), 0.0, 0.0)
+        clock = Clock(0.0, clock.at + 1, 0, 0)
+    status, clock, turns, onset_time, rest_time = follow(state, frame, clock, case, switches)
+    return status, clock.steps, turns, onset_time, rest_time

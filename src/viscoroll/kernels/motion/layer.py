@@ -18,28 +18,37 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..numerics.arrays import fill
-from .collocation import INNER_POWERS, INTEGRAL, INTEGRALS, NODES, SMOOTH_SLOPES, TO_START, N, integral_terms
-from .partial_slip import creep_rates
+from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
+from .partial_slip import creep_rates, linear_rates
+from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
 from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
 
-#: rows of the values at the nodes of a panel: y, and the four right-hand sides
-Y, D_Y, D_TAU, D_X, D_TURN = range(5)
-ROWS = 5
 _MOST_ITERATIONS = 8
 #: the interval in y that the manifold is solved for: so many e-folds at the pace of y on the manifold, and of
 #: that at the start; longest, and shortest
 _LATE, _EARLY, _LONGEST, _SHORTEST = 100.0, 4.0, 0.5, 0.15
 #: relaxation over the rise of y below which there is no manifold to speak of
 _STIFF = 20.0
+#: y is never as large
+_EVERYWHERE = 1e3
+#: e over zeta up to which it is small
+_LINEAR = 3e-7
+#: rounding of m is this over e/zeta: what it moves y by no substitution brings to rest, which no longer gains then
+_NOISE, _STALLED = 1e-16, 0.3
 
 
 @kernel
-def manifold(y, D, tolerance, values, matrix, right, slow, scene):
+def manifold(y, D, tolerance, scene, work):
     """S around y as powers of t in [-1, 1], in ``slow``, with the ends of its interval behind.  Whether there is one.
 
     Collocation at nodes 1 ... N alone: no left end, so that nothing of the fast motion enters.
     """
+    values, slow = work.values, work.slow
     slow_start(y, 0.0, values, scene)
+    if scene.material.c == 0.0:  # without rolling resistance S = 0
+        fill(0.0, slow)
+        slow[N], slow[N + 1] = -_EVERYWHERE, _EVERYWHERE
+        return True
     rise = 1.0 / stiffness(REACHED, values)
     dy, dD, _, _ = creep_rates(y, D, scene)
     early = _EARLY * dy / dD * (node_D(REACHED, values) - D)
@@ -47,7 +56,7 @@ def manifold(y, D, tolerance, values, matrix, right, slow, scene):
     reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
     if not 0.0 < rise < 1.0 / _STIFF:
         return False
-    if not slow_solve(left, reach, tolerance, SMOOTH_SLOPES, values, matrix, right, scene):
+    if not slow_solve(left, reach, tolerance, SMOOTH_SLOPES, scene, work):
         return False
     for i in range(1, N + 1):
         if not stiffness(i, values) > _STIFF:
@@ -85,26 +94,30 @@ def layer_node(i, e, weight, nodes, slow, scene):
     """Fill node i from its y; ``weight``: slope of theta there."""
     y = nodes[Y, i]
     S, slope = slow_creep(y, slow)
-    dy, dD, V, delta = creep_rates(y, S + e, scene)
-    per = -weight * e / (dD - slope * dy)
+    # close to the manifold m is a difference of rates that rounding spoils, and all is linear in e
+    aside = np.copysign(max(abs(e), _LINEAR * np.exp(y)), e)
+    dy, dD, V, delta, dy_D, delta_D = linear_rates(y, S + aside, np.sign(S + e), scene)
+    per = -weight * aside / (dD - slope * dy)
+    dy, delta = dy - dy_D * (aside - e), delta - delta_D * (aside - e)
     nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = per * dy, per, per * V, per * V * delta
 
 
 @kernel
-def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, scene):
+def layer_solve(e, length, power, to_zero, tolerance, scene, work):
     """Collocate over ``length`` e-folds from node 0, where e is given; returns the length, NaN where it failed.
 
     With ``to_zero`` the panel ends where D = 0.  ``tolerance`` bounds the remaining error of y.
     """
+    nodes, slow = work.nodes, work.slow
     start = nodes[Y, 0]
     fill(start, nodes[Y])
-    before = 0.0
+    before = first = 0.0
+    noise = _NOISE / max(abs(e) * np.exp(-start - length), _LINEAR)
     for iteration in range(_MOST_ITERATIONS):
         half = 0.5 * length
         for i in range(1, N + 1):
             v = 0.5 * (1.0 + NODES[i])
-            graded = v ** (power - 1)
-            layer_node(i, e * np.exp(-length * graded * v), power * graded, nodes, slow, scene)
+            layer_node(i, e * np.exp(-length * v**power), grade(v, power), nodes, slow, scene)
         change = 0.0
         for i in range(N):
             rise = 0.0
@@ -117,8 +130,9 @@ def layer_solve(e, length, power, to_zero, tolerance, nodes, slow, scene):
             return np.nan
         if to_zero:
             length = np.log(-e / slow_creep(nodes[Y, N], slow)[0])
+        first = change if iteration == 0 else first
         gain = change / before if iteration > 0 else 0.1
-        if change * gain <= tolerance:
+        if change * gain <= tolerance or (gain > _STALLED and change <= noise * first):
             return length
         before = change
     return np.nan
@@ -131,20 +145,3 @@ def decays_throughout(nodes):
     for i in range(1, N + 1):
         slowest = min(slowest, nodes[D_TAU, i])
     return slowest > 0.0
-
-
-@kernel
-def layer_rise(row, half, nodes):
-    """(Rise over the panel, mismatch at its left end) of a row."""
-    rise, off = 0.0, nodes[row, 0]
-    for i in range(N):
-        rise += INTEGRAL[i] * nodes[row, i + 1]
-        off -= TO_START[i] * nodes[row, i + 1]
-    return half * rise, 2.0 * half * abs(off)
-
-
-@kernel
-def layer_dense_terms(half, nodes, powers):
-    """Coefficients for ``rise_at`` of tau, X, angle - X, y."""
-    for row, source in enumerate((D_TAU, D_X, D_TURN, D_Y)):
-        integral_terms(nodes[source], half, powers, row)

@@ -1,42 +1,26 @@
-"""The boundary layer as far as it carries: panel control, outputs."""
+"""The boundary layer as far as it carries: panel control."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..compile.jit import kernel
-from .collocation import N, place, rise_at
-from .control import SHARE, creep_weight, path_error
-from .layer import (
-    D_TAU,
-    D_TURN,
-    D_X,
-    D_Y,
-    ROWS,
-    Y,
-    decays_throughout,
-    layer_dense_terms,
-    layer_node,
-    layer_rise,
-    layer_solve,
-    manifold,
-    slow_creep,
-)  # fmt: skip
-from .output import put
-from .partial_slip import creep_speeds, signed_D, slow_D
-from .slow import creep_slope
-from .slow_phase import NEWTON, note_nodes
-from .stepper import PARTIAL
+from .collocation import N
+from .control import SHARE, creep_weight, next_length
+from .layer import decays_throughout, layer_node, layer_solve, manifold, slow_creep
+from .panel import pass_path
+from .path import D_TAU, D_TURN, D_X, D_Y, OVERSTATED, Y, next_start, path_mismatch
+from .records import LAYER, NO_EVENT, Clock, Panel
+from .slow import REACHED, creep_slope
+from .slow_phase import NEWTON
 
-#: longest panel in e-folds, shortest beside the first guess, and most growth from one to the next
-_LONGEST, _SHORTEST, _GROWTH = 6.0, 1e-2, 6.0
+#: longest panel in e-folds, and shortest beside the first guess
+_LONGEST, _SHORTEST = 6.0, 1e-2
 #: near eta = 0 the law bends on the scale 1/alpha: share of it in the first panel at rtol = 1, whose nodes lie as
-#: this power, and by how much longer the next is
-_FIRST, _GRADED, _SECOND = 50.0, 3, 3.0
+#: this power
+_FIRST, GRADED = 50.0, 3
 #: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate
 _SUBSTITUTION = 1e-3
-#: a mismatch of the integrands at the left end overstates the error of their interpolants
-_OVERSTATED = 0.02
 #: a panel that would end this little short of delta = 0 or of the end of the layer, or behind, ends there
 _NEARLY = 1.3
 #: distance from the manifold at which the layer is over, over its tolerance
@@ -46,148 +30,91 @@ _ROUNDING = 1e-6
 
 
 @kernel
-def panel_error(length, rtol, travelled, nodes):
-    """Error of the interpolants over their tolerances."""
-    half = 0.5 * length
-    _, y_off = layer_rise(D_Y, half, nodes)
-    _, tau_off = layer_rise(D_TAU, half, nodes)
-    X, X_off = layer_rise(D_X, half, nodes)
-    turn, turn_off = layer_rise(D_TURN, half, nodes)
-    rate = abs(nodes[D_Y, N] / nodes[D_TAU, N])
-    error = max(y_off, tau_off * rate, path_error(X, X_off, X + turn, turn_off, travelled, _OVERSTATED))
-    return _OVERSTATED * error / (SHARE * rtol)
+def first_bend(y, D, rtol, scene):
+    """How far D may go on a first panel, at the bend of the law near eta = 0."""
+    return _FIRST * rtol ** (1.0 / 3.0) * (np.exp(y) - abs(D) + 1.0 / scene.material.alpha)
 
 
 @kernel
-def layer_outputs(tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, scene, gamma, offset, out):
-    """Outputs within the panel; the next column."""
-    v = 0.0
-    while at < tau_out.size and tau_out[at] <= tau + rise:
-        since = tau_out[at] - tau
-        v = place(since, max(v, 2.0 * max(since / rise, 0.0) ** (1.0 / power)), powers, 0)
-        y, X = u[0] + rise_at(v, powers, 3), rise_at(v, powers, 1)
-        V, delta = creep_speeds(y, slow_creep(y, slow)[0] + e * np.exp(-length * (0.5 * v) ** power), scene)
-        put(out, at, direction, PARTIAL, V, V * (1.0 + delta), delta,
-            offset[0] + direction * (u[2] + X),
-            offset[1] + direction * (u[3] + X + rise_at(v, powers, 2)), gamma)  # fmt: skip
-        at += 1
-    return at
-
-
-@kernel
-def above_manifold(y, D, rtol, slow, work, scene):
+def above_manifold(y, D, case):
     """e at (y, D), with the manifold around it solved for; NaN if there is none."""
-    values, matrix, right, _ = work
-    if not manifold(y, D, max(NEWTON * SHARE * rtol, 1e-12), values, matrix, right, slow, scene):
+    if not manifold(y, D, max(NEWTON * SHARE * case.limits.rtol, 1e-12), case.scene, case.work):
         return np.nan
-    return D - slow_creep(y, slow)[0]
+    return D - slow_creep(y, case.work.slow)[0]
 
 
 @kernel
-def tolerated(y, rtol, slow, work):
+def tolerated(y, case):
     """Distance from the manifold that no longer matters."""
     per = np.exp(-y)
-    share = slow_creep(y, slow)[0] * per
-    return _OVER * SHARE * rtol / max(creep_weight(share) * per, creep_slope(1, work[0]))
+    share = slow_creep(y, case.work.slow)[0] * per
+    return _OVER * SHARE * case.limits.rtol / max(creep_weight(share) * per, creep_slope(REACHED, case.work.values))
 
 
 @kernel
-def panel_size(e, length, power, to_zero, rtol, travelled, nodes, slow, scene):
+def panel_size(e, length, power, to_zero, state, case):
     """(Length, error over its tolerance) of the panel from node 0; infinite where it failed."""
-    solved = layer_solve(e, length, power, to_zero, max(_SUBSTITUTION * SHARE * rtol, 1e-14), nodes, slow, scene)
-    if not (solved > 0.0 and decays_throughout(nodes)):
+    tolerance, work = SHARE * case.limits.rtol, case.work
+    solved = layer_solve(e, length, power, to_zero, max(_SUBSTITUTION * tolerance, 1e-14), case.scene, work)
+    if not (solved > 0.0 and decays_throughout(work.nodes)):
         return length, np.inf
-    return solved, panel_error(solved, rtol, travelled, nodes)
+    creep = abs(e) * creep_slope(REACHED, work.values)
+    return solved, OVERSTATED * path_mismatch(solved, creep, state, work.nodes) / tolerance
 
 
 @kernel
-def next_panel(length, power, size):
-    """Length of the panel that should meet the tolerance, after one with this error."""
-    if not size < 1e300:
-        return 0.3 * length
-    if power == 1:
-        return length * max(0.1, min(_GROWTH, 0.9 * (size + 1e-30) ** (-1.0 / N)))
-    # the bend at eta = 0 sets the error of graded nodes, and is left behind with them
-    return length * (_SECOND if size <= 1.0 else max(0.1, 0.9 * size ** (-1.0 / 3.0)))
-
-
-@kernel
-def pass_on(length, power, u, travelled, nodes):
-    """Put u and node 0 at the end of the panel."""
-    X, _ = layer_rise(D_X, 0.5 * length, nodes)
-    turn, _ = layer_rise(D_TURN, 0.5 * length, nodes)
-    u[0] = nodes[Y, N]
-    u[2] += X
-    u[3] += X + turn
-    travelled[0] += abs(X)
-    travelled[1] += abs(X + turn)
-    nodes[Y, 0] = nodes[Y, N]
-    for row in range(D_Y, ROWS):
-        nodes[row, 0] = nodes[row, N] / power
-
-
-@kernel
-def fastest(nodes):
-    """max(V, omega) at the right end."""
-    V = nodes[D_X, N] / nodes[D_TAU, N]
-    return V * max(1.0, 1.0 + nodes[D_TURN, N] / nodes[D_X, N])
-
-
-@kernel
-def layer_phase(u, tau, tau_out, at, direction, scene, gamma, offset, travelled, rtol, rest, max_steps, steps,
-                out, step_ends, ends, work, nodes, slow):  # fmt: skip
-    """Follow the layer from u until it is over, outputs end, or a panel fails.
-
-    Returns (whether it is over, tau, next column, steps, ends noted).
-    """
-    D, zeta = signed_D(u[0], u[1], scene), np.exp(u[0])
-    e = above_manifold(u[0], D, rtol, slow, work, scene)
-    if np.isnan(e):
-        return False, tau, at, steps, ends
-    known, crosses = u[0], D * (D - e) < 0.0
-    left = np.log(abs(e) / tolerated(u[0], rtol, slow, work))
-    length = _FIRST * rtol ** (1.0 / 3.0) * (zeta - abs(D) + 1.0 / scene.material.alpha) / abs(e)
-    shortest, stretch, power = _SHORTEST * length, _NEARLY, _GRADED
-    nodes[Y, 0] = u[0]
-    for row in range(D_Y, ROWS):
+def layer_start(e, state, nodes):
+    """Put node 0 of the first panel, whose nodes are graded, at the state."""
+    nodes[Y, 0] = state.first
+    for row in (D_Y, D_TAU, D_X, D_TURN):
         nodes[row, 0] = 0.0
-    while at < tau_out.size and steps < max_steps and left > 0.0:
+
+
+@kernel
+def layer_phase(state, frame, clock, case):
+    """Follow the layer until it is over, outputs end, or a panel fails: (whether it is over, event, state, clock)."""
+    limits, sink, work = case.limits, case.sink, case.work
+    nodes, zeta = work.nodes, np.exp(state.first)
+    e = above_manifold(state.first, state.second, case)
+    if np.isnan(e):
+        return False, NO_EVENT, state, clock
+    known, crosses = state.first, state.second * (state.second - e) < 0.0
+    left = np.log(abs(e) / tolerated(known, case))
+    length = first_bend(known, state.second, limits.rtol, case.scene) / abs(e)
+    shortest, stretch, power = _SHORTEST * length, _NEARLY, GRADED
+    layer_start(e, state, nodes)
+    while clock.at < sink.tau.size and clock.steps < limits.max_steps and left > 0.0:
         # delta = 0, where the law bends, and the end of the layer are ends of panels
-        zero = np.log(-e / slow_creep(u[0], slow)[0]) if crosses else left
+        zero = np.log(-e / slow_creep(state.first, work.slow)[0]) if crosses else left
         length = min(length, _LONGEST)
         if stretch * length >= min(zero, left):
             length = min(zero, left)
         to_zero = crosses and length == zero
-        length, size = panel_size(e, length, power, to_zero, rtol, travelled, nodes, slow, scene)
-        steps += 1
+        length, size = panel_size(e, length, power, to_zero, state, case)
+        clock = Clock(clock.tau, clock.at, clock.steps + 1, clock.ends)
         if not size <= 1.0 and abs(e) > _ROUNDING * zeta:
             stretch = 1.0
-            if size == np.inf and u[0] != known:
+            if size == np.inf and state.first != known:
                 # perhaps the panel ends where the manifold is not known yet
-                known = u[0]
-                renewed = above_manifold(known, slow_creep(known, slow)[0] + e, rtol, slow, work, scene)
+                known = state.first
+                renewed = above_manifold(known, state.second, case)
                 if renewed * e > 0.0:
                     e, left = renewed, np.log(renewed / e) + left
-                    layer_node(0, e, 1.0, nodes, slow, scene)
+                    layer_node(0, e, 1.0, nodes, work.slow, case.scene)
                     continue
-            length = next_panel(length, power, size)
+            length = next_length(length, size, power)
             if length >= shortest:
                 continue
-        if not size <= 1.0 or (rest > 0.0 and fastest(nodes) < rest):
+        if not size <= 1.0:
             break
-        rise, _ = layer_rise(D_TAU, 0.5 * length, nodes)
-        if tau_out[at] <= tau + rise or ends < step_ends.size:
-            powers = work[3]
-            layer_dense_terms(0.5 * length, nodes, powers)
-            at = layer_outputs(
-                tau_out, at, tau, rise, u, e, length, power, direction, slow, powers, scene, gamma, offset, out
-            )
-            ends = note_nodes(tau, powers, gamma, step_ends, ends)
-        pass_on(length, power, u, travelled, nodes)
-        tau += rise
+        panel = Panel(LAYER, state.first, e, length, power, 0.0, 0.0, 0.0, 0.0)
         left -= length
         e *= np.exp(-length)
+        y = nodes[Y, N]
+        event, state, clock = pass_path(y, slow_creep(y, work.slow)[0] + e, panel, state, frame, clock, case)
+        if event != NO_EVENT:
+            return False, event, state, clock
+        next_start(power, nodes)
         crosses, stretch = crosses and not to_zero, _NEARLY
-        length, power = next_panel(length, power, size), 1
-    u[1] = slow_creep(u[0], slow)[0] + e - slow_D(u[0], scene)[0]
-    return left <= 0.0 or abs(e) <= _ROUNDING * zeta, tau, at, steps, ends
+        length, power = next_length(length, size, power), 1
+    return left <= 0.0 or abs(e) <= _ROUNDING * zeta, NO_EVENT, state, clock

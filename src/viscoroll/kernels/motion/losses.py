@@ -19,7 +19,7 @@ from ..law.state import Need, Q, State, contact_state
 from ..numerics.arrays import fill
 from .integrate import integrate
 from .output import OUTPUTS
-from .stepper import PARTIAL
+from .records import PARTIAL
 
 #: rows that follow those of :mod:`output`, and the number of all
 SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
@@ -62,8 +62,8 @@ def _panels(step_ends, t):
 
 
 @kernel(allocates=True)
-def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_ends, losses):
-    """Fill ``losses`` (2, times) of the motion whose outputs and ends of steps are given; ends become 0.
+def add_losses(scene, gamma, V0, omega0, t, limits, out, step_ends):
+    """Fill the two rows of losses of the motion whose outputs and ends of steps are given; ends become 0.
 
     The motion is rolled once more, in the same steps, with output at the points of the rule.
     """
@@ -77,7 +77,7 @@ def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_end
     points = np.empty((OUTPUTS, times.size))
     for row in points:
         fill(np.nan, row)
-    integrate(scene, gamma, V0, omega0, times, rtol, rest, max_steps, points, np.empty((0, 2)), np.empty(0))
+    integrate(scene, gamma, V0, omega0, times, limits, points, np.empty((0, 2)), np.empty(0))
     state = np.empty(len(CONTACT_ROWS))
     lost, n = 0.0, 0
     for m in range(t.size):
@@ -86,5 +86,5 @@ def add_losses(scene, gamma, V0, omega0, t, rtol, rest, max_steps, out, step_end
                 power = _slip_power(points[0, k], points[1, k], points[4, k], points[5, k], scene, state)
                 lost += gamma * (edges[n + 1] - edges[n]) * GAUSS_W[k - n * _POINTS] * power
             n += 1
-        losses[0, m] = lost
-        losses[1, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost
+        out[SLIP_LOSS, m] = lost
+        out[ROLLING_LOSS, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost

@@ -1,81 +1,81 @@
-"""Output of a motion: dense output within steps, the closed form of the last decay, rest."""
+"""Output of a motion: columns, the closed form of the last decay, rest."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..compile.jit import kernel
-from ..numerics.arrays import copy
-from .events import EXPLICIT, interpolant, speeds
-from .explicit import explicit_step
-from .stepper import PARTIAL, REST, dense
+from .full_slip import sliding_speed
+from .partial_slip import creep_speeds
+from .records import FULL, REST, Clock, Frame
 
 #: rows of the output: V, omega, x, angle, delta, regime
 OUTPUTS = 6
 
 
 @kernel
-def put(out, column, direction, regime, V, omega, delta, X, angle, gamma):
-    """One output column, back in the frame and units of the caller."""
+def speeds(state, regime, scene):
+    """(V, omega, delta) in the frame of the state."""
+    if regime != FULL:
+        V, delta = creep_speeds(state.first, state.second, scene)
+        return V, V * (1.0 + delta), delta
+    V = sliding_speed(state.first, scene)
+    omega = (V - state.second) / scene.j
+    slip = omega - V
+    return V, omega, np.copysign(np.inf, slip) if V == 0.0 else slip / V
+
+
+@kernel
+def put(sink, column, frame, moving, X, angle):
+    """One output column, back in the frame and units of the caller; ``moving`` = (V, omega, delta)."""
+    out, gamma, direction = sink.out, sink.gamma, frame.direction
+    V, omega, delta = moving
     out[0, column], out[1, column] = direction * V, direction * omega
-    out[2, column], out[3, column] = X / gamma, angle / gamma
-    out[4, column], out[5, column] = delta, regime
-
-
-@kernel(allocates=True)
-def write_outputs(tau_out, at, tau, h, last, method, direction, old, new, slope, K, terms, scene, gamma, offset, out):
-    """Outputs that fall within the step in partial slip (or, if ``last``, on its end); returns the next column.
-
-    In the boundary layer steps are long beside its time: there each output is a step of its own.
-    """
-    if at >= tau_out.size or not (last or tau_out[at] < tau + h):
-        return at
-    stepped = method == EXPLICIT
-    point, error = np.empty(4), np.empty(4)
-    if h > 0.0 and not stepped:
-        interpolant(method, old, new, h, scene, K, terms)
-    while at < tau_out.size and (last or tau_out[at] < tau + h):
-        theta = min((tau_out[at] - tau) / h, 1.0) if h > 0.0 else 1.0
-        if theta == 1.0:
-            copy(new, point)
-        elif stepped:
-            copy(slope, K[0])
-            explicit_step(old, theta * h, scene, K, point, error)
-        else:
-            for m in range(4):
-                point[m] = dense(theta, old, new, terms, m)
-        V, omega, delta = speeds(PARTIAL, point[0], point[1], scene)
-        put(out, at, direction, PARTIAL, V, omega, delta,
-            offset[0] + direction * point[2], offset[1] + direction * point[3], gamma)  # fmt: skip
-        at += 1
-    return at
+    out[2, column], out[3, column] = direction * X / gamma, direction * angle / gamma
+    out[4, column], out[5, column] = delta, frame.regime
 
 
 @kernel
-def coast(tau_out, at, tau, u, direction, scene, gamma, offset, rest, out):
-    """Slow motion at vanishing speed, in closed form: V' = -c V/(1 + j), delta/V constant.
-
-    Relative corrections are of the order of kappa V < 1e-17.  Returns (next column, time
-    at which the rest threshold is crossed or infinity).
-    """
-    material, _, _, j = scene
-    c = material.c
-    rate = c / (1.0 + j)
-    V, omega, delta = speeds(PARTIAL, u[0], u[1], scene)
-    crossing = np.inf
-    if rest > 0.0 and rate > 0.0:
-        crossing = tau + np.log(max(abs(V), abs(omega)) / rest) / rate
-    while at < tau_out.size and tau_out[at] <= crossing:
-        decay = np.exp(-rate * (tau_out[at] - tau))
-        length = V * (tau_out[at] - tau) if rate == 0.0 else -V * np.expm1(-rate * (tau_out[at] - tau)) / rate
-        put(out, at, direction, PARTIAL, V * decay, omega * decay, delta * decay,
-            offset[0] + direction * (u[2] + length), offset[1] + direction * (u[3] + length), gamma)  # fmt: skip
-        at += 1
-    return at, crossing
+def put_to_end(state, frame, clock, case):
+    """All outputs that are left, of a motion that is where it ends."""
+    moving = speeds(state, frame.regime, case.scene)
+    for column in range(clock.at, case.sink.tau.size):
+        put(case.sink, column, frame, moving, state.X, state.angle)
+    return Clock(clock.tau, case.sink.tau.size, clock.steps, clock.ends)
 
 
 @kernel
-def at_rest(out, at, x, angle, gamma):
+def put_rest(state, frame, clock, case):
     """Outputs after rest: V = omega = 0 at the place where the threshold was crossed."""
-    for column in range(at, out.shape[1]):
-        put(out, column, 1.0, REST, 0.0, 0.0, 0.0, x, angle, gamma)
+    direction = frame.direction
+    for column in range(clock.at, case.sink.tau.size):
+        put(case.sink, column, Frame(REST, 1.0, 0.0), (0.0, 0.0, 0.0), direction * state.X, direction * state.angle)
+
+
+@kernel
+def relaxation_at_rest(V, scene):
+    """Rate at which delta decays at alpha = 1, where D is small: Q = 2 mu D/zeta, delta = mu V D."""
+    return 4.0 * scene.kappa * (1.0 + 1.0 / scene.j) / V
+
+
+@kernel
+def coast(state, frame, clock, case):
+    """Outputs of the last decay, in closed form: V' = -c V/(1 + j), delta/V constant.
+
+    Relative corrections are of the order of kappa V < 1e-17, or of what is left of delta at alpha = 1: there V stays,
+    and delta decays.  Returns (clock, time at which the rest threshold is crossed or infinity, distance until there).
+    """
+    scene, sink, rest = case.scene, case.sink, case.limits.rest
+    rate = scene.material.c / (1.0 + scene.j)
+    V, omega, delta = speeds(state, frame.regime, scene)
+    creep_rate = rate if rate > 0.0 else relaxation_at_rest(V, scene)
+    crossing, fastest, at = np.inf, max(abs(V), abs(omega)), clock.at
+    if rest > 0.0 and rate > 0.0:
+        crossing = clock.tau + np.log(fastest / rest) / rate
+    while at < sink.tau.size and sink.tau[at] <= crossing:
+        since = sink.tau[at] - clock.tau
+        decay, creep = np.exp(-rate * since), delta * np.exp(-creep_rate * since)
+        way = V * since if rate == 0.0 else -V * np.expm1(-rate * since) / rate
+        put(sink, at, frame, (V * decay, V * decay * (1.0 + creep), creep), state.X + way, state.angle + way)
+        at += 1
+    return Clock(clock.tau, at, clock.steps, clock.ends), crossing, (V - rest) / rate if rate > 0.0 else np.inf

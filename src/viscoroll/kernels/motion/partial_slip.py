@@ -93,16 +93,31 @@ def partial_rates(y, offset, scene):
 @kernel(inline=True)
 def creep_rates(y, D, scene):
     """(y', D', V, delta) at y = ln zeta and D."""
-    dy, dD, V, delta, _ = branch_rates(y, D, np.sign(D), scene)
+    dy, dD, V, delta, _, _, _, _, _ = branch_rates(y, D, np.sign(D), scene)
     return dy, dD, V, delta
 
 
 @kernel(inline=True)
 def branch_rates(y, D, sign, scene):
-    """(y', D', V, delta, Q/V) on the branch of the law with this sign of delta, which goes on through D = 0."""
+    """:func:`_rates` on the branch of the law with this sign of delta, which goes on through D = 0."""
     zeta = np.exp(y)
-    dy, dD, V, delta, _, _, _, _, q_over_V = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
-    return dy, dD, V, delta, q_over_V
+    return _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
+
+
+@kernel(inline=True)
+def linear_rates(y, D, sign, scene):
+    """(y', D', V, delta, d(y', delta)/dD) on the branch with this sign of delta."""
+    zeta = np.exp(y)
+    dy, dD, V, delta, _, dy_D, _, delta_D, _ = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
+    return dy, dD, V, delta, dy_D, delta_D
+
+
+@kernel
+def stiff_rates(y, D, sign, scene):
+    """(y', D', V, delta, d(y', D')/dD) on the branch with this sign of delta; d D' to leading order in V."""
+    zeta = np.exp(y)
+    dy, dD, V, delta, _, dy_D, dD_D, _, _ = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
+    return dy, dD, V, delta, dy_D, dD_D
 
 
 @kernel(inline=True)

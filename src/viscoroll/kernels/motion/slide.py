@@ -17,13 +17,13 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .collocation import INTEGRALS, NODES, TO_START, N, integral_terms, polynomial, rise_at, rise_terms
-from .events import STICK
-from .full_slip import edge_of_stick, sliding
+from .full_slip import edge_of_stick, sliding, sliding_speed
+from .records import SLIDE, Panel
 
 #: rows of the values at the nodes: tau' and I' (over the length), the slope and the mean over time of what V gains
 #: beside the traction (all that it gains, where V comes to stand: there that is a small difference), V, slip less
 #: stick limit, the larger speed
-D_TAU, D_I, D_WAY, V, SLIP, SPEED, MEAN_GAIN = range(7)
+D_TAU, D_I, D_WAY, SPEED_V, SLIP, FASTEST, MEAN_GAIN = range(7)
 SLIDE_ROWS = 7
 #: rows of the interpolants: tau, I, the mean gain (its integral would lose digits early), the function of an event
 TAU, LOST, MEAN, EVENT = range(4)
@@ -33,78 +33,77 @@ _LONG = 0.5
 _MOST_ITERATIONS, _LAST = 100, 1e-9
 #: rounding of an extrapolation to the left end
 _ROUNDING = 1e-14
+#: how much beyond the place that is expected for its end a panel goes
+BEYOND = 1.05
 #: a parabola that falls below this share of the lowest node is looked into
 _DIP = 0.5
 
 
 @kernel
 def s_at(v, panel):
-    """(s, s - pole) at v = 1 + t; ``panel`` = (s, pole, length, s at the end, V, omega)."""
-    s, pole, length, end, _, _ = panel
-    rise = (s - pole) * np.expm1(0.5 * length * v)
+    """s at v = 1 + t."""
+    rise = (panel.first - panel.pole) * np.expm1(0.5 * panel.length * v)
     # abs: rounded downward, 0 - 0 is -0
-    return end if v == 2.0 else abs(max(s + rise, 0.0)), s - pole + rise
+    return panel.end if v == 2.0 else abs(max(panel.first + rise, 0.0))
 
 
 @kernel
 def slide_rates(panel, sigma, scene, nodes):
     """Fill tau', I', V and the stick limit; whether V' keeps its sign."""
-    s, pole, length, _, _, _ = panel
+    length, from_pole = panel.length, panel.first - panel.pole
     for i in range(N + 1):
-        at, _ = s_at(1.0 + NODES[i], panel)
-        speed, rate, per_s, half_M, limit = sliding(at, sigma, scene)
-        per = (s - pole) * np.exp(0.5 * length * (1.0 + NODES[i])) * per_s / rate
+        speed, rate, per_s, half_M, limit = sliding(s_at(1.0 + NODES[i], panel), sigma, scene)
+        per = from_pole * np.exp(0.5 * length * (1.0 + NODES[i])) * per_s / rate
         if not per * length > 0.0:
             return False
-        nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = per, half_M * per, speed, limit
+        nodes[D_TAU, i], nodes[D_I, i], nodes[SPEED_V, i], nodes[SLIP, i] = per, half_M * per, speed, limit
     return True
 
 
 @kernel
 def standing_rates(rise, panel, sigma, scene, nodes):
     """As :func:`slide_rates` where M = 2 mu, for a time: s stays."""
-    speed, _, _, _, limit = sliding(panel[0], sigma, scene)
+    speed, _, _, _, limit = sliding(panel.first, sigma, scene)
     for i in range(N + 1):
-        nodes[D_TAU, i], nodes[D_I, i], nodes[V, i], nodes[SLIP, i] = rise, scene.mu * rise, speed, limit
+        nodes[D_TAU, i], nodes[D_I, i], nodes[SPEED_V, i], nodes[SLIP, i] = rise, scene.mu * rise, speed, limit
 
 
 @kernel
 def _slip(tau, I, panel, sigma, scene):
     """sigma (omega - V)."""
     _, _, mu, j = scene
-    _, _, _, _, speed, omega = panel
-    return sigma * (omega - speed) - (1.0 + 1.0 / j) * mu * tau - sigma * (1.0 / j - 1.0) * I
+    return sigma * (panel.omega - panel.V) - (1.0 + 1.0 / j) * mu * tau - sigma * (1.0 / j - 1.0) * I
 
 
 @kernel
 def _fastest(speed, tau, I, panel, sigma, scene):
     """max(V, |omega|)."""
-    return max(speed, abs(panel[5] - (sigma * scene.mu * tau + I) / scene.j))
+    return max(speed, abs(panel.omega - (sigma * scene.mu * tau + I) / scene.j))
 
 
 @kernel
 def _time(speed, I, tau, panel, sigma, scene):
     """tau from the change of V; or, where that is a small difference, as it was found."""
-    return (sigma * (speed - panel[4]) + sigma * I) / scene.mu if abs(panel[2]) > _LONG else tau
+    return (sigma * (speed - panel.V) + sigma * I) / scene.mu if abs(panel.length) > _LONG else tau
 
 
 @kernel
 def slide_sums(panel, sigma, scene, nodes):
     """Fill the other rows; the rise of tau."""
-    half, tau = 0.5 * panel[2], 0.0
+    half, tau = 0.5 * panel.length, 0.0
     nodes[D_WAY, 0] = 0.0
     nodes[SLIP, 0] = _slip(0.0, 0.0, panel, sigma, scene) - nodes[SLIP, 0]
-    nodes[SPEED, 0] = _fastest(nodes[V, 0], 0.0, 0.0, panel, sigma, scene)
+    nodes[FASTEST, 0] = _fastest(nodes[SPEED_V, 0], 0.0, 0.0, panel, sigma, scene)
     for i in range(1, N + 1):
         tau = I = 0.0
         for n in range(N):
             tau += INTEGRALS[i - 1, n] * nodes[D_TAU, n + 1]
             I += INTEGRALS[i - 1, n] * nodes[D_I, n + 1]
         I *= half
-        tau = _time(nodes[V, i], I, half * tau, panel, sigma, scene)
-        nodes[D_WAY, i] = ((sigma * scene.mu * tau if panel[1] > 0.0 else 0.0) - I) * nodes[D_TAU, i]
+        tau = _time(nodes[SPEED_V, i], I, half * tau, panel, sigma, scene)
+        nodes[D_WAY, i] = ((sigma * scene.mu * tau if panel.pole > 0.0 else 0.0) - I) * nodes[D_TAU, i]
         nodes[SLIP, i] = _slip(tau, I, panel, sigma, scene) - nodes[SLIP, i]
-        nodes[SPEED, i] = _fastest(nodes[V, i], tau, I, panel, sigma, scene)
+        nodes[FASTEST, i] = _fastest(nodes[SPEED_V, i], tau, I, panel, sigma, scene)
         nodes[MEAN_GAIN, i] = half / tau if tau > 0.0 else 0.0
     nodes[MEAN_GAIN, 0] = 0.0
     for i in range(1, N + 1):
@@ -142,7 +141,7 @@ def slide_terms(length, nodes, powers):
 @kernel
 def slide_rise(v, panel, sigma, scene, powers):
     """(V, delta_star V, tau, I) at v."""
-    speed, limit = edge_of_stick(s_at(v, panel)[0], scene)
+    speed, limit = edge_of_stick(s_at(v, panel), scene)
     I = rise_at(v, powers, LOST)
     return speed, limit, _time(speed, I, rise_at(v, powers, TAU), panel, sigma, scene), I
 
@@ -151,35 +150,32 @@ def slide_rise(v, panel, sigma, scene, powers):
 def slide_state(v, tau, panel, sigma, scene, powers):
     """(V, omega, X, angle) at v and at the time tau from the left end."""
     _, _, mu, j = scene
-    s, pole, _, _, speed, omega = panel
     push = sigma * mu * tau
     gain = push - rise_at(v, powers, LOST)
-    mean = (0.5 * push if pole <= 0.0 else 0.0) + rise_at(v, powers, MEAN)
-    if s == pole:  # V stands still
+    mean = (0.5 * push if panel.pole <= 0.0 else 0.0) + rise_at(v, powers, MEAN)
+    if panel.first == panel.pole:  # V stands still
         gain = mean = 0.0
-    return speed + gain, omega - (2.0 * push - gain) / j, (speed + mean) * tau, (omega - (push - mean) / j) * tau
+    V, omega = panel.V, panel.omega
+    return V + gain, omega - (2.0 * push - gain) / j, (V + mean) * tau, (omega - (push - mean) / j) * tau
 
 
 @kernel
-def event_at(event, v, panel, sigma, scene, rest, powers):
-    """Positive before the event, negative after it."""
-    speed, limit, tau, I = slide_rise(v, panel, sigma, scene, powers)
-    if event == STICK:
-        return _slip(tau, I, panel, sigma, scene) - limit
-    return _fastest(speed, tau, I, panel, sigma, scene) - rest
+def slip_at(v, panel, sigma, scene, powers):
+    """sigma (omega - V) less its limit: positive before the stick zone forms, negative behind."""
+    _, limit, tau, I = slide_rise(v, panel, sigma, scene, powers)
+    return _slip(tau, I, panel, sigma, scene) - limit
 
 
 @kernel
-def locate_slide(event, low, high, panel, sigma, scene, rest, nodes, powers):
-    """v in [low, high] of the event, by Newton's iteration with the slope of the interpolant."""
-    row = SLIP if event == STICK else SPEED
-    level = 0.0 if event == STICK else rest
-    rise_terms(nodes[row], powers, EVENT)
-    start = nodes[row, 0] - level
+def locate_slide(low, high, panel, sigma, scene, work):
+    """v in [low, high] at which the stick zone forms, by Newton's iteration with the slope of the interpolant."""
+    powers = work.powers
+    rise_terms(work.nodes[SLIP], powers, EVENT)
+    start = work.nodes[SLIP, 0]
     v, exact = 0.5 * (low + high), False
     for _ in range(_MOST_ITERATIONS):
         if exact:
-            value = event_at(event, v, panel, sigma, scene, rest, powers)
+            value = slip_at(v, panel, sigma, scene, powers)
             low, high = v if value > 0.0 else low, high if value > 0.0 else v
         else:
             value = start + rise_at(v, powers, EVENT)
@@ -222,3 +218,15 @@ def dip(nodes, powers):
     bend = (nodes[SLIP, other] - nodes[SLIP, i] - slope * away) / (away * away)
     shift = -0.5 * slope / bend
     return v + shift if nodes[SLIP, i] + 0.5 * slope * shift < _DIP * nodes[SLIP, i] else np.nan
+
+
+@kernel
+def standing_panel(state, s, left, sigma, scene, nodes):
+    """The panel on which V stands still at s until the slip has gone, or for the time ``left``, with its rates."""
+    _, _, mu, j = scene
+    # the spin may fall by any factor yet, so V is that where it stands
+    V = sliding_speed(s, scene)
+    omega = (V - state.second) / j
+    panel = Panel(SLIDE, s, state.second, 1.0, 1, s, s, V, omega)
+    standing_rates(min(BEYOND * left, 0.5 * j * sigma * (omega - V) / mu), panel, sigma, scene, nodes)
+    return panel

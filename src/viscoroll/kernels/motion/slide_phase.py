@@ -1,4 +1,4 @@
-"""Full slip to its end: panel control, events, outputs."""
+"""Full slip to its end: panel control, the end of slip."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import contact_length
-from .collocation import NODES, N, place, rise_at
-from .control import SHARE
-from .events import AT_REST, NO_EVENT, REVERSAL, STICK
-from .full_slip import sliding, sliding_scale, sliding_speed, standstill
-from .output import put
+from .collocation import NODES, N
+from .control import SHARE, next_length
+from .full_slip import sliding, sliding_scale, standstill
+from .panel import pass_panel, rest_place
+from .path import moved
+from .records import AT_REST, NO_EVENT, REVERSAL, SLIDE, STICK, STUCK, Clock, Panel
 from .slide import (
+    BEYOND,
+    FASTEST,
     SLIP,
-    SPEED,
-    TAU,
-    V,
+    SPEED_V,
     dip,
-    event_at,
     locate_slide,
     s_at,
     slide_error,
@@ -26,10 +26,9 @@ from .slide import (
     slide_state,
     slide_sums,
     slide_terms,
-    standing_rates,
+    slip_at,
+    standing_panel,
 )  # fmt: skip
-from .slow_phase import next_interval
-from .stepper import FULL
 
 #: the first panel at rtol = 1, the longest, and the shortest
 _FIRST, _LONGEST, _SHORTEST = 4.8, 4.0, 1e-9
@@ -37,14 +36,10 @@ _FIRST, _LONGEST, _SHORTEST = 4.8, 4.0, 1e-9
 _OVERSTATED = 0.03
 #: errors of V weigh more than its share of the speeds says: what is left of V + j omega at onset may be small
 _SLIDING = 150.0
-#: how much beyond the place that is expected for its end a panel goes
-_BEYOND = 1.05
 #: change of V over V up to which s changes in proportion
 _NEAR = 0.1
 #: slip less its limit, over the speeds, at which a start is on the edge; halvings of a panel searched for an opening
 _ON_EDGE, _HALVINGS = 1e-12, 40
-#: share of the whole time that rounding may leave of it behind an event
-_AT_THE_END = 2.0**-51
 #: share of rtol by which V may still be off where it is taken to stand still
 _HELD = 0.1
 
@@ -76,18 +71,18 @@ def aim(here, omega, s, pole, left, sigma, scene):
     closing, less = mu * (1.0 + 1.0 / j), sigma * (1.0 / j - 1.0)
     duration = _duration(closing + less * half_M, omega, V, sigma, left)
     if pole > 0.0:
-        length = -_BEYOND * duration * rate / (per_s * (pole - s))
+        length = -BEYOND * duration * rate / (per_s * (pole - s))
         return length, s + (s - pole) * np.expm1(length)
     ahead = V + rate * duration
     if ahead <= 0.0:
         return -np.log1p(-s / pole), 0.0
-    change = rate * duration * _BEYOND
+    change = rate * duration * BEYOND
     end = s + change / per_s
     if abs(change) > _NEAR * V:
         lam, _ = contact_length(kappa * ahead, material)
         end = 2.0 * kappa * ahead / lam
         mean = 0.5 * (half_M + sliding(end, sigma, scene)[3])
-        change = (sigma * mu - mean) * _duration(closing + less * mean, omega, V, sigma, left) * _BEYOND
+        change = (sigma * mu - mean) * _duration(closing + less * mean, omega, V, sigma, left) * BEYOND
         if change * rate > 0.0:
             end *= max(V + change, 0.0) / ahead
         change = (end - s) * per_s
@@ -95,161 +90,115 @@ def aim(here, omega, s, pole, left, sigma, scene):
 
 
 @kernel
-def opening(high, panel, sigma, scene, rest, powers):
+def opening(high, panel, sigma, scene, powers):
     """v before ``high`` at which slip that starts on its limit is beyond it, if only for a moment; 0 if nowhere."""
     v = high
     for _ in range(_HALVINGS):
         v *= 0.5
-        if event_at(STICK, v, panel, sigma, scene, rest, powers) > 0.0:
+        if slip_at(v, panel, sigma, scene, powers) > 0.0:
             return v
     return 0.0
 
 
 @kernel
-def panel_event(slipped, panel, sigma, scene, rest, nodes, powers):
-    """(event, v): the first event on the panel, else none and its end.
+def end_of_slip(slipped, panel, sigma, scene, work):
+    """(event, v): where the stick zone forms on the panel, else none and its end.
 
-    Where the stick zone has just gone (``slipped``), slip that rounding keeps below its limit does not end at once.
+    Where it has just gone (``slipped``), slip that rounding keeps below its limit does not end at once.
     """
-    event, low, high = NO_EVENT, 0.0, 2.0
+    nodes, powers = work.nodes, work.powers
+    low, high = 0.0, 0.0
     for i in range(1, N + 1):
-        if nodes[SLIP, i] < 0.0 or nodes[SPEED, i] < rest:
-            event, low, high = STICK if nodes[SLIP, i] < 0.0 else AT_REST, 1.0 + NODES[i - 1], 1.0 + NODES[i]
+        if nodes[SLIP, i] < 0.0:
+            low, high = 1.0 + NODES[i - 1], 1.0 + NODES[i]
             break
-    if event == NO_EVENT:
-        v = dip(nodes, powers)
-        if not (0.0 < v < 2.0 and event_at(STICK, v, panel, sigma, scene, rest, powers) < 0.0):
+    if high == 0.0:
+        high = dip(nodes, powers)
+        if not (0.0 < high < 2.0 and slip_at(high, panel, sigma, scene, powers) < 0.0):
             return NO_EVENT, 2.0
-        event, high = STICK, v
         for i in range(1, N):
-            low = 1.0 + NODES[i] if 1.0 + NODES[i] < v else low
-    if event == STICK and low == 0.0 and nodes[SLIP, 0] <= _ON_EDGE * nodes[SPEED, 0]:
-        low = opening(high, panel, sigma, scene, rest, powers)
+            low = 1.0 + NODES[i] if 1.0 + NODES[i] < high else low
+    if low == 0.0 and nodes[SLIP, 0] <= _ON_EDGE * nodes[FASTEST, 0]:
+        low = opening(high, panel, sigma, scene, powers)
         if low == 0.0:
             return (NO_EVENT, 2.0) if slipped else (STICK, 0.0)
-    v = locate_slide(event, low, high, panel, sigma, scene, rest, nodes, powers)
-    if event == STICK and rest > 0.0 and event_at(AT_REST, v, panel, sigma, scene, rest, powers) < 0.0:
-        return AT_REST, locate_slide(AT_REST, low, v, panel, sigma, scene, rest, nodes, powers)
-    return event, v
+    return STICK, locate_slide(low, high, panel, sigma, scene, work)
 
 
 @kernel
-def slide_outputs(tau_out, at, tau, end, closed, panel, direction, sigma, powers, u, scene, gamma, offset, out):
-    """Outputs before ``end``, and, if ``closed``, on it; the next column."""
-    v = 0.0
-    while at < tau_out.size and (tau_out[at] < tau + end or (closed and tau_out[at] == tau + end)):
-        since = tau_out[at] - tau
-        v = place(since, max(v, 2.0 * since / end if since > 0.0 else 0.0), powers, TAU)
-        V, omega, X, angle = slide_state(v, since, panel, sigma, scene, powers)
-        slip = omega - V
-        delta = np.copysign(np.inf, slip) if V == 0.0 else slip / V
-        put(out, at, direction, FULL, V, omega, delta,
-            offset[0] + direction * (u[2] + X), offset[1] + direction * (u[3] + angle), gamma)  # fmt: skip
-        at += 1
-    return at
+def chosen_panel(state, here, pole, longest, left, sigma, case):
+    """The next panel, and whether it is ready; where V stands still its rates are filled in already."""
+    scene, nodes = case.scene, case.work.nodes
+    s = state.first
+    speed, rate, per_s, _, _ = here
+    held = _HELD * case.limits.rtol * sliding_scale(speed, state.second, scene)
+    if rate == 0.0 or (pole > 0.0 and (abs(s - pole) * per_s <= held or rate * (pole - s) <= 0.0)):
+        return standing_panel(state, pole if pole > 0.0 else s, left, sigma, scene, nodes), True
+    omega = (speed - state.second) / scene.j
+    length, end = aim(here, omega, s, pole, left, sigma, scene)
+    most = min(longest, np.log(abs(s - pole) * per_s / (0.5 * held)) if pole > 0.0 else longest)
+    if abs(length) > most:
+        length = np.copysign(most, length)
+        end = s + (s - pole) * np.expm1(length)
+    panel = Panel(SLIDE, s, state.second, length, 1, pole, end, speed, omega)
+    return panel, slide_rates(panel, sigma, scene, nodes)
 
 
 @kernel
-def stand(u, left, sigma, scene, nodes):
-    """The panel on which V stands still until the slip has gone, or for the time ``left``, with its rates filled in."""
-    _, _, mu, j = scene
-    # the spin may fall by any factor yet, so V is that where it stands
-    V = sliding_speed(u[0], scene)
-    omega = (V - u[1]) / j
-    panel = (u[0], u[0], 1.0, u[0], V, omega)
-    standing_rates(min(_BEYOND * left, 0.5 * j * sigma * (omega - V) / mu), panel, sigma, scene, nodes)
-    return panel
+def panel_size(rise, state, panel, sigma, case):
+    """Error of the panel over its tolerance."""
+    w = state.second + 2.0 * sigma * case.scene.mu * rise
+    scale = case.limits.rtol * sliding_scale(case.work.nodes[SPEED_V, N], w, case.scene)
+    return _SLIDING * _OVERSTATED * slide_error(abs(panel.length), case.work.nodes) / (SHARE * scale)
 
 
 @kernel
-def slide_on(u, v, rise, travelled, panel, sigma, scene, powers):
-    """Put u at v, after the time ``rise``."""
-    _, _, X, angle = slide_state(v, rise, panel, sigma, scene, powers)
-    u[0] = s_at(v, panel)[0]
-    u[1] += 2.0 * sigma * scene.mu * rise
-    u[2] += X
-    u[3] += angle
-    travelled[0] += abs(X)
-    travelled[1] += abs(angle)
+def panel_event(slipped, tau_left, panel, sigma, case):
+    """(event, v, time until there): the first event on the panel, else none and its end."""
+    scene, work = case.scene, case.work
+    event, v = end_of_slip(slipped, panel, sigma, scene, work)
+    rested = rest_place(v, panel, sigma, case) if case.limits.rest > 0.0 and v > 0.0 else np.nan
+    if not np.isnan(rested):
+        event, v = AT_REST, rested
+    if event == NO_EVENT and panel.end == 0.0:
+        event = REVERSAL
+    rise = slide_rise(v, panel, sigma, scene, work.powers)[2] if v > 0.0 else 0.0
+    return NO_EVENT if rise > tau_left else event, v, rise
 
 
 @kernel
-def slide_phase(u, tau, slipped, tau_out, at, direction, sigma, scene, gamma, offset, travelled, rtol, rest, max_steps,
-                steps, out, step_ends, ends, powers, nodes):  # fmt: skip
-    """Slide from u to an event, or until outputs end.  Returns (event, tau, next column, steps, ends noted).
+def slide_on(v, rise, state, panel, sigma, case):
+    """The state at v, after the time ``rise``."""
+    _, _, X, angle = slide_state(v, rise, panel, sigma, case.scene, case.work.powers)
+    return moved(s_at(v, panel), panel.second + 2.0 * sigma * case.scene.mu * rise, X, angle, state)
 
-    ``slipped``: u is where the stick zone has gone.
-    """
-    _, _, mu, j = scene
-    tau_end = tau_out[tau_out.size - 1]
-    longest, pole = min(_FIRST * rtol ** (1.0 / (N + 1.0)), _LONGEST), choose_pole(u[0], sigma, scene)
-    while at < tau_out.size and steps < max_steps:
-        steps += 1
-        s = u[0]
-        here = sliding(s, sigma, scene)
-        speed, rate, per_s, _, _ = here
-        omega = (speed - u[1]) / j
-        if sigma * (omega - speed) <= 0.0:
-            return STICK, tau, at, steps, ends
-        if tau_end - tau <= _AT_THE_END * tau_end:
-            slip = omega - speed
-            delta = np.copysign(np.inf, slip) if speed == 0.0 else slip / speed
-            for column in range(at, tau_out.size):
-                put(out, column, direction, FULL, speed, omega, delta,
-                    offset[0] + direction * u[2], offset[1] + direction * u[3], gamma)  # fmt: skip
-            return NO_EVENT, tau_end, tau_out.size, steps, ends
-        scale = rtol * sliding_scale(speed, u[1], scene)
-        if rate == 0.0 or (pole > 0.0 and (abs(s - pole) * per_s <= _HELD * scale or rate * (pole - s) <= 0.0)):
-            u[0] = pole if pole > 0.0 else s
-            panel = stand(u, tau_end - tau, sigma, scene, nodes)
-        else:
-            length, end = aim(here, omega, s, pole, tau_end - tau, sigma, scene)
-            most = min(longest, np.log(abs(s - pole) * per_s / (0.5 * _HELD * scale)) if pole > 0.0 else longest)
-            if abs(length) > most:
-                length = np.copysign(most, length)
-                end = s + (s - pole) * np.expm1(length)
-            panel = (s, pole, length, end, speed, omega)
-            if not slide_rates(panel, sigma, scene, nodes):
-                longest = next_interval(abs(length), np.inf)
-                if longest < _SHORTEST:
-                    break
-                continue
-        length = abs(panel[2])
-        rise = slide_sums(panel, sigma, scene, nodes)
-        scale = rtol * sliding_scale(nodes[V, N], u[1] + 2.0 * sigma * mu * rise, scene)
-        size = _SLIDING * _OVERSTATED * slide_error(length, nodes) / (SHARE * scale)
+
+@kernel
+def slide_phase(slipped, state, frame, clock, case):
+    """Slide to an event, or until outputs end: (event, state, clock).  ``slipped``: the stick zone has just gone."""
+    sigma, limits, sink = frame.sigma, case.limits, case.sink
+    tau_end = sink.tau[sink.tau.size - 1]
+    longest = min(_FIRST * limits.rtol ** (1.0 / (N + 1.0)), _LONGEST)
+    pole = choose_pole(state.first, sigma, case.scene)
+    while clock.at < sink.tau.size and clock.steps < limits.max_steps:
+        clock = Clock(clock.tau, clock.at, clock.steps + 1, clock.ends)
+        here = sliding(state.first, sigma, case.scene)
+        if sigma * ((here[0] - state.second) / case.scene.j - here[0]) <= 0.0:
+            return STICK, state, clock
+        panel, ready = chosen_panel(state, here, pole, longest, tau_end - clock.tau, sigma, case)
+        rise, size = 0.0, np.inf
+        if ready:
+            rise = slide_sums(panel, sigma, case.scene, case.work.nodes)
+            size = panel_size(rise, state, panel, sigma, case)
+        longest = min(_LONGEST, next_length(abs(panel.length), size, 1))
         if not size <= 1.0:
-            longest = next_interval(length, size)
             if longest < _SHORTEST:
-                break
+                return STUCK, state, clock
             continue
-        longest = min(_LONGEST, next_interval(length, size))
-        slide_terms(panel[2], nodes, powers)
-        event, v = panel_event(slipped, panel, sigma, scene, rest, nodes, powers)
-        rise = slide_rise(v, panel, sigma, scene, powers)[2] if v > 0.0 else 0.0
-        if event == NO_EVENT and panel[3] == 0.0:
-            event = REVERSAL
-        if tau + rise > tau_end:
-            event = NO_EVENT
-        at = slide_outputs(tau_out, at, tau, rise, event == NO_EVENT, panel, direction, sigma, powers, u, scene, gamma,
-                           offset, out)  # fmt: skip
-        ends = note_panel(tau, rise, v, powers, gamma, step_ends, ends)
-        slide_on(u, v, rise, travelled, panel, sigma, scene, powers)
-        tau += rise
-        slipped = False
+        slide_terms(panel.length, case.work.nodes, case.work.powers)
+        event, v, rise = panel_event(slipped, tau_end - clock.tau, panel, sigma, case)
+        clock = pass_panel(v, rise, event == NO_EVENT, panel, state, frame, clock, case)
+        state, slipped = slide_on(v, rise, state, panel, sigma, case), False
         if event != NO_EVENT:
-            return event, tau, at, steps, ends
-    return NO_EVENT, tau, at, steps, ends
-
-
-@kernel
-def note_panel(tau, rise, v, powers, gamma, step_ends, ends):
-    """Times of the nodes before v, and that of v, among the ends of steps; how many there are now."""
-    for i in range(1, N + 1):
-        if ends < step_ends.size and 1.0 + NODES[i] < v:
-            step_ends[ends] = (tau + rise_at(1.0 + NODES[i], powers, TAU)) / gamma
-            ends += 1
-    if ends < step_ends.size and rise > 0.0:
-        step_ends[ends] = (tau + rise) / gamma
-        ends += 1
-    return ends
+            return event, state, clock
+    return NO_EVENT, state, clock

@@ -11,10 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..numerics.arrays import copy, fill
-from ..numerics.linear import eliminate
-from .collocation import INTEGRAL, NODES, TO_POWERS, TO_START, N, integral_terms, polynomial, rise_at
+from ..numerics.arrays import copy
+from ..numerics.linear import factorize, substitute
+from .collocation import NODES, TO_START, N, fit_terms, polynomial
 from .partial_slip import partial_rates
+from .path import D_TAU, D_TURN, D_X, D_Y, RISE_D, RISE_Y, Y, time_terms
 
 #: columns of the values at the nodes
 _OFFSET, _RATE, _DRIFT, _V, _DELTA, _DECAY, _RATE_D, _DRIFT_D, _DELTA_D, _D = range(10)
@@ -22,6 +23,8 @@ COLUMNS = 10
 #: row behind the nodes: the left end as it was reached, before :func:`project`
 REACHED = N + 1
 _MOST_ITERATIONS = 6
+#: rows of the interpolants in place of y and D
+LN_V, CREEP = RISE_Y, RISE_D
 #: the stick zone must stay longer than this share of the contact
 _LEAST_STICK = 1e-3
 
@@ -36,12 +39,13 @@ def _evaluate(i, y, values, scene):
 
 
 @kernel
-def slow_solve(y, length, tolerance, slopes, values, matrix, right, scene):
+def slow_solve(y, length, tolerance, slopes, scene, work):
     """Collocate on [y, y + length] from the left end in ``values[REACHED]``.  Whether it converged.
 
     ``tolerance`` bounds the remaining errors of y' (relative) and of the creep ratio.  ``slopes``
     turns values at nodes into slopes; without a column for node 0, that is the first guess only.
     """
+    values, matrix, right = work.values, work.matrix, work.right
     half = 0.5 * length
     copy(values[REACHED], values[0])
     for i in range(1, N + 1):
@@ -60,7 +64,8 @@ def slow_solve(y, length, tolerance, slopes, values, matrix, right, scene):
                 matrix[i, n] = rate * slopes[i, n + 1] / half
             matrix[i, i] += slope * values[i + 1, _RATE_D] - values[i + 1, _DRIFT_D]
             right[i] = values[i + 1, _DRIFT] - rate * slope
-        eliminate(matrix, right)
+        factorize(matrix, N)
+        substitute(matrix, right, N)
         change = 0.0
         for i in range(N):
             shift = right[i]
@@ -90,6 +95,12 @@ def slow_start(y, offset, values, scene):
 
 
 @kernel
+def slow_go_on(values):
+    """Put the left end where the right one was."""
+    copy(values[N], values[REACHED])
+
+
+@kernel
 def sticks_throughout(y, length, values):
     """Whether y rises and the stick zone lasts at all nodes."""
     for i in range(1, N + 1):
@@ -103,6 +114,18 @@ def sticks_throughout(y, length, values):
 def stiffness(i, values):
     """Relaxation of the offset over a rise of y by 1 at node i."""
     return -values[i, _DRIFT_D] / values[i, _RATE]
+
+
+@kernel
+def pace(i, values):
+    """y' at node i."""
+    return values[i, _RATE]
+
+
+@kernel
+def relaxation_at(i, values):
+    """Rate at which the offset relaxes at node i."""
+    return -values[i, _DRIFT_D]
 
 
 @kernel
@@ -134,51 +157,33 @@ def project(values):
 
 
 @kernel
-def _integrands(i, values):
-    """(d tau/dy, dX/dy, d(angle - X)/dy) at node i."""
-    per_rate = 1.0 / values[i, _RATE]
-    travel = values[i, _V] * per_rate
-    return per_rate, travel, travel * values[i, _DELTA]
-
-
-@kernel
-def slow_quadratures(length, values):
-    """(rise of tau, of X, of the angle; mismatches of the three integrands at the left end)."""
-    tau = X = turn = 0.0
-    tau_off, X_off, turn_off = _integrands(0, values)
-    for i in range(1, N + 1):
-        f, v, w = _integrands(i, values)
-        tau += INTEGRAL[i - 1] * f
-        X += INTEGRAL[i - 1] * v
-        turn += INTEGRAL[i - 1] * w
-        tau_off -= TO_START[i - 1] * f
-        X_off -= TO_START[i - 1] * v
-        turn_off -= TO_START[i - 1] * w
-    half = 0.5 * length
-    return half * tau, half * X, half * (X + turn), length * abs(tau_off), length * abs(X_off), length * abs(turn_off)
-
-
-@kernel(allocates=True)
-def slow_dense_terms(length, values, powers):
-    """Coefficients in t in [-1, 1]: tau, X and angle - X for ``rise_at``, ln V + y and delta/V."""
-    half = 0.5 * length
-    integrands = np.empty((3, N + 1))
-    fill(0.0, powers[3])
-    fill(0.0, powers[4])
+def slow_path(values, nodes):
+    """Put what is integrated over y into the rows of :mod:`path`."""
     for i in range(N + 1):
-        integrands[0, i], integrands[1, i], integrands[2, i] = _integrands(i, values)
-        shape = np.log(values[i, _V]) + half * (1.0 + NODES[i])
-        creep = values[i, _DELTA] / values[i, _V]
-        for k in range(N + 1):
-            powers[3, k] += TO_POWERS[k, i] * shape
-            powers[4, k] += TO_POWERS[k, i] * creep
-    for row in range(3):
-        integral_terms(integrands[row], half, powers, row)
+        per_rate = 1.0 / values[i, _RATE]
+        travel = values[i, _V] * per_rate
+        nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = (
+            1.0,
+            per_rate,
+            travel,
+            travel * values[i, _DELTA],
+        )
 
 
 @kernel
-def slow_state(v, length, powers):
-    """(V, delta, X and angle since the left end) at v = 1 + t."""
-    V = np.exp(polynomial(v - 1.0, powers, 3) - 0.5 * length * v)
-    X = rise_at(v, powers, 1)
-    return V, V * polynomial(v - 1.0, powers, 4), X, X + rise_at(v, powers, 2)
+def slow_terms(half, values, nodes, powers):
+    """Interpolants of tau, X, angle - X, ln V, delta/V."""
+    time_terms(half, nodes, powers)
+    for i in range(N + 1):
+        # y is the independent variable here, and its row free
+        nodes[Y, i] = np.log(values[i, _V])
+        nodes[D_Y, i] = values[i, _DELTA] / values[i, _V]
+    fit_terms(nodes[Y], powers[LN_V])
+    fit_terms(nodes[D_Y], powers[CREEP])
+
+
+@kernel
+def slow_speeds(v, powers):
+    """(V, delta) at v = 1 + t."""
+    V = np.exp(polynomial(v - 1.0, powers, LN_V))
+    return V, V * polynomial(v - 1.0, powers, CREEP)

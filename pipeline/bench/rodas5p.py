@@ -1,22 +1,18 @@
-"""One step of the Rosenbrock method RODAS5P in partial slip.
+"""Coefficients and dense output of the Rosenbrock method RODAS5P, for the baseline.
 
 RODAS5P: 8 stages, order 5, embedded order 4, stiffly accurate and L-stable, no order
 reduction on the problem of Prothero and Robinson, dense output of order 4.  Coefficients:
 G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks
 within the Julia Differential Equations package, BIT Numer. Math. 63:27 (2023),
 doi:10.1007/s10543-023-00967-x.
-
-The unknowns are two that couple (y and the offset) and two quadratures (distance, angle).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import kernel
-from .partial_slip import partial_jacobian, partial_rhs
+from viscoroll.kernels.compile.jit import kernel
 
-FULL, PARTIAL, REST = 0, 1, 2
 STAGES = 8
 
 GAMMA = 0.21193756319429014
@@ -61,44 +57,6 @@ A, C = _square(_A), _square(_C)
 
 
 @kernel
-def stiff_step(u, h, scene, K, new, error):
-    """Advance u by h into ``new``, local errors into ``error``; stages stay in K for the dense output."""
-    J00, J01, J10, J11, J20, J21, J30, J31 = partial_jacobian(u[0], u[1], scene)
-    # (I - h gamma J) k = h gamma (...): scaled so that no step length overflows
-    scale, per_h = h * GAMMA, 1.0 / h
-    a, d = 1.0 - scale * J00, 1.0 - scale * J11
-    b, c = scale * J01, scale * J10
-    whole = scale / (a * d - b * c)
-    for i in range(STAGES):
-        s0, s1 = u[0], u[1]
-        r0 = r1 = r2 = r3 = 0.0
-        for n in range(i):
-            weight = A[i, n]
-            s0 += weight * K[n, 0]
-            s1 += weight * K[n, 1]
-            weight = C[i, n] * per_h
-            r0 += weight * K[n, 0]
-            r1 += weight * K[n, 1]
-            r2 += weight * K[n, 2]
-            r3 += weight * K[n, 3]
-        f0, f1, f2, f3 = partial_rhs(s0, s1, scene)
-        r0 += f0
-        r1 += f1
-        k0 = (d * r0 + b * r1) * whole
-        k1 = (a * r1 + c * r0) * whole
-        K[i, 0], K[i, 1] = k0, k1
-        K[i, 2] = (r2 + f2 + J20 * k0 + J21 * k1) * scale
-        K[i, 3] = (r3 + f3 + J30 * k0 + J31 * k1) * scale
-    for m in range(4):
-        total = u[m] + K[STAGES - 1, m]
-        for n in range(STAGES - 1):
-            total += A[STAGES - 1, n] * K[n, m]
-        new[m] = total
-        # the last stage is the difference to the embedded solution of order 4
-        error[m] = abs(K[STAGES - 1, m])
-
-
-@kernel
 def dense_terms(K, terms):
     """Coefficients of the dense output of the step whose stages are in K."""
     for m in range(4):
@@ -114,7 +72,7 @@ def dense_terms(K, terms):
 
 @kernel
 def dense(theta, old, new, terms, m):
-    """Unknown m at the fraction theta of the step, from the nested form that all methods fill."""
+    """Unknown m at the fraction theta of the step."""
     rest = 1.0 - theta
     inner = terms[3, m] + rest * (terms[4, m] + theta * terms[5, m])
     inner = terms[0, m] + theta * (terms[1, m] + rest * (terms[2, m] + theta * inner))

@@ -1,0 +1,34 @@
+"""A line for whoever waits while kernels are compiled."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import sys
+
+#: whether it has been said
+told = False
+
+
+def tell(seconds: float) -> None:
+    """Say, once a process, that compiling begins and takes so long; nothing below a second."""
+    global told
+    if told or seconds < 1.0 or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or _is_worker():
+        return
+    told = True
+    print(
+        f"viscoroll: compiling kernels, once for this machine, about {seconds:.0f} s; `viscoroll warmup` does it ahead",
+        file=sys.stderr,
+        flush=True,
+    )
+
+
+def _is_worker() -> bool:
+    """Whether this process computes for another one, which has said it."""
+    if multiprocessing.parent_process() is not None:
+        return True
+    distributed = sys.modules.get("distributed")
+    try:
+        return distributed is not None and distributed.get_worker() is not None
+    except ValueError:  # not within a task
+        return False
