@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.rolling_contact import WORTHWHILE
 from viscoroll.kernels.bessel import layout as layout
 from viscoroll.kernels.law.material import Standard, generators
+from viscoroll.rolling_contact import WORTHWHILE
 
 from ..reference.check_values import EDGE_ALPHAS
 from .claim import Claim

@@ -105,7 +105,7 @@ def contact(
     -----
     Accuracy of method "table": 1e-13 relative in lam, epsilon, delta_star, M and Q for
     alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
-    its condition number (``tests/test_contact.py``, ``tests/test_alpha_slice.py``).
+    its condition number (``tests/test_contact.py``, ``tests/test_material_tables.py``).
 
     From 4096 states on with one alpha > 1, and no slopes, the law is read from polynomials of one
     variable, which are made where they are met and kept for later calls.  Such a call agrees with

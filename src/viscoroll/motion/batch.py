@@ -199,7 +199,10 @@ def ensemble(
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    steps = _integrate_others(answer, flat, np.ndim(scene.alpha) > 0, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar)
+    own = np.ndim(scene.alpha) > 0
+    steps = _integrate_others(
+        answer, flat, own, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar
+    )
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,

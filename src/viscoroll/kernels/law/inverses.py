@@ -8,7 +8,8 @@ and of y
 
     eta/y, H(eta)/y^2, A = H'(eta)/(2 y F'(eta))
 
-the last being the slope of H(F^-1(y)) over 2 y.  They are analytic where Re > 0, as g, h and m are.
+the last being the slope of H(F^-1(y)) over 2 y.  They are analytic where Re > 0, as g, h and m are, and
+are found from those themselves, not from their table, whose slopes have lost four digits.
 """
 
 from __future__ import annotations
@@ -19,20 +20,20 @@ from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
 from .length import OK, contact_length
-from .material import Tabulated, generator_slopes, generators, moment_of
-from .standard import GAUSS_W, GAUSS_X
+from .material import generator_slopes, generators, moment_of
+from .standard import GAUSS_W, GAUSS_X, Standard
 from .stick import root_of_F
 
 
 class Inverses(NamedTuple):
     """A material, and tables (:mod:`quartet`) over kappa |V| and over F(eta)."""
 
-    material: Tabulated
+    material: Standard
     speed: Any
     stick: Any
 
 
-def inverses_of(material: Tabulated) -> Inverses:
+def inverses_of(material: Standard) -> Inverses:
     """With nothing in its tables."""
     return Inverses(material, quartet.empty_table(), quartet.empty_table())
 
@@ -63,7 +64,9 @@ def _make_stick(row, y, inverses):
         eta, _, _, status = root_of_F(at, at, inverses.material)
         _, h, dg, dh = generator_slopes(eta, inverses.material)
         share = eta / at
-        quartet.put(inverses.stick, row, n, share, share * (eta + 2.0 * h) / at, (eta + h + eta * dh) / (at * (1.0 + dg)), 0.0)
+        quartet.put(
+            inverses.stick, row, n, share, share * (eta + 2.0 * h) / at, (eta + h + eta * dh) / (at * (1.0 + dg)), 0.0
+        )
         worst = max(worst, status)
     if worst == OK:
         quartet.finish(inverses.stick, row, y)

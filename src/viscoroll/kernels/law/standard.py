@@ -135,7 +135,7 @@ def at_slide(z, material):
     alpha, c = material.alpha, material.c
     if c == 0.0:
         return 0.0, 0.0, 0.0, 0.0
-    x, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
+    x, r, k, s, dk, _, per_z = ratios_and_slopes(z, alpha)
     p = r * k
     whole = 1.0 / (1.0 + p)
     share = c * whole

@@ -22,7 +22,7 @@ class Tabulated(NamedTuple):
 
 def tabulated(alpha: float) -> Tabulated:
     """The material of this alpha, with nothing in its table."""
-    return Tabulated(*standard.standard.py_func(alpha), quartet.empty_table())
+    return Tabulated(alpha, (alpha - 1.0) / alpha, quartet.empty_table())
 
 
 @kernel
@@ -116,9 +116,7 @@ def mean_slopes(zeta, D, material):
     """Means of g' and of (z h)' over [zeta - D, zeta]."""
     eta = zeta - D
     if quartet.same_bin(zeta, eta):
-        dg, dh, _, _ = quartet.secants(
-            material.table, _row(zeta, material), quartet.offset(zeta), quartet.offset(eta)
-        )
+        dg, dh, _, _ = quartet.secants(material.table, _row(zeta, material), quartet.offset(zeta), quartet.offset(eta))
         per = offset_slope(zeta)
         return dg * per, generators(zeta, material)[1] + eta * (dh * per)
     return _gauss_slopes(zeta, D, material)

@@ -1,7 +1,7 @@
 """Four functions of one variable by polynomials, in bins that are made where they are met and kept.
 
-A bin is a quarter of an octave (:mod:`bins`), and a polynomial is of degree 11: where the functions are analytic for
-Re x > 0 its error falls like 18^-12.  A table keeps a bin in the row of the last bits of its number, which the
+A bin is a quarter of an octave (:mod:`bins`), and a polynomial is of degree 12: where the functions are analytic for
+Re x > 0 its error falls like 18^-13.  A table keeps a bin in the row of the last bits of its number, which the
 row begins with; a row that holds another bin is made anew.  So any x is served, and what a bin holds depends on nothing
 but its number.  The four functions lie side by side: one instruction of the processor works on all.
 
@@ -24,7 +24,7 @@ from ..compile.jit import kernel
 from .bins import bin_number, bin_offset, bin_place
 from .nodes import chebyshev, rounded, to_chebyshev
 
-BITS, TERMS = 2, 12
+BITS, TERMS = 2, 13
 _BINS = 1 << BITS
 #: bins that a table keeps: 32 octaves
 KEPT = 128
@@ -105,7 +105,15 @@ def finish(table, row, x):
     c0, c1, c2, c3 = table[row, centre], table[row, centre + 1], table[row, centre + 2], table[row, centre + 3]
     for n in range(TERMS):
         at = FIRST + 4 * n
-        put(table, row, n, table[row, at] - c0, table[row, at + 1] - c1, table[row, at + 2] - c2, table[row, at + 3] - c3)
+        put(
+            table,
+            row,
+            n,
+            table[row, at] - c0,
+            table[row, at + 1] - c1,
+            table[row, at + 2] - c2,
+            table[row, at + 3] - c3,
+        )
     for k in range(TERMS):
         _combine(table, row, 0, _TO_CHEBYSHEV[k], KEPT, k)
     for m in range(TERMS):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..law.length import OK
 from ..law.state import (
     BETA,
     DELTA,
@@ -20,7 +21,6 @@ from ..law.state import (
     signed_slip,
     state_of,
 )
-from ..law.length import OK
 from .law import direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 
