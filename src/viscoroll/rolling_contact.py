@@ -189,7 +189,8 @@ def _compute(
 
     def work(start: int, stop: int) -> None:
         found = np.empty((len(names), stop - start))
-        states = States(*(part(start, stop) for part in parts), creep_is_omega)
+        kappa, mu, V, creep = (part(start, stop) for part in parts)
+        states = States(kappa, mu, V, creep, creep_is_omega)
         if loop(alphas(start, stop), states, need, rows, found, 0, stop - start):
             failures.append(start)
         out[:, start:stop] = found

@@ -134,7 +134,8 @@ def ensemble(
     scene : its fields may be arrays of n too: every motion can have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,).
     t : output times, ascending, common to all; one number: the final state only.
-    method : "integrate": each motion as :func:`roll` would, bit for bit.  "flow": look the
+    method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
+        error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map stands in only
         where its stated error is at most ``rtol``, and only for the motions that it holds;
