@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from viscoroll import alpha_slice
+from viscoroll import material_tables
 from viscoroll.motion import flow
 
 
 def forget() -> None:
-    """Neither a slice nor a flow map is at hand; maps on disk and compiled kernels stay."""
+    """Neither a table of this thread nor a flow map is at hand; maps on disk and compiled kernels stay."""
     flow._recent.clear()
-    alpha_slice.octave_of.cache_clear()
+    material_tables._kept.materials.clear()
+    material_tables._kept.inverses.clear()

@@ -98,11 +98,17 @@ SLOPE_SLIGHT = 1e-10
 #: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
 SLOPE_DIFFERENCE = 2e-5
 
-# --- alpha_slice.py (test_alpha_slice.py) ---
+# --- material_tables.py (test_material_tables.py) ---
+#: F, H and m from a table against Bessel ratios, relative; measured 1.5e-15.
+TABLE = 1e-14
+#: Their slopes, relative, and differences for slight creep, which are slopes; measured 6e-13.
+TABLE_SLOPE = 1e-12
+#: Motions of one material against those of the same alpha each, at rtol 1e-9: half of the stated error of either.
+KINDS = 1e-9
 #: Many states at one alpha against 50 digits, relative, beta times 1/(1 - s): Q loses a digit where 1 - H(eta)/H(zeta)
 #: is just not yet an integral, at a tenth of delta_star; measured 8.8e-15; the documentation states 1e-13.
 SLICE = 2e-14
-#: delta_star of a slice against that of one state, in units in the last place; measured 10 (alpha = 1e4).
+#: delta_star of a table against that of one state, in units in the last place; measured 10 (alpha = 1e4).
 SLICE_STAR_ULP = 16
 
 # --- scene.py (test_scene.py) ---

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import Material
+from viscoroll.kernels.law.material import Standard
 from viscoroll.kernels.motion.partial_slip import partial_rhs, partial_speeds, slow_D
 from viscoroll.kernels.motion.records import Scene
 
@@ -67,7 +67,7 @@ def prepare(scene: vr.Scene, V0: NDArray, omega0: NDArray, t: NDArray) -> Stuck:
             u[i, 0] = np.log(state.zeta)
             u[i, 1] = (
                 np.sign(state.delta) * (state.zeta - eta)
-                - slow_D(u[i, 0], Scene(Material(par[i, 0], par[i, 1]), *par[i, 2:]))[0]
+                - slow_D(u[i, 0], Scene(Standard(par[i, 0], par[i, 1]), *par[i, 2:]))[0]
             )
         V[i, : first[i]], omega[i, : first[i]] = motion.V[: first[i]], motion.omega[: first[i]]
     return Stuck(first, direction, tau, u, par, gamma.copy(), V, omega)
@@ -92,7 +92,7 @@ def run(stuck: Stuck, t: NDArray, rtol: float) -> tuple[NDArray, NDArray]:
 def _put(unknowns, first, direction, par, V, omega):
     """Speeds from the unknowns, from the first output in partial slip on."""
     for i in range(first.size):
-        own = Scene(Material(par[i, 0], par[i, 1]), par[i, 2], par[i, 3], par[i, 4])
+        own = Scene(Standard(par[i, 0], par[i, 1]), par[i, 2], par[i, 3], par[i, 4])
         for m in range(first[i], V.shape[1]):
             if not np.isnan(unknowns[i, m, 0]):
                 speed, delta = partial_speeds(unknowns[i, m, 0], unknowns[i, m, 1], own)
@@ -111,7 +111,7 @@ def _by_numbalsoda():
     def rates(_, u, du, p):
         y = numba.carray(u, 2)
         par = numba.carray(p, 5)
-        dy, dD, _, _ = partial_rhs(y[0], y[1], Scene(Material(par[0], par[1]), par[2], par[3], par[4]))
+        dy, dD, _, _ = partial_rhs(y[0], y[1], Scene(Standard(par[0], par[1]), par[2], par[3], par[4]))
         du[0], du[1] = dy, dD
 
     @numba.njit(nogil=True)
@@ -133,7 +133,7 @@ def _by_scipy(first, tau, u, par, gamma, t, rtol, atol, unknowns):
     from scipy.integrate import solve_ivp
 
     for i in np.flatnonzero(first < t.size):
-        own = Scene(Material(par[i, 0], par[i, 1]), *par[i, 2:])
+        own = Scene(Standard(par[i, 0], par[i, 1]), *par[i, 2:])
         times = np.concatenate([[tau[i]], t[first[i] :] * gamma[i]])
         solution = solve_ivp(
             lambda _, y, own=own: partial_rhs(y[0], y[1], own)[:2],

@@ -11,8 +11,8 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.alpha_slice import WORTHWHILE
 from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
+from viscoroll.rolling_contact import WORTHWHILE
 
 from ..reference.check_values import EDGE_ALPHAS, chosen_state
 from .claim import Claim, at

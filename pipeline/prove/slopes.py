@@ -11,7 +11,7 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import Material, generators
+from viscoroll.kernels.law.material import Standard, generators
 from viscoroll.reference.enclosures import (
     INPUTS,
     condition_numbers,
@@ -137,7 +137,7 @@ def stress_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
         V = (
             0.5
             / kappa
-            / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, Material(alpha, (alpha - 1.0) / alpha))[1])
+            / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, Standard(alpha, (alpha - 1.0) / alpha))[1])
         )
         s = (small, 1.0 - small, float(rng.random()), 1.2)[rng.integers(4)]
         scene = vr.Scene(alpha, kappa, mu)

@@ -12,10 +12,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .alpha_slice import WORTHWHILE, slice_for
 from .blocks import elements, run_blocks
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
+from .material_tables import inverses
 from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
@@ -23,6 +23,8 @@ SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 _BLOCK = 1 << 15
+#: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
+WORTHWHILE = 4096
 _FASTEST = 1e300
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
@@ -103,10 +105,10 @@ def contact(
     -----
     Accuracy of method "table": 1e-13 relative in lam, epsilon, delta_star, M and Q for
     alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
-    its condition number (``tests/test_contact.py``, ``tests/test_alpha_slice.py``).
+    its condition number (``tests/test_contact.py``, ``tests/test_material_tables.py``).
 
-    From 4096 states on with one alpha > 1, and no slopes, the law is first cut at that alpha
-    into polynomials of one variable, which are kept for later calls.  Such a call agrees with
+    From 4096 states on with one alpha > 1, and no slopes, the law is read from polynomials of one
+    variable, which are made where they are met and kept for later calls.  Such a call agrees with
     calls of single states to 2e-14 and not bit for bit; full slip begins at the delta_star that
     the call reports, within 16 units in the last place of the other.  Either way a state's
     result depends on nothing else in the call but the number of states and the fields.
@@ -171,25 +173,25 @@ def _compute(
     arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...], method: str
 ) -> NDArray:
     """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``."""
-    from .kernels.law.contact_loop import ROWS
+    from .kernels.law.state import ROWS, Need, States
 
     wanted = set(names)
-    need = (
-        bool(wanted & _NEEDS_SHIFT),
-        bool(wanted & _NEEDS_STICK),
-        bool(wanted & {"M", "dM_dV"}),
-        bool(wanted & set(SLOPES)),
-    )
+    need = Need(
+        bool(wanted & _NEEDS_SHIFT), bool(wanted & _NEEDS_STICK), "beta" in wanted,
+        bool(wanted & {"M", "dM_dV"}), bool(wanted & set(SLOPES)),
+    )  # fmt: skip
     count = int(np.prod(shape))
-    loop, tables = _chosen_loop(arrays, need, count, method)
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
-    parts = [elements(array, shape) for array in arrays]
+    loop = _chosen_loop(arrays[0], need.slopes, count, method)
+    alphas, *parts = (elements(array, shape) for array in arrays)
     failures: list[int] = []
 
     def work(start: int, stop: int) -> None:
         found = np.empty((len(names), stop - start))
-        if loop(*(part(start, stop) for part in parts), creep_is_omega, need, rows, *tables, found, 0, stop - start):
+        kappa, mu, V, creep = (part(start, stop) for part in parts)
+        states = States(kappa, mu, V, creep, creep_is_omega)
+        if loop(alphas(start, stop), states, need, rows, found, 0, stop - start):
             failures.append(start)
         out[:, start:stop] = found
 
@@ -199,25 +201,23 @@ def _compute(
     return out
 
 
-def _chosen_loop(arrays: list[NDArray], need: tuple[bool, ...], count: int, method: str) -> tuple[Callable, tuple]:
-    """The kernel for a call and the tables that it wants."""
+def _chosen_loop(alpha: NDArray, slopes: bool, count: int, method: str) -> Callable:
+    """The kernel for a call, which takes the alphas of a block in place of its material."""
     from .kernels.law.contact_loop import contact_loop, state_loop
     from .kernels.law.lockstep import TOGETHER
+    from .kernels.law.material import Own
 
     if method == "direct":
         from .kernels.printed.loop import direct_loop
 
-        return direct_loop, ()
-    alpha, kappa, _, V, _ = arrays
-    _, need_stick, _, need_slopes = need
+        return lambda alphas, *rest: direct_loop(Own(alphas), *rest)
     # at alpha = 1 the law has closed forms
-    if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not need_slopes:
-        tables = slice_for(alpha.item(), kappa, V, stick=need_stick)
-        if tables is not None:
-            from .kernels.law.slice_loop import slice_loop
+    if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not slopes:
+        from .kernels.law.inverse_loop import inverse_loop
 
-            return slice_loop, tables
-    return (state_loop if count < TOGETHER else contact_loop), ()
+        return lambda alphas, *rest: inverse_loop(inverses(alphas.item()), *rest)
+    loop = state_loop if count < TOGETHER else contact_loop
+    return lambda alphas, *rest: loop(Own(alphas), *rest)
 
 
 def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:

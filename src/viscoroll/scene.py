@@ -291,8 +291,8 @@ PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 
 def kernel_scene(alpha: float, kappa: float, mu: float, j: float) -> Any:
-    """The record that the kernels of a motion take."""
-    from .kernels.law.material import Material
+    """The record that the kernels of a motion take, for this thread alone."""
     from .kernels.motion import records
+    from .material_tables import material
 
-    return records.Scene(Material(alpha, (alpha - 1.0) / alpha), kappa, mu, j)
+    return records.Scene(material(alpha), kappa, mu, j)

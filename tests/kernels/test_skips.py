@@ -1,6 +1,6 @@
 """What a scene does not need is not done: calls of kernels are counted, run as plain Python; imports are compared.
 
-That a slice is made once and for the octaves in use only is in test_alpha_slice.py, that a flow map is built once in
+That a bin of a table is made once is in test_material_tables.py, that a flow map is built once in
 test_flow.py, that fields not asked for are not there in test_contact.py.
 """
 
@@ -120,7 +120,7 @@ def test_what_is_not_used_is_not_imported_and_so_not_compiled():
     for call, absent in (
         ("contact(scene, 0.5, delta=0.001)", "kernels.motion kernels.flow kernels.law.stress kernels.printed"),
         ("stress(scene, 0.0, 0.5, delta=0.001)", "tables kernels.motion kernels.flow kernels.printed"),
-        ("roll(scene, 1.5, 0.5, 1e-4)", "tables kernels.flow kernels.law.stress kernels.law.slice_loop"),
+        ("roll(scene, 1.5, 0.5, 1e-4)", "tables kernels.flow kernels.law.stress kernels.law.inverse_loop"),
     ):
         code = f"import sys, viscoroll as vr\nscene = vr.PAPER_SECTION_5\nvr.{call}\nprint(*sys.modules)"
         heavy = {"matplotlib", "xarray", "h5py", *(f"viscoroll.{name}" for name in absent.split())}

@@ -43,8 +43,9 @@ def equal(a, b) -> bool:
     return np.array_equal(a, b, equal_nan=True)
 
 
-@pytest.mark.parametrize("many", [SCENE, scenes(40)], ids=["one scene", "a scene each"])
-def test_ensemble_is_roll_bit_for_bit(many):
+@pytest.mark.parametrize("many", [SCENE, scenes(40).replace(alpha=4.3)], ids=["one scene", "a scene each"])
+def test_ensemble_is_roll_bit_for_bit_at_one_alpha(many):
+    """At an alpha each the law is read from another place: ``test_material_tables.py``."""
     V0, omega0 = starts(40)
     result = vr.ensemble(many, V0, omega0, T, fields=FIELDS)
     for i in range(V0.size):

@@ -43,8 +43,8 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     import numpy as np
 
     from .. import PAPER_SECTION_5, Scene, contact, ensemble, roll, stress, tables
-    from ..alpha_slice import WORTHWHILE
     from ..motion import flow
+    from ..rolling_contact import WORTHWHILE
     from ..validation.direct_motion import roll_direct
 
     scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..material_tables import material
 from ..rolling_contact import flattened
 from ..scene import Scene
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
@@ -133,7 +134,8 @@ def ensemble(
     scene : its fields may be arrays of n too: every motion can have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,).
     t : output times, ascending, common to all; one number: the final state only.
-    method : "integrate": each motion as :func:`roll` would, bit for bit.  "flow": look the
+    method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
+        error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map stands in only
         where its stated error is at most ``rtol``, and only for the motions that it holds;
@@ -198,7 +200,10 @@ def ensemble(
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    steps = _integrate_others(answer, flat, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar)
+    own = np.ndim(scene.alpha) > 0
+    steps = _integrate_others(
+        answer, flat, own, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar
+    )
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
@@ -217,24 +222,29 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
 
 
 def _integrate_others(
-    answer: Answer, flat: list[NDArray], times: NDArray, rtol: float, rest: float, max_steps: int,
+    answer: Answer, flat: list[NDArray], own: bool, times: NDArray, rtol: float, rest: float, max_steps: int,
     rows: tuple[int, ...], mapped: bool, threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
-    """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each."""
+    """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each.
+
+    ``own``: each has an alpha of its own.
+    """
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
+        from ..kernels.law.material import Own
         from ..kernels.motion.loop import INFO
         from ..kernels.motion.records import Batch, Limits
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
-        inputs = [flattened(array[left], left.shape) if array.size > 1 else array for array in flat]
+        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
+        given = Own(alpha) if own else material(alpha.item())
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
         loop = _loop(tuple(FIELDS[row] for row in rows))
         limits = Limits(rtol, rest, max_steps)
-        loop(Batch(*inputs), times, limits, np.array(rows, np.int64), out, info, 0, left.size)
+        loop(Batch(given, *inputs), times, limits, np.array(rows, np.int64), out, info, 0, left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks
+from ..material_tables import material
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .flow_store import FlowMap, load, path_of, save
@@ -108,8 +109,9 @@ def _fill(made: FlowMap, threads: int | None) -> str:
     failed: list[int] = []
 
     def work(family: int, layer: NDArray, entry: NDArray, start: int, stop: int) -> None:
+        own = kernel_map(made)  # of this thread
         for n in range(start, stop):
-            if not layer_octave(family, n, flow, layer, entry):
+            if not layer_octave(family, n, own, layer, entry):
                 failed.append(n)
 
     for family, layer, entry in (
@@ -149,11 +151,10 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
     # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
-    *scene, start_V, start_omega = (flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0))
-    start = start_V, start_omega
+    batch = Batch(material(alpha), *(flattened(np.array([x]), (1,)) for x in (kappa, mu, 1.0, j, V0, omega0)))
 
     def flow(times: NDArray) -> Answer:
-        return ask(made, 1.0, 0.0, *start, times, rows)
+        return ask(made, 1.0, 0.0, batch.V0, batch.omega0, times, rows)
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
@@ -166,7 +167,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
         return 0.0, 0.0, 0.0
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
     limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
-    loss_loop(Batch(*scene, *start), times, limits, np.array(rows), rolled, info, 0, 1)
+    loss_loop(batch, times, limits, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
@@ -215,14 +216,13 @@ def ask(
     """Roll motions by a map; ``rows`` as in ``kernels/motion/output.py``, ``rest`` = 0 for none."""
     from ..kernels.flow.loop import flow_loop
 
-    flow = kernel_map(chosen)
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     answer = Answer.empty(len(rows), count, times.size)
     wanted = np.array(rows, np.int64)
 
     def work(start: int, stop: int) -> None:
-        flow_loop(flow, gamma, rest, V0, omega0, times, wanted, answer, start, stop)
+        flow_loop(kernel_map(chosen), gamma, rest, V0, omega0, times, wanted, answer, start, stop)
 
     run_blocks(work, answer.status.size, _BLOCK, threads=threads, progress=progress)
     return answer

@@ -22,17 +22,13 @@ import numpy as np
 
 from ..compile.fma import fma, septic
 from ..compile.jit import kernel
+from ..numerics.bins import bin_number, bin_offset
 from ..numerics.nodes import Interpolation, chebyshev, horner, in_many_digits
 from . import layout
 
 TABLE = np.load(Path(__file__).with_name("ratios.npy"))
 
 _BIN_BITS = 4  # log2(BINS)
-_SHIFT = 52 - _BIN_BITS
-_MANTISSA = (1 << 52) - 1
-_BIN_MASK = ((1 << _BIN_BITS) - 1) << _SHIFT
-_ONE = 1023 << 52
-_HALF_BIN = 1 << (_SHIFT - 1)
 _BINS = TABLE.reshape(-1, layout.COEFFICIENTS)
 
 
@@ -84,20 +80,6 @@ _LN2 = 0.69314718055994530942
 
 
 @kernel
-def bin_number(x):
-    """Exponent and leading mantissa bits of x > 0: rises by one from bin to bin."""
-    return np.float64(x).view(np.int64) >> _SHIFT
-
-
-@kernel
-def bin_offset(x):
-    """Mantissa of x less that of the centre of its bin."""
-    bits = np.float64(x).view(np.int64)
-    centre = np.int64((bits & _BIN_MASK) | (_ONE + _HALF_BIN)).view(np.float64)
-    return np.int64((bits & _MANTISSA) | _ONE).view(np.float64) - centre
-
-
-@kernel
 def polynomial(row, t):
     """Polynomial of degree 8 with the coefficients ``row``."""
     rest = septic(t, row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
@@ -115,9 +97,9 @@ def place_r(x, per_x):
     """(number, argument) of the polynomial that gives r at x >= 0."""
     # choices, not branches: those would be mispredicted on scattered arguments
     near, far = x < _NEAR, not x < _FAR  # a NaN is far: it must not become the number of a bin
-    row = bin_number(x) + (_R_SMALL if x < 2.0 else _R_LARGE)
+    row = bin_number(x, _BIN_BITS) + (_R_SMALL if x < 2.0 else _R_LARGE)
     row = _R_NEAR if near else _R_FAR if far else row
-    return row, x * x if near else per_x if far else bin_offset(x)
+    return row, x * x if near else per_x if far else bin_offset(x, _BIN_BITS)
 
 
 @kernel(inline=True)
@@ -145,8 +127,8 @@ def small_k_over_z(z):
 def place_k(z, per_z):
     """(number, argument) of the polynomial that gives k at z >= ``K_LEAST``; below, one that does not."""
     inside = K_LEAST <= z < _FAR
-    row = bin_number(z) + (_K_SMALL if z < 1.0 else _K_LARGE)
-    return row if inside else _K_FAR, bin_offset(z) if inside else per_z
+    row = bin_number(z, _BIN_BITS) + (_K_SMALL if z < 1.0 else _K_LARGE)
+    return row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else per_z
 
 
 @kernel(inline=True)
@@ -176,9 +158,9 @@ def ratio_k(z):
 @kernel(inline=True)
 def place_i2(x):
     """(number, argument) of the polynomial that gives i2 at 0 <= x < 4; beyond, one that does not."""
-    row = bin_number(x) + _I2
+    row = bin_number(x, _BIN_BITS) + _I2
     inside = _NEAR <= x < 4.0
-    return row if inside else _I2_NEAR, bin_offset(x) if inside else x * x
+    return row if inside else _I2_NEAR, bin_offset(x, _BIN_BITS) if inside else x * x
 
 
 @kernel(inline=True)

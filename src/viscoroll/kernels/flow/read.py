@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..law.stick import GAUSS_W, GAUSS_X
+from ..law.standard import GAUSS_W, GAUSS_X
 from . import layout
 from .fit import MANTISSA, ONE, bits_and_offset, polynomial
 from .records import Entry

@@ -25,7 +25,7 @@ def near_length(kappa_V, material, low):
 
     ``low`` = alpha^(-1/2), the least that it can be.
     """
-    alpha, c = material
+    alpha, c = material.alpha, material.c
     w = 2.0 * kappa_V
     # lam^2 + 2 w lam h = 1 with h between its limits c alpha zeta/2 and c/2
     start = c * 0.5 * w

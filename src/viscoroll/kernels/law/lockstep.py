@@ -13,7 +13,7 @@ import numpy as np
 from ..bessel.ratios import K_LEAST, k_from, piece_of, place_k, place_r, r_from, slopes_of
 from ..compile.jit import kernel
 from .length import NOT_CONVERGED, OK, at_an_end, contact_solution, length_step, near_length, small_step
-from .material import Material, assemble, standard
+from .standard import Standard, assemble, standard
 from .stick import near_eta, root_bracket, root_step
 
 #: states of a block; a block is one vector, so that the compiler sees how far apart its rows are
@@ -54,7 +54,7 @@ def _second_slopes(i, c, block):
     r, r_complement = r_from(block[_AT_R + i], alpha * z, block[_AT_R + i] * per_x)
     k, k_complement = k_from(block[_AT_K + i], z, block[_AT_K + i] * per_z)
     s, dk = slopes_of(r, r_complement, k, k_complement, per_x, per_z)
-    return assemble(per_z, per_x, r, k, s, dk, Material(alpha, c))
+    return assemble(per_z, per_x, r, k, s, dk, Standard(alpha, c))
 
 
 @kernel
@@ -87,11 +87,11 @@ def solve_lengths(count, block, place):
         inside += 0 if at_an_end(w, low, material) else 1
     if inside:
         for i in range(count):
-            block[LAM + i] = near_length(block[KAPPA_V + i], Material(block[ALPHA + i], block[_C + i]), block[_LOW + i])
+            block[LAM + i] = near_length(block[KAPPA_V + i], Standard(block[ALPHA + i], block[_C + i]), block[_LOW + i])
         _length_steps(count, block, place)
         _length_steps(count, block, place)
     for i in range(count):
-        material, kappa_V, low = Material(block[ALPHA + i], block[_C + i]), block[KAPPA_V + i], block[_LOW + i]
+        material, kappa_V, low = Standard(block[ALPHA + i], block[_C + i]), block[KAPPA_V + i], block[_LOW + i]
         if block[STATUS + i] != OK or at_an_end(2.0 * kappa_V, low, material):
             found = contact_solution(near_length(kappa_V, material, low), kappa_V, material)
             block[LAM + i], block[ZETA + i], block[G + i], block[H + i], block[DG + i], block[STATUS + i] = found
@@ -108,7 +108,7 @@ def _root_steps(count, some, block, place):
     _pieces(count, block, place)
     for n in range(count):
         z, y, c = block[_Z + n], block[_NOW_Y + n], block[_NOW_C + n]
-        low, high = root_bracket(y, Material(block[_A + n], c))
+        low, high = root_bracket(y, Standard(block[_A + n], c))
         new, g, h, _, _ = root_step(z, y, _second_slopes(n, c, block), low, high)
         block[_AT_R + n], block[_AT_K + n], block[_PER_X + n] = new, g, h
         block[_Z + n] = 1.0 if small_step(z, new) and z >= K_LEAST else 0.0

@@ -1,122 +1,67 @@
-"""A material as the contact law sees it: g, h and m of z, and their slopes.
+"""A material as the contact law sees it: three functions of z, and their slopes.
 
-For one relaxation time, with p(z) = r(alpha z) k(z), c = (alpha - 1)/alpha,
+    F = z + g      H = z^2 + 2 z h      M = V m, Eq. (16)
 
-    g = c p/(1 + p)      h = c r(alpha z)/(1 + p)      F = z + g      H = z^2 + 2 z h
-    m = M/V = c (lam^2 i2(alpha z) + p)/(1 + p)        lam^2 = z^2/H                    Eq. (16)
-
-All that the law, the motion and the stresses know of a material they read here.
+All that the law and the motion know of a material they read here, from one of two kinds of record:
+:class:`Standard`, an alpha, whose functions are Bessel ratios; and :class:`Tabulated`, polynomials in a table.
+Which one a call has is settled when it is compiled.  Where many states or motions each have an alpha of their own
+the ratios serve, and where one material serves all, the table.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, Callable, NamedTuple
 
-from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
+from ..compile.choice import by_record
 from ..compile.jit import kernel
+from . import standard as ratios
+from . import tabulated as table
+from .standard import Standard, standard
+from .tabulated import Tabulated
 
 
-class Material(NamedTuple):
-    """One relaxation time: alpha = T_epsilon/T_sigma, c = (alpha - 1)/alpha."""
+class Own(NamedTuple):
+    """An alpha for each state or motion."""
 
-    alpha: float
-    c: float
-
-
-@kernel(inline=True)
-def standard(alpha):
-    """The material of this alpha."""
-    return Material(alpha, (alpha - 1.0) / alpha)
+    alpha: Any
 
 
-@kernel(inline=True)
-def generators(z, material):
-    """(g, h) at z: epsilon zeta = g, H = z^2 + 2 z h; 0 for z <= 0 (no stick zone)."""
-    alpha, c = material
-    if c == 0.0 or z <= 0.0:
-        return 0.0, 0.0
-    r, _ = ratio_r(alpha * z)
-    k, _ = ratio_k(z)
-    p = r * k
-    share = c / (1.0 + p)
-    return share * p, share * r
+def _either(name: str, at: int) -> Callable:
+    return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, getattr(table, name)))
 
 
-@kernel(inline=True)
-def generator_slopes(z, material):
-    """(g, h, g', h') at z, all 0 for z <= 0."""
-    alpha, c = material
-    if c == 0.0 or z <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    _, r, k, s, dk, _, _ = ratios_and_slopes(z, alpha)
-    dr = alpha * s
-    p = r * k
-    dp = dr * k + r * dk
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    return share * p, share * r, share * whole * dp, share * whole * (dr - r * r * dk)
+#: (g, h) at z; 0 for z <= 0 (no stick zone)
+generators = _either("generators", 1)
+#: (g, h, g', h') at z, all 0 for z <= 0
+generator_slopes = _either("generator_slopes", 1)
+#: (g, h, g', h', g'', h'') at z, all 0 for z <= 0
+second_slopes = _either("second_slopes", 1)
+#: (g, h, g', h', g'', h'', m, m') at z = zeta
+at_contact = _either("at_contact", 1)
+#: (g, h, h', m) at z > 0
+at_slide = _either("at_slide", 1)
+#: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D
+mean_slopes = _either("mean_slopes", 2)
+#: m at zeta, from zeta, lam, g and h
+moment_of = _either("moment_of", 4)
+
+
+@kernel(inline=True, allocates=True)  # what it returns holds a reference to the table
+def _shared(material, i):
+    return material
 
 
 @kernel(inline=True)
-def second_slopes(z, material):
-    """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
-    alpha, c = material
-    if c == 0.0 or z <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    _, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
-    return assemble(per_z, per_x, r, k, s, dk, material)
+def _own(material, i):
+    return standard(material.alpha[min(i, material.alpha.size - 1)])
 
 
-@kernel(inline=True)
-def assemble(per_z, per_x, r, k, s, dk, material):
-    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'; per_z = 1/z, per_x = 1/(alpha z)."""
-    alpha, c = material
-    dr = alpha * s
-    ddr = alpha * alpha * ((r * per_x - s) * per_x - 2.0 * r * s)
-    ddk = 2.0 * k * dk + (dk - k * per_z) * per_z
-    p = r * k
-    dp = dr * k + r * dk
-    ddp = ddr * k + 2.0 * dr * dk + r * ddk
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    dg = share * whole * dp
-    dh_top = dr - r * r * dk
-    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
-    ddg = whole * (share * ddp - 2.0 * dg * dp)
-    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
-    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
+#: the material of state or motion i, from what is given for all
+material_of = by_record(0, (Tabulated, _shared), (Own, _own))
 
 
 @kernel
 def moment_factor(zeta, lam, material):
-    """M/V of Eq. (16); c as V -> 0."""
+    """m at zeta; c as V -> 0."""
     g, h = generators(zeta, material)
     return moment_of(zeta, lam, g, h, material)
-
-
-@kernel
-def moment_of(zeta, lam, g, h, material):
-    """``moment_factor`` from g and h at zeta: p = g/(c - g), r = h/(c - g).  Every term is positive."""
-    alpha, c = material
-    if c == 0.0:
-        return 0.0
-    rest = c - g  # c/(1 + p) >= c/2
-    return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g
-
-
-@kernel(inline=True)
-def at_contact(z, material):
-    """(g, h, g', h', g'', h'', m, m') at z = zeta from one pair of ratios; M = V m."""
-    alpha, c = material
-    if c == 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    x, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
-    g, h, dg, dh, ddg, ddh = assemble(per_z, per_x, r, k, s, dk, material)
-    i2 = ratio_i2(x, r)
-    lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
-    whole = 1.0 / (1.0 + r * k)
-    d_lam2 = -2.0 * lam2 * lam2 * (dh - h * per_z) * per_z
-    d_i2 = alpha * 2.0 * (r * r - i2) * per_x
-    m = c * (lam2 * i2 + r * k) * whole
-    dp = alpha * s * k + r * dk
-    return g, h, dg, dh, ddg, ddh, m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compile.jit import kernel
 from .material import generator_slopes, second_slopes
-from .stick import GAUSS_W, GAUSS_X
+from .standard import GAUSS_W, GAUSS_X
 
 
 @kernel

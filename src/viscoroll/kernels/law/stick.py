@@ -8,12 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..numerics.nodes import gauss
 from .length import MAX_STEPS, NOT_CONVERGED, OK, small_step
-from .material import generator_slopes, generators, second_slopes
+from .material import generator_slopes, generators, mean_slopes, second_slopes
 
-#: 5-point Gauss-Legendre rule on [0, 1]
-GAUSS_X, GAUSS_W = gauss(5)
 #: below this (zeta - eta)/zeta differences of g and h are integrals of their slopes
 CLOSE = 0.1
 #: below this d/F(zeta) zeta - eta starts from the slopes at zeta
@@ -34,12 +31,7 @@ def differences(zeta, eta, D, material):
         g, h = generators(zeta, material)
         g_eta, h_eta = generators(eta, material)
         return D + (g - g_eta), (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
-    slope_g, slope_zh = 0.0, 0.0
-    for n in range(5):
-        z = zeta - D * GAUSS_X[n]
-        _, h, dg, dh = generator_slopes(z, material)
-        slope_g += GAUSS_W[n] * dg
-        slope_zh += GAUSS_W[n] * (h + z * dh)
+    slope_g, slope_zh = mean_slopes(zeta, D, material)
     return D * (1.0 + slope_g), D * (1.0 + ratio + 2.0 * slope_zh / zeta)
 
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..numerics.arrays import copy
-from .contact_loop import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Q, contact_loop, stick
+from .contact_loop import contact_loop
 from .length import OK, contact_solution, near_length
-from .material import moment_of, standard
+from .material import Own, moment_of, standard
+from .state import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Need, Q, States, stick
 
 #: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.
 ATLAS_PLANE = ("lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
@@ -29,7 +30,8 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     for i in range(start, stop):
         material, w = standard(alpha[i // kappa_V.size]), kappa_V[i % kappa_V.size]
         guess = near_length(w, material, 1.0 / np.sqrt(material.alpha))
-        lam, zeta, g, h, dg, status = contact_solution(guess, w, material)
+        solved = contact_solution(guess, w, material)
+        lam, zeta, g, h, _, status = solved
         worst = max(worst, status)
         epsilon = g / zeta
         # mu = kappa = 1 turns V into kappa V, Q into Q/mu, delta_star into kappa delta_star/mu
@@ -42,9 +44,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
             if s[n] >= 1.0:
                 volume[0, i, n], volume[1, i, n] = 0.0, 1.0
                 continue
-            _, _, beta, share, status = stick(
-                w, s[n] * delta_star, 1.0, zeta, lam, g, h, dg, delta_star, UNSOLVED, material
-            )
+            _, _, beta, share, status = stick(w, s[n] * delta_star, 1.0, solved, delta_star, UNSOLVED, material)
             worst = max(worst, status)
             volume[0, i, n], volume[1, i, n] = beta, share
     return worst
@@ -53,13 +53,14 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
 @kernel(allocates=True, seconds=5)
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
-    need = (True, True, True, False)
+    need = Need(True, True, True, True, False)
     rows = np.array([LAM, EPSILON, M, DELTA_STAR, BETA, Q])
     kappas, mus, out = np.full(1, kappa), np.full(1, mu), np.empty((rows.size, delta.size))
     worst = OK
     for i in range(start, stop):
         v, a = i // alpha.size, i % alpha.size
-        status = contact_loop(alpha[a : a + 1], kappas, mus, V[v : v + 1], delta, False, need, rows, out, 0, delta.size)
+        states = States(kappas, mus, V[v : v + 1], delta, False)
+        status = contact_loop(Own(alpha[a : a + 1]), states, need, rows, out, 0, delta.size)
         worst = max(worst, status)
         for m in range(plane.shape[0]):
             plane[m, i] = out[m, 0]

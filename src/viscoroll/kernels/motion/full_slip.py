@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 from ..compile.jit import kernel
 from ..law.length import contact_length
-from ..law.material import generators, moment_factor
+from ..law.material import at_slide, generators, moment_factor
 
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
 HOLDS = 0.16
@@ -44,27 +43,19 @@ def sliding_rate(V, sigma, scene):
 def sliding(s, sigma, scene):
     """(V, V', dV/ds, M/2, delta_star V) at s >= 0."""
     material, kappa, mu, _ = scene
-    alpha, c = material
-    if c == 0.0:
+    if material.c == 0.0:
         per_s = 0.5 / kappa
         V = per_s * s
         return V, sigma * mu, per_s, 0.0, mu * per_s * V
     zeta = 1.0 / np.float64(s)
-    x = alpha * zeta
-    r, rc = ratio_r(x)
-    k, kc = ratio_k(zeta)
-    dk = slope_k(zeta, k, kc)
-    p = r * k
-    whole = 1.0 / (1.0 + p)
-    h = c * whole * r
-    dh = c * whole * whole * (alpha * slope_r(x, r, rc) - r * r * dk)
+    g, h, dh, m = at_slide(zeta, material)
     square = 1.0 + 2.0 * h * s  # 1/lam^2
     half_lam = 0.5 / (kappa * np.sqrt(square))
     V = s * half_lam
-    half_M = 0.5 * V * c * whole * (ratio_i2(x, r) / square + p)
+    half_M = 0.5 * V * m
     # dV/ds = lam^3 U/(2 kappa), U = H'/(2 zeta)
     per_s = half_lam * (1.0 + h * s + dh) / square
-    return V, sigma * mu - half_M, per_s, half_M, mu * half_lam * (1.0 + c * whole * p * s) * V
+    return V, sigma * mu - half_M, per_s, half_M, mu * half_lam * (1.0 + g * s) * V
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import standard
+from ..law.material import material_of
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .output import OUTPUTS
@@ -21,10 +21,10 @@ def _own(array, i):
     return array[min(i, array.size - 1)]
 
 
-@kernel
+@kernel(allocates=True)  # the scene holds a reference to its material's table
 def motion_of(batch, i):
     """(scene, gamma, V0, omega0) of motion i."""
-    scene = Scene(standard(_own(batch.alpha, i)), _own(batch.kappa, i), _own(batch.mu, i), _own(batch.j, i))
+    scene = Scene(material_of(batch.material, i), _own(batch.kappa, i), _own(batch.mu, i), _own(batch.j, i))
     return scene, _own(batch.gamma, i), _own(batch.V0, i), _own(batch.omega0, i)
 
 

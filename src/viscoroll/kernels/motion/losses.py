@@ -13,16 +13,16 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.contact_loop import ROWS as CONTACT_ROWS
-from ..law.contact_loop import Q, contact_state
-from ..law.stick import GAUSS_W, GAUSS_X
+from ..law.standard import GAUSS_W, GAUSS_X
+from ..law.state import ROWS as CONTACT_ROWS
+from ..law.state import Need, Q, State, contact_state
 from ..numerics.arrays import fill
 from .output import OUTPUTS
 from .records import PARTIAL
 
 #: rows that follow those of :mod:`output`, and the number of all
 SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
-_NEED = (True, True, False, False)
+_NEED = Need(True, True, False, False, False)
 _POINTS = GAUSS_X.size
 
 
@@ -37,7 +37,7 @@ def _slip_power(V, omega, delta, regime, scene, state):
     """(omega - V) Q >= 0; where slip is partial delta keeps the digits that omega - V has lost."""
     if regime != PARTIAL:
         return abs(omega - V) * scene.mu
-    contact_state(scene.material, scene.kappa, scene.mu, V, delta, False, _NEED, state)
+    contact_state(scene.material, State(scene.kappa, scene.mu, V, delta, False), _NEED, state)
     return delta * V * state[Q]
 
 

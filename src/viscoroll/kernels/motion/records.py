@@ -116,9 +116,12 @@ class Case(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Parameters and starts of many motions: arrays of one value, or of one a motion."""
+    """Parameters and starts of many motions: arrays of one value, or of one a motion.
 
-    alpha: Any
+    material : one for all (``Tabulated``), or an alpha each (``Own``)
+    """
+
+    material: Any
     kappa: Any
     mu: Any
     gamma: Any

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.contact_loop import (
+from ..law.length import OK
+from ..law.state import (
     BETA,
     DELTA,
     DELTA_STAR,
@@ -18,17 +19,17 @@ from ..law.contact_loop import (
     Q,
     creep_ratio,
     signed_slip,
+    state_of,
 )
-from ..law.length import OK
 from .law import direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 
 @kernel
-def direct_state(alpha, kappa, mu, V, creep, creep_is_omega, out):
+def direct_state(alpha, state, out):
     """All rows of one state into ``out``; V = 0 is the limit of Sect. 3.4."""
-    speed = abs(V)
-    slip, sign, direction = signed_slip(V, creep, creep_is_omega)
-    delta = creep_ratio(V, creep, slip, creep_is_omega)
+    kappa, mu, speed = state.kappa, state.mu, abs(state.V)
+    slip, sign, direction = signed_slip(state)
+    delta = creep_ratio(state, slip)
     status = OK
     lam, zeta, epsilon = 1.0, np.inf, 0.0
     out[M] = 0.0
@@ -53,20 +54,12 @@ def direct_state(alpha, kappa, mu, V, creep, creep_is_omega, out):
 
 
 @kernel(allocates=True, seconds=2)
-def direct_loop(alpha, kappa, mu, V, creep, creep_is_omega, need, rows, out, start, stop):
+def direct_loop(own, states, need, rows, out, start, stop):
     """States start..stop; arguments as of ``contact_loop`` (``need`` is not used)."""
     state = np.empty(len(ROWS))
     worst = OK
     for i in range(start, stop):
-        status = direct_state(
-            alpha[min(i, alpha.size - 1)],
-            kappa[min(i, kappa.size - 1)],
-            mu[min(i, mu.size - 1)],
-            V[min(i, V.size - 1)],
-            creep[min(i, creep.size - 1)],
-            creep_is_omega,
-            state,
-        )
+        status = direct_state(own.alpha[min(i, own.alpha.size - 1)], state_of(states, i), state)
         worst = max(worst, status)
         for n in range(rows.size):
             out[n, i] = state[rows[n]]

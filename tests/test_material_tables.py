@@ -1,4 +1,4 @@
-"""Many states at one alpha: the slice against 50 digits, against the law state by state, and what it must not do."""
+"""One material: its tables against Bessel ratios and 50 digits, many states by its inverses, motions by its table."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
-from viscoroll import alpha_slice, rolling_contact
+from viscoroll import material_tables, rolling_contact
+from viscoroll.kernels.law.material import at_contact, standard
+from viscoroll.kernels.law.stick import differences
+from viscoroll.kernels.law.tabulated import tabulated
 from viscoroll.rolling_contact import FIELDS
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 ALPHAS = (1.0001, 1.5, 11.0, 100.0, 1e4)
-MANY = alpha_slice.WORTHWHILE
+MANY = rolling_contact.WORTHWHILE
 
 
 def states(scene: vr.Scene, count: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -29,7 +32,7 @@ def states(scene: vr.Scene, count: int, seed: int) -> tuple[np.ndarray, np.ndarr
 
 
 def one_by_one(scene: vr.Scene, V: np.ndarray, delta: np.ndarray) -> vr.Values:
-    """The same without a slice, by calls with too few states for it."""
+    """The same by Bessel ratios, by calls with too few states for tables."""
     parts = np.array_split(np.arange(V.size), V.size // (MANY - 1) + 1)
     found = [vr.contact(scene, V[part], delta=delta[part]).as_dict() for part in parts]
     return rolling_contact.Values({name: np.concatenate([part[name] for part in found]) for name in FIELDS})
@@ -61,33 +64,67 @@ def test_against_the_law_state_by_state(alpha):
         assert (error * ((1.0 - s) if name == "beta" else 1.0)).max() <= tol.SLICE, name
 
 
-def test_a_slice_is_made_once():
-    """A second call, and one with other kappa, mu and signs, fits nothing: it solves no equation."""
+def test_a_bin_is_made_once():
+    """A second call, and one with other kappa, mu and signs, makes none: it solves no equation."""
     scene = vr.Scene(7.25, KAPPA, MU)
     V, delta, _ = states(scene, MANY, seed=13)
-    before = alpha_slice.octave_of.cache_info().misses
     first = vr.contact(scene, V, delta=delta)
-    fitted = alpha_slice.octave_of.cache_info().misses
-    assert fitted > before
+    tables = material_tables.inverses(7.25)[1:]
+    made = [table.copy() for table in tables]
+    assert all(np.isfinite(table[:, 4:]).any() for table in tables)
     again = vr.contact(scene, V, delta=delta)
     vr.contact(vr.Scene(7.25, 0.9 * KAPPA, 3.0 * MU), -V / 0.9, omega=V)
-    assert alpha_slice.octave_of.cache_info().misses == fitted
+    assert all(np.array_equal(a[:, 0], b[:, 0], equal_nan=True) for a, b in zip(made, tables, strict=True))
     assert all(np.array_equal(getattr(first, name), getattr(again, name)) for name in FIELDS)
 
 
-def test_only_the_octaves_that_are_asked_for():
-    scene = vr.Scene(8.5, KAPPA, MU)
-    before = alpha_slice.octave_of.cache_info().misses
-    vr.contact(scene, np.linspace(1.1, 1.9, MANY) / KAPPA, delta=0.0, fields="M")
-    assert alpha_slice.octave_of.cache_info().misses == before + 1
-    vr.contact(SCENE.replace(alpha=1.0), np.linspace(1.1, 1.9, MANY), delta=0.0)
-    vr.contact(SCENE, np.full(MANY, 1e-12), delta=0.0)
-    assert alpha_slice.octave_of.cache_info().misses == before + 1
+@pytest.mark.parametrize("alpha", [1.0 + 1e-12, *ALPHAS, 1e12])
+def test_the_table_against_ratios(alpha):
+    """F, H and m, their slopes, and the differences that slight creep asks for."""
+    rng = np.random.default_rng(21)
+    by_ratios, by_table = standard(alpha), tabulated(alpha)
+    for low, high in ((-300.0, -5.0), (-5.0, 6.0), (6.0, 40.0)):
+        for z in np.exp(rng.uniform(low, high, 300)):
+            exact, found = (np.array(at_contact(z, each)) for each in (by_ratios, by_table))
+            g, h, dg, dh, _, _, m, _ = exact
+            error = abs(found - exact)
+            assert error[0] <= tol.TABLE * (z + g)
+            assert error[1] <= tol.TABLE * (0.5 * z + h)
+            assert error[6] <= tol.TABLE * m
+            assert error[2] <= tol.TABLE_SLOPE * (1.0 + dg)
+            assert z * error[3] <= tol.TABLE_SLOPE * (z + h + z * dh)
+            assert z * error[7] <= tol.TABLE_SLOPE * m
+            D = z * 10.0 ** rng.uniform(-15.0, -1.0)
+            rises = (np.array(differences(z, z - D, D, each)) for each in (by_ratios, by_table))
+            np.testing.assert_allclose(*rises, rtol=tol.TABLE_SLOPE)
+
+
+def test_no_number_stays_no_number():
+    assert np.isnan(at_contact(np.nan, tabulated(11.0))).all()
+    assert at_contact(np.inf, tabulated(11.0))[:4] == pytest.approx(at_contact(np.inf, standard(11.0))[:4])
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_motions_of_one_material_are_those_of_an_alpha_each(alpha):
+    """Table and ratios: to the stated error of a motion.  The kind follows from the scene, not from the number."""
+    one = SCENE.replace(alpha=alpha)
+    V0, omega0 = np.random.default_rng(22).uniform(-2.0, 2.0, (2, 20))
+    t = np.linspace(0.0, 3.0 / SCENE.gamma * 1.5 * alpha / (alpha - 1.0), 7)
+    options = {"method": "integrate", "rtol": 1e-9}
+    tabled = vr.ensemble(one, V0, omega0, t, **options)
+    rationed = vr.ensemble(one.replace(alpha=np.full(20, alpha)), V0, omega0, t, **options)
+    for field in ("V", "omega", "x"):
+        np.testing.assert_allclose(getattr(tabled, field), getattr(rationed, field), rtol=tol.KINDS, atol=1e-300)
+    for n in (0, 7):
+        alone = vr.roll(one, V0[n], omega0[n], t, rtol=1e-9)
+        part = vr.ensemble(one, V0[n : n + 2], omega0[n : n + 2], t, threads=1, **options)
+        assert np.array_equal(alone.V, tabled.V[n])
+        assert np.array_equal(part.V, tabled.V[n : n + 2])
 
 
 def test_beyond_its_reach_as_one_by_one():
     """Extreme speeds, V = 0 and the last millionth before delta_star: the same bits as a single state."""
-    V = np.resize([0.0, 1e-12, -1e-11, 1e9, 0.5], MANY)
+    V = np.resize([0.0, 1e-120, -1e-110, 1e110, 0.5], MANY)
     star = one_by_one(SCENE, V, np.zeros(MANY)).delta_star
     delta = np.where(V == 0.5, star * (1.0 - 1e-7), 0.4 * star)
     many, single = vr.contact(SCENE, V, delta=delta), one_by_one(SCENE, V, delta)

@@ -1,0 +1,30 @@
+"""A kernel in several versions, one a kind of record: which of them a call takes is settled when it is compiled."""
+
+from __future__ import annotations
+
+from typing import Any, Callable
+
+import numba
+from numba.core import sigutils
+
+from .jit import kernel
+
+
+def by_record(at: int, *versions: tuple[type, Callable]) -> Callable:
+    """The version for the record that argument number ``at`` is: pairs of a record's class and a kernel."""
+    known = dict(versions)
+    if numba.config.DISABLE_JIT:
+        return lambda *given: known[type(given[at])](*given)
+    stand_in = kernel(versions[0][1].py_func)
+
+    def version(given: Any) -> Any:
+        return known[given[at].instance_class]
+
+    def get_call_template(given: tuple, named: dict[str, Any]) -> Any:
+        return version(given).get_call_template(given, named)
+
+    def get_overload(signature: Any) -> Any:
+        return version(sigutils.normalize_signature(signature)[0]).get_overload(signature)
+
+    stand_in.get_call_template, stand_in.get_overload = get_call_template, get_overload
+    return stand_in

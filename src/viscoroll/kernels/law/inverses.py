@@ -1,0 +1,107 @@
+"""The inverses of the law at one material: what Eqs. (6), (8)-(10), (15), (16) ask of kappa |V| and of y = F(eta).
+
+Of u = kappa |V|
+
+    lam, epsilon, L = 2 u F(zeta) = 2 kappa delta_star/mu, M/V
+
+and of y
+
+    eta/y, H(eta)/y^2, A = H'(eta)/(2 y F'(eta))
+
+the last being the slope of H(F^-1(y)) over 2 y.  They are analytic where Re > 0, as g, h and m are, and
+are found from those themselves, not from their table, whose slopes have lost four digits.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..compile.jit import kernel
+from ..compile.rarely import rarely
+from ..numerics import quartet
+from .length import OK, contact_length
+from .material import generator_slopes, generators, moment_of
+from .standard import GAUSS_W, GAUSS_X, Standard
+from .stick import root_of_F
+
+
+class Inverses(NamedTuple):
+    """A material, and tables (:mod:`quartet`) over kappa |V| and over F(eta)."""
+
+    material: Standard
+    speed: Any
+    stick: Any
+
+
+def inverses_of(material: Standard) -> Inverses:
+    """With nothing in its tables."""
+    return Inverses(material, quartet.empty_table(), quartet.empty_table())
+
+
+@kernel
+def _make_speed(row, u, inverses):
+    """Make the bin of u; returns a status."""
+    worst = OK
+    for n in range(quartet.TERMS):
+        kappa_V = quartet.node(u, n)
+        lam, status = contact_length(kappa_V, inverses.material)
+        zeta = 0.5 * lam / kappa_V
+        g, h = generators(zeta, inverses.material)
+        m = moment_of(zeta, lam, g, h, inverses.material)
+        quartet.put(inverses.speed, row, n, lam, g / zeta, lam * (1.0 + g / zeta), m)
+        worst = max(worst, status)
+    if worst == OK:
+        quartet.finish(inverses.speed, row, u)
+    return worst
+
+
+@kernel
+def _make_stick(row, y, inverses):
+    """Make the bin of y; returns a status."""
+    worst = OK
+    for n in range(quartet.TERMS):
+        at = quartet.node(y, n)
+        eta, _, _, status = root_of_F(at, at, inverses.material)
+        _, h, dg, dh = generator_slopes(eta, inverses.material)
+        share = eta / at
+        quartet.put(
+            inverses.stick, row, n, share, share * (eta + 2.0 * h) / at, (eta + h + eta * dh) / (at * (1.0 + dg)), 0.0
+        )
+        worst = max(worst, status)
+    if worst == OK:
+        quartet.finish(inverses.stick, row, y)
+    return worst
+
+
+@kernel(inline=True)
+def at_speed(u, inverses):
+    """(lam, epsilon, L, M/V, status) at u = kappa |V|."""
+    row, there = quartet.row_of(u, inverses.speed)
+    status = OK
+    if rarely(not there):
+        status = _make_speed(row, u, inverses)
+    lam, epsilon, L, m = quartet.values(inverses.speed, row, quartet.offset(u))
+    return lam, epsilon, L, m, status
+
+
+@kernel(inline=True)
+def at_stick(y, inverses):
+    """(eta/y, H(eta)/y^2, A, status) at y = F(eta)."""
+    row, there = quartet.row_of(y, inverses.stick)
+    status = OK
+    if rarely(not there):
+        status = _make_stick(row, y, inverses)
+    share, press, rise, _ = quartet.values(inverses.stick, row, quartet.offset(y))
+    return share, press, rise, status
+
+
+@kernel
+def slight_traction(u, L, D, inverses):
+    """(|Q|/mu, status) as the integral of its slope, for small D = 2 kappa |delta|/mu: no digits cancel."""
+    total, worst = 0.0, OK
+    for n in range(GAUSS_X.size):
+        w = L - D * GAUSS_X[n]
+        _, _, rise, status = at_stick(0.5 * w / u, inverses)
+        total += GAUSS_W[n] * w * rise
+        worst = max(worst, status)
+    return 2.0 * D * total, worst

@@ -1,0 +1,200 @@
+"""One state of the contact: signs, limits, and only the rows asked for."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..bessel.ratios import small_k_over_z
+from ..compile.jit import kernel
+from .length import OK, contact_solution, near_length
+from .material import at_contact, generator_slopes, moment_of
+from .slopes import slope_ratio, slope_ratio_rise
+from .stick import CLOSE, stick_from_root, stick_solution
+
+#: Order of the rows of the kernel's output.
+ROWS = (
+    "lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M",
+    "dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV",
+)  # fmt: skip
+LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, DQ_DOMEGA, DM_DV = range(len(ROWS))
+
+#: above this zeta, g <= 1/2 is below rounding beside zeta and the law is Carter's
+FAR = 1e17
+#: below this zeta, products of r and k underflow, and the law is its limit at high speed to rounding
+NEAR = 1e-140
+#: below this s = |delta|/delta_star, Q is linear in s to rounding, while zeta - eta may underflow
+_LINEAR = 1e-17
+#: in place of (eta, g and h there, whether it is known) for ``stick``: eta is to be solved for
+UNSOLVED = (0.0, 0.0, 0.0, False)
+
+
+class State(NamedTuple):
+    """kappa, mu, V, and the creep as delta or as omega."""
+
+    kappa: float
+    mu: float
+    V: float
+    creep: float
+    creep_is_omega: bool
+
+
+class States(NamedTuple):
+    """Arrays of what a :class:`State` holds: one value, or one a state."""
+
+    kappa: Any
+    mu: Any
+    V: Any
+    creep: Any
+    creep_is_omega: bool
+
+
+class Need(NamedTuple):
+    """Whether epsilon and delta_star, beta or Q, beta, M, and slopes are wanted."""
+
+    shift: bool
+    stick: bool
+    beta: bool
+    moment: bool
+    slopes: bool
+
+
+@kernel(inline=True)
+def state_of(states, n):
+    """State number n."""
+    return State(
+        states.kappa[min(n, states.kappa.size - 1)], states.mu[min(n, states.mu.size - 1)],
+        states.V[min(n, states.V.size - 1)], states.creep[min(n, states.creep.size - 1)], states.creep_is_omega,
+    )  # fmt: skip
+
+
+@kernel
+def signed_slip(state):
+    """(omega - V, sign of the slip, direction of travel); V = 0 counts as V -> 0+."""
+    V, creep = state.V, state.creep
+    direction = -1.0 if V < 0.0 else 1.0
+    slip = creep - V if state.creep_is_omega else creep * V
+    if state.creep_is_omega:
+        sign = np.sign(slip)
+    else:
+        sign = np.sign(creep) * direction
+    return slip, sign, direction
+
+
+@kernel
+def creep_ratio(state, slip):
+    """delta of Eq. (5); infinite when V = 0 < |omega|, 0 at rest."""
+    if not state.creep_is_omega:
+        return state.creep
+    if state.V != 0.0:
+        return slip / state.V
+    return 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
+
+
+@kernel
+def stick(speed, delta, mu, solved, delta_star, root, material):
+    """(eta, zeta - eta, beta, |Q|/mu, status) of partial slip at |V| and |delta|; Eqs. (10), (15).
+
+    ``solved``: as of ``contact_solution``.
+    """
+    lam, zeta, g, h, dg, _ = solved
+    s = delta / delta_star
+    if material.c == 0.0 or not NEAR <= zeta <= FAR:
+        return zeta * (1.0 - s), zeta * s, 1.0 - s, s * (2.0 - s), OK
+    if s < _LINEAR:
+        _, _, dg, dh = generator_slopes(zeta, material)
+        share = s * (1.0 + g / zeta) / (1.0 + dg)  # (zeta - eta)/zeta
+        return zeta, share * zeta, 1.0, share * 2.0 * lam * lam * (1.0 + (h + zeta * dh) / zeta), OK
+    d = delta / (mu * speed)
+    if root[3]:
+        eta, D, dH = stick_from_root(root[0], root[1], root[2], zeta, g, h, d, material)
+        status = OK
+    else:
+        eta, D, dH, status = stick_solution(zeta, g, h, dg, d, material)
+    return eta, D, eta / zeta, min(dH * (lam / zeta) * lam, 1.0), status
+
+
+@kernel
+def traction_slopes(delta, state, solved, stuck, material):
+    """(d|Q|/d|V| at fixed delta, d|Q|/d|delta|) in partial slip, from what ``stick`` found."""
+    lam, zeta, _, _, _, _ = solved
+    eta, D, beta, share, _ = stuck
+    speed = abs(state.V)
+    if material.c == 0.0 or not NEAR <= zeta <= FAR:
+        return 0.0, 4.0 * state.kappa * beta / lam
+    # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
+    A, A_eta = slope_ratio(zeta, material) / zeta, slope_ratio(eta, material) / zeta
+    H = 1.0 / (lam * lam)
+    d = delta / (state.mu * speed * zeta)
+    fall = A - A_eta if D > CLOSE * zeta else slope_ratio_rise(zeta, D, material) / zeta
+    bracket = -share * H + H * fall / A + 0.5 * A_eta * d
+    dQ_dV = -state.mu * 2.0 * lam * lam * bracket / speed
+    return dQ_dV, 2.0 * state.kappa * lam * A_eta
+
+
+@kernel
+def contact_state(material, state, need, out):
+    """All rows of one state into ``out``."""
+    kappa_V = state.kappa * abs(state.V)
+    solved = contact_solution(near_length(kappa_V, material, 1.0 / np.sqrt(material.alpha)), kappa_V, material)
+    return contact_state_at(solved, UNSOLVED, material, state, need, out)
+
+
+@kernel(inline=True)
+def contact_state_at(solved, root, material, state, need, out):
+    """``contact_state`` from the solution of Eq. (6), and for ``stick`` perhaps that of Eq. (10)."""
+    kappa, mu, V = state.kappa, state.mu, state.V
+    lam, zeta, g, h, _, status = solved
+    out[LAM], out[ZETA] = lam, zeta
+    if need.moment:
+        _moment(V, kappa, solved, material, need.slopes, out)
+    if not need.shift:
+        return status
+    epsilon = g / zeta if zeta >= NEAR else h * small_k_over_z(zeta)
+    delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa
+    slip, sign, direction = signed_slip(state)
+    delta = creep_ratio(state, slip)
+    if V == 0.0 and state.creep_is_omega:
+        full_slip = slip != 0.0
+    else:
+        full_slip = abs(delta) >= delta_star
+    out[EPSILON], out[DELTA_STAR], out[DELTA], out[FULL_SLIP] = epsilon, delta_star, delta, 1.0 if full_slip else 0.0
+    if not need.stick:
+        return status
+    if full_slip:
+        out[BETA], out[Q] = 0.0, mu * sign
+        out[DQ_DV] = out[DQ_DDELTA] = out[DQ_DOMEGA] = 0.0
+        return status
+    stuck = stick(abs(V), abs(delta), mu, solved, delta_star, root, material)
+    _, _, beta, share, stick_status = stuck
+    out[BETA] = beta
+    out[Q] = sign * mu * share
+    if need.slopes:
+        dQ_dV, dQ_ddelta = traction_slopes(abs(delta), state, solved, stuck, material)
+        out[DQ_DV] = np.sign(delta) * dQ_dV
+        out[DQ_DDELTA] = direction * dQ_ddelta
+        out[DQ_DOMEGA] = dQ_ddelta / abs(V)
+        if state.creep_is_omega:
+            out[DQ_DV] -= dQ_ddelta * (1.0 + delta) / abs(V)
+    return max(status, stick_status)
+
+
+@kernel(inline=True)
+def _moment(V, kappa, solved, material, need_slopes, out):
+    """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
+    lam, zeta, g, h, _, _ = solved
+    alpha, c = material.alpha, material.c
+    if zeta > FAR:
+        out[M], out[DM_DV] = c * V, c
+        return
+    if zeta < NEAR:  # V zeta = lam/(2 kappa), lam^2 = 1/alpha, i2 = (alpha zeta)^2/8
+        out[M] = np.copysign(0.5 * lam / kappa, V) * (0.125 * c * alpha * zeta + h * small_k_over_z(zeta))
+        out[DM_DV] = 0.0
+    elif not need_slopes:
+        out[M] = V * moment_of(zeta, lam, g, h, material)
+    else:
+        _, h, _, dh, _, _, m, dm = at_contact(zeta, material)
+        out[M] = V * m
+        half_slope = 1.0 + (h + zeta * dh) / zeta
+        out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)

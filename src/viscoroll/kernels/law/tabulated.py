@@ -1,0 +1,122 @@
+"""A material by polynomials of z, whatever g, h and m cost: :func:`values_at` alone knows what it is made of."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..compile.jit import kernel
+from ..compile.rarely import rarely
+from ..numerics import quartet
+from ..numerics.bins import offset_slope
+from . import standard
+from .standard import GAUSS_W, GAUSS_X, Standard
+
+
+class Tabulated(NamedTuple):
+    """alpha and c as of :class:`Standard`; g, h and m of z in a table (:mod:`quartet`)."""
+
+    alpha: float
+    c: float
+    table: Any
+
+
+def tabulated(alpha: float) -> Tabulated:
+    """The material of this alpha, with nothing in its table."""
+    return Tabulated(alpha, (alpha - 1.0) / alpha, quartet.empty_table())
+
+
+@kernel
+def values_at(z, material):
+    """(g, h, m) at z."""
+    return standard.values(z, Standard(material.alpha, material.c))
+
+
+@kernel
+def _make(row, z, material):
+    """Make the bin of z."""
+    for n in range(quartet.TERMS):
+        g, h, m = values_at(quartet.node(z, n), material)
+        quartet.put(material.table, row, n, g, h, m, 0.0)
+    quartet.finish(material.table, row, z)
+
+
+@kernel(inline=True)
+def _row(z, material):
+    """Row of the bin of z, which is made if it is not there."""
+    row, there = quartet.row_of(z, material.table)
+    if rarely(not there):
+        _make(row, z, material)
+    return row
+
+
+@kernel(inline=True)
+def generators(z, material):
+    """(g, h) at z; 0 for z <= 0 (no stick zone)."""
+    if z <= 0.0:
+        return 0.0, 0.0
+    g, h, _, _ = quartet.values(material.table, _row(z, material), quartet.offset(z))
+    return g, h
+
+
+@kernel(inline=True)
+def generator_slopes(z, material):
+    """(g, h, g', h') at z, all 0 for z <= 0."""
+    if z <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    g, h, _, _, dg, dh, _, _ = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
+    per = offset_slope(z)
+    return g, h, dg * per, dh * per
+
+
+@kernel(inline=True)
+def second_slopes(z, material):
+    """(g, h, g', h', g'', h'') at z, all 0 for z <= 0."""
+    if z <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    g, h, dg, dh, ddg, ddh, _, _ = at_contact(z, material)
+    return g, h, dg, dh, ddg, ddh
+
+
+@kernel(inline=True)
+def at_contact(z, material):
+    """(g, h, g', h', g'', h'', m, m') at z = zeta."""
+    found = quartet.second_slopes(material.table, _row(z, material), quartet.offset(z))
+    g, h, m, _, dg, dh, dm, _, ddg, ddh, _, _ = found
+    per = offset_slope(z)
+    return g, h, dg * per, dh * per, (ddg * per) * per, (ddh * per) * per, m, dm * per
+
+
+@kernel(inline=True)
+def at_slide(z, material):
+    """(g, h, h', m) at z."""
+    g, h, m, _, _, dh, _, _ = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
+    return g, h, dh * offset_slope(z), m
+
+
+@kernel(inline=True)
+def moment_of(zeta, lam, g, h, material):
+    """m at zeta."""
+    return quartet.values(material.table, _row(zeta, material), quartet.offset(zeta))[2]
+
+
+@kernel
+def _gauss_slopes(zeta, D, material):
+    """``mean_slopes`` where the ends lie in two bins."""
+    slope_g = slope_zh = 0.0
+    for n in range(GAUSS_X.size):
+        z = zeta - D * GAUSS_X[n]
+        _, h, dg, dh = generator_slopes(z, material)
+        slope_g += GAUSS_W[n] * dg
+        slope_zh += GAUSS_W[n] * (h + z * dh)
+    return slope_g, slope_zh
+
+
+@kernel
+def mean_slopes(zeta, D, material):
+    """Means of g' and of (z h)' over [zeta - D, zeta]."""
+    eta = zeta - D
+    if quartet.same_bin(zeta, eta):
+        dg, dh, _, _ = quartet.secants(material.table, _row(zeta, material), quartet.offset(zeta), quartet.offset(eta))
+        per = offset_slope(zeta)
+        return dg * per, generators(zeta, material)[1] + eta * (dh * per)
+    return _gauss_slopes(zeta, D, material)

@@ -1,0 +1,45 @@
+"""Bins of a positive float: an octave [2^n, 2^(n+1)) is cut into 2^bits of them by the leading bits of its mantissa.
+
+No logarithm is taken: number and place are read off the bits of the float.  In a bin functions are
+polynomials of the offset t of the mantissa from the centre of the bin.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+
+_MANTISSA = (1 << 52) - 1
+_ONE = 1023 << 52
+_OCTAVE, _LARGEST = 2047 << 52, 2046 << 52
+
+
+@kernel(inline=True)
+def bin_number(x, bits):
+    """Exponent and leading mantissa bits of x > 0: rises by one from bin to bin."""
+    return np.float64(x).view(np.int64) >> (52 - bits)
+
+
+@kernel(inline=True)
+def bin_offset(x, bits):
+    """Mantissa of x less that of the centre of its bin."""
+    word, half = np.float64(x).view(np.int64), 1 << (51 - bits)
+    centre = np.int64((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half)).view(np.float64)
+    return np.int64((word & _MANTISSA) | _ONE).view(np.float64) - centre
+
+
+@kernel(inline=True)
+def offset_slope(x):
+    """dt/dx = 2^-n; 0 at infinity."""
+    octave = np.float64(x).view(np.int64) & _OCTAVE
+    return np.int64(_LARGEST - min(octave, _LARGEST)).view(np.float64)
+
+
+@kernel(inline=True)
+def bin_place(number, bits, at):
+    """x at the fraction ``at`` of a bin, exact but for one rounding; in the last octave infinite, or NaN."""
+    octave = np.int64((number >> bits) << 52).view(np.float64)
+    part = number & ((1 << bits) - 1)
+    last = octave == np.inf and part > 0  # the bits of NaN
+    return np.nan if last else octave * (1.0 + (part + at) / (1 << bits))
