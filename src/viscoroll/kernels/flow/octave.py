@@ -51,12 +51,14 @@ def _served(onset, turns, flow, values, whole):
     """Roll one motion, which ``turns`` where it passes delta = 0, and join it to the slow manifold."""
     v = flow.scene.kappa * onset.V
     lasts, crossing, end = layer_motion(onset, values)
+    if not lasts:
+        return False
     if not turns:
         _join(onset, end, manifold_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
-        return lasts and not 0.0 <= crossing.E < layout.LAYER_END
+        return not 0.0 <= crossing.E < layout.LAYER_END
     lowest, octaves = 2.0 ** (flow.first - layout.CROSS_MARGIN), layout.ENTRY_OCTAVES + 2 * layout.CROSS_MARGIN
     there = v * np.exp(crossing.ln_V)
-    if not (lasts and crossing.E > 0.0 and lowest <= there < lowest * 2.0**octaves):
+    if not (crossing.E > 0.0 and lowest <= there < lowest * 2.0**octaves):
         return False
     _join(onset, crossing, entry_state(CROSS, there, LOSS, flow), flow.table, whole)
     whole[layout.CROSSING], whole[layout.CROSSING_SPEED] = crossing.E, crossing.ln_V

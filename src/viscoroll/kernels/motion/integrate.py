@@ -115,7 +115,7 @@ def finish_coasting(state, frame, clock, case):
     return RESTED, crossing / sink.gamma
 
 
-@kernel
+@kernel(inline=True)
 def partial_phase(entering, try_at, state, frame, clock, case):
     """Partial slip: (event, state, clock, when to try the slow manifold again, whether the closed form holds).
 

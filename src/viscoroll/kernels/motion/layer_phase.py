@@ -51,7 +51,7 @@ def tolerated(y, case):
     return _OVER * SHARE * case.limits.rtol / max(creep_weight(share) * per, creep_slope(REACHED, case.work.values))
 
 
-@kernel
+@kernel(inline=True)
 def panel_size(e, length, power, to_zero, state, case):
     """(Length, error over its tolerance) of the panel from node 0; infinite where it failed."""
     tolerance, work = SHARE * case.limits.rtol, case.work

@@ -17,8 +17,9 @@ from .partial_slip import stiff_rates
 from .path import D_D, D_TAU, D_TURN, D_X, D_Y, D, Y, grade, path_mismatch
 
 _MOST_ITERATIONS = 12
-#: gain from one iteration to the next beyond which it takes new slopes
-_SLOW = 0.05
+#: length over the time of relaxation up to which substitution is tried, and gain of an iteration from which on new
+#: slopes are taken
+_MILD, _SLOW = 0.1, 0.1
 #: Newton stops at this share of the tolerance
 _NEWTON = 0.01
 #: a mismatch of the rates at the left end overstates the error of their interpolants
@@ -90,32 +91,37 @@ def _guess(length, power, rates, nodes):
 def radau_solve(length, power, sign, rates, rtol, scene, work):
     """Collocate over ``length`` from node 0, with its ``rates`` (y', D', slope of D' in D).  Whether it converged.
 
-    By Newton's iteration on both unknowns of all stages, with new slopes where it is slow.
+    By Newton's iteration on both unknowns of all stages, with new slopes where it gains little; where nothing is stiff,
+    by substitution as long as that gains.
     """
     nodes, right = work.nodes, work.right
     _guess(length, power, rates, nodes)
-    half, before, gain = 0.5 * length, 0.0, np.inf
+    half, before, by_Newton = 0.5 * length, np.inf, False
+    anew = length * abs(rates[2]) > _MILD
     for _ in range(_MOST_ITERATIONS):
-        slow = gain > _SLOW
         for n in range(N):
             weight = grade(0.5 * (1.0 + NODES[n + 1]), power)
             in_D = _stage(n + 1, weight, sign, scene, nodes)
-            if slow:
+            if anew:
                 _put_slopes(n, half, weight, in_D, sign, scene, work)
-        if slow:
+        if anew:
             factorize(work.matrix, 2 * N)
+        by_Newton = by_Newton or anew
         _put_residuals(half, nodes, right)
-        substitute(work.matrix, right, 2 * N)
+        if by_Newton:
+            substitute(work.matrix, right, 2 * N)
         change = 0.0
         for i in range(N):
             change = max(change, abs(right[2 * i]), abs(right[2 * i + 1]) * np.exp(-nodes[Y, 0]))
             nodes[Y, i + 1] += right[2 * i]
             nodes[D, i + 1] += right[2 * i + 1]
-        gain = change / before if before > 0.0 else 1.0
+        first = before == np.inf
+        gain = 1.0 if first else change / before
         if not (change < 1e3 and gain < 2.0):
             return False
         if change * gain <= _NEWTON * SHARE * rtol:
             return True
+        anew = gain > _SLOW and not first
         before = change
     return False
 

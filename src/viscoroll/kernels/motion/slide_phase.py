@@ -125,7 +125,7 @@ def end_of_slip(slipped, panel, sigma, scene, work):
     return STICK, locate_slide(low, high, panel, sigma, scene, work)
 
 
-@kernel
+@kernel(inline=True)
 def chosen_panel(state, here, pole, longest, left, sigma, case):
     """The next panel, and whether it is ready; where V stands still its rates are filled in already."""
     scene, nodes = case.scene, case.work.nodes
@@ -144,7 +144,7 @@ def chosen_panel(state, here, pole, longest, left, sigma, case):
     return panel, slide_rates(panel, sigma, scene, nodes)
 
 
-@kernel
+@kernel(inline=True)
 def panel_size(rise, state, panel, sigma, case):
     """Error of the panel over its tolerance."""
     w = state.second + 2.0 * sigma * case.scene.mu * rise
@@ -152,7 +152,7 @@ def panel_size(rise, state, panel, sigma, case):
     return _SLIDING * _OVERSTATED * slide_error(abs(panel.length), case.work.nodes) / (SHARE * scale)
 
 
-@kernel
+@kernel(inline=True)
 def panel_event(slipped, tau_left, panel, sigma, case):
     """(event, v, time until there): the first event on the panel, else none and its end."""
     scene, work = case.scene, case.work
@@ -166,7 +166,7 @@ def panel_event(slipped, tau_left, panel, sigma, case):
     return NO_EVENT if rise > tau_left else event, v, rise
 
 
-@kernel
+@kernel(inline=True)
 def slide_on(v, rise, state, panel, sigma, case):
     """The state at v, after the time ``rise``."""
     _, _, X, angle = slide_state(v, rise, panel, sigma, case.scene, case.work.powers)

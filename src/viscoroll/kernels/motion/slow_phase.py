@@ -37,7 +37,7 @@ NEWTON = 0.05
 _OVERSTATED = 0.05
 
 
-@kernel
+@kernel(inline=True)
 def attempt(length, state, case):
     """One interval: errors of its interpolants, and of the offset at its left end, over their tolerances.
 
