@@ -86,7 +86,7 @@ MOTION = [
     ("motion/panel.py", "moved(first, second, X_rise, X_rise + turn, state)", "moved(first, second, X_rise, X_rise - turn, state)", _MOTION),
     ("motion/layer.py", "linear_rates(y, S + aside, np.sign(S + e), scene)", "linear_rates(y, S - aside, np.sign(S + e), scene)", "tests/kernels/motion/test_layer.py"),
     ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/motion/test_ensemble.py"),
-    ("flow/layer.py", "V * (1.0 + delta) / V0 - 1.0", "V * (1.0 - delta) / V0 - 1.0", "tests/motion/test_flow.py"),
+    ("flow/layer.py", "share * (1.0 + delta) - 1.0", "share * (1.0 - delta) - 1.0", "tests/motion/test_flow.py"),
     ("motion/integrate.py", "Frame(FULL, -frame.direction, -frame.sigma)", "Frame(FULL, -frame.direction, frame.sigma)", _MOTION),
     ("motion/integrate.py", "D *= sigma\n", "D *= 1.0\n", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),

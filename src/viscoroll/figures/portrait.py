@@ -80,7 +80,9 @@ def _slow_manifold(scene: Scene) -> Motion:
     # an elastic cylinder rolls for ever: any end will do
     rest = roll(*start, np.array([1e6 / scene.gamma]), rest=1e-3 * _RADIUS).rest_time
     motion = roll(*start, rest if np.isfinite(rest) else 1.0 / scene.gamma)
-    return _fine(motion.at(motion.t[motion.t > 0.05 / scene.gamma]))
+    late = motion.t > 0.05 / scene.gamma
+    late[-2:] = True  # an elastic cylinder's motion has no steps so late
+    return _fine(motion.at(motion.t[late]))
 
 
 def _arrow(axes: Any, motion: Motion) -> None:

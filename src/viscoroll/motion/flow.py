@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks
-from ..material_tables import material
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .flow_store import FlowMap, load, path_of, save
@@ -25,7 +24,7 @@ from .flow_store import FlowMap, load, path_of, save
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows
 _MARGIN, _FLOOR = 4.0, np.array([1e-10, 5e-10, 1e-10])
-_SAMPLED, _SAMPLE_TIMES, _SAMPLE_RTOL, _SAMPLE_STEPS = 100, 40, 1e-11, 1_000_000
+_SAMPLED, _SAMPLE_TIMES, _SAMPLE_RTOL, _SAMPLE_STEPS, _SAMPLE_ENDS = 100, 40, 1e-11, 1_000_000, 100_000
 #: V, omega, x, angle, slip_loss, rolling_loss; the losses take the integrator longest
 _MEASURED, _LOSS_EVERY = (0, 1, 2, 3, 6, 7), 4
 #: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
@@ -145,16 +144,12 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
-    from ..kernels.motion.loss_loop import loss_loop
-    from ..kernels.motion.records import Batch, Limits
-
-    alpha, kappa, mu, j = made.parameters
+    alpha, _, _, j = made.parameters
     c = (alpha - 1.0) / alpha
-    # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
-    batch = Batch(material(alpha), *(flattened(np.array([x]), (1,)) for x in (kappa, mu, 1.0, j, V0, omega0)))
+    start = np.array([V0]), np.array([omega0])
 
     def flow(times: NDArray) -> Answer:
-        return ask(made, 1.0, 0.0, batch.V0, batch.omega0, times, rows)
+        return ask(made, 1.0, 0.0, *start, times, rows)
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
@@ -165,10 +160,8 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
-    limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
-    loss_loop(batch, times, limits, np.array(rows), rolled, info, 0, 1)
-    out, true_onset = rolled[:, 0], info[0, 3]
+    rolled, true_onset = _rolled(made.parameters, float(V0), float(omega0), times, rows == _MEASURED)
+    out = rolled[list(rows)]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
     path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
@@ -177,6 +170,26 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     if onset > 0.0:
         errors[0] = max(errors[0], abs(onset - true_onset) / (onset + stiff_time))
     return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
+
+
+def _rolled(
+    parameters: tuple[float, ...], V0: float, omega0: float, times: NDArray, losses: bool
+) -> tuple[NDArray, float]:
+    """Outputs and onset time of a motion by the kernel that ``roll`` compiles: none is compiled for the map alone."""
+    from ..kernels.motion.integrate import integrate
+    from ..kernels.motion.losses import ROWS, add_losses, loss_points
+    from ..kernels.motion.records import Limits
+
+    motion = kernel_scene(*parameters), 1.0, V0, omega0
+    limits, switches = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS), np.empty((0, 2))
+    out, ends = np.full((ROWS, times.size), np.nan), np.zeros(_SAMPLE_ENDS)
+    onset = integrate(*motion, times, limits, out, switches, ends)[3]
+    if losses:
+        edges, points_at = loss_points(ends, times)
+        points = np.full((ROWS, points_at.size), np.nan)
+        integrate(*motion, points_at, limits, points, switches, np.empty(0))
+        add_losses(*motion, times, edges, points, out)
+    return out, onset
 
 
 def _stiff_time(made: FlowMap, speed: float) -> float:

@@ -95,7 +95,7 @@ def _evaluate(i, onset, nodes):
 
 @kernel
 def _newton(half, onset, nodes, matrix, right):
-    """One iteration on a panel of length 2 ``half``; the largest change, relative to zeta."""
+    """One iteration on a panel of length 2 ``half``; the sum of changes, which NaN is not lost in, relative to zeta."""
     for i in range(N):
         _evaluate(i + 1, onset, nodes)
         right[i] = half * nodes[_D_D, i + 1]
@@ -105,15 +105,15 @@ def _newton(half, onset, nodes, matrix, right):
             matrix[i, n] = SLOPES[i, n + 1]
         matrix[i, i] -= half * nodes[_D_OF_D, i + 1]
     eliminate(matrix, right)
-    largest = 0.0
+    change = 0.0
     for i in range(1, N + 1):
         y = nodes[_Y, 0]
         for n in range(N):
             y += half * INTEGRALS[i - 1, n] * (nodes[_D_Y, n + 1] + nodes[_Y_OF_D, n + 1] * right[n])
-        largest = max(largest, abs(y - nodes[_Y, i]), abs(right[i - 1]) * np.exp(-y))
+        change += abs(y - nodes[_Y, i]) + abs(right[i - 1]) * np.exp(-y)
         nodes[_Y, i] = y
         nodes[_D, i] += right[i - 1]
-    return largest
+    return change
 
 
 @kernel
@@ -137,14 +137,14 @@ def _panel(length, onset, nodes, matrix, right):
         length *= 0.5
         if length < shortest:
             return length, False
-    fullest = -np.inf
+    lasts = True
     for n in range(N):
         for row in (LAYER_X, LAYER_ANGLE, LAYER_LOSS):
             nodes[row, n + 1] = nodes[row, 0]
             for m in range(N):
                 nodes[row, n + 1] += 0.5 * length * INTEGRALS[n, m] * nodes[row - LAYER_X + _D_X, m + 1]
-        fullest = max(fullest, onset.sign * nodes[_D, n + 1] * np.exp(-nodes[_Y, n + 1]))
-    return length, fullest <= 1.0 + _ROUNDING
+        lasts = lasts and onset.sign * nodes[_D, n + 1] * np.exp(-nodes[_Y, n + 1]) <= 1.0 + _ROUNDING
+    return length, lasts
 
 
 @kernel

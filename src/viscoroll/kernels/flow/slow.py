@@ -101,7 +101,8 @@ def _integrate(columns, table):
             ends[column] = integrate_bin(columns[b, column], ends[column], rows[column])
             fit_column(table, b, column, rows[column])
         fit_column(table, b, DELTA, columns[b, DELTA])
-    table[:, LAMBDA, 0] -= start
+    for b in range(table.shape[0]):
+        table[b, LAMBDA, 0] -= start
 
 
 @kernel
