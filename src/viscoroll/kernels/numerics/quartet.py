@@ -24,10 +24,10 @@ from ..compile.jit import kernel
 from .bins import bin_number, bin_offset, bin_place
 from .nodes import chebyshev, rounded, to_chebyshev
 
-BITS, TERMS = 2, 13
+BITS, TERMS = 3, 10
 _BINS = 1 << BITS
 #: bins that a table keeps: 32 octaves
-KEPT = 128
+KEPT = 512
 #: a row: number of the bin (its bits), and from here on the coefficients, those of one power together
 FIRST = 4
 WIDTH = FIRST + 4 * TERMS
