@@ -432,8 +432,6 @@ def test_speeds_whose_squares_underflow():
         assert max(abs(motion.V[0]), abs(motion.omega[0])) <= max(map(abs, start))
 
 
-@pytest.mark.xfail(strict=True, reason="takes every step that it is allowed, here 100,000")
-@pytest.mark.filterwarnings("ignore:roll")
 def test_a_slide_that_leaves_a_speed_of_rounding():
     """|V| is 4.4e-16 at the onset of partial slip; neighbours of this spin take some seventy steps."""
     assert vr.roll(ROUNDED, -1.0, 1.4692137743888738, 1e-2, max_steps=5000).status == vr.MotionStatus.DONE

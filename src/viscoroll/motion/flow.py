@@ -175,7 +175,7 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
     limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
-    loss_loop(Batch(*scene, *start), times, limits, np.array(rows), rolled, info, 0, 1)
+    loss_loop(Batch(*(*scene, *start)), times, limits, np.array(rows), rolled, info, 0, 1)
     out, true_onset = rolled[:, 0], info[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out

@@ -188,13 +188,16 @@ def integrate(scene, gamma, V0, omega0, t_out, limits, out, switches, step_ends)
     )  # fmt: skip
     case = Case(scene, limits, Sink(t_out * gamma, out, step_ends, gamma), work)
     clock = Clock(0.0, 0, 0, 0)
+    origin, still = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Frame(REST, 1.0, 0.0)
+    if max(abs(V0), abs(omega0)) < limits.rest:
+        put_rest(origin, still, clock, case)
+        return RESTED, 0, 0, np.nan, 0.0
     state, frame, status = start(V0, omega0, scene)
     if status != OK:
         return NOT_CONVERGED, 0, 0, np.nan, np.nan
-    slow = max(abs(V0), abs(omega0)) < limits.rest
-    if slow or frame.regime == REST:
-        put_rest(State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), frame, clock, case)
-        return RESTED if slow else DONE, 0, 0, np.nan, 0.0 if slow else np.nan
+    if frame.regime == REST:
+        put_rest(origin, still, clock, case)
+        return DONE, 0, 0, np.nan, np.nan
     first = Frame(frame.regime, 1.0, frame.sigma)
     while clock.at < t_out.size and t_out[clock.at] == 0.0:
         delta = speeds(state, frame.regime, scene)[2]

@@ -29,8 +29,8 @@ SLIDE_ROWS = 7
 TAU, LOST, MEAN, EVENT = range(4)
 #: beyond this length V has changed by so much that its change is good for the time
 _LONG = 0.5
-#: iterations to find an event, and a step after which none is needed
-_MOST_ITERATIONS, _LAST = 100, 1e-9
+#: iterations to find an event, and a step after which none is needed: the slope is that of the interpolant
+_MOST_ITERATIONS, _LAST = 100, 1e-12
 #: rounding of an extrapolation to the left end
 _ROUNDING = 1e-14
 #: how much beyond the place that is expected for its end a panel goes
