@@ -92,7 +92,7 @@ def test_the_table_of_coefficients_ships_small():
     ["import viscoroll", "import viscoroll as vr; vr.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.ParameterError"],
 )
 def test_import_is_light(code):
-    loaded = printed(f"{code}\\nimport sys\\nprint(*{{name.split('.')[0] for name in sys.modules}})")
+    loaded = printed(f"{code}\nimport sys\nprint(*{{name.split('.')[0] for name in sys.modules}})")
     assert not HEAVY & set(loaded.split())
 
 

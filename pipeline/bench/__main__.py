@@ -2,7 +2,7 @@
 
     python -m pipeline.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
-Parts: work-precision, own-parameters, fixed-scene, agreement, law, tables, scaling, cold-start, skips;
+Parts: work-precision, own-parameters, fixed-scene, agreement, law, tables, scaling, cold-start, first-calls, skips;
 default: all.  Sizes are in [bench] of the configuration, those of --quick in [bench.PART.quick].  Times are of
 this machine at this moment, medians of alternating runs on one core: run it with nothing else running.  A
 peer that is not installed is skipped with a printed reason (pipeline/peers/README.md).
@@ -33,6 +33,7 @@ PARTS = {
     "tables": ("tables", "tables"),
     "scaling": ("scaling", "scaling"),
     "cold-start": ("cold_start", "cold_start"),
+    "first-calls": ("cold_start", "first_calls"),
     "skips": ("skips", "skips"),
 }
 

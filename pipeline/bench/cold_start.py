@@ -1,12 +1,13 @@
-"""Whole processes: import, one motion from the command line, the first contact; kernels cached on disk."""
+"""Whole processes: import, one motion from the command line, the first calls; kernels cached on disk, or not yet."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 from typing import Any
 
-from ..timing import alternating
+from ..timing import alternating, printed
 
 _PROCESSES = {
     "bare_python": ("-c", "pass"),
@@ -33,3 +34,34 @@ def cold_start(sizes: dict[str, Any]) -> dict[str, Any]:
     seconds = alternating(calls, sizes["repeats"])
     bare = seconds["bare_python"]
     return {name: {"s": value, "over_bare_s": value - bare} for name, value in seconds.items()}
+
+
+#: the first calls of one process, in this order: a row behind each, all since the process began
+_CHILD = """
+import os
+from pathlib import Path
+folder, calls, motions = given
+os.environ["VISCOROLL_CACHE_DIR"] = folder
+scene, t = vr.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 30)
+V0 = np.random.default_rng(12).uniform(-2.0, 2.0, motions)
+run = {
+    "contact": lambda: vr.contact(scene, 0.5, delta=-0.01),
+    "roll": lambda: vr.roll(scene, 1.5, 0.5, t),
+    "ensemble": lambda: vr.ensemble(scene, V0, 0.5, t),
+}
+rows, start = [], time.perf_counter()
+for name in calls:
+    run[name]()
+    sizes = [path.stat().st_size for path in Path(folder).glob("kernels-*/*")]
+    rows.append({
+        "call": name, "cpu_s": time.process_time(), "wall_s": time.perf_counter() - start,
+        "peak_mb": memory("VmHWM") / 1e6, "files": len(sizes), "cache_mb": sum(sizes) / 1e6,
+    })
+print(json.dumps(rows))
+"""
+
+
+def first_calls(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Rows of the first calls of a process whose kernel cache is empty, and of one that finds it full."""
+    with tempfile.TemporaryDirectory() as folder:
+        return {cache: printed(_CHILD, folder, sizes["calls"], sizes["motions"]) for cache in ("empty", "full")}

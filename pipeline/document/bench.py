@@ -166,3 +166,16 @@ def cold_start(results: Results) -> str:
         for name, row in results["bench-cold-start"]["measured"].items() if name != "bare_python"
     )  # fmt: skip
     return listed({"process, kernels cached": "{name}", "over a bare Python": "{over_bare_s!u} ms"}, rows)
+
+
+def first_calls(results: Results) -> str:
+    """One process from an empty cache of kernels, one from a full one."""
+    rows = (
+        row | {"cache": cache}
+        for cache, calls in results["bench-first-calls"]["measured"].items() for row in calls
+    )  # fmt: skip
+    columns = {
+        "cache": "{cache}", "after the first": "{call}", "processor": "{cpu_s:.1f} s", "wall": "{wall_s:.1f} s",
+        "peak memory": "{peak_mb:.0f} MB", "cached": "{files} files, {cache_mb:.1f} MB",
+    }  # fmt: skip
+    return listed(columns, rows)

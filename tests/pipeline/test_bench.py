@@ -69,6 +69,16 @@ def test_law_tables_and_the_rest(folder):
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
 
 
+def test_first_calls(folder):
+    """Compiled where the cache is empty, and nothing where it is full."""
+    (first,) = measured(folder, "first-calls")
+    (empty,), (full,) = first["empty"], first["full"]
+    assert full["cpu_s"] < empty["cpu_s"]
+    assert full["peak_mb"] < empty["peak_mb"]
+    assert full["files"] == empty["files"] == 1
+    assert 0.0 < full["cache_mb"] == empty["cache_mb"]
+
+
 def test_committed_error_of_the_map_is_below_the_stated_one():
     fixed = json.loads((RESULTS / "bench-fixed-scene.json").read_text(encoding="utf-8"))["measured"]
     assert fixed["error"]["all_times"] <= fixed["stated_error"]

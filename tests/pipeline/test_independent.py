@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import importlib
 import json
-import sys
 
 import numpy as np
 import pytest
 import tolerances as tol
 from places import RESULTS
+from processes import made
 
-
-@pytest.fixture(scope="module")
-def independent():
-    return importlib.import_module("pipeline.prove.independent")
+from pipeline.prove import independent
 
 
 def worst(off: dict[str, np.ndarray]) -> dict[str, float]:
     return {name: float(np.max(abs(values))) for name, values in off.items()}
 
 
-def test_wang_and_knothe(independent):
+def test_wang_and_knothe():
     """Given Q/mu, the creep lies 0.5-1.7 % above the tabulated one, in the elastic cases too: a grid error."""
     off = independent.wang_knothe()
     low, high = tol.WANG_KNOTHE_CREEP
@@ -33,7 +29,7 @@ def test_wang_and_knothe(independent):
     assert worst(off)["width of the stick zone, cells"] <= tol.WANG_KNOTHE_CELLS
 
 
-def test_half_space_code(independent):
+def test_half_space_code():
     off = independent.half_space()
     assert off["Q/μ, absolute"].size == 114
     found = worst(off)
@@ -46,14 +42,14 @@ def test_half_space_code(independent):
     assert found["full slip, decided otherwise"] == 0.0
 
 
-def test_deviations_of_the_half_space_code_are_its_own(independent):
+def test_deviations_of_the_half_space_code_are_its_own():
     """Where the law is Carter's, in closed form, the code is off by no less in Q and lam."""
     found = worst(independent.half_space())
     for name in ("Q/μ, absolute", "λ, absolute"):
         assert found[f"{name}, elastic"] == found[name]
 
 
-def test_profiles_of_the_half_space_code(independent):
+def test_profiles_of_the_half_space_code():
     off = independent.profiles()
     p, tau = off["p, over its peak"], off["τ, over μ times the peak of p"]
     assert tau.size == 555
@@ -62,7 +58,7 @@ def test_profiles_of_the_half_space_code(independent):
     assert np.sqrt(np.mean(tau**2)) <= tol.HALF_SPACE_CODE_TAU_RMS
 
 
-def test_implicit_integration(independent):
+def test_implicit_integration():
     """More of it in tests/test_motion.py."""
     found = worst(independent.section_5())
     assert found["V, relative"] <= tol.SECTION_5_SPEED
@@ -70,7 +66,7 @@ def test_implicit_integration(independent):
     assert found["onset time, relative"] <= tol.SECTION_5_ONSET
 
 
-def test_numbers_of_the_paper(independent):
+def test_numbers_of_the_paper():
     """All but beta = 0.45 at 1.52e-4, which is passed at 1.51e-4."""
     rows = independent.paper()
     assert len(rows) == 17
@@ -78,9 +74,8 @@ def test_numbers_of_the_paper(independent):
     assert [(row["t"], row["quantity"]) for row in off] == [(1.52e-4, "beta")]
 
 
-def test_committed_deviations_are_those_found_now(independent, tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "argv", ["independent.py", "-o", str(tmp_path / "independent.json")])
-    assert independent.main() == 0
+def test_committed_deviations_are_those_found_now(tmp_path):
+    made("prove.independent", "-o", tmp_path / "independent.json")
     now = json.loads((tmp_path / "independent.json").read_text(encoding="utf-8"))
     committed = json.loads((RESULTS / "independent.json").read_text(encoding="utf-8"))
     for mine, theirs in zip(now["deviations"], committed["deviations"], strict=True):

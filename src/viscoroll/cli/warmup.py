@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from argparse import Namespace
 from collections.abc import Callable, Iterator
@@ -14,8 +13,8 @@ def add_commands(commands: Any) -> None:
     parser = commands.add_parser(
         "warmup",
         help="compile what the first calls would otherwise wait for",
-        description="Compile the kernels of every public entry point into the cache (docs/howto.md), once for a machine\n"
-        "and a version; quick where they are there.",
+        description="Compile the kernels of every public entry point into the cache, once for a machine and a version\n"
+        "of the package; quick where they are there.",
         epilog="example:\n  viscoroll warmup",
     )
     parser.set_defaults(run=_warm_up)
@@ -24,7 +23,10 @@ def add_commands(commands: Any) -> None:
 def _warm_up(arguments: Namespace) -> int:
     from tqdm import tqdm
 
-    os.environ["VISCOROLL_QUIET"] = "1"  # the bar says it
+    from ..kernels.compile import notice
+    from ..kernels.compile.cache import cache_root
+
+    notice.told = True  # by the bar
     began = time.perf_counter()
     calls = dict(_calls())
     with tqdm(total=len(calls), leave=False) as bar:
@@ -32,35 +34,34 @@ def _warm_up(arguments: Namespace) -> int:
             bar.set_description(name)
             call()
             bar.update()
-    print(f"{len(calls)} entry points are ready in {_folder()}, {time.perf_counter() - began:.1f} s")
+    print(f"{len(calls)} entry points are ready in {cache_root()}, {time.perf_counter() - began:.1f} s")
     return 0
-
-
-def _folder() -> str:
-    from ..kernels.compile.cache import cache_root
-
-    return str(cache_root())
 
 
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own."""
     import numpy as np
 
-    from .. import PAPER_SECTION_5 as scene
-    from .. import Scene, contact, ensemble, roll, stress, tables
+    from .. import PAPER_SECTION_5, Scene, contact, ensemble, roll, stress, tables
     from ..alpha_slice import WORTHWHILE
     from ..motion import flow
     from ..validation.direct_motion import roll_direct
 
-    many = np.linspace(0.1, 1.0, WORTHWHILE)
+    scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)
     start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
     yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
     yield "contact at one alpha", lambda: contact(scene, many, delta=0.01)
     yield "contact by root solves", lambda: contact(scene, 0.5, delta=0.01, method="direct")
+    yield "validity", lambda: scene.validity(0.5)
     yield "stress", lambda: stress(scene, 0.5, 0.5, delta=0.01)
     yield "roll", lambda: roll(scene, 1.0, 0.0, 1e-3)
     yield "ensemble", lambda: ensemble(scene, **start, method="integrate")
     yield "energy lost", lambda: ensemble(scene, **start, method="integrate", fields=("slip_loss",))
+    # not ``ensemble`` alone: it might find this map on disk
     yield "flow map", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
-    yield "motions by it", lambda: ensemble(scene, **start, method="flow", rest=1e-3)
+    yield "motions by a flow map", lambda: ensemble(scene, **start, method="flow", rest=1e-3)
+    literal = tables.LiteralGrid(2.0, 0.2, V=[0.1, 0.2, 0.3], delta=[0.0, 0.1, 0.2], alpha=[2.0, 3.0])
+    yield "tables of one kappa and mu", lambda: tables.build(literal)
+    yield "universal table", lambda: tables.build(tables.AtlasGrid(nodes=(4, 4, 4)))
+    yield "check of motions", lambda: roll_direct(scene, 1.5, 0.5, np.array([0.0, 3e-3]))

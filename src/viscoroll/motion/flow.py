@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,62 +73,51 @@ def build(parameters: tuple[float, ...], octave: int, threads: int | None = None
     """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
     from ..kernels.flow.layout import ENTRY_OCTAVES, SIZE
 
-    table = np.zeros(SIZE)
-    problem = _fill(parameters, octave, table, threads)
-    made = FlowMap(parameters, octave - ENTRY_OCTAVES, table, math.inf, math.inf, math.inf, problem)
+    made = FlowMap(parameters, octave - ENTRY_OCTAVES, np.zeros(SIZE), math.inf, math.inf, math.inf, "")
+    problem = _fill(made, threads)
     if problem:
-        return made
+        return replace(made, problem=problem)
     error, path_error, loss_error = _measure(made, octave, threads)
     return replace(made, error=error, path_error=path_error, loss_error=loss_error)
 
 
-def _fill(parameters: tuple[float, ...], octave: int, table: NDArray, threads: int | None) -> str:
-    """Fill the tables; returns what stands against it, or nothing."""
-    from ..kernels.flow import layer as flow_layer
-    from ..kernels.flow import slide as flow_slide
-    from ..kernels.flow import slow as flow_slow
-    from ..kernels.flow.layout import CROSS_MARGIN, views
+def kernel_map(made: FlowMap) -> Any:
+    """The record that the kernels of a flow map take."""
+    from ..kernels.flow.records import Flow
 
-    alpha, kappa, _, j = parameters
-    scene, parts = kernel_scene(*parameters), views(table)
+    return Flow(made.table, made.first, kernel_scene(*made.parameters))
+
+
+def _fill(made: FlowMap, threads: int | None) -> str:
+    """Fill the tables; returns what stands against it, or nothing."""
+    from ..kernels.flow.fill import FILLED, HELD, SLIPS, fill_curves
+    from ..kernels.flow.layout import BINS, views
+    from ..kernels.flow.octave import layer_octave
+    from ..kernels.flow.read import CROSS, MINUS, PLUS
+
+    alpha, _, _, j = made.parameters
+    flow, parts = kernel_map(made), views(made.table)
     if alpha == 1.0:
         return "an elastic cylinder never slows down"
-    if not (
-        flow_slide.slide_table(1.0, scene, parts.slide_up) and flow_slide.slide_table(-1.0, scene, parts.slide_down)
-    ):
-        return "rolling resistance can hold the sliding cylinder at a speed"
-    try:
-        lasting = flow_slow.slow_table(scene, parts.slow)
-    except np.linalg.LinAlgError:  # a singular matrix: no such motion either
-        lasting = False
-    if not lasting:
-        return "full slip returns"
-    flow_slide.time_table(parts.slide_up, scene, parts.time_up)
-    flow_slide.time_table(parts.slide_down, scene, parts.time_down)
-    flow_slide.onset_table(parts.slide_up, scene, parts.onset_up)
-    flow_slide.onset_table(parts.slide_down, scene, parts.onset_down)
-    flow_slow.late_table(parts.slow, kappa, parts.late)
-    flow_slow.early_table(parts.slow, kappa, parts.early)
-    far = float(np.sign(1.0 - j))  # the sign of the creep that turns on its way to the slow manifold
+    found = fill_curves(parts, flow.scene)
+    if found != FILLED:
+        return {
+            HELD: "rolling resistance can hold the sliding cylinder at a speed",
+            SLIPS: "full slip returns",
+        }[found]
     failed: list[int] = []
 
-    def layer(top: int, entering: bool, sign: float, which: str) -> None:
-        layers, entry = getattr(parts, f"layer_{which}"), getattr(parts, f"entry_{which}")
+    def work(family: int, layer: NDArray, entry: NDArray, start: int, stop: int) -> None:
+        for n in range(start, stop):
+            if not layer_octave(family, n, flow, layer, entry):
+                failed.append(n)
 
-        def work(start: int, stop: int) -> None:
-            for n in range(start, stop):
-                if not flow_layer.layer_octave(
-                    top, n, entering, sign, entering and sign == far, parts.entry_cross, scene, table,
-                    layers, entry,
-                ):  # fmt: skip
-                    failed.append(n)
-
-        run_blocks(work, entry.shape[0] // flow_layer.BINS, 1, threads=threads)
-
-    if far:
-        layer(octave + CROSS_MARGIN, False, -far, "cross")
-    layer(octave, True, 1.0, "plus")
-    layer(octave, True, -1.0, "minus")
+    for family, layer, entry in (
+        (CROSS, parts.layer_cross, parts.entry_cross), (PLUS, parts.layer_plus, parts.entry_plus),
+        (MINUS, parts.layer_minus, parts.entry_minus),
+    ):  # fmt: skip
+        if family != CROSS or j != 1.0:  # else none passes delta = 0 on its way to the slow manifold
+            run_blocks(partial(work, family, layer, entry), entry.shape[0] // BINS, 1, threads=threads)
     return "the stick zone does not always last" if failed else ""
 
 
@@ -152,27 +143,27 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
-    from ..kernels.flow.layer import stiff_rate
     from ..kernels.motion.loss_loop import loss_loop
     from ..kernels.motion.records import Batch, Limits
 
     alpha, kappa, mu, j = made.parameters
     c = (alpha - 1.0) / alpha
-    start = np.array([V0]), np.array([omega0])
+    # as ``ensemble`` gives them to the kernel: it is compiled anew for arrays that can be written to
+    *scene, start_V, start_omega = (flattened(np.array([x]), (1,)) for x in (alpha, kappa, mu, 1.0, j, V0, omega0))
+    start = start_V, start_omega
 
     def flow(times: NDArray) -> Answer:
         return ask(made, 1.0, 0.0, *start, times, rows)
 
     at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
-    stiff_time = 1.0 / stiff_rate(max(abs(V0), abs(omega0)), kernel_scene(*made.parameters))
+    stiff_time = _stiff_time(made, max(abs(V0), abs(omega0)))
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
     late = np.linspace(0.1, 4.0, 6) * (1.0 + j) / c
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    scene = (np.array([value]) for value in (alpha, kappa, mu, 1.0, j))
     rolled, info = np.empty((len(rows), 1, times.size)), np.empty((1, 5))
     limits = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS)
     loss_loop(Batch(*(*scene, *start)), times, limits, np.array(rows), rolled, info, 0, 1)
@@ -187,8 +178,16 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
 
 
-@dataclass(frozen=True)
-class Answer:
+def _stiff_time(made: FlowMap, speed: float) -> float:
+    """1/k0 for an onset at about this speed, of those in the map."""
+    from ..kernels.flow.layout import BINS, RATE, views
+
+    rates = views(made.table).entry_plus[:, RATE, 0]
+    bins = BINS * (math.log2(made.parameters[1] * speed) - made.first)
+    return float(1.0 / rates[min(int(bins), rates.size - 1)])
+
+
+class Answer(NamedTuple):
     """Motions as arrays: outputs (rows, motions, times), and one entry a motion of the rest.
 
     ``status`` < 0 stands for a motion that is not in the map, whose other entries mean nothing.
@@ -215,20 +214,15 @@ def ask(
 ) -> Answer:  # fmt: skip
     """Roll motions by a map; ``rows`` as in ``kernels/motion/output.py``, ``rest`` = 0 for none."""
     from ..kernels.flow.loop import flow_loop
-    from ..kernels.flow.read import lambda_at_rest
 
-    scene = kernel_scene(*chosen.parameters)
+    flow = kernel_map(chosen)
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     answer = Answer.empty(len(rows), count, times.size)
-    rest_lambda = lambda_at_rest(rest, chosen.table, scene) if rest > 0.0 else 0.0
+    wanted = np.array(rows, np.int64)
 
     def work(start: int, stop: int) -> None:
-        flow_loop(
-            scene, gamma, chosen.first, rest, rest_lambda, chosen.table, V0, omega0, times,
-            np.array(rows, np.int64), answer.out, answer.status, answer.onset, answer.rest, answer.switches,
-            start, stop,
-        )  # fmt: skip
+        flow_loop(flow, gamma, rest, V0, omega0, times, wanted, answer, start, stop)
 
     run_blocks(work, answer.status.size, _BLOCK, threads=threads, progress=progress)
     return answer

@@ -32,7 +32,8 @@ def metadata(
     for name, values in columns.items():
         _create(group, name, values, count, block, described[name])
     # with zarr's own fill value, 0, xarray would take t = 0 for missing
-    group.create_array("t", data=t, fill_value=np.nan, attributes=described["t"] | {"_ARRAY_DIMENSIONS": ["t"]})
+    about_t = described["t"] | {"_ARRAY_DIMENSIONS": ["t"]}
+    group.create_array("t", shape=t.shape, dtype=t.dtype, chunks=t.shape, fill_value=np.nan, attributes=about_t)[:] = t
     return _as_bytes(files)
 
 

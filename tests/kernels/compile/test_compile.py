@@ -6,8 +6,11 @@ import gc
 import hashlib
 import importlib
 import pickle
+import re
 import shutil
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -17,7 +20,7 @@ from ordinary_user import as_ordinary_user, let_in
 from processes import python
 
 from viscoroll.kernels.compile import cache as cache_module
-from viscoroll.kernels.compile import deferred
+from viscoroll.kernels.compile import deferred, notice
 from viscoroll.kernels.compile.jit import kernel
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
@@ -145,12 +148,12 @@ def given(dispatcher, *args):
     ],
 )
 def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypatch, holder, name):
-    deferred._pipelines.cache_clear()
+    # asked anew for these kernels alone: parts that others compiled before belong to the pipelines that are kept
+    monkeypatch.setattr(deferred, "_pipelines", deferred._pipelines.__wrapped__)
     monkeypatch.delattr(f"{holder}.{name}")
     with pytest.warns(RuntimeWarning, match=r"does not compile cubed with what it calls \(.*one by one"):
         assert cubed(2.0) == 8.0
     assert square(2.0) == 4.0  # told once, and warnings are errors here
-    deferred._pipelines.cache_clear()
 
 
 def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
@@ -349,3 +352,58 @@ def test_cache_folder_follows_the_environment(monkeypatch):
     assert cache_module.cache_root() == Path("/xdg/viscoroll")
     monkeypatch.delenv("XDG_CACHE_HOME")
     assert cache_module.cache_root() == Path.home() / ".cache" / "viscoroll"
+
+
+# --- what is said ---
+
+SCENE = "import numpy as np; import viscoroll as vr; scene = vr.PAPER_SECTION_5\n"
+NOTICE = r"viscoroll: compiling kernels, once for this machine, about \d+ s; `viscoroll warmup` does it ahead\n"
+
+
+def test_who_waits_is_told_once_a_process(tmp_path):
+    code = SCENE + "print(*(np.size(vr.contact(scene, V, delta=0.01).Q) for V in (0.5, [0.5] * 100)))"
+    first = python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="")
+    assert re.fullmatch(NOTICE, first.stderr)
+    assert first.stdout == "1 100\n"
+    assert python("-c", code, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="").stderr == ""
+
+
+@pytest.fixture
+def untold(monkeypatch):
+    monkeypatch.setattr(notice, "told", False)
+    monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
+
+
+def test_what_is_said(untold, capsys):
+    notice.tell(0.5)
+    assert capsys.readouterr() == ("", "")
+    notice.tell(12.0)
+    notice.tell(20.0)
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert re.fullmatch(NOTICE, said.err)
+
+
+def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
+    with monkeypatch.context() as quiet:
+        quiet.setenv("VISCOROLL_QUIET", "1")
+        notice.tell(12.0)
+    with monkeypatch.context() as child:
+        child.setattr(notice.multiprocessing, "parent_process", lambda: "this process has one")
+        notice.tell(12.0)
+    with monkeypatch.context() as worker:
+        worker.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask"))
+        notice.tell(12.0)
+    with monkeypatch.context() as window:
+        window.setattr(sys, "stderr", None)
+        notice.tell(12.0)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
+    def get_worker():
+        raise ValueError("No worker found")
+
+    monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
+    notice.tell(12.0)
+    assert re.fullmatch(NOTICE, capsys.readouterr().err)

@@ -18,6 +18,7 @@ import pickle
 import secrets
 import sys
 import warnings
+import zlib
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -73,7 +74,7 @@ class DiskCache:
         digest, content = stored[:_DIGEST_SIZE], stored[_DIGEST_SIZE:]
         if hashlib.sha256(content).digest() == digest:
             with suppress(Exception):  # written by whatever calls itself the same numba
-                return CompileResult._rebuild(target, *pickle.loads(content))
+                return CompileResult._rebuild(target, *pickle.loads(zlib.decompress(content)))
         note_trouble(f"the cache of compiled kernels is damaged ({self._folder})")
         return None  # save_overload then replaces the file
 
@@ -84,7 +85,7 @@ class DiskCache:
         path = self._path(signature, compiled.codegen)
         temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
         try:
-            content = dumps(compiled._reduce())
+            content = zlib.compress(dumps(compiled._reduce()), 1)
             self._folder.mkdir(parents=True, exist_ok=True)
             temporary.write_bytes(hashlib.sha256(content).digest() + content)
             os.replace(temporary, path)

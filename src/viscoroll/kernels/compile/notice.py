@@ -6,15 +6,16 @@ import multiprocessing
 import os
 import sys
 
-_told = False
+#: whether it has been said
+told = False
 
 
 def tell(seconds: float) -> None:
     """Say, once a process, that compiling begins and takes so long; nothing below a second."""
-    global _told
-    if _told or seconds < 1.0 or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or _is_worker():
+    global told
+    if told or seconds < 1.0 or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or _is_worker():
         return
-    _told = True
+    told = True
     print(
         f"viscoroll: compiling kernels, once for this machine, about {seconds:.0f} s; `viscoroll warmup` does it ahead",
         file=sys.stderr,

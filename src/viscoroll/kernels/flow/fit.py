@@ -31,8 +31,6 @@ NODES = _NODES.nodes
 FIT = _NODES.powers(HALF)
 #: values at the nodes to the integrals from -1 to each node, and to 1
 TO_NODES, TO_END = _NODES.integrals(_NODES.exact), _NODES.integrals([Decimal(1)])[0]
-#: values at (1, nodes) to the slopes at the nodes
-DERIVATIVE = Interpolation((Decimal(1), *_NODES.exact)).slopes(_NODES.exact)
 
 
 @kernel(inline=True)
@@ -88,13 +86,25 @@ def slope(table, b, column, t):
 
 
 @kernel
-def put(table, b, column, values):
+def fit_column(table, b, column, values):
     """Fit a column of bin b to its values at the nodes."""
     for k in range(N):
         total = 0.0
         for n in range(N):
             total += FIT[k, n] * values[n]
         table[b, column, k] = total
+
+
+@kernel
+def integrate_bin(slopes, start, values):
+    """Integral of ``slopes``, over t in [-1, 1], from ``start``: ``values`` at the nodes, and that at the end."""
+    end = start
+    for n in range(N):
+        end += TO_END[n] * slopes[n]
+        values[n] = start
+        for m in range(N):
+            values[n] += TO_NODES[n, m] * slopes[m]
+    return end
 
 
 @kernel

@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.bracket import narrowed, secant
 from . import layout
-from .read import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, SPEEDS, layer_state, slow_creep
+from .read import CROSS, LAYER_SKIP, LOWEST, MINUS, PLUS, layer_place, layer_value, manifold_delta
 
 #: creep ratios nearer to the slow manifold than this are on it: an error of that size in omega
 _ON_MANIFOLD = 1e-10
@@ -20,20 +20,30 @@ _SOLVER_CAP = 60
 
 
 @kernel
-def earlier_entry(V, delta, first, table, scene):
+def _layer_speeds(family, v, E, flow):
+    """(ln V/V0, delta) behind the entry of a family at v = kappa V0."""
+    at, t, s = layer_place(family, v, E, flow)
+    return (
+        layer_value(flow.table, layout.LAYER_LN_V, at, t, s),
+        layer_value(flow.table, layout.LAYER_CREEP, at, t, s),
+    )
+
+
+@kernel
+def earlier_entry(V, delta, flow):
     """(family, kappa V at entry, E since then, served) of a state inside the stick zone.
 
     On the slow manifold E is infinite and the speed its own.  Illinois on the logarithm of
     the distance to it, which falls nearly linearly in E, with the speed at entry corrected
     alongside.
     """
-    v = scene.kappa * V
-    if not LOWEST <= v < 2.0 ** (first + layout.ENTRY_OCTAVES):
+    v = flow.scene.kappa * V
+    lowest, highest = 2.0 ** (flow.first + LAYER_SKIP), 2.0 ** (flow.first + layout.ENTRY_OCTAVES)
+    if not LOWEST <= v < highest:
         return PLUS, v, 0.0, False
-    slow = slow_creep(v, table)
+    slow = manifold_delta(v, flow.table)
     if abs(delta - slow) < _ON_MANIFOLD:
         return PLUS, v, np.inf, True
-    lowest, highest = 2.0 ** (first + LAYER_SKIP), 2.0 ** (first + layout.ENTRY_OCTAVES)
     if not 2.0 * lowest <= v <= 0.5 * highest:
         return PLUS, v, 0.0, False
     if delta * slow > 0.0 and abs(delta) < abs(slow):
@@ -46,7 +56,7 @@ def earlier_entry(V, delta, first, table, scene):
     for n in range(_SOLVER_CAP):
         reached = slow
         for _ in range(3):
-            a, reached, _, _, _ = layer_state(family, v0, E, first, SPEEDS, table)
+            a, reached = _layer_speeds(family, v0, E, flow)
             v0 = max(lowest, min(v * np.exp(-a), 0.99 * highest))
         gap = reached - slow
         excess = np.log(abs(gap)) - size if gap * (delta - slow) > 0.0 else -1.0
@@ -64,6 +74,6 @@ def earlier_entry(V, delta, first, table, scene):
         if abs(excess) < 1e-12 or high - low < 1e-13 * high:
             break
         E = secant(low, high, at_low, at_high)
-    a, reached, _, _, _ = layer_state(family, v0, E, first, SPEEDS, table)
+    a, reached = _layer_speeds(family, v0, E, flow)
     found = abs(v0 * np.exp(a) - v) <= _RESIDUAL * v and abs(reached - delta) <= _RESIDUAL
     return family, v0, E, found

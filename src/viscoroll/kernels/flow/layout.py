@@ -32,11 +32,12 @@ E_LOW, E_HIGH = -8, 5
 LAYER_END = 28.0
 
 (T, X, I, L), (ONSET_V, ONSET_T, ONSET_X) = range(4), range(3)
-LAMBDA, DELTA, X_TO_GO, ANGLE_TO_GO, LOSS_TO_GO = range(5)
-SPEED = 0  # in place of LAMBDA in ``late`` and ``early``
+LAMBDA, X_TO_GO, ANGLE_TO_GO, LOSS_TO_GO, DELTA = range(5)
+SPEED = LAMBDA  # in its place in ``late`` and ``early``
 ENTRY_COLUMNS, LAYER_COLUMNS = 10, 5
-ENTRY_LAMBDA, ENTRY_X, ENTRY_ANGLE, ENTRY_LOSS, RATE = range(5)
-CROSSING, CROSSING_SPEED, CROSSING_X, CROSSING_ANGLE, CROSSING_LOSS = range(5, 10)
+ENTRY_LAMBDA, ENTRY_X, ENTRY_ANGLE, ENTRY_LOSS = range(4)
+CROSSING, CROSSING_SPEED, CROSSING_X, CROSSING_ANGLE, CROSSING_LOSS, RATE = range(4, 10)
+LAYER_LN_V, LAYER_CREEP, LAYER_X, LAYER_ANGLE, LAYER_LOSS = range(5)
 
 
 class FlowTables(NamedTuple):
@@ -53,12 +54,12 @@ class FlowTables(NamedTuple):
         onset at V; L = delta_star |V|.
     time_up, time_down : kappa mu |T| -> V.
     onset_up, onset_down : kappa |I|/(1 + j) -> V, T, X at stick onset.
-    slow : kappa V -> lambda, delta, distance, angle and slip loss to go to rest, on the slow manifold.
-    late, early : lambda or 1 + lambda -> V, delta, distance, angle and slip loss to go.
+    slow : kappa V -> lambda, distance, angle and slip loss to go to rest, delta, on the slow manifold.
+    late, early : lambda or 1 + lambda -> V, distance, angle and slip loss to go, delta.
     entry_plus, entry_minus, entry_cross : kappa V at onset -> what the motion that enters
         partial slip there with omega > V, with omega < V, or that passes delta = 0 there, will
         have in common with the slow manifold: its lambda, and the distance, angle and slip loss that
-        it gains on that motion; k0; E, ln(V/V0), distance, angle and slip loss at delta = 0.
+        it gains on that motion; E, ln(V/V0), distance, angle and slip loss at delta = 0; k0.
     layer_plus, layer_minus, layer_cross : the boundary layer behind such an onset, and that
         behind delta = 0; shape (octave, bin of E, column, SPEED_COEFFICIENTS,
         FAST_COEFFICIENTS): ln(V/V0), delta, int (V/V0 - 1) dE, int (omega/V0 - 1) dE, slip

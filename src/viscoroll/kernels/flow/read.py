@@ -2,8 +2,8 @@
 
 In the frame mirrored so that omega > V, full slip keeps I = w - 2 mu T(V), which gives the
 onset; behind it the boundary layer is a table over (V at onset, E), and what follows is the
-slow manifold, found by its slow logarithm lambda.  ``table`` is the whole map of :mod:`layout` as one
-vector: its parts then cost no more to reach than a constant.
+slow manifold, found by its slow logarithm lambda.  The whole map is one vector: its parts then
+cost no more to reach than a constant.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from ..compile.jit import kernel
 from ..law.stick import GAUSS_W, GAUSS_X
 from . import layout
 from .fit import MANTISSA, ONE, bits_and_offset, polynomial
+from .records import Entry
 
 PLUS, MINUS, CROSS = range(3)
 #: what a motion is asked for: V and omega, also distance and angle, also the energy lost in slip
@@ -46,23 +47,29 @@ _BLOCK = layout.SPEED_COEFFICIENTS * layout.FAST_COEFFICIENTS
 
 
 @kernel(inline=True)
-def slide(V, need, table, scene):
+def _column(table, at, column, t):
+    """Column of the bin that starts at ``at``."""
+    return polynomial(table, at + column * _N, t)
+
+
+@kernel(inline=True)
+def slide_to(V, need, flow):
     """(T, X) of sliding from rest to V in the mirrored frame, T with the sign of V."""
-    _, kappa, mu, _ = scene
+    _, kappa, mu, _ = flow.scene
     speed = abs(V)
     if kappa * speed < LOWEST:
         return V / mu, 0.5 * V * V / mu
     b, t = bits_and_offset(kappa * speed)
     at = b * _SLIDE + (_SLIDE_UP if V > 0.0 else _SLIDE_DOWN)
-    T = polynomial(table, at + layout.T * _N, t)
-    X = polynomial(table, at + layout.X * _N, t) if need >= PATH else 0.0
+    T = _column(flow.table, at, layout.T, t)
+    X = _column(flow.table, at, layout.X, t) if need >= PATH else 0.0
     return T if V > 0.0 else -T, X
 
 
 @kernel(inline=True)
-def slides(V, slip, table, scene):
+def slides(V, slip, flow):
     """Whether |slip| = |omega - V| is that of full slip at V."""
-    _, kappa, mu, _ = scene
+    _, kappa, mu, _ = flow.scene
     speed = abs(V)
     largest = 0.5 * mu * speed / kappa  # delta_star |V| as V -> 0; delta_star falls from there
     if V == 0.0 or slip > 1.0001 * largest:
@@ -70,38 +77,37 @@ def slides(V, slip, table, scene):
     if kappa * speed < LOWEST:
         return slip >= largest
     b, t = bits_and_offset(kappa * speed)
-    return slip >= polynomial(table, b * _SLIDE + _SLIDE_UP + layout.L * _N, t)
+    return slip >= _column(flow.table, b * _SLIDE + _SLIDE_UP, layout.L, t)
 
 
 @kernel(inline=True)
-def speed_after(T, table, scene):
+def speed_after(T, flow):
     """V at T in full slip, in the mirrored frame."""
-    _, kappa, mu, _ = scene
+    _, kappa, mu, _ = flow.scene
     x = kappa * mu * abs(T)
     if x < LOWEST:
         return mu * T
     b, t = bits_and_offset(x)
     if T > 0.0:
-        return polynomial(table, b * _N + _TIME_UP, t)
-    return -polynomial(table, b * _N + _TIME_DOWN, t)
+        return polynomial(flow.table, b * _N + _TIME_UP, t)
+    return -polynomial(flow.table, b * _N + _TIME_DOWN, t)
 
 
 @kernel(inline=True)
-def onset_of(I, need, table, scene):
+def onset_of(I, need, flow):
     """(V, T, X) at stick onset in the mirrored frame; V = 0 where the tables do not reach."""
-    x = scene.kappa * abs(I) / (1.0 + scene.j)
+    x = flow.scene.kappa * abs(I) / (1.0 + flow.scene.j)
     if not LOWEST <= x < HIGHEST:
         return 0.0, 0.0, 0.0
     b, t = bits_and_offset(x)
     at = b * _ONSET + (_ONSET_UP if I < 0.0 else _ONSET_DOWN)
-    V = polynomial(table, at + layout.ONSET_V * _N, t)
-    T = polynomial(table, at + layout.ONSET_T * _N, t)
-    X = polynomial(table, at + layout.ONSET_X * _N, t) if need >= PATH else 0.0
+    V, T = _column(flow.table, at, layout.ONSET_V, t), _column(flow.table, at, layout.ONSET_T, t)
+    X = _column(flow.table, at, layout.ONSET_X, t) if need >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
 @kernel(inline=True)
-def _slow(lam):
+def _manifold(lam):
     """(place in the table, t, factor) of lambda on the slow manifold; below the table all falls like exp(lambda)."""
     if lam >= layout.LATE_HIGH:
         b, t = bits_and_offset(1.0 + lam)
@@ -116,74 +122,75 @@ def _slow(lam):
 
 
 @kernel(inline=True)
-def slow_state(lam, table):
+def manifold_speeds(lam, table):
     """(V, delta) on the slow manifold at lambda."""
-    at, t, share = _slow(lam)
-    return share * polynomial(table, at + layout.SPEED * _N, t), share * polynomial(table, at + layout.DELTA * _N, t)
+    at, t, share = _manifold(lam)
+    return share * _column(table, at, layout.SPEED, t), share * _column(table, at, layout.DELTA, t)
 
 
 @kernel
-def slow_path(start, end, rate, table):
+def manifold_path(start, end, rate, table):
     """(distance, angle) along the slow manifold between two lambda; ``rate`` = c/(1 + j).
 
     The difference of what is left to rest, or where that cancels the integral of V.
     """
     span = start - end
     if span > 0.25 * max(1.0 + end, 1.0):
-        at, t, share = _slow(start)
-        x, angle = polynomial(table, at + layout.X_TO_GO * _N, t), polynomial(table, at + layout.ANGLE_TO_GO * _N, t)
-        x, angle = share * x, share * angle
-        at, t, share = _slow(end)
-        x -= share * polynomial(table, at + layout.X_TO_GO * _N, t)
-        return x, angle - share * polynomial(table, at + layout.ANGLE_TO_GO * _N, t)
+        at, t, share = _manifold(start)
+        x, angle = share * _column(table, at, layout.X_TO_GO, t), share * _column(table, at, layout.ANGLE_TO_GO, t)
+        at, t, share = _manifold(end)
+        x -= share * _column(table, at, layout.X_TO_GO, t)
+        return x, angle - share * _column(table, at, layout.ANGLE_TO_GO, t)
     x = angle = 0.0
     for n in range(GAUSS_X.size):
-        V, delta = slow_state(end + span * GAUSS_X[n], table)
+        V, delta = manifold_speeds(end + span * GAUSS_X[n], table)
         x += GAUSS_W[n] * V
         angle += GAUSS_W[n] * V * (1.0 + delta)
     return x * span / rate, angle * span / rate
 
 
 @kernel
-def slow_loss(lam, table):
+def manifold_loss(lam, table):
     """Energy still to be lost in slip at lambda on the slow manifold; it falls like V^3 as V -> 0."""
-    at, t, share = _slow(lam)
-    return share**3 * polynomial(table, at + layout.LOSS_TO_GO * _N, t)
+    at, t, share = _manifold(lam)
+    return share**3 * _column(table, at, layout.LOSS_TO_GO, t)
 
 
 @kernel
-def slow_creep(v, table):
+def manifold_delta(v, table):
     """Delta on the slow manifold at v = kappa V."""
     b, t = bits_and_offset(v)
-    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.DELTA * _N, t)
+    return _column(table, b * _SLOW + _SLOW_BY_V, layout.DELTA, t)
 
 
 @kernel
-def slow_entry(v, table):
-    """:func:`entry_state` of a motion on the slow manifold at v = kappa V: no layer is left."""
+def manifold_entry(v, table):
+    """Of a motion on the slow manifold at v = kappa V: no layer is left."""
     b, t = bits_and_offset(v)
-    return polynomial(table, b * _SLOW + _SLOW_BY_V + layout.LAMBDA * _N, t), _NO_LAYER, 0.0, 0.0, 0.0
+    return Entry(_column(table, b * _SLOW + _SLOW_BY_V, layout.LAMBDA, t), _NO_LAYER, 0.0, 0.0, 0.0)
 
 
 @kernel(inline=True)
-def _entry(family, v, first):
+def _entry(family, v, flow):
     """(place in the table, t) of the entry of a family at v = kappa V0."""
     b, t = bits_and_offset(v)
-    b -= first * layout.BINS
+    b -= flow.first * layout.BINS
     return b * _ENTRY + (_ENTRY_PLUS if family == PLUS else _ENTRY_MINUS if family == MINUS else _ENTRY_CROSS), t
 
 
 @kernel(inline=True)
-def entry_state(family, v, first, need, table):
-    """(lambda, k0; distance, angle, slip loss gained on the slow manifold) of a family's entry into partial slip."""
-    at, t = _entry(family, v, first)
+def entry_state(family, v, need, flow):
+    """The entry of a family into partial slip at v = kappa V0."""
+    table = flow.table
+    at, t = _entry(family, v, flow)
     x = angle = loss = 0.0
     if need >= PATH:
-        x, angle = polynomial(table, at + layout.ENTRY_X * _N, t), polynomial(table, at + layout.ENTRY_ANGLE * _N, t)
+        x, angle = _column(table, at, layout.ENTRY_X, t), _column(table, at, layout.ENTRY_ANGLE, t)
     if need >= LOSS:
-        loss = polynomial(table, at + layout.ENTRY_LOSS * _N, t)
-    lam, rate = polynomial(table, at + layout.ENTRY_LAMBDA * _N, t), polynomial(table, at + layout.RATE * _N, t)
-    return lam, rate, x, angle, loss
+        loss = _column(table, at, layout.ENTRY_LOSS, t)
+    return Entry(
+        _column(table, at, layout.ENTRY_LAMBDA, t), _column(table, at, layout.RATE, t), x, angle, loss
+    )  # fmt: skip
 
 
 @kernel
@@ -201,20 +208,11 @@ def _fast_bin(E, low):
 
 
 @kernel
-def _layer_value(table, at, t, s):
-    """Polynomial in t (speed at onset) and s (stiff time)."""
-    total = 0.0
-    for k in range(layout.SPEED_COEFFICIENTS - 1, -1, -1):
-        total = fma(t, total, polynomial(table, at + k * layout.FAST_COEFFICIENTS, s))
-    return total
-
-
-@kernel
-def layer_state(family, v, E, first, need, table):
-    """(ln V/V0, delta, X excess, angle excess, slip loss over V0^2) behind the entry of a family at v = kappa V0."""
+def layer_place(family, v, E, flow):
+    """(Place in the table, t, s) of the layer behind the entry of a family at v = kappa V0."""
     bits = np.float64(v).view(np.int64)
     t = np.int64((bits & MANTISSA) | ONE).view(np.float64) - 1.5
-    octave = (bits >> 52) - (1023 + first + LAYER_SKIP)
+    octave = (bits >> 52) - (1023 + flow.first + LAYER_SKIP)
     low, bins, start = layout.E_LOW, layout.SHAPES.layer_plus[1], layout.STARTS.layer_plus
     if family == MINUS:
         start = layout.STARTS.layer_minus
@@ -222,58 +220,63 @@ def layer_state(family, v, E, first, need, table):
         low, bins, start = 0, layout.SHAPES.layer_cross[1], layout.STARTS.layer_cross
         octave += layout.CROSS_MARGIN
     b, s = _fast_bin(E, low)
-    at = start + (octave * bins + b) * layout.LAYER_COLUMNS * _BLOCK
-    a, delta = _layer_value(table, at, t, s), _layer_value(table, at + _BLOCK, t, s)
-    x = angle = loss = 0.0
-    if need >= PATH:
-        x, angle = _layer_value(table, at + 2 * _BLOCK, t, s), _layer_value(table, at + 3 * _BLOCK, t, s)
-    if need >= LOSS:
-        loss = _layer_value(table, at + 4 * _BLOCK, t, s)
-    return a, delta, x, angle, loss
+    return start + (octave * bins + b) * layout.LAYER_COLUMNS * _BLOCK, t, s
 
 
 @kernel
-def layer_speeds(family, v, rate, elapsed, first, need, table, kappa):
+def layer_value(table, column, at, t, s):
+    """Column of a layer: a polynomial in t (speed at onset) and s (stiff time)."""
+    at += column * _BLOCK
+    total = 0.0
+    for k in range(layout.SPEED_COEFFICIENTS - 1, -1, -1):
+        total = fma(t, total, polynomial(table, at + k * layout.FAST_COEFFICIENTS, s))
+    return total
+
+
+@kernel
+def layer_state(stick, rate, elapsed, need, flow):
     """(V, delta; distance, angle, slip loss since the entry) within the boundary layer behind an entry."""
-    E = elapsed * rate
+    family, v, E, table = stick.family, stick.v, elapsed * rate, flow.table
     x = angle = loss = 0.0
-    at, t = _entry(family, v, first)
-    crossing = polynomial(table, at + layout.CROSSING * _N, t)
+    at, t = _entry(family, v, flow)
+    crossing = _column(table, at, layout.CROSSING, t)
     if E > crossing:
         if need >= PATH:
-            x, angle = (
-                polynomial(table, at + layout.CROSSING_X * _N, t),
-                polynomial(table, at + layout.CROSSING_ANGLE * _N, t),
-            )
+            x, angle = _column(table, at, layout.CROSSING_X, t), _column(table, at, layout.CROSSING_ANGLE, t)
         if need >= LOSS:
-            loss = polynomial(table, at + layout.CROSSING_LOSS * _N, t)
-        v *= np.exp(polynomial(table, at + layout.CROSSING_SPEED * _N, t))
+            loss = _column(table, at, layout.CROSSING_LOSS, t)
+        v *= np.exp(_column(table, at, layout.CROSSING_SPEED, t))
         family = CROSS
-        at, t = _entry(family, v, first)
-        cross_rate = polynomial(table, at + layout.RATE * _N, t)
+        at, t = _entry(family, v, flow)
+        cross_rate = _column(table, at, layout.RATE, t)
         E, rate = (E - crossing) / rate * cross_rate, cross_rate
-    a, delta, x_excess, angle_excess, share = layer_state(family, v, E, first, need, table)
-    V0 = v / kappa
+    place = layer_place(family, v, E, flow)
+    V0 = v / flow.scene.kappa
     scale = V0 / rate
-    x, angle = x + scale * (E + x_excess), angle + scale * (E + angle_excess)
-    return V0 * np.exp(a), delta, x, angle, loss + share * V0 * V0
+    if need >= PATH:
+        x += scale * (E + layer_value(table, layout.LAYER_X, *place))
+        angle += scale * (E + layer_value(table, layout.LAYER_ANGLE, *place))
+    if need >= LOSS:
+        loss += layer_value(table, layout.LAYER_LOSS, *place) * V0 * V0
+    V = V0 * np.exp(layer_value(table, layout.LAYER_LN_V, *place))
+    return V, layer_value(table, layout.LAYER_CREEP, *place), x, angle, loss
 
 
 @kernel
-def served_by_layer(v, first):
+def has_layer(v, flow):
     """Whether the boundary layer behind an entry at v = kappa V is tabulated."""
-    return 2.0 ** (first + LAYER_SKIP) <= v < 2.0 ** (first + layout.ENTRY_OCTAVES)
+    return 2.0 ** (flow.first + LAYER_SKIP) <= v < 2.0 ** (flow.first + layout.ENTRY_OCTAVES)
 
 
 @kernel
-def lambda_at_rest(rest, table, scene):
+def lambda_at_rest(rest, flow):
     """Lambda of the slow manifold where max(|V|, |omega|) falls to ``rest``."""
-    kappa = scene.kappa
+    kappa = flow.scene.kappa
     V = rest
     for _ in range(4):
         v = kappa * V
-        V = rest / (1.0 + max(slow_creep(v, table) if v >= LOWEST else 0.0, 0.0))
+        V = rest / (1.0 + max(manifold_delta(v, flow.table) if v >= LOWEST else 0.0, 0.0))
     v = kappa * V
     if v >= LOWEST:
-        return slow_entry(v, table)[0]
-    return slow_entry(LOWEST, table)[0] + np.log(v / LOWEST)
+        return manifold_entry(v, flow.table).lam
+    return manifold_entry(LOWEST, flow.table).lam + np.log(v / LOWEST)

@@ -9,19 +9,19 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.full_slip import sliding_rate, stick_limit
 from . import layout
-from .fit import BINS, HALF, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
+from .fit import BINS, HALF, N, bin_of, find, fit_column, integrate_bin, node, value, width
 
 _LOW = layout.LOW
 _T, _X, _I, _L = layout.T, layout.X, layout.I, layout.L
 
 
-@kernel(allocates=True, seconds=20)  # with the rest of the map, and the motions that measure it
+@kernel(allocates=True)
 def slide_table(sign, scene, table):
     """Fill ``slide_up`` (sign = 1) or ``slide_down`` (-1); False where V' is not positive or I not monotone."""
     _, kappa, mu, j = scene
     V_low = 2.0**_LOW / kappa
     T, X, last_I = V_low / mu, 0.5 * V_low * V_low / mu, 0.0
-    pace, rows = np.empty((2, N)), np.empty((4, N))
+    time, path, rows = np.empty(N), np.empty(N), np.empty((4, N))
     for b in range(table.shape[0]):
         if b == (layout.HIGH - 2 - layout.LOW) * BINS and not kappa * mu * T < 2.0 ** (layout.HIGH - 1):
             return False  # nearly held: ``time_up`` would end before the speeds that are served
@@ -31,24 +31,18 @@ def slide_table(sign, scene, table):
             acceleration = sliding_rate(sign * V, 1.0, scene)
             if not acceleration > 0.0:
                 return False
-            pace[0, n] = half / acceleration
-            pace[1, n] = V * pace[0, n]
+            time[n] = half / acceleration
+            path[n] = V * time[n]
+        T, X = integrate_bin(time, T, rows[_T]), integrate_bin(path, X, rows[_X])
         for n in range(N):
             V = node(b, n, _LOW) / kappa
-            rows[_T, n], rows[_X, n] = T, X
-            for m in range(N):
-                rows[_T, n] += TO_NODES[n, m] * pace[0, m]
-                rows[_X, n] += TO_NODES[n, m] * pace[1, m]
             rows[_L, n], _ = stick_limit(V, scene)
             rows[_I, n] = 2.0 * mu * rows[_T, n] - V * (1.0 - j) + sign * j * rows[_L, n]
             if not rows[_I, n] > last_I:
                 return False
             last_I = rows[_I, n]
-        for n in range(N):
-            T += TO_END[n] * pace[0, n]
-            X += TO_END[n] * pace[1, n]
         for column in range(4):
-            put(table, b, column, rows[column])
+            fit_column(table, b, column, rows[column])
     return True
 
 
@@ -61,7 +55,7 @@ def time_table(slide, scene, table):
         for n in range(N):
             v, _ = find(slide, _T, node(b, n, _LOW) / (kappa * mu), _LOW)
             values[n] = v / kappa
-        put(table, b, 0, values)
+        fit_column(table, b, 0, values)
 
 
 @kernel(allocates=True)
@@ -82,4 +76,4 @@ def onset_table(slide, scene, table):
             rows[layout.ONSET_T, n] = value(slide, at, _T, t)
             rows[layout.ONSET_X, n] = value(slide, at, _X, t)
         for column in range(3):
-            put(table, b, column, rows[column])
+            fit_column(table, b, column, rows[column])

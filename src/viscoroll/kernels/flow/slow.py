@@ -1,8 +1,8 @@
 """Flow map, slow manifold: the one motion in partial slip that all others come to follow.
 
-The second unknown of :mod:`motion.partial_slip` is solved for on it by collocation (Radau's rule,
-from high to low V, bin by bin): the boundary layer of an inexact start is gone within a
-bin, so the motion found is the manifold.  Time, distance and angle along it are integrals.
+It is solved for from high to low V as for a single motion (:mod:`motion.slow`), on a panel a bin where that
+converges: the boundary layer of an inexact start is gone within a few bins, so the motion found is the
+manifold.  Time, distance and angle along it are integrals.
 """
 
 from __future__ import annotations
@@ -11,177 +11,125 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import contact_length
-from ..law.material import at_contact
-from ..motion.partial_slip import partial_jacobian, partial_rhs, partial_speeds
-from ..numerics.arrays import fill
-from ..numerics.linear import eliminate
+from ..motion.collocation import INNER_POWERS, SLOPES
+from ..motion.collocation import N as PANEL_N
+from ..motion.partial_slip import branch_rates
+from ..motion.slow import node_D, slow_go_on, slow_solve, slow_start, workspace
 from . import layout
-from .fit import BINS, DERIVATIVE, HALF, NODES, TO_END, TO_NODES, N, bin_of, find, node, put, value, width
+from .fit import BINS, HALF, NODES, N, bin_of, find, fit_column, integrate_bin, node, value, width
+from .layout import ANGLE_TO_GO, DELTA, LAMBDA, LOSS_TO_GO, SPEED, X_TO_GO
 
 _LOW = layout.LOW
-#: Newton iterations of a bin; extra octaves above the table in which the start is forgotten
-_ITERATIONS, EXTRA = 12, 2
+#: extra octaves above the table in which the start is forgotten; remaining error of a panel, and the shortest
+_EXTRA, _CONVERGED, _SHORTEST = 2, 1e-12, 1e-3
 
 
 @kernel
-def _relative_rate(y, dy, scene):
-    """V'/V from y' at y = ln zeta: y' = -2 H/(zeta H') V'/V."""
-    zeta = np.exp(y)
-    _, h, _, dh, _, _, _, _ = at_contact(zeta, scene.material)
-    return -dy * (1.0 + h / zeta + dh) / (1.0 + 2.0 * h / zeta)
-
-
-@kernel(allocates=True)
-def _collocate(v, y, half, offset_end, offset, scene):
-    """Solve for ``offset`` at the nodes v of a bin, given its value at the right end; False if it fails."""
-    f, slope = np.empty(N), np.empty(N)
-    matrix, residual = np.empty((N, N)), np.empty(N)
-    fill(offset_end, offset)
-    last = np.inf
-    for _ in range(_ITERATIONS):
-        for n in range(N):
-            dy, doffset, _, _ = partial_rhs(y[n], offset[n], scene)
-            J = partial_jacobian(y[n], offset[n], scene)
-            pace = half / (v[n] * _relative_rate(y[n], dy, scene))
-            f[n] = doffset * pace
-            slope[n] = (J[3] - doffset * J[1] / dy) * pace
-            if not abs(f[n]) + abs(slope[n]) < 1e300:
-                return False
-        for n in range(N):
-            # divided by the size of the stiff term: the rows are then of order 1 in offset
-            scale = 1.0 / (abs(slope[n]) + 1.0)
-            total = DERIVATIVE[n, 0] * offset_end
-            for m in range(N):
-                total += DERIVATIVE[n, m + 1] * offset[m]
-                matrix[n, m] = DERIVATIVE[n, m + 1] * scale
-            matrix[n, n] -= slope[n] * scale
-            residual[n] = (f[n] - total) * scale
-        eliminate(matrix, residual)
-        worst = 0.0
-        for n in range(N):
-            offset[n] += residual[n]
-            worst = max(worst, abs(residual[n]) * np.exp(-y[n]))
-        if not worst < 1e300:
-            return False
-        if worst < 1e-14 or (worst < 1e-11 and worst > 0.5 * last):
-            return True
-        last = worst
-    return False
+def _ln_zeta(v, material):
+    """y at v = kappa V."""
+    return np.log(contact_length(v, material)[0] / (2.0 * v))
 
 
 @kernel(allocates=True)
 def slow_table(scene, table):
     """Fill ``slow``; False where there is no such motion within the stick zone."""
-    material, _, _, j = scene
-    c = material.c
-    rate = c / (1.0 + j)
     bins = table.shape[0]
-    v, y, offset, V = np.empty(N), np.empty(N), np.empty(N), np.empty((bins, N))
-    pace, delta, power = np.empty((bins, N)), np.empty((bins, N)), np.empty((bins, N))
-    end = 0.0
-    for b in range(bins + EXTRA * BINS - 1, -1, -1):
-        for n in range(N):
-            v[n] = node(b, n, _LOW)
-            y[n] = np.log(contact_length(v[n], scene.material)[0] / (2.0 * v[n]))
-        half = 0.5 * width(b, _LOW)
-        if not _collocate(v, y, half, end, offset, scene):
-            return False
-        end = offset[0]
-        if b >= bins:
-            continue
-        for n in range(N):
-            dy, _, _, _ = partial_rhs(y[n], offset[n], scene)
-            fall = -_relative_rate(y[n], dy, scene)
-            V[b, n], delta[b, n] = partial_speeds(y[n], offset[n], scene)
-            if not (fall > 0.0 and abs(delta[b, n]) < _stick_bound(y[n], scene)):
-                return False
-            pace[b, n] = half / (v[n] * fall)
-            # Q = V' + M/2
-            m = at_contact(np.exp(y[n]), scene.material)[6]
-            power[b, n] = V[b, n] * delta[b, n] * V[b, n] * (0.5 * m - fall)
-    _integrals(rate, V, delta, power, pace, table)
+    work, powers = workspace(), np.empty(PANEL_N)
+    columns = np.empty((bins, DELTA + 1, N))
+    last = bins + _EXTRA * BINS
+    y = _ln_zeta(2.0 ** (last // BINS + _LOW), scene.material)
+    slow_start(y, 0.0, work.values, scene)
+    for b in range(last - 1, -1, -1):
+        end, n = _ln_zeta(node(b, 0, _LOW), scene.material), N - 1
+        while y < end:
+            length = end - y
+            while not slow_solve(y, length, _CONVERGED, SLOPES, scene, work):
+                length *= 0.5
+                if not length > _SHORTEST:
+                    return False
+            _D_powers(work.values, powers)
+            y_after = y + length if y + length < end else end
+            while b < bins and n >= 0 and _ln_zeta(node(b, n, _LOW), scene.material) <= y_after:
+                if not _slow_node(b, n, y, length, powers, scene, columns[b]):
+                    return False
+                n -= 1
+            slow_go_on(work.values)
+            y = y_after
+    _integrate(columns, table)
     return True
 
 
 @kernel
-def _stick_bound(y, scene):
-    """delta_star at y = ln zeta."""
-    zeta = np.exp(y)
-    g, h, _, _, _, _, _, _ = at_contact(zeta, scene.material)
-    V = 1.0 / (np.sqrt(1.0 + 2.0 * h / zeta) * 2.0 * scene.kappa * zeta)
-    return scene.mu * V * (zeta + g)
+def _D_powers(values, powers):
+    """Coefficients of D over a panel."""
+    for k in range(PANEL_N):
+        powers[k] = 0.0
+        for i in range(PANEL_N):
+            powers[k] += INNER_POWERS[k, i] * node_D(i + 1, values)
+
+
+@kernel
+def _slow_node(b, n, y, length, powers, scene, columns):
+    """Delta at a node of a bin, and the slopes of the other columns; whether V falls and the stick zone lasts."""
+    v = node(b, n, _LOW)
+    y_there, D = _ln_zeta(v, scene.material), 0.0
+    t = 2.0 * (y_there - y) / length - 1.0
+    for k in range(PANEL_N - 1, -1, -1):
+        D = powers[k] + t * D
+    _, _, V, delta, rate, _, _, _, q_over_V = branch_rates(y_there, D, np.sign(D), scene)
+    pace = -0.5 * width(b, _LOW) / (v * rate)
+    columns[LAMBDA, n], columns[DELTA, n] = scene.material.c / (1.0 + scene.j) * pace, delta
+    columns[X_TO_GO, n], columns[ANGLE_TO_GO, n] = V * pace, V * (1.0 + delta) * pace
+    columns[LOSS_TO_GO, n] = V * delta * V * q_over_V * pace
+    return rate < 0.0 and abs(D) < np.exp(y_there)
 
 
 @kernel(allocates=True)
-def _integrals(rate, V, delta, power, pace, table):
-    """Lambda, distance, angle and slip loss to go by integration of dtau = pace dv upward from V -> 0."""
+def _integrate(columns, table):
+    """Lambda, distance, angle and slip loss to go by integration upward from V -> 0, where V falls like exp(lambda)."""
     zero = BINS * (-2 - _LOW)  # the bin that starts at kappa V = 1/4
-    lowest = V[0, 0]
-    ends = np.array([0.0, lowest / rate, lowest * (1.0 + delta[0, 0]) / rate, power[0, 0] / (3.0 * rate)])
-    rows = np.empty((5, N))
+    rows, ends = np.empty((DELTA + 1, N)), np.zeros(DELTA)
+    for column in range(DELTA):
+        ends[column] = columns[0, column, 0] / columns[0, LAMBDA, 0]
+    ends[LAMBDA] = 0.0
+    ends[LOSS_TO_GO] /= 3.0
     start = 0.0
     for b in range(table.shape[0]):
         if b == zero:
-            start = ends[0]
-        for n in range(N):
-            rows[layout.DELTA, n] = delta[b, n]
-            rows[layout.LAMBDA, n] = ends[0]
-            rows[layout.X_TO_GO, n], rows[layout.ANGLE_TO_GO, n] = ends[1], ends[2]
-            rows[layout.LOSS_TO_GO, n] = ends[3]
-            for m in range(N):
-                weight = TO_NODES[n, m] * pace[b, m]
-                rows[layout.LAMBDA, n] += weight * rate
-                rows[layout.X_TO_GO, n] += weight * V[b, m]
-                rows[layout.ANGLE_TO_GO, n] += weight * V[b, m] * (1.0 + delta[b, m])
-                rows[layout.LOSS_TO_GO, n] += weight * power[b, m]
-        for m in range(N):
-            weight = TO_END[m] * pace[b, m]
-            ends[0] += weight * rate
-            ends[1] += weight * V[b, m]
-            ends[2] += weight * V[b, m] * (1.0 + delta[b, m])
-            ends[3] += weight * power[b, m]
-        for column in range(5):
-            put(table, b, column, rows[column])
-    for b in range(table.shape[0]):
-        table[b, layout.LAMBDA, 0] -= start
+            start = ends[LAMBDA]
+        for column in range(DELTA):
+            ends[column] = integrate_bin(columns[b, column], ends[column], rows[column])
+            fit_column(table, b, column, rows[column])
+        fit_column(table, b, DELTA, columns[b, DELTA])
+    table[:, LAMBDA, 0] -= start
 
 
 @kernel
 def _by_lambda(slow, lam, kappa, n, rows):
     """V, delta, distance, angle and slip loss to go at lambda into rows[:, n]."""
-    bottom = value(slow, 0, layout.LAMBDA, -HALF)
+    bottom = value(slow, 0, LAMBDA, -HALF)
     at, t, share = 0, -HALF, 1.0
     if lam < bottom:
         share = np.exp(lam - bottom)
         v = share * 2.0**_LOW
     else:
-        v, _ = find(slow, layout.LAMBDA, lam, _LOW)
+        v, _ = find(slow, LAMBDA, lam, _LOW)
         at, t = bin_of(v, _LOW)
         if at >= slow.shape[0]:
             at, t = slow.shape[0] - 1, HALF
-    rows[layout.SPEED, n] = v / kappa
-    for column in range(1, 4):
+    for column in range(DELTA + 1):
         rows[column, n] = share * value(slow, at, column, t)
-    rows[layout.LOSS_TO_GO, n] = share**3 * value(slow, at, layout.LOSS_TO_GO, t)
+    rows[SPEED, n] = v / kappa
+    rows[LOSS_TO_GO, n] *= share * share
 
 
 @kernel(allocates=True)
-def late_table(slow, kappa, table):
-    """Fill ``late``."""
-    rows = np.empty((5, N))
+def lambda_table(slow, kappa, late, table):
+    """Fill ``late`` or ``early``."""
+    rows = np.empty((DELTA + 1, N))
     for b in range(table.shape[0]):
         for n in range(N):
-            _by_lambda(slow, layout.LATE_LOW + (b + 0.5 + 0.5 * NODES[n]) * layout.LATE_WIDTH, kappa, n, rows)
-        for column in range(5):
-            put(table, b, column, rows[column])
-
-
-@kernel(allocates=True)
-def early_table(slow, kappa, table):
-    """Fill ``early``."""
-    rows = np.empty((5, N))
-    for b in range(table.shape[0]):
-        for n in range(N):
-            _by_lambda(slow, node(b, n, 0) - 1.0, kappa, n, rows)
-        for column in range(5):
-            put(table, b, column, rows[column])
+            lam = layout.LATE_LOW + (b + 0.5 + 0.5 * NODES[n]) * layout.LATE_WIDTH if late else node(b, n, 0) - 1.0
+            _by_lambda(slow, lam, kappa, n, rows)
+        for column in range(DELTA + 1):
+            fit_column(table, b, column, rows[column])

@@ -12,12 +12,10 @@ import numpy as np
 from ..compile.jit import kernel
 from ..law.length import OK
 from ..law.stick import stick_length
-from .collocation import N
 from .full_slip import sliding_speed, stick_limit
 from .layer_phase import layer_phase
 from .output import coast, put, put_rest, put_to_end, speeds
 from .partial_slip import slow_D
-from .path import ROWS
 from .radau_phase import radau_phase
 from .records import (
     AT_REST,
@@ -34,10 +32,9 @@ from .records import (
     Frame,
     Sink,
     State,
-    Workspace,
 )  # fmt: skip
 from .slide_phase import slide_phase
-from .slow import COLUMNS
+from .slow import workspace
 from .slow_phase import FAR, slow_phase
 
 DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
@@ -182,11 +179,7 @@ def integrate(scene, gamma, V0, omega0, t_out, limits, out, switches, step_ends)
     times behind the panels and at their nodes; what does not fit is not kept.
     Returns (status, steps, switches, onset time, rest time).
     """
-    work = Workspace(
-        np.empty((ROWS, N + 1)), np.empty((5, N + 2)), np.empty((N + 2, COLUMNS)), np.empty(N + 2),
-        np.empty((2 * N, 2 * N)), np.empty(2 * N),
-    )  # fmt: skip
-    case = Case(scene, limits, Sink(t_out * gamma, out, step_ends, gamma), work)
+    case = Case(scene, limits, Sink(t_out * gamma, out, step_ends, gamma), workspace())
     clock = Clock(0.0, 0, 0, 0)
     origin, still = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Frame(REST, 1.0, 0.0)
     if max(abs(V0), abs(omega0)) < limits.rest:

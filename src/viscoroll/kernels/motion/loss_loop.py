@@ -8,7 +8,8 @@ from ..compile.jit import kernel
 from ..numerics.arrays import fill
 from .integrate import integrate
 from .loop import keep, motion_of
-from .losses import ROWS, SLIP_LOSS, add_losses
+from .losses import ROWS, SLIP_LOSS, add_losses, loss_points
+from .output import OUTPUTS
 
 #: room for the ends of steps at first
 _ENDS = 1000
@@ -28,5 +29,10 @@ def loss_loop(batch, t, limits, rows, out, info, start, stop):
                 break
             step_ends = np.zeros(4 * step_ends.size)
         if rows.max() >= SLIP_LOSS:
-            add_losses(scene, gamma, V0, omega0, t, limits, one, step_ends)
+            edges, times = loss_points(step_ends, t)
+            points = np.empty((OUTPUTS, times.size))
+            for row in points:
+                fill(np.nan, row)
+            integrate(scene, gamma, V0, omega0, times, limits, points, switches, step_ends[:0])
+            add_losses(scene, gamma, V0, omega0, t, edges, points, one)
         keep(i, rows, one, result, out, info)

@@ -17,7 +17,6 @@ from ..law.contact_loop import ROWS as CONTACT_ROWS
 from ..law.contact_loop import Q, contact_state
 from ..law.stick import GAUSS_W, GAUSS_X
 from ..numerics.arrays import fill
-from .integrate import integrate
 from .output import OUTPUTS
 from .records import PARTIAL
 
@@ -62,11 +61,8 @@ def _panels(step_ends, t):
 
 
 @kernel(allocates=True)
-def add_losses(scene, gamma, V0, omega0, t, limits, out, step_ends):
-    """Fill the two rows of losses of the motion whose outputs and ends of steps are given; ends become 0.
-
-    The motion is rolled once more, in the same steps, with output at the points of the rule.
-    """
+def loss_points(step_ends, t):
+    """(edges of the panels, points of the rule and the last output time); forgets the ends of steps."""
     edges = _panels(step_ends, t)
     panels = edges.size - 1
     times = np.empty(panels * _POINTS + 1)
@@ -74,14 +70,17 @@ def add_losses(scene, gamma, V0, omega0, t, limits, out, step_ends):
         for k in range(_POINTS):
             times[n * _POINTS + k] = edges[n] + (edges[n + 1] - edges[n]) * GAUSS_X[k]
     times[panels * _POINTS] = t[t.size - 1]
-    points = np.empty((OUTPUTS, times.size))
-    for row in points:
-        fill(np.nan, row)
-    integrate(scene, gamma, V0, omega0, times, limits, points, np.empty((0, 2)), np.empty(0))
+    return edges, times
+
+
+@kernel(allocates=True)
+def add_losses(scene, gamma, V0, omega0, t, edges, points, out):
+    """Fill the two rows of losses of a motion from its ``points``: rolled once more, in the same steps, with output at
+    those of :func:`loss_points`."""
     state = np.empty(len(CONTACT_ROWS))
     lost, n = 0.0, 0
     for m in range(t.size):
-        while n < panels and edges[n + 1] <= t[m]:
+        while n < edges.size - 1 and edges[n + 1] <= t[m]:
             for k in range(n * _POINTS, (n + 1) * _POINTS):
                 power = _slip_power(points[0, k], points[1, k], points[4, k], points[5, k], scene, state)
                 lost += gamma * (edges[n + 1] - edges[n]) * GAUSS_W[k - n * _POINTS] * power

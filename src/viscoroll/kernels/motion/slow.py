@@ -15,7 +15,8 @@ from ..numerics.arrays import copy
 from ..numerics.linear import factorize, substitute
 from .collocation import NODES, TO_START, N, fit_terms, polynomial
 from .partial_slip import partial_rates
-from .path import D_TAU, D_TURN, D_X, D_Y, RISE_D, RISE_Y, Y, time_terms
+from .path import D_TAU, D_TURN, D_X, D_Y, RISE_D, RISE_Y, ROWS, Y, time_terms
+from .records import Workspace
 
 #: columns of the values at the nodes
 _OFFSET, _RATE, _DRIFT, _V, _DELTA, _DECAY, _RATE_D, _DRIFT_D, _DELTA_D, _D = range(10)
@@ -27,6 +28,15 @@ _MOST_ITERATIONS = 6
 LN_V, CREEP = RISE_Y, RISE_D
 #: the stick zone must stay longer than this share of the contact
 _LEAST_STICK = 1e-3
+
+
+@kernel(allocates=True)
+def workspace():
+    """Arrays for panels in partial slip."""
+    return Workspace(
+        np.empty((ROWS, N + 1)), np.empty((5, N + 2)), np.empty((N + 2, COLUMNS)), np.empty(N + 2),
+        np.empty((2 * N, 2 * N)), np.empty(2 * N),
+    )  # fmt: skip
 
 
 @kernel

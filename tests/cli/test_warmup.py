@@ -1,0 +1,50 @@
+"""``viscoroll warmup``: what it compiles is all that calls need."""
+
+from __future__ import annotations
+
+import re
+
+import numba
+import pytest
+from processes import printed
+
+#: public calls of all kinds, of other shapes and kinds of input than in the warm-up
+CALLS = """
+V = np.linspace(-2.0, 2.0, 5000)
+vr.contact(scene, 0.3, omega=0.31, slopes=True)
+vr.contact(scene, V[::2], omega=0.3, fields=("Q", "M"))
+vr.contact(scene, V, delta=1e-3)
+vr.contact(scene, V[:70], delta=1e-3, method="direct")
+vr.stress(scene, np.linspace(-1.0, 1.0, 5), 0.3, delta=1e-3)
+vr.roll(scene, 1.5, 0.5, np.linspace(0.0, 1e-3, 9), rest=1e-6).contact()
+vr.ensemble(scene.replace(mu=np.array([0.1, 0.2])), 1.5, [0.5, 0.6], [1e-4], method="integrate")
+vr.ensemble(scene, 1.5, [0.5, 0.6], [1e-4], fields=("V", "slip_loss", "rolling_loss"), method="integrate")
+vr.ensemble(scene.replace(kappa=7.1), np.linspace(0.1, 0.5, 20), 0.0, [1e-4], method="flow", rest=1e-4)
+vr.tables.build(vr.tables.LiteralGrid(2.91, 0.2, V[-3:], V[-3:], [1.0, 11.0]))
+scene.validity(V[:3])
+"""
+CODE = f"""
+import importlib
+import numpy as np
+import viscoroll as vr
+from viscoroll.cli import main
+from viscoroll.kernels.compile.cache import HERE
+assert main(["warmup"]) == 0
+modules = [
+    importlib.import_module(f"viscoroll.kernels.{{path.parent.name}}.{{path.stem}}") for path in HERE.glob("*/[!_]*.py")
+]
+def ready():
+    kernels = {{each for module in modules for each in vars(module).values() if hasattr(each, "overloads")}}
+    return {{(each.py_func.__name__, arguments) for each in kernels for arguments in each.overloads}}
+before = ready()
+scene = vr.PAPER_SECTION_5
+{CALLS}
+print("anew:", *sorted(name for name, _ in ready() - before))
+"""
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
+def test_after_it_no_call_compiles():
+    told, anew = printed(CODE).splitlines()
+    assert re.fullmatch(r"\d+ entry points are ready in .+, \d+\.\d s", told)
+    assert anew == "anew:"
