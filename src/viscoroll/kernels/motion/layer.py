@@ -19,7 +19,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
-from .partial_slip import creep_rates, linear_rates
+from .partial_slip import branch_rates, creep_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
 from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
 
@@ -96,7 +96,7 @@ def layer_node(i, e, weight, nodes, slow, scene):
     S, slope = slow_creep(y, slow)
     # close to the manifold m is a difference of rates that rounding spoils, and all is linear in e
     aside = np.copysign(max(abs(e), _LINEAR * np.exp(y)), e)
-    dy, dD, V, delta, dy_D, delta_D = linear_rates(y, S + aside, np.sign(S + e), scene)
+    dy, dD, V, delta, _, dy_D, _, delta_D, _ = branch_rates(y, S + aside, np.sign(S + e), scene)
     per = -weight * aside / (dD - slope * dy)
     dy, delta = dy - dy_D * (aside - e), delta - delta_D * (aside - e)
     nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = per * dy, per, per * V, per * V * delta
