@@ -149,6 +149,7 @@ def test_check_values_are_made_again(tmp_path):
 
 # --- proofs ---
 
+
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     output = tmp_path_factory.mktemp("prove") / "proofs.json"
