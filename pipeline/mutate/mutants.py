@@ -84,7 +84,7 @@ MOTION = [
     ("motion/slide_phase.py", "event = REVERSAL\n", "event = STICK\n", "tests/kernels/motion/test_slide.py"),
     ("motion/collocation.py", "total = fma(t, total, powers[row, k])", "total = fma(t, total, powers[row, k] * (1.0 + 1e-7))", _MOTION),
     ("motion/panel.py", "moved(first, second, X_rise, X_rise + turn, state)", "moved(first, second, X_rise, X_rise - turn, state)", _MOTION),
-    ("motion/layer.py", "linear_rates(y, S + aside, np.sign(S + e), scene)", "linear_rates(y, S - aside, np.sign(S + e), scene)", "tests/kernels/motion/test_layer.py"),
+    ("motion/layer.py", "branch_rates(y, S + aside, np.sign(S + e), scene)", "branch_rates(y, S - aside, np.sign(S + e), scene)", "tests/kernels/motion/test_layer.py"),
     ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/motion/test_ensemble.py"),
     ("flow/layer.py", "share * (1.0 + delta) - 1.0", "share * (1.0 - delta) - 1.0", "tests/motion/test_flow.py"),
     ("motion/integrate.py", "Frame(FULL, -frame.direction, -frame.sigma)", "Frame(FULL, -frame.direction, frame.sigma)", _MOTION),

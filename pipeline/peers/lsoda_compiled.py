@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.law.material import Standard
-from viscoroll.kernels.motion.partial_slip import partial_rhs, partial_speeds, slow_D
+from viscoroll.kernels.motion.partial_slip import creep_speeds, partial_rates, slow_D
 from viscoroll.kernels.motion.records import Scene
 
 from ..bench.jit import compiled
@@ -95,7 +95,8 @@ def _put(unknowns, first, direction, par, V, omega):
         own = Scene(Standard(par[i, 0], par[i, 1]), par[i, 2], par[i, 3], par[i, 4])
         for m in range(first[i], V.shape[1]):
             if not np.isnan(unknowns[i, m, 0]):
-                speed, delta = partial_speeds(unknowns[i, m, 0], unknowns[i, m, 1], own)
+                y, offset = unknowns[i, m]
+                speed, delta = creep_speeds(y, slow_D(y, own)[0] + offset, own)
                 V[i, m], omega[i, m] = direction[i] * speed, direction[i] * speed * (1.0 + delta)
 
 
@@ -111,8 +112,8 @@ def _by_numbalsoda():
     def rates(_, u, du, p):
         y = numba.carray(u, 2)
         par = numba.carray(p, 5)
-        dy, dD, _, _ = partial_rhs(y[0], y[1], Scene(Standard(par[0], par[1]), par[2], par[3], par[4]))
-        du[0], du[1] = dy, dD
+        found = partial_rates(y[0], y[1], Scene(Standard(par[0], par[1]), par[2], par[3], par[4]))
+        du[0], du[1] = found[0], found[1]
 
     @numba.njit(nogil=True)
     def loop(address, first, tau, u, par, gamma, t, rtol, atol, unknowns):
@@ -136,7 +137,7 @@ def _by_scipy(first, tau, u, par, gamma, t, rtol, atol, unknowns):
         own = Scene(Standard(par[i, 0], par[i, 1]), *par[i, 2:])
         times = np.concatenate([[tau[i]], t[first[i] :] * gamma[i]])
         solution = solve_ivp(
-            lambda _, y, own=own: partial_rhs(y[0], y[1], own)[:2],
+            lambda _, y, own=own: partial_rates(y[0], y[1], own)[:2],
             (times[0], times[-1]), u[i], "LSODA", t_eval=times, rtol=rtol, atol=atol,
         )  # fmt: skip
         if solution.success:

@@ -149,27 +149,17 @@ def test_check_values_are_made_again(tmp_path):
 
 # --- proofs ---
 
-TIGHTEST = "V, omega, x, onset at rtol = 1e-12 against extended precision"
-
 
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     output = tmp_path_factory.mktemp("prove") / "proofs.json"
-    assert stage("prove", "--quick", "-o", output).returncode in (0, 1)
+    assert stage("prove", "--quick", "-o", output).returncode == 0
     return {name: part["rows"] for name, part in json.loads(output.read_text(encoding="utf-8"))["parts"].items()}
 
 
 def test_quick_proofs_hold(quick):
     broken = [row["claim"] for rows in quick.values() for row in rows if not row["worst"] <= row["bound"]]
-    assert [claim for claim in broken if not claim.startswith(TIGHTEST)] == []
-
-
-@pytest.mark.xfail(
-    strict=True, reason="the distance of one of 50 motions, alpha = 4165, is off by 48 rtol at rtol 1e-12"
-)
-def test_the_tightest_motions_hold(quick):
-    (row,) = (row for rows in quick.values() for row in rows if row["claim"].startswith(TIGHTEST))
-    assert row["worst"] <= row["bound"]
+    assert broken == []
 
 
 def test_committed_proofs_are_of_the_same_claims(quick):

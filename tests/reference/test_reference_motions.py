@@ -124,7 +124,7 @@ def test_check_motions_have_the_digits_of_the_theory_brief():
     assert returning[0]["onset_time"] == pytest.approx(2.43862380e-3, rel=tol.RETURN_TIME)
 
 
-@pytest.mark.parametrize("rtol", [1e-6, 1e-11])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-11, 1e-12])
 def test_roll_has_the_check_motions(rtol):
     """V and omega over the larger of the two, x and angle over the longer way so far, onset: within 30 rtol."""
     for rows in check_motions():

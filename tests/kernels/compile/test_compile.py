@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from numba.core.codegen import JITCodeLibrary
 from ordinary_user import as_ordinary_user, let_in
-from processes import python
+from processes import printed, python
 
 from viscoroll.kernels.compile import cache as cache_module
 from viscoroll.kernels.compile import deferred, notice
@@ -207,6 +207,30 @@ def fresh() -> int:
 def test_second_use_is_from_the_cache(cache):
     assert fresh() == 1
     assert len([*cache.iterdir()]) == 1
+
+
+def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path):
+    """What one process compiled without checks is not what another one, that asks for them, is given."""
+    script = """
+import numpy as np
+from viscoroll.kernels.compile.jit import kernel
+
+@kernel
+def at(array, n):
+    return array[n]
+
+array = np.arange(10.0)
+try:
+    print(at(array[:3], 4), end=" ")
+except IndexError:
+    print("refused", end=" ")
+print(sum(at.stats.cache_hits.values()))
+"""
+    for settings, said in (
+        ({}, "4.0 0"), ({"NUMBA_BOUNDSCHECK": "1"}, "refused 0"), ({"NUMBA_OPT": "1"}, "4.0 0"), ({}, "4.0 1"),
+        ({"NUMBA_BOUNDSCHECK": "1"}, "refused 1"),
+    ):  # fmt: skip
+        assert printed(script, VISCOROLL_CACHE_DIR=str(tmp_path), **settings).strip() == said, settings
 
 
 def flipped(content: bytes, share: float, mask: int) -> bytes:

@@ -75,3 +75,17 @@ def test_rest_inside_the_layer():
     threshold = max(abs(passed.V[0]), abs(passed.omega[0]))
     rested = vr.roll(PAPER, *PAPER_STARTS["IC1"], [1e-2], rtol=1e-10, rest=threshold)
     assert rested.rest_time == pytest.approx(t[1], rel=1e-8)
+
+
+def test_distance_is_integrated_from_what_substitution_ends_with():
+    """A layer from delta = 0: where substitution gains a million a time, its last change was 10 rtol of V.
+
+    V(t) from the same motion; the distance is its integral by Gauss's rule over the first hundredth of the layer.
+    """
+    scene = vr.Scene(4164.88, 5.6216, 1.5713, 484343.0)
+    end, V0 = 1.7e-8, -0.30878
+    node, weight = np.polynomial.legendre.leggauss(30)
+    motion = vr.roll(scene, V0, V0, np.append(0.5 * end * (1.0 + node), end), rtol=1e-12)
+    way = 0.5 * end * weight @ motion.V[:-1]
+    assert motion.x[-1] == pytest.approx(way, rel=1e-12, abs=0.0)
+    assert motion.steps < 20  # what was left of it looked like an error of the panel: 57

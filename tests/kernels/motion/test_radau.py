@@ -8,6 +8,10 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import viscoroll as vr
+from viscoroll.kernels.motion.collocation import SLOPES
+from viscoroll.kernels.motion.radau import radau_solve, radau_start
+from viscoroll.kernels.motion.slow import slow_solve, slow_start, workspace
+from viscoroll.scene import kernel_scene
 from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED
@@ -85,3 +89,15 @@ def test_the_layer_ends_on_the_manifold(parameters, start):
     scene = vr.Scene(alpha=alpha, kappa=kappa, mu=mu, j=j)
     loose, tight = (vr.roll(scene, *start, [50.0], rtol=rtol).steps for rtol in (1e-6, 1e-10))
     assert tight <= loose + 25
+
+
+@pytest.mark.parametrize("material", [11.0, np.nan])
+def test_what_cannot_be_computed_is_not_solved(material):
+    """A NaN among the changes is no small change: on the slow manifold and in time."""
+    scene, work, solvable = kernel_scene(material, 2.91, 0.2, 0.5), workspace.py_func(), np.isfinite(material)
+    for array in work:
+        array.fill(0.0)
+    slow_start(1.0, 0.0, work.values, scene)
+    assert slow_solve(1.0, 0.5, 1e-8, SLOPES, scene, work) == solvable
+    rates = radau_start(1.0, 0.1, 1.0, 1, scene, work.nodes)
+    assert radau_solve(1e-4, 1, 1.0, rates, 1e-8, scene, work) == solvable

@@ -2,9 +2,9 @@
 
 numba's own cache stamps a function with the file it is defined in and does not notice a change in a
 function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
-sources, their coefficient table and the numba version.  It holds one file for each function and
-signature, behind a SHA-256 of itself: anything unreadable is compiled anew and replaced, never
-trusted and never fatal.
+sources, their coefficient table and the versions of numba and llvmlite.  It holds one file for each function,
+signature and choice of numba's settings, behind a SHA-256 of itself: anything unreadable is compiled anew and
+replaced, never trusted and never fatal.
 
 The cache lives in ``$VISCOROLL_CACHE_DIR``, else in ``$XDG_CACHE_HOME/viscoroll``, else in
 ``~/.cache/viscoroll``.
@@ -24,12 +24,19 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Callable
 
+import llvmlite
 import numba
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 #: where all kernels lie
 HERE = Path(__file__).parents[1]
+#: settings of numba (environment: NUMBA_...) that its machine code follows, beside those of the processor
+_SETTINGS = (
+    "BOUNDSCHECK", "OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DISABLE_INTEL_SVML", "DEBUGINFO_DEFAULT",
+    "EXTEND_VARIABLE_LIFETIMES", "ENABLE_PROFILING", "NRT_STATS", "DEBUG_NRT", "LLVM_REFPRUNE_PASS",
+    "LLVM_REFPRUNE_FLAGS",
+)  # fmt: skip
 _DIGEST_SIZE = hashlib.sha256().digest_size
 
 
@@ -43,8 +50,8 @@ def cache_root() -> Path:
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """Hash of the kernel sources, of their coefficients and of numba's version."""
-    digest = hashlib.sha256(f"{numba.__version__}".encode())
+    """Hash of the kernel sources, of their coefficients and of the versions of numba and llvmlite."""
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*HERE.rglob("*.py"), *HERE.rglob("*.npy"))):
         digest.update(path.relative_to(HERE).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
@@ -102,6 +109,7 @@ class DiskCache:
         """Named for people after the function, for certain after all that the machine code depends on."""
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"
+        settings = [str(getattr(numba.config, setting, None)) for setting in _SETTINGS]
         key = (name, function.__code__.co_firstlineno, str(signature), codegen.magic_tuple(), sys.version_info[:2])
-        digest = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        digest = hashlib.sha256(repr((*key, settings)).encode()).hexdigest()[:16]
         return self._folder / f"{function.__module__.rpartition('kernels.')[2]}.{function.__name__}-{digest}.nbc"

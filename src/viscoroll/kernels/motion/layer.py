@@ -19,11 +19,14 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
-from .partial_slip import creep_rates, linear_rates
+from .partial_slip import branch_rates, creep_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
 from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
 
 _MOST_ITERATIONS = 8
+#: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate; and at the
+#: least that it can leave
+_SUBSTITUTION, _ACHIEVED = 1e-3, 1e-14
 #: the interval in y that the manifold is solved for: so many e-folds at the pace of y on the manifold, and of
 #: that at the start; longest, and shortest
 _LATE, _EARLY, _LONGEST, _SHORTEST = 100.0, 4.0, 0.5, 0.15
@@ -96,7 +99,7 @@ def layer_node(i, e, weight, nodes, slow, scene):
     S, slope = slow_creep(y, slow)
     # close to the manifold m is a difference of rates that rounding spoils, and all is linear in e
     aside = np.copysign(max(abs(e), _LINEAR * np.exp(y)), e)
-    dy, dD, V, delta, dy_D, delta_D = linear_rates(y, S + aside, np.sign(S + e), scene)
+    dy, dD, V, delta, _, dy_D, _, delta_D, _ = branch_rates(y, S + aside, np.sign(S + e), scene)
     per = -weight * aside / (dD - slope * dy)
     dy, delta = dy - dy_D * (aside - e), delta - delta_D * (aside - e)
     nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = per * dy, per, per * V, per * V * delta
@@ -106,9 +109,10 @@ def layer_node(i, e, weight, nodes, slow, scene):
 def layer_solve(e, length, power, to_zero, tolerance, scene, work):
     """Collocate over ``length`` e-folds from node 0, where e is given; returns the length, NaN where it failed.
 
-    With ``to_zero`` the panel ends where D = 0.  ``tolerance`` bounds the remaining error of y.
+    With ``to_zero`` the panel ends where D = 0.  ``tolerance`` is that of what is integrated: its integrands stay as
+    they were before the last change of y.
     """
-    nodes, slow = work.nodes, work.slow
+    nodes, slow, left = work.nodes, work.slow, max(_SUBSTITUTION * tolerance, _ACHIEVED)
     start = nodes[Y, 0]
     fill(start, nodes[Y])
     before = first = 0.0
@@ -132,7 +136,7 @@ def layer_solve(e, length, power, to_zero, tolerance, scene, work):
             length = np.log(-e / slow_creep(nodes[Y, N], slow)[0])
         first = change if iteration == 0 else first
         gain = change / before if iteration > 0 else 0.1
-        if change * gain <= tolerance or (gain > _STALLED and change <= noise * first):
+        if (change <= tolerance and change * gain <= left) or (gain > _STALLED and change <= noise * first):
             return length
         before = change
     return np.nan

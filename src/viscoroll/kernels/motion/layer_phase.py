@@ -19,8 +19,6 @@ _LONGEST, _SHORTEST = 6.0, 1e-2
 #: near eta = 0 the law bends on the scale 1/alpha: share of it in the first panel at rtol = 1, whose nodes lie as
 #: this power
 _FIRST, GRADED = 50.0, 3
-#: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate
-_SUBSTITUTION = 1e-3
 #: a panel that would end this little short of delta = 0 or of the end of the layer, or behind, ends there
 _NEARLY = 1.3
 #: distance from the manifold at which the layer is over, over its tolerance
@@ -55,7 +53,7 @@ def tolerated(y, case):
 def panel_size(e, length, power, to_zero, state, case):
     """(Length, error over its tolerance) of the panel from node 0; infinite where it failed."""
     tolerance, work = SHARE * case.limits.rtol, case.work
-    solved = layer_solve(e, length, power, to_zero, max(_SUBSTITUTION * tolerance, 1e-14), case.scene, work)
+    solved = layer_solve(e, length, power, to_zero, tolerance, case.scene, work)
     if not (solved > 0.0 and decays_throughout(work.nodes)):
         return length, np.inf
     creep = abs(e) * creep_slope(REACHED, work.values)

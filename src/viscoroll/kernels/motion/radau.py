@@ -110,7 +110,7 @@ def radau_solve(length, power, sign, rates, rtol, scene, work):
         _put_residuals(half, nodes, right)
         if by_Newton:
             substitute(work.matrix, right, 2 * N)
-        change = 0.0
+        change = 0.0 * (right[0] + right[1])  # a NaN is in all of them, and lost in any other argument of max
         for i in range(N):
             change = max(change, abs(right[2 * i]), abs(right[2 * i + 1]) * np.exp(-nodes[Y, 0]))
             nodes[Y, i + 1] += right[2 * i]
@@ -119,7 +119,8 @@ def radau_solve(length, power, sign, rates, rtol, scene, work):
         gain = 1.0 if first else change / before
         if not (change < 1e3 and gain < 2.0):
             return False
-        if change * gain <= _NEWTON * SHARE * rtol:
+        # distance and angle are integrated from what the unknowns were before this change
+        if change <= SHARE * rtol and change * gain <= _NEWTON * SHARE * rtol:
             return True
         anew = gain > _SLOW and not first
         before = change

@@ -76,7 +76,7 @@ def slow_solve(y, length, tolerance, slopes, scene, work):
             right[i] = values[i + 1, _DRIFT] - rate * slope
         factorize(matrix, N)
         substitute(matrix, right, N)
-        change = 0.0
+        change = 0.0 * right[0]  # a NaN is in all of them, and lost in any other argument of max
         for i in range(N):
             shift = right[i]
             row = i + 1
@@ -89,7 +89,7 @@ def slow_solve(y, length, tolerance, slopes, scene, work):
             values[row, _DECAY] *= factor
             values[row, _DELTA] += creep
         gain = change / before if iteration > 0 else 0.1
-        if not gain < 0.5:
+        if not (gain < 0.5 and change < np.inf):
             return False
         if change * gain <= tolerance:
             return True
