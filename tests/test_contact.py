@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import Standard
+from viscoroll.kernels.law.material import standard
 from viscoroll.kernels.law.stick import differences
 from viscoroll.reference import contact_enclosure
 from viscoroll.rolling_contact import FIELDS, SLOPES
@@ -417,7 +417,7 @@ def test_differences_of_an_elastic_contact():
     """alpha = 1: F(z) = z, H(z) = z^2, of neighbours too."""
     for zeta, share in ((3.0, 0.5), (1e-3, 1e-6), (1e8, 1e-12)):
         D = share * zeta
-        rise_F, rise_H = differences(zeta, zeta - D, D, Standard(1.0, 0.0))
+        rise_F, rise_H = differences(zeta, zeta - D, D, standard(1.0))
         assert rise_F == D
         assert rise_H == pytest.approx((2.0 - share) * D, rel=tol.CONTACT)
 

@@ -86,14 +86,16 @@ def test_the_table_against_ratios(alpha):
     for low, high in ((-300.0, -5.0), (-5.0, 6.0), (6.0, 40.0)):
         for z in np.exp(rng.uniform(low, high, 300)):
             exact, found = (np.array(at_contact(z, each)) for each in (by_ratios, by_table))
-            g, h, dg, dh, _, _, m, _ = exact
+            g, h, dg, dh, m, _, b, _ = exact
             error = abs(found - exact)
             assert error[0] <= tol.TABLE * (z + g)
             assert error[1] <= tol.TABLE * (0.5 * z + h)
-            assert error[6] <= tol.TABLE * m
+            assert error[4] <= tol.TABLE * m
+            assert error[6] <= tol.TABLE * b
             assert error[2] <= tol.TABLE_SLOPE * (1.0 + dg)
             assert z * error[3] <= tol.TABLE_SLOPE * (z + h + z * dh)
-            assert z * error[7] <= tol.TABLE_SLOPE * m
+            assert z * error[5] <= tol.TABLE_SLOPE * m
+            assert z * error[7] <= tol.TABLE_SLOPE * b
             D = z * 10.0 ** rng.uniform(-15.0, -1.0)
             rises = (np.array(differences(z, z - D, D, each)) for each in (by_ratios, by_table))
             np.testing.assert_allclose(*rises, rtol=tol.TABLE_SLOPE)

@@ -23,7 +23,7 @@ from viscoroll.kernels.bessel.ratios import (
     ratio_k,
     ratio_r,
 )
-from viscoroll.kernels.law.material import Standard, generators
+from viscoroll.kernels.law.material import generators, standard
 from viscoroll.kernels.motion.partial_slip import slip_differences
 from viscoroll.reference import contact_precise
 
@@ -49,8 +49,8 @@ def explicit_state(zeta, eta, alpha, kappa, mu):
     p = r * k
     share = c / (1.0 + p)
     g, h = share * p, share * r
-    g_eta, h_eta = generators(eta, Standard(alpha, c))
-    rise_F, rise_H = slip_differences(zeta, zeta - eta, g, h, g_eta, h_eta, Standard(alpha, c))
+    g_eta, h_eta = generators(eta, standard(alpha))
+    rise_F, rise_H = slip_differences(zeta, zeta - eta, g, h, g_eta, h_eta, standard(alpha))
     lam2 = 1.0 / (1.0 + 2.0 * h / zeta)
     V = np.sqrt(lam2) / (2.0 * kappa * zeta)
     return V, mu * V * rise_F, mu * rise_H * lam2 / zeta, V * share * (lam2 * ratio_i2(x, r) + p)

@@ -34,7 +34,7 @@ LAW = [
     ("law/standard.py", "return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g", "return lam * ratio_i2(alpha * zeta, h / rest) * rest + g", _LAW),
     ("law/length.py", "_CUBED = 3e-6\n", "_CUBED = 3e-3\n", _LAW),
     ("law/length.py", "_SLOW, _FAST = 1e-17, 1e-9\n", "_SLOW, _FAST = 1e-7, 1e-9\n", _LAW),
-    ("law/stick.py", "low, high = max(y - 0.5 * material.c, 0.0), y", "low, high = max(y - 0.25 * material.c, 0.0), y", _LAW),
+    ("law/stick.py", "low, high = max(y - 0.5 * material.T_mean, 0.0), y", "low, high = max(y - 0.25 * material.T_mean, 0.0), y", _LAW),
     ("law/state.py", "direction = -1.0 if V < 0.0 else 1.0", "direction = 1.0", _LAW),
     ("law/state.py", "delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa", "delta_star = 0.5 * mu * lam / kappa", _LAW),
     ("law/state.py", "full_slip = abs(delta) >= delta_star", "full_slip = abs(delta) > delta_star", _LAW),

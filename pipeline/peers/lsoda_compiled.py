@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import Standard
+from viscoroll.kernels.law.material import standard
 from viscoroll.kernels.motion.partial_slip import creep_speeds, partial_rates, slow_D
 from viscoroll.kernels.motion.records import Scene
 
@@ -49,7 +49,7 @@ def prepare(scene: vr.Scene, V0: NDArray, omega0: NDArray, t: NDArray) -> Stuck:
     n = V0.size
     names = ("alpha", "kappa", "mu", "gamma", "j")
     alpha, kappa, mu, gamma, j = (np.broadcast_to(np.asarray(getattr(scene, name)), n) for name in names)
-    par = np.column_stack([alpha, (alpha - 1.0) / alpha, kappa, mu, j])
+    par = np.column_stack([alpha, kappa, mu, j])
     V, omega = np.full((2, n, t.size), np.nan)
     first, tau, direction, u = np.zeros(n, dtype=np.int64), np.zeros(n), np.ones(n), np.zeros((n, 2))
     for i in range(n):
@@ -66,8 +66,7 @@ def prepare(scene: vr.Scene, V0: NDArray, omega0: NDArray, t: NDArray) -> Stuck:
             direction[i], tau[i] = np.sign(speed), at * gamma[i]
             u[i, 0] = np.log(state.zeta)
             u[i, 1] = (
-                np.sign(state.delta) * (state.zeta - eta)
-                - slow_D(u[i, 0], Scene(Standard(par[i, 0], par[i, 1]), *par[i, 2:]))[0]
+                np.sign(state.delta) * (state.zeta - eta) - slow_D(u[i, 0], Scene(standard(par[i, 0]), *par[i, 1:]))[0]
             )
         V[i, : first[i]], omega[i, : first[i]] = motion.V[: first[i]], motion.omega[: first[i]]
     return Stuck(first, direction, tau, u, par, gamma.copy(), V, omega)
@@ -92,7 +91,7 @@ def run(stuck: Stuck, t: NDArray, rtol: float) -> tuple[NDArray, NDArray]:
 def _put(unknowns, first, direction, par, V, omega):
     """Speeds from the unknowns, from the first output in partial slip on."""
     for i in range(first.size):
-        own = Scene(Standard(par[i, 0], par[i, 1]), par[i, 2], par[i, 3], par[i, 4])
+        own = Scene(standard(par[i, 0]), par[i, 1], par[i, 2], par[i, 3])
         for m in range(first[i], V.shape[1]):
             if not np.isnan(unknowns[i, m, 0]):
                 y, offset = unknowns[i, m]
@@ -111,8 +110,8 @@ def _by_numbalsoda():
     @numba.cfunc(lsoda_sig, cache=True)
     def rates(_, u, du, p):
         y = numba.carray(u, 2)
-        par = numba.carray(p, 5)
-        found = partial_rates(y[0], y[1], Scene(Standard(par[0], par[1]), par[2], par[3], par[4]))
+        par = numba.carray(p, 4)
+        found = partial_rates(y[0], y[1], Scene(standard(par[0]), par[1], par[2], par[3]))
         du[0], du[1] = found[0], found[1]
 
     @numba.njit(nogil=True)
@@ -134,7 +133,7 @@ def _by_scipy(first, tau, u, par, gamma, t, rtol, atol, unknowns):
     from scipy.integrate import solve_ivp
 
     for i in np.flatnonzero(first < t.size):
-        own = Scene(Standard(par[i, 0], par[i, 1]), *par[i, 2:])
+        own = Scene(standard(par[i, 0]), *par[i, 1:])
         times = np.concatenate([[tau[i]], t[first[i] :] * gamma[i]])
         solution = solve_ivp(
             lambda _, y, own=own: partial_rates(y[0], y[1], own)[:2],

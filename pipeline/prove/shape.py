@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.bessel import layout as layout
-from viscoroll.kernels.law.material import Standard, generators
+from viscoroll.kernels.law.material import generators, standard
 from viscoroll.rolling_contact import WORTHWHILE
 
 from ..reference.check_values import EDGE_ALPHAS
@@ -88,7 +88,7 @@ def random_pairs(way: str, count: int, rng: np.random.Generator) -> Iterator[dic
 
 def at_edges(way: str, alpha: float, rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
     """(kappa, mu, V, delta) of neighbouring doubles: V where zeta or kappa V crosses an edge, delta where eta does."""
-    kappa, mu, c = 2.91, 0.2, (alpha - 1.0) / alpha
+    kappa, mu = 2.91, 0.2
     z = np.sort(np.concatenate([edges(), edges() / alpha]))
     if way == "slice":
         yield 1.0, mu, neighbours(edges()), np.float64(0.0)  # kappa V itself
@@ -99,11 +99,11 @@ def at_edges(way: str, alpha: float, rng: np.random.Generator) -> Iterator[tuple
         delta = np.resize(0.5 * mu * (L - 2.0 * V * y)[inside], WORTHWHILE)
         yield 1.0, mu, np.resize(V[inside], WORTHWHILE)[:, None], neighbours(delta)
         return
-    g, h = np.array([generators(at, Standard(alpha, c)) for at in z.tolist()]).T
+    g, h = np.array([generators(at, standard(alpha)) for at in z.tolist()]).T
     yield kappa, mu, neighbours(0.5 / kappa / np.sqrt(z * z + 2.0 * z * h)), np.float64(0.0)
     for _ in range(4):  # from a zeta somewhat above, eta on the edge
         zeta = z * (1.0 + log_uniform(rng, 1e-3, 1e3, z.size))
-        g_zeta, h_zeta = np.array([generators(at, Standard(alpha, c)) for at in zeta.tolist()]).T
+        g_zeta, h_zeta = np.array([generators(at, standard(alpha)) for at in zeta.tolist()]).T
         V = 0.5 / kappa / np.sqrt(zeta * zeta + 2.0 * zeta * h_zeta)
         yield kappa, mu, V[:, None], neighbours(mu * V * (zeta - z + (g_zeta - g)))
 

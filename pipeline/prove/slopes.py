@@ -11,7 +11,7 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import Standard, generators
+from viscoroll.kernels.law.material import generators, standard
 from viscoroll.reference.enclosures import (
     INPUTS,
     condition_numbers,
@@ -134,11 +134,7 @@ def stress_rows(count: int, rng: np.random.Generator) -> list[dict[str, Any]]:
         alpha = float(10.0 ** rng.uniform(0.0, 4.0))
         a, kappa, mu, small = (10.0 ** rng.uniform([-8, 0, -2, -8], [8, 2, 0, 0])).tolist()
         zeta = a / alpha
-        V = (
-            0.5
-            / kappa
-            / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, Standard(alpha, (alpha - 1.0) / alpha))[1])
-        )
+        V = 0.5 / kappa / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, standard(alpha))[1])
         s = (small, 1.0 - small, float(rng.random()), 1.2)[rng.integers(4)]
         scene = vr.Scene(alpha, kappa, mu)
         delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star

@@ -32,9 +32,9 @@ def material(alpha: float) -> Any:
 def inverses(alpha: float) -> Any:
     """The record of one material and of the inverses of its law, for this thread alone."""
     from .kernels.law.inverses import inverses_of
-    from .kernels.law.standard import Standard
+    from .kernels.law.standard import standard
 
-    return _found(_kept.inverses, alpha, lambda alpha: inverses_of(Standard(alpha, (alpha - 1.0) / alpha)))
+    return _found(_kept.inverses, alpha, lambda alpha: inverses_of(standard(alpha)))
 
 
 def _found(kept: OrderedDict[float, Any], alpha: float, make: Callable[[float], Any]) -> Any:

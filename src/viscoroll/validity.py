@@ -50,10 +50,10 @@ class Validity(NamedTuple):
 def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
     """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments."""
     from .kernels.law.length import contact_length
-    from .kernels.law.material import Standard, generators
+    from .kernels.law.material import generators, standard
 
     def state(alpha: float, kappa: float, V: float) -> tuple[float, float]:
-        material, u = Standard(alpha, (alpha - 1.0) / alpha), kappa * abs(V)
+        material, u = standard(alpha), kappa * abs(V)
         lam, epsilon = 1.0, 0.0
         if u > 0.0:
             lam, _ = contact_length(u, material)

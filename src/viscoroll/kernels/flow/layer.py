@@ -180,7 +180,7 @@ def _start(onset, nodes):
     if not onset.entering:
         return _LONGEST
     # the law bends where the stick zone is as small as eta = 1/alpha, and like eta ln eta from 0 on
-    return max(min(0.25 / (scene.material.alpha * zeta), _FIRST), _LEAST)
+    return max(min(0.25 * scene.material.tau / zeta, _FIRST), _LEAST)
 
 
 @kernel

@@ -110,7 +110,7 @@ def _stick_outputs(at, tau_out, until, stick, entry, need, flow, out):
     """Outputs in partial slip up to ``until``; returns the next column."""
     frame = stick.frame
     to_lose = manifold_loss(entry.lam, flow.table) + entry.loss if need >= LOSS else 0.0
-    slow_rate = flow.scene.material.c / (1.0 + flow.scene.j)
+    slow_rate = flow.scene.material.T_mean / (1.0 + flow.scene.j)
     layer_end = stick.tau + LAYER_END / entry.rate
     while at < tau_out.size and tau_out[at] <= until:
         elapsed = tau_out[at] - stick.tau
@@ -137,7 +137,7 @@ def _stick(at, tau_out, stick, entry, request, flow, out):
     layer_end = stick.tau + LAYER_END / entry.rate
     if at < tau_out.size and tau_out[at] < layer_end and not has_layer(stick.v, flow):
         return NOT_SERVED, np.nan
-    slow_rate = flow.scene.material.c / (1.0 + flow.scene.j)
+    slow_rate = flow.scene.material.T_mean / (1.0 + flow.scene.j)
     resting, end = np.inf, tau_out[tau_out.size - 1]
     if request.rest > 0.0:
         resting = stick.tau + (entry.lam - request.rest_lambda) / slow_rate

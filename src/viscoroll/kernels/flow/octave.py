@@ -76,7 +76,7 @@ def _gained(onset, reached):
 @kernel
 def _join(onset, reached, there, table, whole):
     """What a motion has in common with the slow manifold, from ``there``, the same where it goes on."""
-    slow_rate = onset.scene.material.c / (1.0 + onset.scene.j)
+    slow_rate = onset.scene.material.T_mean / (1.0 + onset.scene.j)
     lam = there.lam + slow_rate * reached.E / onset.rate
     x, angle, loss = _gained(onset, reached)
     slow_x, slow_angle = manifold_path(lam, there.lam, slow_rate, table)

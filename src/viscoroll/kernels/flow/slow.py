@@ -78,7 +78,7 @@ def _slow_node(b, n, y, length, powers, scene, columns):
         D = powers[k] + t * D
     _, _, V, delta, rate, _, _, _, q_over_V = branch_rates(y_there, D, np.sign(D), scene)
     pace = -0.5 * width(b, _LOW) / (v * rate)
-    columns[LAMBDA, n], columns[DELTA, n] = scene.material.c / (1.0 + scene.j) * pace, delta
+    columns[LAMBDA, n], columns[DELTA, n] = scene.material.T_mean / (1.0 + scene.j) * pace, delta
     columns[X_TO_GO, n], columns[ANGLE_TO_GO, n] = V * pace, V * (1.0 + delta) * pace
     columns[LOSS_TO_GO, n] = V * delta * V * q_over_V * pace
     return rate < 0.0 and abs(D) < np.exp(y_there)

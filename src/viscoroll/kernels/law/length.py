@@ -25,7 +25,7 @@ def near_length(kappa_V, material, low):
 
     ``low`` = alpha^(-1/2), the least that it can be.
     """
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     w = 2.0 * kappa_V
     # lam^2 + 2 w lam h = 1 with h between its limits c alpha zeta/2 and c/2
     start = c * 0.5 * w
@@ -43,7 +43,7 @@ def near_length(kappa_V, material, low):
 @kernel(inline=True)
 def at_an_end(w, low, material):
     """Whether the length is that at rest, or that at high speed, to rounding."""
-    return material.c * w < _SLOW or material.alpha * low < _FAST * w
+    return material.T_mean * w < _SLOW or low < _FAST * w * material.tau
 
 
 @kernel(inline=True)
@@ -80,7 +80,7 @@ def contact_solution(guess, kappa_V, material):
     w = 2.0 * kappa_V
     low, high = 1.0 / np.sqrt(material.alpha), 1.0
     if at_an_end(w, low, material):
-        lam = high if material.c * w < _SLOW else low
+        lam = high if material.T_mean * w < _SLOW else low
         g, h, dg, _ = generator_slopes(lam / w, material)
         return lam, lam / w, g, h, dg, OK
     lam, per_w = guess, 1.0 / w

@@ -30,6 +30,13 @@ _ROUNDS = 3
 _ROW_R, _ROW_K, PLACES = 0, TOGETHER, 2 * TOGETHER
 
 
+@kernel(inline=True)
+def _material(i, block):
+    """The material of state i."""
+    alpha = block[ALPHA + i]
+    return Standard(alpha, block[_C + i], 1.0 / alpha)
+
+
 @kernel
 def _pieces(count, block, place):
     """Values of the polynomials of r(alpha z) and k(z) at z = _Z, alpha = _A, and 1/(alpha z)."""
@@ -54,7 +61,7 @@ def _second_slopes(i, c, block):
     r, r_complement = r_from(block[_AT_R + i], alpha * z, block[_AT_R + i] * per_x)
     k, k_complement = k_from(block[_AT_K + i], z, block[_AT_K + i] * per_z)
     s, dk = slopes_of(r, r_complement, k, k_complement, per_x, per_z)
-    return assemble(per_z, per_x, r, k, s, dk, Standard(alpha, c))
+    return assemble(per_z, per_x, r, k, s, dk, Standard(alpha, c, 1.0 / alpha))
 
 
 @kernel
@@ -83,15 +90,20 @@ def solve_lengths(count, block, place):
     for i in range(count):
         material, w = standard(block[ALPHA + i]), 2.0 * block[KAPPA_V + i]
         low = 1.0 / np.sqrt(material.alpha)
-        block[_C + i], block[_LOW + i], block[_PER_W + i], block[STATUS + i] = material.c, low, 1.0 / w, NOT_CONVERGED
+        block[_C + i], block[_LOW + i], block[_PER_W + i], block[STATUS + i] = (
+            material.T_mean,
+            low,
+            1.0 / w,
+            NOT_CONVERGED,
+        )
         inside += 0 if at_an_end(w, low, material) else 1
     if inside:
         for i in range(count):
-            block[LAM + i] = near_length(block[KAPPA_V + i], Standard(block[ALPHA + i], block[_C + i]), block[_LOW + i])
+            block[LAM + i] = near_length(block[KAPPA_V + i], _material(i, block), block[_LOW + i])
         _length_steps(count, block, place)
         _length_steps(count, block, place)
     for i in range(count):
-        material, kappa_V, low = Standard(block[ALPHA + i], block[_C + i]), block[KAPPA_V + i], block[_LOW + i]
+        material, kappa_V, low = _material(i, block), block[KAPPA_V + i], block[_LOW + i]
         if block[STATUS + i] != OK or at_an_end(2.0 * kappa_V, low, material):
             found = contact_solution(near_length(kappa_V, material, low), kappa_V, material)
             block[LAM + i], block[ZETA + i], block[G + i], block[H + i], block[DG + i], block[STATUS + i] = found
@@ -108,7 +120,7 @@ def _root_steps(count, some, block, place):
     _pieces(count, block, place)
     for n in range(count):
         z, y, c = block[_Z + n], block[_NOW_Y + n], block[_NOW_C + n]
-        low, high = root_bracket(y, Standard(block[_A + n], c))
+        low, high = root_bracket(y, Standard(block[_A + n], c, 1.0 / block[_A + n]))
         new, g, h, _, _ = root_step(z, y, _second_slopes(n, c, block), low, high)
         block[_AT_R + n], block[_AT_K + n], block[_PER_X + n] = new, g, h
         block[_Z + n] = 1.0 if small_step(z, new) and z >= K_LEAST else 0.0

@@ -1,6 +1,8 @@
-"""A material as the contact law sees it: three functions of z, and their slopes.
+"""A material as the contact law sees it: four functions of z, and their slopes.
 
-    F = z + g      H = z^2 + 2 z h      M = V m, Eq. (16)
+    F = z + g      H = z^2 + 2 z h      M = V m, Eq. (16)      b = 2 z m/(lam H'), lam = z H^(-1/2)
+
+The last is that of the slow manifold: D = zeta - eta is proportional to it in slow rolling.
 
 All that the law and the motion know of a material they read here, from one of two kinds of record:
 :class:`Standard`, an alpha, whose functions are Bessel ratios; and :class:`Tabulated`, polynomials in a table.
@@ -36,7 +38,7 @@ generators = _either("generators", 1)
 generator_slopes = _either("generator_slopes", 1)
 #: (g, h, g', h', g'', h'') at z, all 0 for z <= 0
 second_slopes = _either("second_slopes", 1)
-#: (g, h, g', h', g'', h'', m, m') at z = zeta
+#: (g, h, g', h', m, m', b, b') at z = zeta
 at_contact = _either("at_contact", 1)
 #: (g, h, h', m) at z > 0
 at_slide = _either("at_slide", 1)

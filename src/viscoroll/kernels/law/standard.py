@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
 from ..compile.jit import kernel
 from ..numerics.nodes import gauss
@@ -18,22 +20,28 @@ GAUSS_X, GAUSS_W = gauss(5)
 
 
 class Standard(NamedTuple):
-    """One relaxation time: alpha = T_epsilon/T_sigma, c = (alpha - 1)/alpha."""
+    """One relaxation time.
+
+    alpha : instantaneous over long-time modulus, T_epsilon/T_sigma; lam falls to alpha^(-1/2) at high speed
+    T_mean : c, the limit of m at low speed: V' = -T_mean V/(1 + j) at last; g < T_mean/2; 0 in an elastic material
+    tau : T_sigma, the least relaxation time: on this scale the law bends where eta leaves 0
+    """
 
     alpha: float
-    c: float
+    T_mean: float
+    tau: float
 
 
 @kernel(inline=True)
 def standard(alpha):
     """The material of this alpha."""
-    return Standard(alpha, (alpha - 1.0) / alpha)
+    return Standard(alpha, (alpha - 1.0) / alpha, 1.0 / alpha)
 
 
 @kernel(inline=True)
 def generators(z, material):
     """(g, h) at z: epsilon zeta = g, H = z^2 + 2 z h; 0 for z <= 0 (no stick zone)."""
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     if c == 0.0 or z <= 0.0:
         return 0.0, 0.0
     r, _ = ratio_r(alpha * z)
@@ -44,22 +52,9 @@ def generators(z, material):
 
 
 @kernel(inline=True)
-def values(z, material):
-    """(g, h, m) at z > 0."""
-    alpha, c = material.alpha, material.c
-    x = alpha * z
-    r, _ = ratio_r(x)
-    k, _ = ratio_k(z)
-    p = r * k
-    share = c / (1.0 + p)
-    h = share * r
-    return share * p, h, share * (ratio_i2(x, r) / (1.0 + 2.0 * h / z) + p)
-
-
-@kernel(inline=True)
 def generator_slopes(z, material):
     """(g, h, g', h') at z, all 0 for z <= 0."""
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     if c == 0.0 or z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     _, r, k, s, dk, _, _ = ratios_and_slopes(z, alpha)
@@ -74,7 +69,7 @@ def generator_slopes(z, material):
 @kernel(inline=True)
 def second_slopes(z, material):
     """(g, h, g', h', g'', h'') at z, by differentiating the Riccati equations."""
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     if c == 0.0 or z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     _, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
@@ -84,7 +79,7 @@ def second_slopes(z, material):
 @kernel(inline=True)
 def assemble(per_z, per_x, r, k, s, dk, material):
     """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'; per_z = 1/z, per_x = 1/(alpha z)."""
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     dr = alpha * s
     ddr = alpha * alpha * ((r * per_x - s) * per_x - 2.0 * r * s)
     ddk = 2.0 * k * dk + (dk - k * per_z) * per_z
@@ -104,7 +99,7 @@ def assemble(per_z, per_x, r, k, s, dk, material):
 @kernel
 def moment_of(zeta, lam, g, h, material):
     """``moment_factor`` from g and h at zeta: p = g/(c - g), r = h/(c - g).  Every term is positive."""
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     if c == 0.0:
         return 0.0
     rest = c - g  # c/(1 + p) >= c/2
@@ -113,26 +108,30 @@ def moment_of(zeta, lam, g, h, material):
 
 @kernel(inline=True)
 def at_contact(z, material):
-    """(g, h, g', h', g'', h'', m, m') at z = zeta from one pair of ratios; M = V m."""
-    alpha, c = material.alpha, material.c
+    """(g, h, g', h', m, m', b, b') at z = zeta from one pair of ratios; M = V m."""
+    alpha, c = material.alpha, material.T_mean
     if c == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     x, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
-    g, h, dg, dh, ddg, ddh = assemble(per_z, per_x, r, k, s, dk, material)
+    g, h, dg, dh, _, ddh = assemble(per_z, per_x, r, k, s, dk, material)
     i2 = ratio_i2(x, r)
     lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
     whole = 1.0 / (1.0 + r * k)
-    d_lam2 = -2.0 * lam2 * lam2 * (dh - h * per_z) * per_z
+    bend = (dh - h * per_z) * per_z
+    d_lam2 = -2.0 * lam2 * lam2 * bend
     d_i2 = alpha * 2.0 * (r * r - i2) * per_x
     m = c * (lam2 * i2 + r * k) * whole
     dp = alpha * s * k + r * dk
-    return g, h, dg, dh, ddg, ddh, m, whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)
+    dm = whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)
+    per_U = 1.0 / (1.0 + h * per_z + dh)  # U = H'/(2 z)
+    per_lam_U = np.sqrt(1.0 + 2.0 * h * per_z) * per_U
+    return g, h, dg, dh, m, dm, per_lam_U * m, per_lam_U * (dm - m * ((bend + ddh) * per_U - bend * lam2))
 
 
 @kernel(inline=True)
 def at_slide(z, material):
     """(g, h, h', m) at z > 0."""
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     if c == 0.0:
         return 0.0, 0.0, 0.0, 0.0
     x, r, k, s, dk, _, per_z = ratios_and_slopes(z, alpha)

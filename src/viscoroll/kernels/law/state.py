@@ -100,7 +100,7 @@ def stick(speed, delta, mu, solved, delta_star, root, material):
     """
     lam, zeta, g, h, dg, _ = solved
     s = delta / delta_star
-    if material.c == 0.0 or not NEAR <= zeta <= FAR:
+    if material.T_mean == 0.0 or not NEAR <= zeta <= FAR:
         return zeta * (1.0 - s), zeta * s, 1.0 - s, s * (2.0 - s), OK
     if s < _LINEAR:
         _, _, dg, dh = generator_slopes(zeta, material)
@@ -121,7 +121,7 @@ def traction_slopes(delta, state, solved, stuck, material):
     lam, zeta, _, _, _, _ = solved
     eta, D, beta, share, _ = stuck
     speed = abs(state.V)
-    if material.c == 0.0 or not NEAR <= zeta <= FAR:
+    if material.T_mean == 0.0 or not NEAR <= zeta <= FAR:
         return 0.0, 4.0 * state.kappa * beta / lam
     # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
     A, A_eta = slope_ratio(zeta, material) / zeta, slope_ratio(eta, material) / zeta
@@ -184,7 +184,7 @@ def contact_state_at(solved, root, material, state, need, out):
 def _moment(V, kappa, solved, material, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
     lam, zeta, g, h, _, _ = solved
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     if zeta > FAR:
         out[M], out[DM_DV] = c * V, c
         return
@@ -194,7 +194,7 @@ def _moment(V, kappa, solved, material, need_slopes, out):
     elif not need_slopes:
         out[M] = V * moment_of(zeta, lam, g, h, material)
     else:
-        _, h, _, dh, _, _, m, dm = at_contact(zeta, material)
+        _, h, _, dh, m, dm, _, _ = at_contact(zeta, material)
         out[M] = V * m
         half_slope = 1.0 + (h + zeta * dh) / zeta
         out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)

@@ -25,7 +25,7 @@ def differences(zeta, eta, D, material):
     divided by zeta so that nothing underflows at the highest speeds.
     """
     ratio = eta / zeta
-    if material.c == 0.0:
+    if material.T_mean == 0.0:
         return D, (1.0 + ratio) * D
     if D > CLOSE * zeta:
         g, h = generators(zeta, material)
@@ -50,7 +50,7 @@ def stick_solution(zeta, g, h, dg, d, material):
     Given are g, h and g' at zeta.  Solved for eta; where slip is slight, so that differences
     cancel, D comes from that, or from the slopes at zeta, by a step of Newton's iteration.
     """
-    if material.c == 0.0:
+    if material.T_mean == 0.0:
         return zeta - d, d, (2.0 - d / zeta) * d, OK
     if slight(d, zeta, g):
         _, _, dg, _, ddg, _ = second_slopes(zeta, material)
@@ -104,7 +104,7 @@ def near_eta(y, zeta, g, dg):
 @kernel(inline=True)
 def root_bracket(y, material):
     """Bounds of F^-1(y)."""
-    low, high = max(y - 0.5 * material.c, 0.0), y
+    low, high = max(y - 0.5 * material.T_mean, 0.0), y
     return low, high
 
 

@@ -67,7 +67,7 @@ def unit_shape(u, w, z, material):
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
-    alpha, c = material.alpha, material.c
+    alpha, c = material.alpha, material.T_mean
     ellipse = np.sqrt(u * w)
     a = alpha * z
     if c == 0.0 or a == np.inf:

@@ -1,4 +1,4 @@
-"""A material by polynomials of z, whatever g, h and m cost: :func:`values_at` alone knows what it is made of."""
+"""A material by polynomials of z, whatever its functions cost: :func:`values_at` alone knows what it is made of."""
 
 from __future__ import annotations
 
@@ -13,30 +13,32 @@ from .standard import GAUSS_W, GAUSS_X, Standard
 
 
 class Tabulated(NamedTuple):
-    """alpha and c as of :class:`Standard`; g, h and m of z in a table (:mod:`quartet`)."""
+    """Numbers as of :class:`Standard`; g, h, m and b of z in a table (:mod:`quartet`)."""
 
     alpha: float
-    c: float
+    T_mean: float
+    tau: float
     table: Any
 
 
 def tabulated(alpha: float) -> Tabulated:
     """The material of this alpha, with nothing in its table."""
-    return Tabulated(alpha, (alpha - 1.0) / alpha, quartet.empty_table())
+    return Tabulated(*standard.standard(alpha), quartet.empty_table())
 
 
 @kernel
 def values_at(z, material):
-    """(g, h, m) at z."""
-    return standard.values(z, Standard(material.alpha, material.c))
+    """(g, h, m, b) at z."""
+    g, h, _, _, m, _, b, _ = standard.at_contact(z, Standard(material.alpha, material.T_mean, material.tau))
+    return g, h, m, b
 
 
 @kernel
 def _make(row, z, material):
     """Make the bin of z."""
     for n in range(quartet.TERMS):
-        g, h, m = values_at(quartet.node(z, n), material)
-        quartet.put(material.table, row, n, g, h, m, 0.0)
+        g, h, m, b = values_at(quartet.node(z, n), material)
+        quartet.put(material.table, row, n, g, h, m, b)
     quartet.finish(material.table, row, z)
 
 
@@ -73,17 +75,18 @@ def second_slopes(z, material):
     """(g, h, g', h', g'', h'') at z, all 0 for z <= 0."""
     if z <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    g, h, dg, dh, ddg, ddh, _, _ = at_contact(z, material)
-    return g, h, dg, dh, ddg, ddh
+    found = quartet.second_slopes(material.table, _row(z, material), quartet.offset(z))
+    g, h, _, _, dg, dh, _, _, ddg, ddh, _, _ = found
+    per = offset_slope(z)
+    return g, h, dg * per, dh * per, (ddg * per) * per, (ddh * per) * per
 
 
 @kernel(inline=True)
 def at_contact(z, material):
-    """(g, h, g', h', g'', h'', m, m') at z = zeta."""
-    found = quartet.second_slopes(material.table, _row(z, material), quartet.offset(z))
-    g, h, m, _, dg, dh, dm, _, ddg, ddh, _, _ = found
+    """(g, h, g', h', m, m', b, b') at z = zeta."""
+    g, h, m, b, dg, dh, dm, db = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
     per = offset_slope(z)
-    return g, h, dg * per, dh * per, (ddg * per) * per, (ddh * per) * per, m, dm * per
+    return g, h, dg * per, dh * per, m, dm * per, b, db * per
 
 
 @kernel(inline=True)

@@ -23,7 +23,7 @@ _NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
 def _moment(V, scene):
     """M(V), odd in V, without its slope."""
     material, kappa, _, _ = scene
-    c = material.c
+    c = material.T_mean
     if c == 0.0:
         return 0.0
     kappa_V = kappa * abs(V)
@@ -43,7 +43,7 @@ def sliding_rate(V, sigma, scene):
 def sliding(s, sigma, scene):
     """(V, V', dV/ds, M/2, delta_star V) at s >= 0."""
     material, kappa, mu, _ = scene
-    if material.c == 0.0:
+    if material.T_mean == 0.0:
         per_s = 0.5 / kappa
         V = per_s * s
         return V, sigma * mu, per_s, 0.0, mu * per_s * V
@@ -105,7 +105,7 @@ def standstill(scene):
     From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
     """
     material, kappa, mu, _ = scene
-    c = material.c
+    c = material.T_mean
     if not kappa * mu < HOLDS:
         return np.nan
     # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all

@@ -126,7 +126,7 @@ def partial_phase(entering, try_at, state, frame, clock, case):
     else:
         event, near, state, clock = radau_phase(try_at, state, frame, clock, case)
     # without rolling resistance nothing moves on the slow manifold
-    coasts = near and case.scene.material.c == 0.0
+    coasts = near and case.scene.material.T_mean == 0.0
     if near and not coasts:
         event, state, clock, try_at = slow_phase(state, frame, clock, case)
     return event, state, clock, try_at, coasts or state.first >= FAR

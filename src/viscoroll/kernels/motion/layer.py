@@ -48,7 +48,7 @@ def manifold(y, D, tolerance, scene, work):
     """
     values, slow = work.values, work.slow
     slow_start(y, 0.0, values, scene)
-    if scene.material.c == 0.0:  # without rolling resistance S = 0
+    if scene.material.T_mean == 0.0:  # without rolling resistance S = 0
         fill(0.0, slow)
         slow[N], slow[N + 1] = -_EVERYWHERE, _EVERYWHERE
         return True

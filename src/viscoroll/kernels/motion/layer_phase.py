@@ -30,7 +30,7 @@ _ROUNDING = 1e-6
 @kernel
 def first_bend(y, D, rtol, scene):
     """How far D may go on a first panel, at the bend of the law near eta = 0."""
-    return _FIRST * rtol ** (1.0 / 3.0) * (np.exp(y) - abs(D) + 1.0 / scene.material.alpha)
+    return _FIRST * rtol ** (1.0 / 3.0) * (np.exp(y) - abs(D) + scene.material.tau)
 
 
 @kernel

@@ -66,7 +66,7 @@ def coast(state, frame, clock, case):
     and delta decays.  Returns (clock, time at which the rest threshold is crossed or infinity, distance until there).
     """
     scene, sink, rest = case.scene, case.sink, case.limits.rest
-    rate = scene.material.c / (1.0 + scene.j)
+    rate = scene.material.T_mean / (1.0 + scene.j)
     V, omega, delta = speeds(state, frame.regime, scene)
     creep_rate = rate if rate > 0.0 else relaxation_at_rest(V, scene)
     crossing, fastest, at = np.inf, max(abs(V), abs(omega)), clock.at

@@ -31,28 +31,22 @@ _NEAR = 1e-3
 
 
 @kernel(inline=True)
-def leading_order(zeta, h, dh, ddh, m, dm, scene):
-    """(D0, dD0/d ln zeta): the slow manifold to leading order, linear in D.
+def leading_order(zeta, b, db, scene):
+    """(D0, dD0/d ln zeta): the slow manifold to leading order, linear in D, from b and its slope.
 
     Q = -M (1 - j)/(2 (1 + j)) with Q = mu D H'/H.
     """
     _, kappa, mu, j = scene
-    per = 1.0 / zeta
-    share = h * per
-    square = 1.0 + 2.0 * share  # 1/lam^2
-    U = 1.0 + share + dh  # H'/(2 zeta)
-    per_U = 1.0 / U
-    bend = (dh - share) * per
-    factor = -(1.0 - j) / (8.0 * (1.0 + j) * kappa * mu) * np.sqrt(square) * per_U
-    return factor * m, factor * zeta * (dm - m * ((bend + ddh) * per_U - bend / square))
+    factor = -(1.0 - j) / (8.0 * (1.0 + j) * kappa * mu)
+    return factor * b, factor * (zeta * db)
 
 
 @kernel
 def slow_D(y, scene):
     """(D0, dD0/dy) at y = ln zeta."""
     zeta = np.exp(y)
-    _, h, _, dh, _, ddh, m, dm = at_contact(zeta, scene.material)
-    return leading_order(zeta, h, dh, ddh, m, dm, scene)
+    _, _, _, _, _, _, b, db = at_contact(zeta, scene.material)
+    return leading_order(zeta, b, db, scene)
 
 
 @kernel(inline=True)
@@ -72,8 +66,7 @@ def partial_rates(y, offset, scene):
     """(y', offset', V, delta, V'/V, d(y', offset', delta)/d offset, D; d offset' to leading order in V)."""
     zeta = np.exp(y)
     contact = at_contact(zeta, scene.material)
-    _, h, _, dh, _, ddh, m, dm = contact
-    D0, D0_y = leading_order(zeta, h, dh, ddh, m, dm, scene)
+    D0, D0_y = leading_order(zeta, contact[6], contact[7], scene)
     D = D0 + offset
     dy, dD, V, delta, rate, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, scene)
     return dy, dD - D0_y * dy, V, delta, rate, dy_D, dD_D - D0_y * dy_D, delta_D, D
@@ -105,7 +98,7 @@ def stiff_rates(y, D, sign, scene):
 def _rates(zeta, D, sign, contact, scene):
     """(y', D', V, delta, V'/V, d(y', D', delta)/dD, Q/V); that of D' to leading order in V."""
     material, kappa, mu, j = scene
-    g, h, dg, dh, _, _, m, _ = contact
+    g, h, dg, dh, m, _, _, _ = contact
     size = sign * D
     g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, material)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, material)

@@ -48,7 +48,7 @@ _HELD = 0.1
 def choose_pole(s, sigma, scene):
     """The pole of the panels from s on."""
     material, kappa, mu, _ = scene
-    c = material.c
+    c = material.T_mean
     standing = standstill(scene) if sigma > 0.0 else np.nan
     # beyond a second such speed V rises
     if (standing - s) * sliding(s, sigma, scene)[1] >= 0.0:
