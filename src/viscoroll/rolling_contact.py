@@ -260,7 +260,7 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
-    from .kernels.law.stress_loop import stress_loop
+    from .kernels.law.stress_loop import Points, stress_loop
 
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
@@ -277,7 +277,8 @@ def stress(
     def work(start: int, stop: int) -> None:
         mirrored = mirror_of(start, stop) * x_of(start, stop)
         mirrored.flags.writeable = False  # as all that a kernel reads, see elements
-        stress_loop(mirrored, *(part(start, stop) for part in others), p[start:stop], tau[start:stop], 0, stop - start)
+        points = Points(mirrored, *(part(start, stop) for part in others))
+        stress_loop(points, p[start:stop], tau[start:stop], 0, stop - start)
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)

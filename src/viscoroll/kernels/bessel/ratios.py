@@ -82,7 +82,7 @@ _LN2 = 0.69314718055994530942
 @kernel
 def polynomial(row, t):
     """Polynomial of degree 8 with the coefficients ``row``."""
-    rest = septic(t, row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8])
+    rest = septic(t, (row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8]))
     return fma(t, rest, row[0])
 
 

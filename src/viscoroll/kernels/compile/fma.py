@@ -31,9 +31,9 @@ fma = _interpreted if numba.config.DISABLE_JIT else _fused
 
 
 @kernel(inline=True)
-def septic(t, c0, c1, c2, c3, c4, c5, c6, c7):
-    """c0 + c1 t + ... + c7 t^7, by Estrin's scheme: its parts do not wait for one another."""
+def septic(t, c):
+    """c[0] + c[1] t + ... + c[7] t^7, by Estrin's scheme: its parts do not wait for one another."""
     t2 = t * t
-    low = fma(t2, fma(t, c3, c2), fma(t, c1, c0))
-    high = fma(t2, fma(t, c7, c6), fma(t, c5, c4))
+    low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))
+    high = fma(t2, fma(t, c[7], c[6]), fma(t, c[5], c[4]))
     return fma(t2 * t2, high, low)

@@ -8,22 +8,15 @@ from __future__ import annotations
 
 from decimal import Decimal
 
-import numpy as np
-
 from ..compile.fma import fma, septic
 from ..compile.jit import kernel
+from ..numerics.bins import bin_number, bin_offset
 from ..numerics.nodes import Interpolation, radau
 from . import layout
 
 N = layout.COEFFICIENTS
 BINS = layout.BINS
 HALF = 0.5 / BINS
-_SHIFT = 52 - layout.BIN_BITS
-MANTISSA = (1 << 52) - 1
-_BIN_MASK = (BINS - 1) << _SHIFT
-ONE = 1023 << 52
-_HALF_BIN = 1 << (_SHIFT - 1)
-
 
 _NODES = Interpolation(radau(N, -1))
 NODES = _NODES.nodes
@@ -36,9 +29,7 @@ TO_NODES, TO_END = _NODES.integrals(_NODES.exact), _NODES.integrals([Decimal(1)]
 @kernel(inline=True)
 def bits_and_offset(x):
     """(bits of octave and bin, t) of x > 0."""
-    bits = np.float64(x).view(np.int64)
-    centre = np.int64((bits & _BIN_MASK) | (ONE + _HALF_BIN)).view(np.float64)
-    return bits >> _SHIFT, np.int64((bits & MANTISSA) | ONE).view(np.float64) - centre
+    return bin_number(x, layout.BIN_BITS), bin_offset(x, layout.BIN_BITS)
 
 
 @kernel
@@ -66,7 +57,7 @@ def polynomial(coefficients, at, t):
     """Polynomial whose coefficients start at ``at``."""
     low = (coefficients[at], coefficients[at + 1], coefficients[at + 2], coefficients[at + 3])
     high = (coefficients[at + 4], coefficients[at + 5], coefficients[at + 6], coefficients[at + 7])
-    return septic(t, *low, *high)
+    return septic(t, low + high)
 
 
 @kernel

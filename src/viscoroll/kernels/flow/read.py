@@ -13,8 +13,9 @@ import numpy as np
 from ..compile.fma import fma
 from ..compile.jit import kernel
 from ..law.standard import GAUSS_W, GAUSS_X
+from ..numerics.bins import bin_number, bin_offset
 from . import layout
-from .fit import MANTISSA, ONE, bits_and_offset, polynomial
+from .fit import bits_and_offset, polynomial
 from .records import Entry
 
 PLUS, MINUS, CROSS = range(3)
@@ -198,21 +199,17 @@ def _fast_bin(E, low):
     """(bin, t) of 0 <= E < 2**E_HIGH in a layer whose first bin is [0, 2**low)."""
     if E < 2.0**low:
         return np.int64(0), E * 2.0**-low - 0.5
-    bits = np.float64(E).view(np.int64)
-    m = np.int64((bits & MANTISSA) | ONE).view(np.float64)
-    octave = (bits >> 52) - 1023
+    octave = bin_number(E, 0) - 1023
     if octave < 0:
-        return 1 + octave - low, m - 1.5
-    half = np.int64(m >= 1.5)
-    return 1 - low + 2 * octave + half, m - 1.25 - 0.5 * half
+        return 1 + octave - low, bin_offset(E, 0)
+    return 1 - low + bin_number(E, 1) - 2 * 1023, bin_offset(E, 1)
 
 
 @kernel
 def layer_place(family, v, E, flow):
     """(Place in the table, t, s) of the layer behind the entry of a family at v = kappa V0."""
-    bits = np.float64(v).view(np.int64)
-    t = np.int64((bits & MANTISSA) | ONE).view(np.float64) - 1.5
-    octave = (bits >> 52) - (1023 + flow.first + LAYER_SKIP)
+    t = bin_offset(v, 0)
+    octave = bin_number(v, 0) - (1023 + flow.first + LAYER_SKIP)
     low, bins, start = layout.E_LOW, layout.SHAPES.layer_plus[1], layout.STARTS.layer_plus
     if family == MINUS:
         start = layout.STARTS.layer_minus

@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from ..compile.jit import kernel
 from .material import standard
 from .stress import stress_at
 
 
+class Points(NamedTuple):
+    """Arrays of what :func:`stress_at` asks for: one value, or one a point; x points ahead of the axis."""
+
+    x: Any
+    kappa: Any
+    mu: Any
+    lam: Any
+    epsilon: Any
+    beta: Any
+    zeta: Any
+    alpha: Any
+
+
+@kernel(inline=True)
+def _own(array, i):
+    return array[min(i, array.size - 1)]
+
+
 @kernel
-def stress_loop(x, kappa, mu, lam, epsilon, beta, zeta, alpha, p, tau, start, stop):
-    """p/E' and |tau|/E' at points start..stop; x points ahead of the axis."""
+def stress_loop(points, p, tau, start, stop):
+    """p/E' and |tau|/E' at points start..stop."""
     for i in range(start, stop):
         p[i], tau[i] = stress_at(
-            x[min(i, x.size - 1)], kappa[min(i, kappa.size - 1)], mu[min(i, mu.size - 1)],
-            lam[min(i, lam.size - 1)], epsilon[min(i, epsilon.size - 1)], beta[min(i, beta.size - 1)],
-            zeta[min(i, zeta.size - 1)], standard(alpha[min(i, alpha.size - 1)]),
+            _own(points.x, i), _own(points.kappa, i), _own(points.mu, i), _own(points.lam, i),
+            _own(points.epsilon, i), _own(points.beta, i), _own(points.zeta, i), standard(_own(points.alpha, i)),
         )  # fmt: skip
