@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from memory import forget
+from processes import printed
 from refusals import refused
 
 import viscoroll as vr
@@ -228,6 +229,32 @@ def test_speeds_beyond_all_tables_are_integrated():
         assert not mapped.flow.any(), (kappa, speed)
         assert np.array_equal(mapped.V, rolled.V, equal_nan=True)
         assert np.array_equal(mapped.status, rolled.status)
+
+
+def test_a_layer_that_decays_to_rounding_is_in_the_map():
+    """With j = 1 the slow manifold is delta = 0: behind a large alpha, delta falls below its rounding and passes 0."""
+    scene = vr.Scene(2.958e10, 1.316, 1.096, 1.0, 1.0)
+    V0, omega0, t = np.array([1.0, 0.5, 0.2]), np.array([0.2, 1.0, 0.3]), np.array([0.3, 1.0, 2.0, 9.0])
+    mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-6)
+    assert mapped.flow_problem == ""
+    assert mapped.flow.all()
+    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-10)
+    for name in ("V", "omega"):
+        exact = getattr(rolled, name)
+        np.testing.assert_allclose(getattr(mapped, name), exact, rtol=mapped.flow_error, atol=1e-300)
+
+
+def test_a_map_is_filled_within_its_arrays():
+    """For any kappa, and any octave that is served: with numba's check of every index, in a process of its own."""
+    script = """
+from viscoroll.motion.flow import build
+for kappa in (1e250, 1e300, 1e-250, 2.9):
+    for octave in (-16, 0, 14):
+        made = build((11.0, kappa, 0.2, 0.5), octave)
+        assert (made.problem == "") == (kappa == 2.9), (kappa, octave, made.problem)
+        assert made.problem or 0.0 < made.error < 1e-8, (octave, made.error)
+"""
+    printed(script, NUMBA_BOUNDSCHECK="1")
 
 
 def test_the_map_gives_way_to_a_tighter_tolerance():

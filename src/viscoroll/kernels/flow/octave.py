@@ -55,7 +55,8 @@ def _served(onset, turns, flow, values, whole):
         return False
     if not turns:
         _join(onset, end, manifold_entry(v * np.exp(end.ln_V), flow.table), flow.table, whole)
-        return not 0.0 <= crossing.E < layout.LAYER_END
+        # with j = 1 the slow manifold is delta = 0, which a motion passes by rounding alone
+        return onset.scene.j == 1.0 or not 0.0 <= crossing.E < layout.LAYER_END
     lowest, octaves = 2.0 ** (flow.first - layout.CROSS_MARGIN), layout.ENTRY_OCTAVES + 2 * layout.CROSS_MARGIN
     there = v * np.exp(crossing.ln_V)
     if not (crossing.E > 0.0 and lowest <= there < lowest * 2.0**octaves):
