@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -38,12 +39,17 @@ def run_file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def bare(monkeypatch: pytest.MonkeyPatch) -> None:
+def bare(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As after `pip install viscoroll`: no extra."""
+    before = set(sys.modules)
     for name in MISSING:
         for loaded in [each for each in sys.modules if each.partition(".")[0] == name]:
             monkeypatch.delitem(sys.modules, loaded)
         monkeypatch.setitem(sys.modules, name, None)
+    yield
+    for name in set(sys.modules) - before:  # parts without their package would serve its next import
+        if name.partition(".")[0] in MISSING:
+            del sys.modules[name]
 
 
 # --- extras ---
