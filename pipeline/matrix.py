@@ -152,18 +152,8 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     package = f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
     names = sorted({each.name for each in packages.required if each.marker is None or "extra" not in str(each.marker)})
-    test = [
-        python,
-        "-m",
-        "pytest",
-        "-p",
-        "no:cacheprovider",
-        "-o",
-        "filterwarnings=",
-        "--disable-warnings",
-        "--rootdir",
-        packages.tree,
-    ]
+    quiet = ["-p", "no:cacheprovider", "-o", "filterwarnings=", "--disable-warnings", "--show-capture=no"]
+    test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
     steps = {
         "environment": ([case.python, "-m", "venv", place / "env"], place),
         "installation": ([*pip, "-c", place / "constraints.txt", package, *TOOLS], place),

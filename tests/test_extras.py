@@ -103,6 +103,8 @@ for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "syslog
     sys.modules[name] = None
 for name in set(dir(os)) & set(sys.argv[1].split()):
     delattr(os, name)
+if hasattr(os, "process_cpu_count"):
+    os.process_cpu_count = os.cpu_count  # as Python 3.13 has it there
 import viscoroll
 for module in pkgutil.walk_packages(viscoroll.__path__, "viscoroll."):
     if not module.name.endswith("__main__"):
@@ -118,7 +120,7 @@ POSIX_ONLY = """
 O_CLOEXEC O_DIRECTORY O_NOFOLLOW chown fchmod fchown fork forkpty getegid geteuid getgid getgroups getpgid getpgrp
 getpriority getresgid getresuid getsid getuid killpg lchown lockf mkfifo mknod nice openpty pipe2 posix_fadvise
 posix_fallocate posix_spawn pread pwrite register_at_fork sched_getaffinity sched_setaffinity sendfile setgid setpgid
-setsid setuid statvfs sync sysconf uname wait wait3 wait4 process_cpu_count
+setsid setuid statvfs sync sysconf uname wait wait3 wait4
 """
 
 
