@@ -150,17 +150,20 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     binaries = place / "env" / ("Scripts" if os.name == "nt" else "bin")
     python, program = str(binaries / "python"), str(binaries / "viscoroll")
     package = f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
-    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-c", place / "constraints.txt"]
+    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
     names = sorted({each.name for each in packages.required if each.marker is None or "extra" not in str(each.marker)})
-    test = [python, "-m", "pytest", "-p", "no:cacheprovider", "-o", "filterwarnings=", "--rootdir", packages.tree]
+    quiet = ["-p", "no:cacheprovider", "-o", "filterwarnings=", "--disable-warnings", "--show-capture=no"]
+    test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
     steps = {
         "environment": ([case.python, "-m", "venv", place / "env"], place),
-        "installation": ([*pip, package, *TOOLS], place),
+        "installation": ([*pip, "-c", place / "constraints.txt", package, *TOOLS], place),
         "versions": ([python, "-c", _LIBRARIES, *names], place / "work"),
         "program": ([program, *ASKED], place / "work"),
         "tests": ([*test, *(("-n", "2") if case.suite else SAMPLE)], packages.tree),
     }
-    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    # without PYTHONDONTWRITEBYTECODE: pip compiles nothing ahead, so what is imported is to be kept
+    dropped = ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
+    environment = {name: value for name, value in os.environ.items() if name not in dropped}
     environment["VISCOROLL_CACHE_DIR"] = str(place / "cache")
     told: dict[str, str] = {}
     for name, (command, where) in steps.items():

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -38,12 +39,17 @@ def run_file(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def bare(monkeypatch: pytest.MonkeyPatch) -> None:
+def bare(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As after `pip install viscoroll`: no extra."""
+    before = set(sys.modules)
     for name in MISSING:
         for loaded in [each for each in sys.modules if each.partition(".")[0] == name]:
             monkeypatch.delitem(sys.modules, loaded)
         monkeypatch.setitem(sys.modules, name, None)
+    yield
+    for name in set(sys.modules) - before:  # parts without their package would serve its next import
+        if name.partition(".")[0] in MISSING:
+            del sys.modules[name]
 
 
 # --- extras ---
@@ -97,6 +103,8 @@ for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "syslog
     sys.modules[name] = None
 for name in set(dir(os)) & set(sys.argv[1].split()):
     delattr(os, name)
+if hasattr(os, "process_cpu_count"):
+    os.process_cpu_count = os.cpu_count  # as Python 3.13 has it there
 import viscoroll
 for module in pkgutil.walk_packages(viscoroll.__path__, "viscoroll."):
     if not module.name.endswith("__main__"):
@@ -112,7 +120,7 @@ POSIX_ONLY = """
 O_CLOEXEC O_DIRECTORY O_NOFOLLOW chown fchmod fchown fork forkpty getegid geteuid getgid getgroups getpgid getpgrp
 getpriority getresgid getresuid getsid getuid killpg lchown lockf mkfifo mknod nice openpty pipe2 posix_fadvise
 posix_fallocate posix_spawn pread pwrite register_at_fork sched_getaffinity sched_setaffinity sendfile setgid setpgid
-setsid setuid statvfs sync sysconf uname wait wait3 wait4 process_cpu_count
+setsid setuid statvfs sync sysconf uname wait wait3 wait4
 """
 
 

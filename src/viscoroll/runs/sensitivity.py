@@ -82,7 +82,8 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     summaries = tuple(dict.fromkeys(run.settings.summaries))
     settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
     whole = replace(run, settings=settings)
-    problem = {"num_vars": len(names), "names": list(names), "bounds": [[0.0, 1.0]] * len(names)}
+    # names as an array: SALib below 1.5.2 hands them to pandas, which since 3.0 takes no list
+    problem = {"num_vars": len(names), "names": np.array(names), "bounds": [[0.0, 1.0]] * len(names)}
     outcomes, status = _outcomes(whole, _points(problem, base, run.settings.seed), threads, progress)
     refused: list[str] = []
     found = {name: _indices(whole, problem, name, values, refused) for name, values in outcomes.items()}
