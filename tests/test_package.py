@@ -16,6 +16,8 @@ from places import ROOT
 from processes import printed
 
 import viscoroll as vr
+from viscoroll.rolling_contact import FIELDS
+from viscoroll.symbols import SYMBOLS
 
 PACKAGE = Path(vr.__file__).parent
 HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}
@@ -126,3 +128,8 @@ def test_a_wheel_alone_answers(tmp_path):
     where, Q = printed(code, PYTHONPATH=str(tmp_path / "site")).split()
     assert where.startswith(str(tmp_path))
     assert float(Q) == vr.contact(vr.PAPER_SECTION_5, 0.5, delta=1e-3).Q
+
+
+def test_symbols_say_where_they_are_computed():
+    assert {symbol.computed for symbol in SYMBOLS.values() if not (PACKAGE / symbol.computed).exists()} == set()
+    assert all(SYMBOLS[name].computed for name in FIELDS if name != "full_slip")

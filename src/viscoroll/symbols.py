@@ -11,47 +11,83 @@ PAPER = (
 
 
 class Symbol(NamedTuple):
-    """A quantity: LaTeX symbol, long name, unit, range and equation of the paper."""
+    """A quantity: LaTeX symbol, long name, range, equation of the paper, and where the package computes it.
+
+    ``computed`` is a file, or empty for a quantity that is given.
+    """
 
     latex: str
     long_name: str
     range: str = ""
     equation: str = ""
+    computed: str = ""
     units: str = "1"
 
 
 SYMBOLS = {
-    "alpha": Symbol(r"\alpha", "ratio of retardation to relaxation time T_epsilon/T_sigma", ">= 1", "Sect. 3.1"),
-    "kappa": Symbol(r"\kappa", "ratio of cylinder radius to contact length at rest R/l0", "> 0", "Sect. 3.1"),
+    "alpha": Symbol(
+        r"\alpha", "ratio of retardation to relaxation time T_epsilon/T_sigma", ">= 1", "Sect. 3.1", "scene.py"
+    ),
+    "kappa": Symbol(
+        r"\kappa", "ratio of cylinder radius to contact length at rest R/l0", "> 0", "Sect. 3.1", "scene.py"
+    ),
     "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
-    "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)"),
-    "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)"),
-    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1"),
-    "omega": Symbol(r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1"),
+    "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)", "scene.py"),
+    "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)", "scene.py"),
+    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "omega": Symbol(
+        r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1", "kernels/motion/integrate.py"
+    ),
     "t": Symbol("t", "time over T_epsilon", ">= 0", "Sect. 4"),
-    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)"),
-    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)"),
-    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)"),
-    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)"),
-    "lam": Symbol(r"\lambda", "contact length over contact length at rest", "[alpha^(-1/2), 1]", "Eq. (6)"),
-    "epsilon": Symbol(r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)"),
-    "zeta": Symbol(r"\zeta", "time to travel half the contact over T_epsilon", "> 0", "Eq. (7)"),
-    "beta": Symbol(r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)"),
-    "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)"),
-    "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)"),
+    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)", "kernels/motion/path.py"),
+    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)", "kernels/motion/path.py"),
+    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/law/state.py"),
+    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/law/state.py"),
+    "lam": Symbol(
+        r"\lambda",
+        "contact length over contact length at rest",
+        "[alpha^(-1/2), 1]",
+        "Eq. (6)",
+        "kernels/law/length.py",
+    ),
+    "epsilon": Symbol(
+        r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)", "kernels/law/state.py"
+    ),
+    "zeta": Symbol(
+        r"\zeta", "time to travel half the contact over T_epsilon", "> 0", "Eq. (7)", "kernels/law/length.py"
+    ),
+    "beta": Symbol(
+        r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/law/stick.py"
+    ),
+    "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
+    "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/law/standard.py"),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
-    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)"),
-    "kappa_M": Symbol(r"\kappa M", "kappa times rolling resistance moment over P R", ">= 0", "Eq. (16)"),
-    "p": Symbol("p/E'", "contact pressure over E'", ">= 0", "Eq. (11)"),
-    "tau": Symbol(r"\tau/E'", "shear stress on the cylinder over E'", "|tau| <= mu p", "Eqs. (12), (13)"),
+    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/law/stick.py"),
+    "kappa_M": Symbol(
+        r"\kappa M", "kappa times rolling resistance moment over P R", ">= 0", "Eq. (16)", "kernels/law/standard.py"
+    ),
+    "p": Symbol("p/E'", "contact pressure over E'", ">= 0", "Eq. (11)", "kernels/law/stress.py"),
+    "tau": Symbol(
+        r"\tau/E'", "shear stress on the cylinder over E'", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/law/stress.py"
+    ),
     "slip_loss": Symbol(
-        r"E_\mathrm{slip}", "energy lost in slip since t = 0 over m (R/T_epsilon)^2", ">= 0", "Eq. (22)"
+        r"E_\mathrm{slip}",
+        "energy lost in slip since t = 0 over m (R/T_epsilon)^2",
+        ">= 0",
+        "Eq. (22)",
+        "kernels/motion/losses.py",
     ),
     "rolling_loss": Symbol(
-        r"E_\mathrm{roll}", "energy lost in rolling since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)"
+        r"E_\mathrm{roll}",
+        "energy lost in rolling since t = 0 over m (R/T_epsilon)^2",
+        "finite",
+        "Eq. (22)",
+        "kernels/motion/losses.py",
     ),
-    "onset_time": Symbol("t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)"),
+    "onset_time": Symbol(
+        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/motion/slide_phase.py"
+    ),
 }
 
 

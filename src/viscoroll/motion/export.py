@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,10 +10,6 @@ import xarray as xr
 from .. import __version__
 from ..errors import MOTION_STATUS, ParameterError
 from ..symbols import SYMBOLS
-
-if TYPE_CHECKING:
-    from .batch import Ensemble
-    from .single import Motion
 
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 _REGIME = {
@@ -62,7 +58,7 @@ def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
     return xr.Variable(dims, values, attributes(name))
 
 
-def motion_dataset(motion: Motion) -> xr.Dataset:
+def motion_dataset(motion: Any) -> xr.Dataset:
     """One motion over t."""
     data = {name: _variable(("t",), name, getattr(motion, name)) for name in ("V", "omega", "x", "angle", "delta")}
     data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
@@ -81,7 +77,7 @@ def motion_dataset(motion: Motion) -> xr.Dataset:
     )
 
 
-def ensemble_dataset(result: Ensemble) -> xr.Dataset:
+def ensemble_dataset(result: Any) -> xr.Dataset:
     """All motions over (motion, t)."""
     dims = ("motion", "t")
     data = {
@@ -102,7 +98,7 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
     return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
 
 
-def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:
+def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
     if not len(result):
         raise ParameterError("motions", 0, "at least one: a summary is over motions")
