@@ -1,8 +1,12 @@
-"""A material by polynomials of z, whatever its functions cost: :func:`values_at` alone knows what it is made of."""
+"""A material by polynomials of z, whatever its functions cost.
+
+The bins of one relaxation time are made where they are met; those of several are there (:mod:`series`)."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
@@ -12,6 +16,19 @@ from . import standard
 from .standard import GAUSS_W, GAUSS_X, Standard
 
 
+class Ends(NamedTuple):
+    """Several modes: the table is full but for its ends, where g, h and m are known by these numbers.
+
+    weight, log_weight : sum J_j b_j, and sum J_j b_j (ln(2/b_j) - gamma), gamma that of Euler
+    squares : sum E_i tau_i^2 + sum J_j T_j^2
+    """
+
+    known: bool
+    weight: float
+    log_weight: float
+    squares: float
+
+
 class Tabulated(NamedTuple):
     """Numbers as of :class:`Standard`; g, h, m and b of z in a table (:mod:`quartet`)."""
 
@@ -19,27 +36,49 @@ class Tabulated(NamedTuple):
     T_mean: float
     tau: float
     table: Any
+    ends: Ends
 
 
 def tabulated(alpha: float) -> Tabulated:
     """The material of this alpha, with nothing in its table."""
-    return Tabulated(*standard.standard(alpha), quartet.empty_table())
+    return Tabulated(*standard.standard(alpha), quartet.empty_table(), Ends(False, 0.0, 0.0, 0.0))
 
 
 @kernel
-def values_at(z, material):
+def _at_an_end(z, material):
+    """(g, h, m, b) where the table of several modes ends: to rounding, the first terms for z -> 0 and z -> infinity."""
+    T, ends = material.T_mean, material.ends
+    if z < material.tau:
+        half = 0.5 * material.alpha * z * z
+        bracket = ends.log_weight - ends.weight * np.log(z)
+        g, m, dh = half * bracket, half * (bracket + 0.25 * ends.weight), 0.5 * (material.alpha - 1.0)
+        h = dh * z
+    else:
+        per = 0.125 / z
+        g, h = 0.5 * T - ends.squares * per, 0.5 * T + T * T * per
+        m, dh = T - 4.0 * ends.squares * per, -T * T * per / z
+    return g, h, m, m * np.sqrt(1.0 + 2.0 * h / z) / (1.0 + h / z + dh)
+
+
+@kernel
+def _values(z, material):
     """(g, h, m, b) at z."""
+    if material.ends.known:
+        return _at_an_end(z, material)
     g, h, _, _, m, _, b, _ = standard.at_contact(z, Standard(material.alpha, material.T_mean, material.tau))
     return g, h, m, b
 
 
 @kernel
 def _make(row, z, material):
-    """Make the bin of z."""
+    """Make the bin of z; returns its row."""
+    if material.ends.known:  # the rows are those of the bins between the ends
+        row = quartet.spare_row(material.table)
     for n in range(quartet.TERMS):
-        g, h, m, b = values_at(quartet.node(z, n), material)
+        g, h, m, b = _values(quartet.node(z, n), material)
         quartet.put(material.table, row, n, g, h, m, b)
     quartet.finish(material.table, row, z)
+    return row
 
 
 @kernel(inline=True)
@@ -47,7 +86,7 @@ def _row(z, material):
     """Row of the bin of z, which is made if it is not there."""
     row, there = quartet.row_of(z, material.table)
     if rarely(not there):
-        _make(row, z, material)
+        row = _make(row, z, material)
     return row
 
 

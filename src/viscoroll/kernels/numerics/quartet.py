@@ -26,8 +26,8 @@ from .nodes import chebyshev, rounded, to_chebyshev
 
 BITS, TERMS = 3, 10
 _BINS = 1 << BITS
-#: bins that a table keeps: 32 octaves
-KEPT = 512
+#: bins that a table keeps unless told: 64 octaves; rows behind them: a bin that is not kept, and where bins are computed
+KEPT, SPARE = 512, 2
 #: a row: number of the bin (its bits), and from here on the coefficients, those of one power together
 FIRST = 4
 WIDTH = FIRST + 4 * TERMS
@@ -41,9 +41,9 @@ for _n in range(TERMS):
 _TO_POWERS /= (0.5 / _BINS) ** np.arange(TERMS)[:, None]
 
 
-def empty_table() -> NDArray[np.float64]:
-    """A table without bins; its last row is there to compute in."""
-    table = np.empty((KEPT + 1, WIDTH))
+def empty_table(kept: int = KEPT) -> NDArray[np.float64]:
+    """A table without bins, with room for ``kept``, a power of two."""
+    table = np.empty((kept + SPARE, WIDTH))
     table[:, 0] = np.nan
     return table
 
@@ -52,7 +52,7 @@ def empty_table() -> NDArray[np.float64]:
 def row_of(x, table):
     """(row, whether it holds the bin of x)."""
     number = bin_number(x, BITS)
-    row = number & (KEPT - 1)
+    row = number & (table.shape[0] - (SPARE + 1))
     return row, np.float64(table[np.uint64(row), np.uint64(0)]).view(np.int64) == number
 
 
@@ -66,6 +66,12 @@ def same_bin(x, y):
 def offset(x):
     """Offset of x from the centre of its bin."""
     return bin_offset(x, BITS)
+
+
+@kernel(inline=True)
+def spare_row(table):
+    """The row for a bin that is not kept."""
+    return table.shape[0] - SPARE
 
 
 @kernel
@@ -101,6 +107,7 @@ def finish(table, row, x):
     Only the differences from one of the values are fitted, and by way of the rapidly falling
     Chebyshev coefficients: both keep rounding out of the powers.
     """
+    scratch = table.shape[0] - 1
     centre = FIRST + 4 * (TERMS // 2)
     c0, c1, c2, c3 = table[row, centre], table[row, centre + 1], table[row, centre + 2], table[row, centre + 3]
     for n in range(TERMS):
@@ -115,9 +122,9 @@ def finish(table, row, x):
             table[row, at + 3] - c3,
         )
     for k in range(TERMS):
-        _combine(table, row, 0, _TO_CHEBYSHEV[k], KEPT, k)
+        _combine(table, row, 0, _TO_CHEBYSHEV[k], scratch, k)
     for m in range(TERMS):
-        _combine(table, KEPT, m, _TO_POWERS[m], row, m)
+        _combine(table, scratch, m, _TO_POWERS[m], row, m)
     at = FIRST
     put(table, row, 0, table[row, at] + c0, table[row, at + 1] + c1, table[row, at + 2] + c2, table[row, at + 3] + c3)
     table[row, 0] = np.int64(bin_number(x, BITS)).view(np.float64)

@@ -1,0 +1,121 @@
+"""A material of several relaxation times: g, h, m and b of z, and the table that motions and contacts read.
+
+With E(t) = 1 + sum E_i exp(-a_i t) and J(t) = 1 - sum J_j exp(-b_j t), the two forms of one material,
+
+    Q_ji = sqrt(J_j b_j E_i a_i)/(a_i - b_j)      orthogonal: Q^T t = e, t_j = sqrt(J_j T_j), e_i = sqrt(E_i tau_i)
+    r_i = r(a_i z)   k_j = k(b_j z)               the ratios of one relaxation time (:mod:`..bessel.ratios`)
+    B = 1 + sqrt(r) Q^T k Q sqrt(r)               symmetric, eigenvalues in [1, 2)
+    B x = sqrt(r) e      f = Q sqrt(r) x      X_i = e_i x_i/sqrt(r_i)
+    h = sum sqrt(r_i) e_i x_i      g = sum t_j k_j f_j      m = g + lam^2 sum X_i i2(a_i z)
+    h' = sum (a r')_i (x_i^2/r_i) - sum (b k')_j f_j^2
+
+All sums but the last are of positive terms.  For one mode this is :mod:`standard`.  The material enters contact and motion
+by these functions of one variable alone, so a table of them is made once, and nothing else knows of the modes.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from ..compile.jit import kernel
+from ..numerics import quartet
+from ..numerics.bins import bin_place
+from ..numerics.linear import factorize, substitute
+
+
+class Series(NamedTuple):
+    """Rates of relaxation and creep; strengths of relaxation times time, of creep times time, under roots; Q."""
+
+    a: Any
+    b: Any
+    e: Any
+    t: Any
+    Q: Any
+
+
+class Work(NamedTuple):
+    """Arrays of one evaluation: sqrt(r), a r', k, b k', x and f; X i2; B."""
+
+    root: Any
+    slope_r: Any
+    k: Any
+    slope_k: Any
+    x: Any
+    f: Any
+    matrix: Any
+
+
+@kernel(allocates=True)
+def _work(count):
+    return Work(
+        np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count),
+        np.empty((count, count)),
+    )  # fmt: skip
+
+
+@kernel
+def _ratios(z, series, work):
+    """Ratios and slopes of every mode; returns 1/z."""
+    for i in range(series.a.size):
+        x = series.a[i] * z
+        r, complement = ratio_r(x)
+        work.root[i], work.slope_r[i] = np.sqrt(r), series.a[i] * slope_r(x, r, complement)
+        y = series.b[i] * z
+        k, complement = ratio_k(y)
+        work.k[i], work.slope_k[i] = k, series.b[i] * slope_k(y, k, complement)
+
+
+@kernel
+def _solve(series, work):
+    """x from B x = sqrt(r) e, and f."""
+    count, matrix = series.a.size, work.matrix
+    for i in range(count):
+        for n in range(i + 1):
+            total = 0.0
+            for j in range(count):
+                total += series.Q[j, i] * work.k[j] * series.Q[j, n]
+            total *= work.root[i] * work.root[n]
+            matrix[i, n], matrix[n, i] = total, total
+        matrix[i, i] += 1.0
+        work.x[i] = work.root[i] * series.e[i]
+    factorize(matrix, count)
+    substitute(matrix, work.x, count)
+    for j in range(count):
+        total = 0.0
+        for i in range(count):
+            total += series.Q[j, i] * work.root[i] * work.x[i]
+        work.f[j] = total
+
+
+@kernel
+def values(z, series, work):
+    """(g, h, m, b) at z > 0."""
+    _ratios(z, series, work)
+    _solve(series, work)
+    g = h = dh = pressed = 0.0
+    for i in range(series.a.size):
+        root, x, f = work.root[i], work.x[i], work.f[i]
+        h += root * series.e[i] * x
+        g += series.t[i] * work.k[i] * f
+        per = x / root
+        dh += work.slope_r[i] * (per * per) - work.slope_k[i] * (f * f)
+        pressed += series.e[i] * per * ratio_i2(series.a[i] * z, root * root)
+    square = 1.0 + 2.0 * h / z  # 1/lam^2
+    m = g + pressed / square
+    return g, h, m, m * np.sqrt(square) / (1.0 + h / z + dh)
+
+
+@kernel(allocates=True, seconds=3)
+def fill(series, first, stop, table):
+    """Make the bins first..stop of z."""
+    work = _work(series.a.size)
+    for number in range(first, stop):
+        middle = bin_place(number, quartet.BITS, 0.5)
+        row, _ = quartet.row_of(middle, table)
+        for n in range(quartet.TERMS):
+            g, h, m, b = values(quartet.node(middle, n), series, work)
+            quartet.put(table, row, n, g, h, m, b)
+        quartet.finish(table, row, middle)

@@ -1,0 +1,251 @@
+"""A linear viscoelastic material as a Prony series: :class:`Prony`, in relaxation and in creep form.
+
+With moduli over the long-time modulus and times over a time T_ref of the user's,
+
+    E(t) = 1 + sum E_i exp(-a_i t)   a_i = 1/tau_i     alpha = 1 + sum E_i
+    J(t) = 1 - sum J_j exp(-b_j t)   b_j = 1/T_j       1/alpha = 1 - sum J_j
+
+with b_1 < a_1 < b_2 < ... < b_N < a_N.  The rates of one form are the zeros of a sum over the poles of the other;
+the unknown is the distance from the nearer pole, so that the gaps a_i - b_j keep all their digits, and the
+strengths are products of gaps.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import checked
+from .errors import ParameterError
+
+#: most modes of a series, longest over shortest time, and instantaneous over long-time modulus
+MOST_MODES, WIDEST, HIGHEST_ALPHA = 64, 1e20, 1e12
+#: halvings of ln(distance) until it is good to rounding, and steps of Newton's iteration behind them
+_HALVINGS, _POLISH = 64, 3
+#: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved
+_CLOSEST = 1e-300
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Both forms of one material, times descending, and the gaps between their rates.
+
+    a, b : rates of relaxation and creep, ascending; E, J : strengths; gap[j, i] = a_i - b_j.
+    """
+
+    alpha: float
+    a: NDArray[np.float64]
+    b: NDArray[np.float64]
+    E: NDArray[np.float64]
+    J: NDArray[np.float64]
+    gap: NDArray[np.float64]
+
+
+class Prony:
+    """A linear viscoelastic material by its relaxation modulus, a Prony series.
+
+    Parameters
+    ----------
+    E : strengths of the modes over the long-time modulus, >= 0; zeros are dropped.
+    tau : their relaxation times over T_ref, > 0; strengths of equal times are added.
+
+    Raises
+    ------
+    ParameterError
+        Negative strengths, times that are not positive, more than 64 modes, times that span more than
+        20 decades, or 1 + sum E above 1e12.
+
+    Notes
+    -----
+    Immutable, hashable, equal where modes and ``alpha`` are.  Nothing that is given is rescaled.
+    """
+
+    def __init__(self, E: ArrayLike, tau: ArrayLike) -> None:
+        self._relaxation: tuple[tuple[float, ...], tuple[float, ...]] | None = _series("E", E, "tau", tau)
+        self._creep: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+        self._alpha = 1.0 + math.fsum(self._relaxation[0])
+        if self._alpha > HIGHEST_ALPHA:
+            raise ParameterError("E", f"{self._relaxation[0]}", f"of a sum up to {HIGHEST_ALPHA:g}")
+
+    @classmethod
+    def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: float | None = None) -> Prony:
+        """The material by its creep compliance.
+
+        Parameters
+        ----------
+        J : strengths over the long-time compliance, >= 0, of a sum below 1.
+        T : retardation times over T_ref, > 0.
+        alpha : instantaneous over long-time modulus, 1/(1 - sum J).  Where the sum is near 1 that difference
+            has lost digits; what is given here takes its place, and must agree with it to rounding of J.
+
+        Raises
+        ------
+        ParameterError
+            As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
+        """
+        J, T = _series("J", J, "T", T)
+        rest = 1.0 - math.fsum(J)
+        if not rest > 0.0:
+            raise ParameterError("J", f"{J}", "of a sum below 1: the instantaneous modulus would be infinite")
+        given = 1.0 / rest if alpha is None else float(checked("alpha", alpha, low=1.0, high=HIGHEST_ALPHA))
+        if abs(1.0 / given - rest) > 1e-14 * (1 + len(J)):
+            raise ParameterError("alpha", alpha, f"1/(1 - sum J), here {1.0 / rest!r} to rounding")
+        if given > HIGHEST_ALPHA:
+            raise ParameterError("J", f"{J}", f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}")
+        made = cls.__new__(cls)
+        made._relaxation, made._creep, made._alpha = None, (J, T), given
+        return made
+
+    @classmethod
+    def elastic(cls) -> Prony:
+        """No modes: alpha = 1."""
+        return cls([], [])
+
+    @cached_property
+    def modes(self) -> Modes:
+        """Both forms, and the gaps between their rates."""
+        if self._relaxation is not None:
+            E, tau = (np.array(values) for values in self._relaxation)
+            a = 1.0 / tau
+            # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
+            gaps = zeros_from_poles(np.concatenate([[0.0], a]), np.concatenate([[1.0], E]), 0.0)
+            b, gap = gaps[0], -gaps[1:].T
+            return Modes(self._alpha, a, b, E, _strengths(gap, b, 1.0 / self._alpha) / b, gap)
+        assert self._creep is not None
+        J, T = (np.array(values) for values in self._creep)
+        b = 1.0 / T
+        gap = zeros_from_poles(b, J * b, 1.0 / self._alpha)
+        a = b + np.diagonal(gap)
+        return Modes(self._alpha, a, b, _strengths(gap.T, a, self._alpha) / a, J, gap)
+
+    @property
+    def alpha(self) -> float:
+        """Instantaneous over long-time modulus."""
+        return self._alpha
+
+    @property
+    def E(self) -> NDArray[np.float64]:
+        """Strengths of relaxation over the long-time modulus, slowest mode first."""
+        return _read_only(self.modes.E)
+
+    @property
+    def tau(self) -> NDArray[np.float64]:
+        """Relaxation times over T_ref, longest first."""
+        return _read_only(np.array(self._relaxation[1]) if self._relaxation is not None else 1.0 / self.modes.a)
+
+    @property
+    def J(self) -> NDArray[np.float64]:
+        """Strengths of creep over the long-time compliance, slowest mode first."""
+        return _read_only(self.modes.J)
+
+    @property
+    def T(self) -> NDArray[np.float64]:
+        """Retardation times over T_ref, longest first."""
+        return _read_only(np.array(self._creep[1]) if self._creep is not None else 1.0 / self.modes.b)
+
+    @property
+    def T_mean(self) -> float:
+        """sum J_j T_j = sum E_i tau_i over T_ref: M = V T_mean at low speed."""
+        return math.fsum(self.E * self.tau) if self._relaxation is not None else math.fsum(self.J * self.T)
+
+    def _key(self) -> tuple[Any, ...]:
+        return self._relaxation, self._creep, self._alpha
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, Prony) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def __repr__(self) -> str:
+        if self._relaxation is not None:
+            E, tau = map(list, self._relaxation)
+            return f"Prony(E={E}, tau={tau})"
+        assert self._creep is not None
+        J, T = map(list, self._creep)
+        return f"Prony.creep(J={J}, T={T}, alpha={self._alpha!r})"
+
+
+def _series(
+    strength: str, strengths: ArrayLike, time: str, times: ArrayLike
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Strengths and times as given, times descending; without zeros, equal times added up."""
+    values, each = checked(strength, strengths, low=0.0), checked(time, times, low=0.0, strict=True)
+    if values.ndim != 1 or values.shape != each.shape:
+        raise ParameterError(time, f"of shape {each.shape}", f"one time for each {strength}, of shape {values.shape}")
+    total: dict[float, float] = {}
+    for value, at in zip(values.tolist(), each.tolist(), strict=True):
+        if value > 0.0:
+            total[at] = total.get(at, 0.0) + value
+    ordered = sorted(total, reverse=True)
+    if len(ordered) > MOST_MODES:
+        raise ParameterError(time, f"{len(ordered)} times", f"at most {MOST_MODES}")
+    if ordered and not ordered[0] <= WIDEST * ordered[-1]:
+        raise ParameterError(time, f"from {ordered[-1]:g} to {ordered[0]:g}", f"within a factor of {WIDEST:g}")
+    return tuple(total[at] for at in ordered), tuple(ordered)
+
+
+def _read_only(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    values.flags.writeable = False
+    return values
+
+
+def zeros_from_poles(pole: NDArray, weight: NDArray, constant: float) -> NDArray[np.float64]:
+    """gap[j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum weight_j/(pole_j - s).
+
+    Poles ascend and weights are positive, so that the sum rises from pole to pole: one zero between two
+    neighbours, and one right of the last if ``constant`` > 0.
+    """
+    between = np.diff(pole) * 0.5
+    if constant > 0.0:  # right of all poles every term is at least -weight over the distance from the last
+        between = np.concatenate([between, [2.0 * weight.sum() / constant]]) if pole.size else between
+    count = between.size
+    left = np.arange(count)
+    spread = pole[:, None] - pole[None, :]  # from pole to pole, exact where they are neighbours
+    in_left = np.ones(count, dtype=bool)
+    middle = _sum_at(between, left, 1.0, spread, weight, constant)
+    in_left[: pole.size - 1] = middle[: pole.size - 1] >= 0.0
+    origin, side = np.where(in_left, left, left + 1), np.where(in_left, 1.0, -1.0)
+    low, high = np.log(between * _CLOSEST), np.log(between)
+    for _ in range(_HALVINGS):
+        mid = 0.5 * (low + high)
+        beyond = side * _sum_at(np.exp(mid), origin, side, spread, weight, constant) > 0.0
+        low, high = np.where(beyond, low, mid), np.where(beyond, mid, high)
+    distance = np.exp(0.5 * (low + high))
+    for _ in range(_POLISH):
+        distance = _polished(distance, origin, side, spread, weight, constant)
+    return (side * distance)[None, :] - spread[:, origin]
+
+
+def _sum_at(
+    distance: NDArray, origin: NDArray, side: Any, spread: NDArray, weight: NDArray, constant: float
+) -> NDArray[np.float64]:
+    """The sum at s = pole[origin] + side distance."""
+    return constant + (weight[:, None] / (spread[:, origin] - side * distance)).sum(axis=0)
+
+
+def _polished(
+    distance: NDArray, origin: NDArray, side: NDArray, spread: NDArray, weight: NDArray, constant: float
+) -> NDArray[np.float64]:
+    """One step of Newton's iteration for weight[origin] = distance side (the rest of the sum)."""
+    away = spread[:, origin] - side * distance
+    per, own = 1.0 / away, np.arange(weight.size)[:, None] == origin[None, :]
+    rest = constant + np.where(own, 0.0, weight[:, None] * per).sum(axis=0)
+    slope = np.where(own, 0.0, weight[:, None] * per * per).sum(axis=0)
+    value = weight[origin] - distance * side * rest
+    new = distance + value / (side * rest + distance * slope)
+    return np.where((new > 0.5 * distance) & (new < 2.0 * distance), new, distance)
+
+
+def _strengths(gap: NDArray, rate: NDArray, first: float) -> NDArray[np.float64]:
+    """first prod_i gap[j, i] / prod_{l != j} |rate_j - rate_l|, factors paired so that nothing overflows."""
+    apart = np.abs(rate[:, None] - rate[None, :])
+    np.fill_diagonal(apart, 1.0)
+    return first * np.diagonal(np.abs(gap)) * np.prod(
+        np.where(np.eye(rate.size, dtype=bool), 1.0, np.abs(gap) / apart), axis=1
+    )
