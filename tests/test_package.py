@@ -106,7 +106,7 @@ def test_kernels_import_numpy_and_numba_only():
                 names |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module.split(".")[0])
-        assert names <= {"numpy", "numba"} | set(sys.stdlib_module_names), path.name
+        assert names <= {"numpy", "numba", "llvmlite"} | set(sys.stdlib_module_names), path.name
 
 
 # --- the wheel ---

@@ -51,7 +51,7 @@ LAW = [
     ("bessel/ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),
     ("bessel/ratios.py", "K_LEAST = 2.0**-30\n", "K_LEAST = 2.0**-20\n", _RATIOS),
     ("bessel/ratios.py", "r_complement * (1.0 + r) - r * per_x", "r_complement * (1.0 - r) - r * per_x", _LAW),
-    ("compile/fma.py", "fma(t, c5, c4)", "fma(t, c4, c5)", _RATIOS),
+    ("compile/fma.py", "fma(t, c[5], c[4])", "fma(t, c[4], c[5])", _RATIOS),
     ("law/lockstep.py", "small_step(lam, new)", "small_step(lam, lam)", _LAW),
     ("law/lockstep.py", "small_step(z, new)", "small_step(z, z)", _LAW),
 ]  # fmt: skip
@@ -70,6 +70,9 @@ SLICE = [
     ("law/inverses.py", "lam * (1.0 + g / zeta)", "lam * (1.0 + g / zeta * (1.0 + 1e-9))", _SLICE),
     ("law/inverse_loop.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
     ("law/inverse_loop.py", "part, slight_status = slight_traction", "_, slight_status = slight_traction", _SLICE),
+    ("numerics/quartet.py", "ir.Constant(_FOUR, [float(k)] * 4)", "ir.Constant(_FOUR, [float(k * 1.0000001)] * 4)", _SLICE),
+    ("law/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
+    ("law/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _MOTION),
 ]  # fmt: skip
 MOTION = [
     ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),

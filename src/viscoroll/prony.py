@@ -246,6 +246,8 @@ def _strengths(gap: NDArray, rate: NDArray, first: float) -> NDArray[np.float64]
     """first prod_i gap[j, i] / prod_{l != j} |rate_j - rate_l|, factors paired so that nothing overflows."""
     apart = np.abs(rate[:, None] - rate[None, :])
     np.fill_diagonal(apart, 1.0)
-    return first * np.diagonal(np.abs(gap)) * np.prod(
-        np.where(np.eye(rate.size, dtype=bool), 1.0, np.abs(gap) / apart), axis=1
+    return (
+        first
+        * np.diagonal(np.abs(gap))
+        * np.prod(np.where(np.eye(rate.size, dtype=bool), 1.0, np.abs(gap) / apart), axis=1)
     )

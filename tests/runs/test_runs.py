@@ -258,8 +258,10 @@ def by_hand(run, values, i):
     V0, omega0 = own.pop("V0"), own.pop("omega0")
     cylinder, settings = vr.Cylinder(**own), run.settings
     rest = None if settings.rest is None else cylinder.V_from_si(settings.rest)
+    scene = cylinder.scene()
     return cylinder, vr.ensemble(
-        cylinder.scene(), cylinder.V_from_si(V0), cylinder.omega_from_si(omega0), cylinder.t_from_si(run.t),
+        scene.replace(alpha=[scene.alpha]),
+        cylinder.V_from_si(V0), cylinder.omega_from_si(omega0), cylinder.t_from_si(run.t),
         rtol=settings.rtol, rest=rest, fields=settings.fields,
     )  # fmt: skip
 

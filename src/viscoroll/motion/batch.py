@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -234,17 +234,15 @@ def _integrate_others(
     def work(start: int, stop: int) -> None:
         from ..kernels.law.material import Own
         from ..kernels.motion.loop import INFO
-        from ..kernels.motion.records import Batch, Limits
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
-        given = Own(alpha) if own else material(alpha.item())
+        one = Own(alpha) if own else material(alpha.item())
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
-        loop = _loop(tuple(FIELDS[row] for row in rows))
-        limits = Limits(rtol, rest, max_steps)
-        loop(Batch(given, *inputs), times, limits, np.array(rows, np.int64), out, info, 0, left.size)
+        given = (one, *inputs), times, (rtol, rest, max_steps), np.array(rows, np.int64), out, info
+        _roll_all(given, _among(tuple(FIELDS[row] for row in rows), *LOSSES), left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
@@ -256,12 +254,13 @@ def _among(names: tuple[str, ...], *some: str) -> bool:
     return not set(names).isdisjoint(some)
 
 
-def _loop(names: tuple[str, ...]) -> Callable:
-    """The kernel that integrates motions to these fields."""
-    if not _among(names, *LOSSES):
-        from ..kernels.motion.loop import motion_loop
+def _roll_all(given: tuple, losses: bool, count: int) -> None:
+    """Call the kernel that integrates motions, or that which finds their losses too."""
+    if losses:
+        from ..kernels.motion.loss_loop import loss_loop
 
-        return motion_loop
-    from ..kernels.motion.loss_loop import loss_loop
+        loss_loop(*given, 0, count)
+    else:
+        from ..kernels.motion.loop import NOTHING_NOTED, motion_loop
 
-    return loss_loop
+        motion_loop(*given, tuple(NOTHING_NOTED), 0, count)

@@ -20,6 +20,7 @@ from ..blocks import run_blocks
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .flow_store import FlowMap, load, path_of, save
+from .single import rolled
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows
@@ -176,20 +177,19 @@ def _rolled(
     parameters: tuple[float, ...], V0: float, omega0: float, times: NDArray, losses: bool
 ) -> tuple[NDArray, float]:
     """Outputs and onset time of a motion by the kernel that ``roll`` compiles: none is compiled for the map alone."""
-    from ..kernels.motion.integrate import integrate
     from ..kernels.motion.losses import ROWS, add_losses, loss_points
-    from ..kernels.motion.records import Limits
+    from ..kernels.motion.output import OUTPUTS
 
-    motion = kernel_scene(*parameters), 1.0, V0, omega0
-    limits, switches = Limits(_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS), np.empty((0, 2))
+    alpha, kappa, mu, j = parameters
+    start = Scene(alpha, kappa, mu, 1.0, j), V0, omega0
+    limits, switches = (_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS), np.empty((0, 2))
     out, ends = np.full((ROWS, times.size), np.nan), np.zeros(_SAMPLE_ENDS)
-    onset = integrate(*motion, times, limits, out, switches, ends)[3]
+    out[:OUTPUTS], info = rolled(*start, times, limits, (switches, ends))
     if losses:
         edges, points_at = loss_points(ends, times)
-        points = np.full((ROWS, points_at.size), np.nan)
-        integrate(*motion, points_at, limits, points, switches, np.empty(0))
-        add_losses(*motion, times, edges, points, out)
-    return out, onset
+        points, _ = rolled(*start, points_at, limits, (switches, np.empty(0)))
+        add_losses(kernel_scene(*parameters), 1.0, V0, omega0, times, edges, points, out)
+    return out, info[3]
 
 
 def _stiff_time(made: FlowMap, speed: float) -> float:

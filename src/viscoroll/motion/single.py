@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..material_tables import material
 from ..rolling_contact import Values, contact
-from ..scene import Scene, kernel_scene
+from ..scene import Scene
 from .checks import controls, output_times, start_speeds
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ _QUANTITIES = ("V", "omega", "x", "angle", "delta")
 _SWITCHES_KEPT = 1000
 #: room for the ends of steps at first
 _STEPS = 1000
+_NO_SWITCHES = np.empty((0, 2))
 
 
 class Switch(NamedTuple):
@@ -194,39 +196,45 @@ def _step_times(
     scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int
 ) -> NDArray:
     """0, the ends of the steps and the nodes between them, and the end time."""
-    from ..kernels.motion.integrate import integrate
-    from ..kernels.motion.output import OUTPUTS
-    from ..kernels.motion.records import Limits
-
     ends = np.empty(0)
     while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
         ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
-        integrate(
-            kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, end,
-            Limits(rtol, rest, max_steps), np.empty((OUTPUTS, 1)), np.empty((0, 2)), ends,
-        )  # fmt: skip
+        rolled(scene, V0, omega0, end, (rtol, rest, max_steps), (_NO_SWITCHES, ends))
     return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
 
 
 def _integrate(
     scene: Scene, V0: float, omega0: float, times: NDArray, end: float, rtol: float, rest: float, max_steps: int
 ) -> Motion:
-    from ..kernels.motion.integrate import integrate
-    from ..kernels.motion.output import OUTPUTS
-    from ..kernels.motion.records import Limits
-
     asked = times if times[-1] == end else np.append(times, end)
-    out = np.full((OUTPUTS, asked.size), np.nan)
     switches = np.empty((_SWITCHES_KEPT, 2))
-    status, steps, turns, onset_time, rest_time = integrate(
-        kernel_scene(scene.alpha, scene.kappa, scene.mu, scene.j), scene.gamma, V0, omega0, asked,
-        Limits(rtol, rest, max_steps), out, switches, np.empty(0),
-    )  # fmt: skip
+    out, (status, steps, turns, onset_time, rest_time) = rolled(
+        scene, V0, omega0, asked, (rtol, rest, max_steps), (switches, np.empty(0))
+    )
     rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
     regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]
-    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in switches[: min(turns, _SWITCHES_KEPT)])
+    kept = switches[: min(int(turns), _SWITCHES_KEPT)]
+    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in kept)
     inputs = (V0, omega0, end, rtol, rest, max_steps)
     return Motion(
         scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
-        status=MotionStatus(status), steps=steps, _inputs=inputs,
+        status=MotionStatus(int(status)), steps=int(steps), _inputs=inputs,
     )  # fmt: skip
+
+
+def rolled(
+    scene: Scene, V0: float, omega0: float, times: NDArray, limits: tuple, notes: tuple
+) -> tuple[NDArray, list[float]]:
+    """Outputs of one motion, and its status, steps, switches, onset time, rest time: by the kernel for many motions.
+
+    ``limits`` and ``notes`` are those of ``kernels.motion.records``, which the switches and the ends of steps are put
+    into.
+    """
+    from ..kernels.motion.loop import INFO, motion_loop
+    from ..kernels.motion.output import OUTPUTS
+
+    one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0)).reshape(-1, 1)
+    one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
+    out, info = np.empty((OUTPUTS, 1, times.size)), np.empty((1, len(INFO)))
+    motion_loop((material(scene.alpha), *one), times, limits, np.arange(OUTPUTS), out, info, notes, 0, 1)
+    return out[:, 0], info[0].tolist()

@@ -187,6 +187,6 @@ def test_a_nan_stays_one():
 def test_polynomials_are_summed_with_one_rounding_a_term():
     """(1 + u)^2 - 1 - 2 u = u^2, which two roundings would lose; and powers of two, which no rounding touches."""
     t, u = 1.0 + 2.0**-30, 2.0**-30
-    assert septic(t, -1.0 - 2.0**-29, t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) == u * u
+    assert septic(t, (-1.0 - 2.0**-29, t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)) == u * u
     powers = 2.0 ** np.arange(8)
     assert septic(2.0, *powers) == np.sum(powers * 2.0 ** np.arange(8))

@@ -14,7 +14,7 @@ from ..law.length import contact_length
 from ..motion.collocation import INNER_POWERS, SLOPES
 from ..motion.collocation import N as PANEL_N
 from ..motion.partial_slip import branch_rates
-from ..motion.slow import node_D, slow_go_on, slow_solve, slow_start, workspace
+from ..motion.slow import NODE_D, slow_go_on, slow_solve, slow_start, workspace
 from . import layout
 from .fit import BINS, HALF, NODES, N, bin_of, find, fit_column, integrate_bin, node, value, width
 from .layout import ANGLE_TO_GO, DELTA, LAMBDA, LOSS_TO_GO, SPEED, X_TO_GO
@@ -65,7 +65,7 @@ def _D_powers(values, powers):
     for k in range(PANEL_N):
         powers[k] = 0.0
         for i in range(PANEL_N):
-            powers[k] += INNER_POWERS[k, i] * node_D(i + 1, values)
+            powers[k] += INNER_POWERS[k, i] * values[i + 1, NODE_D]
 
 
 @kernel

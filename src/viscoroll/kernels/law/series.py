@@ -9,8 +9,8 @@ With E(t) = 1 + sum E_i exp(-a_i t) and J(t) = 1 - sum J_j exp(-b_j t), the two 
     h = sum sqrt(r_i) e_i x_i      g = sum t_j k_j f_j      m = g + lam^2 sum X_i i2(a_i z)
     h' = sum (a r')_i (x_i^2/r_i) - sum (b k')_j f_j^2
 
-All sums but the last are of positive terms.  For one mode this is :mod:`standard`.  The material enters contact and motion
-by these functions of one variable alone, so a table of them is made once, and nothing else knows of the modes.
+All sums but the last are of positive terms.  For one mode this is :mod:`standard`.  The material enters contact and
+motion by these functions of one variable alone, so a table of them is made once, and nothing else knows of the modes.
 """
 
 from __future__ import annotations

@@ -15,8 +15,10 @@ from ..law.material import at_slide, generators, moment_factor
 
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
 HOLDS = 0.16
-#: steps of Newton's iteration, its difference quotient, and its last step
-_NEWTON, _DIFFERENCE, _FOUND = 30, 1e-5, 1e-13
+#: steps toward a speed at which V stands still, difference quotient, last step, largest step of Newton's over s
+_SEARCH, _DIFFERENCE, _FOUND, _NEAR = 200, 1e-5, 1e-13, 0.1
+#: s beyond which no such speed is looked for
+_FASTEST = 1e30
 
 
 @kernel
@@ -99,24 +101,25 @@ def sliding_scale(V, w, scene):
 
 
 @kernel
-def standstill(scene):
-    """The least s at which rolling resistance holds V against the traction, M(V) = 2 mu; NaN if there is none.
+def standstill(s, scene):
+    """The s next to this one, the way V goes, at which rolling resistance holds V against the traction, M(V) = 2 mu.
 
-    From a fast spin V comes near that speed in a few relaxation times and stays until the spin is spent.
+    NaN if there is none.  From a fast spin V comes near that speed in a few relaxation times and stays until the spin
+    is spent.  M(V)/V falls with V, so that no such speed lies between V and 2 mu V/M(V).
     """
     material, kappa, mu, _ = scene
-    c = material.T_mean
-    if not kappa * mu < HOLDS:
+    if material.T_mean == 0.0 or not kappa * mu < HOLDS:
         return np.nan
-    # M(V) <= c V bends down: Newton's iteration comes from below, or meets no speed at all
-    s = 4.0 * kappa * mu / c
-    for _ in range(_NEWTON):
-        _, rate, _, _, _ = sliding(s, 1.0, scene)
+    s = max(s, 4.0 * kappa * mu / material.T_mean)  # below, M(V) <= V T_mean < 2 mu
+    for _ in range(_SEARCH):
+        _, rate, _, half_M, _ = sliding(s, 1.0, scene)
         _, further, _, _, _ = sliding(s * (1.0 + _DIFFERENCE), 1.0, scene)
-        change = rate * _DIFFERENCE * s / (rate - further)
-        if not (further < rate and change < s):
-            return np.nan
+        change, surely = rate * _DIFFERENCE * s / (rate - further), (mu / half_M - 1.0) * s
+        if not (change * surely > 0.0 and abs(change) < _NEAR * s):
+            change = surely
         s += change
         if abs(change) <= _FOUND * s:
             return s
+        if not s < _FASTEST:
+            return np.nan
     return np.nan

@@ -171,15 +171,17 @@ def follow(state, frame, clock, case, switches):
     return DONE, clock, turns, onset_time, np.nan
 
 
-@kernel(allocates=True, seconds=12)
-def integrate(scene, gamma, V0, omega0, t_out, limits, out, switches, step_ends):
+@kernel(allocates=True)
+def integrate(scene, gamma, V0, omega0, t_out, limits, out, notes):
     """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
 
-    ``switches`` (k, 2) receives (t, regime behind) of the regime changes, ``step_ends`` the
-    times behind the panels and at their nodes; what does not fit is not kept.
-    Returns (status, steps, switches, onset time, rest time).
+    The notes receive the regime changes, and the times behind the panels and at their nodes; what does not fit is not
+    kept.  Returns (status, steps, switches, onset time, rest time).
     """
-    case = Case(scene, limits, Sink(t_out * gamma, out, step_ends, gamma), workspace())
+    tau = np.empty(t_out.size)
+    for i in range(tau.size):
+        tau[i] = t_out[i] * gamma
+    case = Case(scene, limits, Sink(tau, out, notes.step_ends, gamma), workspace())
     clock = Clock(0.0, 0, 0, 0)
     origin, still = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Frame(REST, 1.0, 0.0)
     if max(abs(V0), abs(omega0)) < limits.rest:
@@ -196,5 +198,5 @@ def integrate(scene, gamma, V0, omega0, t_out, limits, out, switches, step_ends)
         delta = speeds(state, frame.regime, scene)[2]
         put(case.sink, clock.at, first, (V0, omega0, delta), 0.0, 0.0)
         clock = Clock(0.0, clock.at + 1, 0, 0)
-    status, clock, turns, onset_time, rest_time = follow(state, frame, clock, case, switches)
+    status, clock, turns, onset_time, rest_time = follow(state, frame, clock, case, notes.switches)
     return status, clock.steps, turns, onset_time, rest_time

@@ -19,9 +19,9 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
-from .partial_slip import branch_rates, creep_rates
+from .partial_slip import branch_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
-from .slow import REACHED, node_D, slow_solve, slow_start, sticks_throughout, stiffness
+from .slow import NODE_D, REACHED, slow_solve, slow_start, sticks_throughout, stiffness
 
 _MOST_ITERATIONS = 8
 #: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate; and at the
@@ -53,8 +53,8 @@ def manifold(y, D, tolerance, scene, work):
         slow[N], slow[N + 1] = -_EVERYWHERE, _EVERYWHERE
         return True
     rise = 1.0 / stiffness(REACHED, values)
-    dy, dD, _, _ = creep_rates(y, D, scene)
-    early = _EARLY * dy / dD * (node_D(REACHED, values) - D)
+    dy, dD, _, _, _, _, _, _, _ = branch_rates(y, D, np.sign(D), scene)
+    early = _EARLY * dy / dD * (values[REACHED, NODE_D] - D)
     left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
     reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
     if not 0.0 < rise < 1.0 / _STIFF:
@@ -69,7 +69,7 @@ def manifold(y, D, tolerance, scene, work):
     for k in range(N):
         slow[k] = 0.0
         for i in range(N):
-            slow[k] += INNER_POWERS[k, i] * node_D(i + 1, values)
+            slow[k] += INNER_POWERS[k, i] * values[i + 1, NODE_D]
     slow[N], slow[N + 1] = left, left + reach
     return True
 

@@ -11,7 +11,7 @@ from .layer import decays_throughout, layer_node, layer_solve, manifold, slow_cr
 from .panel import pass_path
 from .path import D_TAU, D_TURN, D_X, D_Y, OVERSTATED, Y, next_start, path_mismatch
 from .records import LAYER, NO_EVENT, Clock, Panel
-from .slow import REACHED, creep_slope
+from .slow import DELTA_D, REACHED
 from .slow_phase import NEWTON
 
 #: longest panel in e-folds, and shortest beside the first guess
@@ -46,7 +46,7 @@ def tolerated(y, case):
     """Distance from the manifold that no longer matters."""
     per = np.exp(-y)
     share = slow_creep(y, case.work.slow)[0] * per
-    return _OVER * SHARE * case.limits.rtol / max(creep_weight(share) * per, creep_slope(REACHED, case.work.values))
+    return _OVER * SHARE * case.limits.rtol / max(creep_weight(share) * per, case.work.values[REACHED, DELTA_D])
 
 
 @kernel(inline=True)
@@ -56,7 +56,7 @@ def panel_size(e, length, power, to_zero, state, case):
     solved = layer_solve(e, length, power, to_zero, tolerance, case.scene, work)
     if not (solved > 0.0 and decays_throughout(work.nodes)):
         return length, np.inf
-    creep = abs(e) * creep_slope(REACHED, work.values)
+    creep = abs(e) * work.values[REACHED, DELTA_D]
     return solved, OVERSTATED * path_mismatch(solved, creep, state, work.nodes) / tolerance
 
 

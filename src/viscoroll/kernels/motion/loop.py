@@ -1,4 +1,4 @@
-"""Many motions, each with its own start and, where given, its own scene."""
+"""Motions, each with its own start and, where given, its own scene: what Python calls for one as for many."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from ..law.material import material_of
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .output import OUTPUTS
-from .records import Scene
+from .records import Batch, Limits, Notes, Scene
 
 #: columns of the per-motion information
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
+#: room for notes where none are asked for
+NOTHING_NOTED = Notes(np.empty((0, 2)), np.empty(0))
 
 
 @kernel
@@ -37,13 +39,17 @@ def keep(i, rows, one, result, out, info):
 
 
 @kernel(allocates=True, seconds=12)
-def motion_loop(batch, t, limits, rows, out, info, start, stop):
-    """Motions start..stop; ``rows`` picks the output quantities of ``integrate`` into out[quantity, motion, time]."""
+def motion_loop(batch, t, limits, rows, out, info, notes, start, stop):
+    """Motions start..stop; ``rows`` picks the output quantities of ``integrate`` into out[quantity, motion, time].
+
+    ``batch``, ``limits`` and ``notes`` are plain tuples: it takes numba microseconds to tell the type of a record.
+    The notes kept are those of the last motion.
+    """
+    motions, limits, notes = Batch(*batch), Limits(*limits), Notes(*notes)
     one = np.empty((OUTPUTS, t.size))
-    switches, step_ends = np.empty((0, 2)), np.empty(0)
     for i in range(start, stop):
         for row in one:
             fill(np.nan, row)
-        scene, gamma, V0, omega0 = motion_of(batch, i)
-        result = integrate(scene, gamma, V0, omega0, t, limits, one, switches, step_ends)
+        scene, gamma, V0, omega0 = motion_of(motions, i)
+        result = integrate(scene, gamma, V0, omega0, t, limits, one, notes)
         keep(i, rows, one, result, out, info)

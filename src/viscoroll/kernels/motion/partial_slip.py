@@ -63,35 +63,20 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, material):
 
 @kernel(inline=True)
 def partial_rates(y, offset, scene):
-    """(y', offset', V, delta, V'/V, d(y', offset', delta)/d offset, D; d offset' to leading order in V)."""
+    """(y', offset', V, delta, d(y', offset', delta)/d offset, D; d offset' to leading order in V)."""
     zeta = np.exp(y)
     contact = at_contact(zeta, scene.material)
     D0, D0_y = leading_order(zeta, contact[6], contact[7], scene)
     D = D0 + offset
-    dy, dD, V, delta, rate, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, scene)
-    return dy, dD - D0_y * dy, V, delta, rate, dy_D, dD_D - D0_y * dy_D, delta_D, D
+    dy, dD, V, delta, _, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, scene)
+    return dy, dD - D0_y * dy, V, delta, dy_D, dD_D - D0_y * dy_D, delta_D, D
 
 
-@kernel(inline=True)
-def creep_rates(y, D, scene):
-    """(y', D', V, delta) at y = ln zeta and D."""
-    dy, dD, V, delta, _, _, _, _, _ = branch_rates(y, D, np.sign(D), scene)
-    return dy, dD, V, delta
-
-
-@kernel(inline=True)
+@kernel
 def branch_rates(y, D, sign, scene):
     """:func:`_rates` on the branch of the law with this sign of delta, which goes on through D = 0."""
     zeta = np.exp(y)
     return _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
-
-
-@kernel
-def stiff_rates(y, D, sign, scene):
-    """(y', D', V, delta, d(y', D')/dD) on the branch with this sign of delta; d D' to leading order in V."""
-    zeta = np.exp(y)
-    dy, dD, V, delta, _, dy_D, dD_D, _, _ = _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
-    return dy, dD, V, delta, dy_D, dD_D
 
 
 @kernel(inline=True)

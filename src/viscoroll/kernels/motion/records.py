@@ -61,6 +61,13 @@ class Limits(NamedTuple):
     max_steps: int
 
 
+class Notes(NamedTuple):
+    """Room for what is noted on the way: (t, regime behind) of the switches, (k, 2), and the ends of steps."""
+
+    switches: Any
+    step_ends: Any
+
+
 class Sink(NamedTuple):
     """Where outputs go: times, columns, and room for the ends of steps."""
 

@@ -49,9 +49,8 @@ def choose_pole(s, sigma, scene):
     """The pole of the panels from s on."""
     material, kappa, mu, _ = scene
     c = material.T_mean
-    standing = standstill(scene) if sigma > 0.0 else np.nan
-    # beyond a second such speed V rises
-    if (standing - s) * sliding(s, sigma, scene)[1] >= 0.0:
+    standing = standstill(s, scene) if sigma > 0.0 else np.nan
+    if standing > 0.0:
         return standing
     return -1.0 if 4.0 * kappa * mu >= c else -4.0 * kappa * mu / c
 

@@ -18,9 +18,9 @@ from .partial_slip import partial_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, RISE_D, RISE_Y, ROWS, Y, time_terms
 from .records import Workspace
 
-#: columns of the values at the nodes
-_OFFSET, _RATE, _DRIFT, _V, _DELTA, _DECAY, _RATE_D, _DRIFT_D, _DELTA_D, _D = range(10)
-COLUMNS = 10
+#: columns of the values at the nodes: y', offset', V, delta; the slopes of y', offset' and delta in the offset; D
+_OFFSET, RATE, _DRIFT, _V, _DELTA, RATE_D, DRIFT_D, DELTA_D, NODE_D = range(9)
+COLUMNS = 9
 #: row behind the nodes: the left end as it was reached, before :func:`project`
 REACHED = N + 1
 _MOST_ITERATIONS = 6
@@ -43,8 +43,8 @@ def workspace():
 def _evaluate(i, y, values, scene):
     """Fill node i at y from its offset."""
     (
-        values[i, _RATE], values[i, _DRIFT], values[i, _V], values[i, _DELTA], values[i, _DECAY],
-        values[i, _RATE_D], values[i, _DRIFT_D], values[i, _DELTA_D], values[i, _D],
+        values[i, RATE], values[i, _DRIFT], values[i, _V], values[i, _DELTA],
+        values[i, RATE_D], values[i, DRIFT_D], values[i, DELTA_D], values[i, NODE_D],
     ) = partial_rates(y, values[i, _OFFSET], scene)  # fmt: skip
 
 
@@ -69,10 +69,10 @@ def slow_solve(y, length, tolerance, slopes, scene, work):
             for n in range(N + 1):
                 slope += slopes[i, n] * values[n, _OFFSET]
             slope /= half
-            rate = values[i + 1, _RATE]
+            rate = values[i + 1, RATE]
             for n in range(N):
                 matrix[i, n] = rate * slopes[i, n + 1] / half
-            matrix[i, i] += slope * values[i + 1, _RATE_D] - values[i + 1, _DRIFT_D]
+            matrix[i, i] += slope * values[i + 1, RATE_D] - values[i + 1, DRIFT_D]
             right[i] = values[i + 1, _DRIFT] - rate * slope
         factorize(matrix, N)
         substitute(matrix, right, N)
@@ -80,13 +80,12 @@ def slow_solve(y, length, tolerance, slopes, scene, work):
         for i in range(N):
             shift = right[i]
             row = i + 1
-            factor = 1.0 + values[row, _RATE_D] * shift / values[row, _RATE]
-            creep = values[row, _DELTA_D] * shift
+            factor = 1.0 + values[row, RATE_D] * shift / values[row, RATE]
+            creep = values[row, DELTA_D] * shift
             change = max(change, abs(factor - 1.0), abs(creep))
             values[row, _OFFSET] += shift
-            values[row, _D] += shift
-            values[row, _RATE] *= factor
-            values[row, _DECAY] *= factor
+            values[row, NODE_D] += shift
+            values[row, RATE] *= factor
             values[row, _DELTA] += creep
         gain = change / before if iteration > 0 else 0.1
         if not (gain < 0.5 and change < np.inf):
@@ -115,7 +114,7 @@ def sticks_throughout(y, length, values):
     """Whether y rises and the stick zone lasts at all nodes."""
     for i in range(1, N + 1):
         zeta = np.exp(y + 0.5 * length * (1.0 + NODES[i]))
-        if not (values[i, _RATE] > 0.0 and abs(values[i, _D]) < (1.0 - _LEAST_STICK) * zeta):
+        if not (values[i, RATE] > 0.0 and abs(values[i, NODE_D]) < (1.0 - _LEAST_STICK) * zeta):
             return False
     return True
 
@@ -123,31 +122,7 @@ def sticks_throughout(y, length, values):
 @kernel
 def stiffness(i, values):
     """Relaxation of the offset over a rise of y by 1 at node i."""
-    return -values[i, _DRIFT_D] / values[i, _RATE]
-
-
-@kernel
-def pace(i, values):
-    """y' at node i."""
-    return values[i, _RATE]
-
-
-@kernel
-def relaxation_at(i, values):
-    """Rate at which the offset relaxes at node i."""
-    return -values[i, _DRIFT_D]
-
-
-@kernel
-def creep_slope(i, values):
-    """d delta/dD at node i."""
-    return values[i, _DELTA_D]
-
-
-@kernel
-def node_D(i, values):
-    """D at node i."""
-    return values[i, _D]
+    return -values[i, DRIFT_D] / values[i, RATE]
 
 
 @kernel
@@ -160,9 +135,9 @@ def project(values):
     for i in range(1, N + 1):
         rest -= TO_START[i - 1] * values[i, _OFFSET]
     values[0, _OFFSET] -= rest
-    values[0, _D] -= rest
-    values[0, _RATE] -= values[0, _RATE_D] * rest
-    values[0, _DELTA] -= values[0, _DELTA_D] * rest
+    values[0, NODE_D] -= rest
+    values[0, RATE] -= values[0, RATE_D] * rest
+    values[0, _DELTA] -= values[0, DELTA_D] * rest
     return rest
 
 
@@ -170,7 +145,7 @@ def project(values):
 def slow_path(values, nodes):
     """Put what is integrated over y into the rows of :mod:`path`."""
     for i in range(N + 1):
-        per_rate = 1.0 / values[i, _RATE]
+        per_rate = 1.0 / values[i, RATE]
         travel = values[i, _V] * per_rate
         nodes[D_Y, i], nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = (
             1.0,

@@ -12,12 +12,12 @@ from .partial_slip import slow_D
 from .path import path_mismatch
 from .records import NO_EVENT, SLOW, Clock, Panel
 from .slow import (
+    DELTA_D,
+    DRIFT_D,
+    NODE_D,
+    RATE,
     REACHED,
-    creep_slope,
-    node_D,
-    pace,
     project,
-    relaxation_at,
     slow_go_on,
     slow_path,
     slow_solve,
@@ -49,8 +49,8 @@ def attempt(length, state, case):
     if not (solved and sticks_throughout(y, length, values)):
         return np.inf, np.inf
     per = np.exp(-y)
-    weight = creep_weight(node_D(REACHED, values) * per) * per
-    rest = abs(project(values)) * max(weight, creep_slope(0, values))
+    weight = creep_weight(values[REACHED, NODE_D] * per) * per
+    rest = abs(project(values)) * max(weight, values[0, DELTA_D])
     slow_path(values, work.nodes)
     return _OVERSTATED * path_mismatch(length, 0.0, state, work.nodes) / tolerance, rest / tolerance
 
@@ -73,8 +73,8 @@ def slow_phase(state, frame, clock, case):
     length, entering, before = _FIRST, True, np.inf
     slow_start(state.first, state.second - slow_D(state.first, case.scene)[0], values, case.scene)
     while clock.at < sink.tau.size and state.first < FAR and clock.steps < limits.max_steps:
-        relaxation = relaxation_at(REACHED, values)
-        length = min(length, _LONGEST, max(1.1 * (tau_end - clock.tau) * pace(REACHED, values), 0.05))
+        relaxation = -values[REACHED, DRIFT_D]
+        length = min(length, _LONGEST, max(1.1 * (tau_end - clock.tau) * values[REACHED, RATE], 0.05))
         size, offset_size = attempt(length, state, case)
         clock = Clock(clock.tau, clock.at, clock.steps + 1, clock.ends)
         # what is left of the layer stays as the interval is shortened; what the interval does not resolve falls
@@ -84,12 +84,12 @@ def slow_phase(state, frame, clock, case):
         ahead = next_length(length, size, 1)
         if not size <= 1.0:
             length = ahead
-            if length < _SHORTEST or relaxation * length < _STIFF * pace(REACHED, values):
+            if length < _SHORTEST or relaxation * length < _STIFF * values[REACHED, RATE]:
                 return NO_EVENT, state, clock, _behind(clock.tau, _STIFF / relaxation)
             continue
         entering = False
         panel = Panel(SLOW, state.first, state.second, length, 1, 0.0, 0.0, 0.0, 0.0)
-        event, state, clock = pass_path(state.first + length, node_D(N, values), panel, state, frame, clock, case)
+        event, state, clock = pass_path(state.first + length, values[N, NODE_D], panel, state, frame, clock, case)
         if event != NO_EVENT:
             return event, state, clock, clock.tau
         slow_go_on(values)

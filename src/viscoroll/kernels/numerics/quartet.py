@@ -1,7 +1,7 @@
 """Four functions of one variable by polynomials, in bins that are made where they are met and kept.
 
-A bin is a quarter of an octave (:mod:`bins`), and a polynomial is of degree 12: where the functions are analytic for
-Re x > 0 its error falls like 18^-13.  A table keeps a bin in the row of the last bits of its number, which the
+A bin is an eighth of an octave (:mod:`bins`), and a polynomial is of degree 10: where the functions are analytic for
+Re x > 0 its error falls like 34^-11.  A table keeps a bin in the row of the last bits of its number, which the
 row begins with; a row that holds another bin is made anew.  So any x is served, and what a bin holds depends on nothing
 but its number.  The four functions lie side by side: one instruction of the processor works on all.
 
@@ -24,9 +24,9 @@ from ..compile.jit import kernel
 from .bins import bin_number, bin_offset, bin_place
 from .nodes import chebyshev, rounded, to_chebyshev
 
-BITS, TERMS = 3, 10
+BITS, TERMS = 3, 11
 _BINS = 1 << BITS
-#: bins that a table keeps unless told: 64 octaves; rows behind them: a bin that is not kept, and where bins are computed
+#: bins that a table keeps unless told, 64 octaves; rows behind them: for a bin that is not kept, and to compute in
 KEPT, SPARE = 512, 2
 #: a row: number of the bin (its bits), and from here on the coefficients, those of one power together
 FIRST = 4
