@@ -100,7 +100,7 @@ torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes
 	$(RUN) -m pipeline.torture --config $(CONFIG)
 	$(RUN) -m pipeline.document
 
-matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (half an hour; PYTHONS names others)
+matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
 	$(RUN) -m pipeline.matrix
 
 check: setup ## ruff, mypy and the import contract
