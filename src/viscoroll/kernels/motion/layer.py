@@ -19,7 +19,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
-from .partial_slip import branch_rates
+from .partial_slip import branch_rates, stiff_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
 from .slow import NODE_D, REACHED, slow_solve, slow_start, sticks_throughout, stiffness
 
@@ -53,7 +53,7 @@ def manifold(y, D, tolerance, scene, work):
         slow[N], slow[N + 1] = -_EVERYWHERE, _EVERYWHERE
         return True
     rise = 1.0 / stiffness(REACHED, values)
-    dy, dD, _, _, _, _, _, _, _ = branch_rates(y, D, np.sign(D), scene)
+    dy, dD, _, _, _, _ = stiff_rates(y, D, np.sign(D), scene)
     early = _EARLY * dy / dD * (values[REACHED, NODE_D] - D)
     left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
     reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
