@@ -257,7 +257,7 @@ def _among(names: tuple[str, ...], *some: str) -> bool:
 def _roll_all(given: tuple, losses: bool, count: int) -> None:
     """Call the kernel that integrates motions, or that which finds their losses too."""
     if losses:
-        from ..kernels.motion.loss_loop import loss_loop
+        from ..kernels.motion.losses import loss_loop
 
         loss_loop(*given, 0, count)
     else:

@@ -191,7 +191,7 @@ def flow_motion(V0, omega0, tau_out, request, flow, out):
 def flow_loop(flow, gamma, rest, V0, omega0, t, rows, answer, start, stop):
     """Motions start..stop into ``answer``; those that are not served get the status NOT_SERVED and no output.
 
-    ``rows`` picks the output quantities, as in :mod:`motion.loss_loop`; distance and angle, and the
+    ``rows`` picks the output quantities, as in :mod:`motion.losses`; distance and angle, and the
     energy lost, are found only if they are among them.
     """
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.scene.j

@@ -19,9 +19,9 @@ import numpy as np
 from ..compile.jit import kernel
 from ..numerics.arrays import fill
 from .collocation import INNER_POWERS, INTEGRALS, NODES, SMOOTH_SLOPES, N
-from .partial_slip import branch_rates
+from .partial_slip import branch_rates, stiff_rates
 from .path import D_TAU, D_TURN, D_X, D_Y, Y, grade
-from .slow import NODE_D, REACHED, slow_solve, slow_start, sticks_throughout, stiffness
+from .slow import DRIFT_D, NODE_D, RATE, REACHED, slow_solve, slow_start, sticks_throughout, stiffness
 
 _MOST_ITERATIONS = 8
 #: substitution stops at this share of the tolerance of a panel: what it leaves spoils the next estimate; and at the
@@ -53,7 +53,7 @@ def manifold(y, D, tolerance, scene, work):
         slow[N], slow[N + 1] = -_EVERYWHERE, _EVERYWHERE
         return True
     rise = 1.0 / stiffness(REACHED, values)
-    dy, dD, _, _, _, _, _, _, _ = branch_rates(y, D, np.sign(D), scene)
+    dy, dD, _, _, _, _ = stiff_rates(y, D, np.sign(D), scene)
     early = _EARLY * dy / dD * (values[REACHED, NODE_D] - D)
     left = y - min(max(-early, 0.0), 0.5 * _LONGEST)
     reach = max(min(y - left + _LATE * rise + abs(early), _LONGEST), _SHORTEST)
@@ -106,6 +106,16 @@ def layer_node(i, e, weight, nodes, slow, scene):
 
 
 @kernel
+def _first_y(length, power, work):
+    """y at the nodes: its slope over theta falls like e to that on the manifold."""
+    nodes, late = work.nodes, -work.values[REACHED, RATE] / work.values[REACHED, DRIFT_D]
+    early = nodes[D_Y, 0] if power == 1 else late
+    for i in range(1, N + 1):
+        since = length * (0.5 * (1.0 + NODES[i])) ** power
+        nodes[Y, i] = nodes[Y, 0] + late * since + (early - late) * (1.0 - np.exp(-since))
+
+
+@kernel
 def layer_solve(e, length, power, to_zero, tolerance, scene, work):
     """Collocate over ``length`` e-folds from node 0, where e is given; returns the length, NaN where it failed.
 
@@ -114,7 +124,7 @@ def layer_solve(e, length, power, to_zero, tolerance, scene, work):
     """
     nodes, slow, left = work.nodes, work.slow, max(_SUBSTITUTION * tolerance, _ACHIEVED)
     start = nodes[Y, 0]
-    fill(start, nodes[Y])
+    _first_y(length, power, work)
     before = first = 0.0
     noise = _NOISE / max(abs(e) * np.exp(-start - length), _LINEAR)
     for iteration in range(_MOST_ITERATIONS):

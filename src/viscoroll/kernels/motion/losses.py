@@ -5,7 +5,8 @@ With the power lost in slip, (omega - V) Q, and in rolling, (V + omega) M/2, Eq.
     (V^2 + j omega^2)/2 + int (omega - V) Q dtau + int (V + omega) M/2 dtau = constant, tau = gamma t.
 
 One of the two integrals is thus enough.  In full slip it is mu times the path slipped; in partial slip it is
-no function of the state (``docs/theory.md``), and a Gauss rule over each step of the integrator finds it.
+no function of the state (``docs/theory.md``), and a Gauss rule over each step of the integrator finds it: a motion
+is rolled once more for the points of the rule.  Apart from :mod:`loop`, so that none compiles both.
 """
 
 from __future__ import annotations
@@ -17,13 +18,17 @@ from ..law.standard import GAUSS_W, GAUSS_X
 from ..law.state import ROWS as CONTACT_ROWS
 from ..law.state import Need, Q, State, contact_state
 from ..numerics.arrays import fill
+from .integrate import integrate
+from .loop import keep, motion_of
 from .output import OUTPUTS
-from .records import PARTIAL
+from .records import PARTIAL, Batch, Limits, Notes
 
 #: rows that follow those of :mod:`output`, and the number of all
 SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
 _NEED = Need(True, True, False, False, False)
 _POINTS = GAUSS_X.size
+#: room for the ends of steps at first
+_ENDS = 1000
 
 
 @kernel
@@ -87,3 +92,27 @@ def add_losses(scene, gamma, V0, omega0, t, edges, points, out):
             n += 1
         out[SLIP_LOSS, m] = lost
         out[ROLLING_LOSS, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost
+
+
+@kernel(allocates=True, seconds=15)
+def loss_loop(batch, t, limits, rows, out, info, start, stop):
+    """Motions start..stop; as ``motion_loop``, but ``rows`` may name those of :mod:`losses` too."""
+    motions, limits = Batch(*batch), Limits(*limits)
+    one, switches, step_ends = np.empty((ROWS, t.size)), np.empty((0, 2)), np.zeros(_ENDS)
+    for i in range(start, stop):
+        scene, gamma, V0, omega0 = motion_of(motions, i)
+        while True:
+            for row in one:
+                fill(np.nan, row)
+            result = integrate(scene, gamma, V0, omega0, t, limits, one, Notes(switches, step_ends))
+            if step_ends[step_ends.size - 1] == 0.0:
+                break
+            step_ends = np.zeros(4 * step_ends.size)
+        if rows.max() >= SLIP_LOSS:
+            edges, times = loss_points(step_ends, t)
+            points = np.empty((OUTPUTS, times.size))
+            for row in points:
+                fill(np.nan, row)
+            integrate(scene, gamma, V0, omega0, times, limits, points, Notes(switches, step_ends[:0]))
+            add_losses(scene, gamma, V0, omega0, t, edges, points, one)
+        keep(i, rows, one, result, out, info)

@@ -72,11 +72,19 @@ def partial_rates(y, offset, scene):
     return dy, dD - D0_y * dy, V, delta, dy_D, dD_D - D0_y * dy_D, delta_D, D
 
 
-@kernel
+@kernel(inline=True)
 def branch_rates(y, D, sign, scene):
     """:func:`_rates` on the branch of the law with this sign of delta, which goes on through D = 0."""
     zeta = np.exp(y)
     return _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
+
+
+@kernel
+def stiff_rates(y, D, sign, scene):
+    """(y', D', V, delta, d(y', D')/dD) on the branch with this sign of delta, where calls are few; d D' to leading
+    order in V."""
+    dy, dD, V, delta, _, dy_D, dD_D, _, _ = branch_rates(y, D, sign, scene)
+    return dy, dD, V, delta, dy_D, dD_D
 
 
 @kernel(inline=True)

@@ -13,7 +13,7 @@ from ..compile.jit import kernel
 from ..numerics.linear import factorize, substitute
 from .collocation import INTEGRALS, NODES, TO_START, N
 from .control import SHARE, creep_weight
-from .partial_slip import branch_rates
+from .partial_slip import stiff_rates
 from .path import D_D, D_TAU, D_TURN, D_X, D_Y, D, Y, grade, path_mismatch
 
 _MOST_ITERATIONS = 12
@@ -31,7 +31,7 @@ _STEP = 1e-7
 @kernel
 def _stage(i, weight, sign, scene, nodes):
     """Fill node i from its y and D; slopes of both rates in D, all times ``weight``."""
-    dy, dD, V, delta, _, dy_D, dD_D, _, _ = branch_rates(nodes[Y, i], nodes[D, i], sign, scene)
+    dy, dD, V, delta, dy_D, dD_D = stiff_rates(nodes[Y, i], nodes[D, i], sign, scene)
     nodes[D_Y, i], nodes[D_D, i] = weight * dy, weight * dD
     nodes[D_TAU, i], nodes[D_X, i], nodes[D_TURN, i] = weight, weight * V, weight * V * delta
     return weight * dy_D, weight * dD_D
@@ -42,7 +42,7 @@ def _put_slopes(n, half, weight, in_D, sign, scene, work):
     """Columns of Newton's matrix for node n, whose rates have the slopes ``in_D``; those in y are differences."""
     nodes, matrix = work.nodes, work.matrix
     i, column = n + 1, 2 * n
-    dy, dD, _, _, _, _, _, _, _ = branch_rates(nodes[Y, i] + _STEP, nodes[D, i], sign, scene)
+    dy, dD, _, _, _, _ = stiff_rates(nodes[Y, i] + _STEP, nodes[D, i], sign, scene)
     in_y = (weight * dy - nodes[D_Y, i]) / _STEP, (weight * dD - nodes[D_D, i]) / _STEP
     for m in range(N):
         share = half * INTEGRALS[m, n]
