@@ -177,7 +177,8 @@ def test_signs_mirror_bit_for_bit(alpha, V, omega):
     if V != 0.0:
         assert mirror.delta == here.delta
     assert np.sign(here.Q) in (0.0, np.sign(omega - V))
-    assert np.sign(here.M) == (np.sign(V) if alpha > 1.0 else 0.0)
+    if abs(V) > np.finfo(float).tiny / MU or V == 0.0:  # below, M may round to 0
+        assert np.sign(here.M) == (np.sign(V) if alpha > 1.0 else 0.0)
 
 
 @settings(max_examples=60, deadline=None)

@@ -189,4 +189,4 @@ def test_polynomials_are_summed_with_one_rounding_a_term():
     t, u = 1.0 + 2.0**-30, 2.0**-30
     assert septic(t, (-1.0 - 2.0**-29, t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)) == u * u
     powers = 2.0 ** np.arange(8)
-    assert septic(2.0, *powers) == np.sum(powers * 2.0 ** np.arange(8))
+    assert septic(2.0, tuple(powers)) == np.sum(powers * 2.0 ** np.arange(8))
