@@ -20,6 +20,7 @@ __version__ = "0.1.0"
 _HOME = {
     "Scene": "scene",
     "Cylinder": "scene",
+    "Prony": "prony",
     "PAPER_CYLINDER": "scene",
     "PAPER_SECTION_5": "scene",
     "PAPER_SECTION_5_ROUNDED": "scene",

@@ -30,7 +30,7 @@ class _Kept(threading.local):
 _kept = _Kept()
 
 
-def material(given: float | Prony) -> Any:
+def record(given: float | Prony) -> Any:
     """The record of one material, an alpha or a series, for this thread alone."""
     return _found(_kept.materials, given, _tabulated)
 
@@ -55,10 +55,19 @@ def _tabulated(given: float | Prony) -> Any:
     return whole._replace(table=whole.table.copy())
 
 
+def series(prony: Prony) -> Any:
+    """The record of a series by its modes."""
+    from .kernels.law.series import Series
+
+    modes = prony.modes
+    root = np.sqrt(np.outer(modes.J * modes.b, modes.E * modes.a))
+    return Series(modes.a, modes.b, np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b), root / modes.gap)
+
+
 @lru_cache(maxsize=_KEPT)
 def _series_table(prony: Prony) -> Any:
     """The table of several modes, filled between its ends."""
-    from .kernels.law.series import Series, fill
+    from .kernels.law.series import fill
     from .kernels.law.tabulated import Ends, Tabulated
     from .kernels.numerics.bins import bin_number
     from .kernels.numerics.quartet import BITS, empty_table
@@ -67,9 +76,7 @@ def _series_table(prony: Prony) -> Any:
     octaves = math.floor(-math.log2(modes.a[-1])) - _MARGIN, math.ceil(-math.log2(modes.b[0])) + _MARGIN
     first, stop = (int(bin_number(2.0**octave, BITS)) for octave in octaves)
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
-    root = np.sqrt(np.outer(modes.J * modes.b, modes.E * modes.a))
-    series = Series(modes.a, modes.b, np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b), root / modes.gap)
-    fill(series, first, stop, table)
+    fill(series(prony), first, stop, table)
     weights = modes.J * modes.b
     logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
     squares = (modes.E / modes.a**2).sum() + (modes.J / modes.b**2).sum()

@@ -23,8 +23,10 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import checked
 from .errors import ParameterError
 
-#: most modes of a series, longest over shortest time, and instantaneous over long-time modulus
-MOST_MODES, WIDEST, HIGHEST_ALPHA = 64, 1e20, 1e12
+#: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
+HIGHEST_ALPHA = 1e12
+#: most modes of a series, and longest over shortest time
+MOST_MODES, WIDEST = 64, 1e20
 #: halvings of ln(distance) until it is good to rounding, and steps of Newton's iteration behind them
 _HALVINGS, _POLISH = 64, 3
 #: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved
@@ -152,6 +154,25 @@ class Prony:
     def T_mean(self) -> float:
         """sum J_j T_j = sum E_i tau_i over T_ref: M = V T_mean at low speed."""
         return math.fsum(self.E * self.tau) if self._relaxation is not None else math.fsum(self.J * self.T)
+
+    @property
+    def slow_time(self) -> float:
+        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean over T_ref: kappa V beside its inverse tells slow from fast."""
+        E, tau, J, T = self.E, self.tau, self.J, self.T
+        return math.fsum(E * tau * tau + J * T * T) / self.T_mean if E.size else 1.0
+
+    def slower(self, factor: float) -> Prony:
+        """All times longer by a factor, as a colder rubber has them."""
+        factor = float(checked("factor", factor, low=0.0, strict=True))
+        if self._relaxation is not None:
+            return Prony(self._relaxation[0], np.array(self._relaxation[1]) * factor)
+        assert self._creep is not None
+        return Prony.creep(self._creep[0], np.array(self._creep[1]) * factor, alpha=self._alpha)
+
+    def in_own_time(self) -> tuple[Prony, float]:
+        """(The material with its slow time near 1, the time that this is counted in), a power of two: exact."""
+        unit = 2.0 ** round(math.log2(self.slow_time))
+        return (self, 1.0) if unit == 1.0 else (self.slower(1.0 / unit), unit)
 
     def _key(self) -> tuple[Any, ...]:
         return self._relaxation, self._creep, self._alpha

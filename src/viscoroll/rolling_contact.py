@@ -15,13 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 from .blocks import elements, run_blocks
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .material_tables import inverses
+from .material_tables import inverses, record, series
+from .prony import Prony
 from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
+#: slopes over a speed, which follows the unit of time
+_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV"}
 _BLOCK = 1 << 15
 #: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
 WORTHWHILE = 4096
@@ -132,7 +135,15 @@ def contact(
     fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST
     if extents["kappa"][1] * max(map(abs, extents["V"])) > fastest:
         refuse_overflow(arrays["kappa"], arrays["V"], fastest)
-    rows = _compute(list(arrays.values()), shape, creep_name == "omega", names, method)
+    material, unit = scene.in_own_time()
+    if scene.material is not None and method == "direct":
+        raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
+    if unit != 1.0:
+        arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
+    given = None if np.ndim(material) or scene.material is None else material
+    rows = _compute(given, list(arrays.values()), shape, creep_name == "omega", names, method)
+    for n, name in enumerate(names):
+        rows[n] *= unit if name in _PER_SPEED else 1.0
     return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
 
 
@@ -170,9 +181,17 @@ def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
 
 def _compute(
-    arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...], method: str
+    material: Any,
+    arrays: list[NDArray],
+    shape: tuple[int, ...],
+    creep_is_omega: bool,
+    names: tuple[str, ...],
+    method: str,
 ) -> NDArray:
-    """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``."""
+    """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
+
+    ``material``: a series in place of the alphas, or None.
+    """
     from .kernels.law.state import ROWS, Need, States
 
     wanted = set(names)
@@ -183,7 +202,7 @@ def _compute(
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
-    loop = _chosen_loop(arrays[0], need.slopes, count, method)
+    loop = _chosen_loop(material, arrays[0], need.slopes, count, method)
     alphas, *parts = (elements(array, shape) for array in arrays)
     failures: list[int] = []
 
@@ -201,7 +220,7 @@ def _compute(
     return out
 
 
-def _chosen_loop(alpha: NDArray, slopes: bool, count: int, method: str) -> Callable:
+def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method: str) -> Callable:
     """The kernel for a call, which takes the alphas of a block in place of its material."""
     from .kernels.law.contact_loop import contact_loop, state_loop
     from .kernels.law.lockstep import TOGETHER
@@ -215,7 +234,9 @@ def _chosen_loop(alpha: NDArray, slopes: bool, count: int, method: str) -> Calla
     if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not slopes:
         from .kernels.law.inverse_loop import inverse_loop
 
-        return lambda alphas, *rest: inverse_loop(inverses(alphas.item()), *rest)
+        return lambda alphas, *rest: inverse_loop(inverses(material or alphas.item()), *rest)
+    if material is not None:
+        return lambda alphas, *rest: state_loop(record(material), *rest)
     loop = state_loop if count < TOGETHER else contact_loop
     return lambda alphas, *rest: loop(Own(alphas), *rest)
 
@@ -260,17 +281,21 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
+    from .kernels.law.material import Own
     from .kernels.law.stress_loop import Points, stress_loop
 
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
+    material, unit = scene.in_own_time()
     given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
-    given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta", "zeta")}
-    given |= {"alpha": scene.alpha, "mirror": mirror, "sign": np.sign(state.delta) * mirror}
+    given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta")}
+    given |= {"zeta": np.asarray(state.zeta) / unit, "alpha": scene.alpha}
+    given |= {"mirror": mirror, "sign": np.sign(state.delta) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
-    x_of, *others, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
+    x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
+    modes = series(material) if isinstance(material, Prony) else None
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 
@@ -278,7 +303,7 @@ def stress(
         mirrored = mirror_of(start, stop) * x_of(start, stop)
         mirrored.flags.writeable = False  # as all that a kernel reads, see elements
         points = Points(mirrored, *(part(start, stop) for part in others))
-        stress_loop(points, p[start:stop], tau[start:stop], 0, stop - start)
+        stress_loop(modes or Own(alpha_of(start, stop)), points, p[start:stop], tau[start:stop], 0, stop - start)
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)

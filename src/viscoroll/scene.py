@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import broadcast_shape, checked, checked_extent, number
 from .errors import ParameterError
+from .prony import HIGHEST_ALPHA, Prony
 from .validity import Validity, contact_reach, judge
 
 
@@ -22,8 +23,6 @@ def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
     return array
 
 
-#: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
-HIGHEST_ALPHA = 1e12
 #: of mu/kappa, in which delta_star is measured
 RATIO_RANGE = (1e-290, 1e290)
 
@@ -32,30 +31,42 @@ RATIO_RANGE = (1e-290, 1e290)
 class Scene:
     """Dimensionless parameters of the rolling cylinder (Eqs. (4) and Sect. 3.1).
 
-    Each may be an array; they broadcast against each other and against speeds.
+    Each number may be an array; they broadcast against each other and against speeds.
 
     Parameters
     ----------
-    alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic) and <= 1e12.
+    alpha : T_epsilon/T_sigma, retardation over relaxation time, >= 1 (1: elastic) and <= 1e12;
+        the unit of time is T_epsilon.
     kappa : R/l0 = sqrt(E' R/(32 P)), radius over contact length at rest, > 0;
         the half-space theory asks for kappa >> 1.
     mu : coefficient of friction, > 0.
     gamma : P T_epsilon^2/(m R), > 0; only scales time.  Not used by contact or stress.
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
+    material : a :class:`Prony` series in place of ``alpha``, which is then that of the material; the
+        unit of time is T_ref, in which the series counts its times.
 
     Raises
     ------
     ParameterError
-        Where a value is not finite or out of range, or the shapes do not broadcast.
+        Where a value is not finite or out of range, the shapes do not broadcast, or both or neither of
+        ``alpha`` and ``material`` are given.
     """
 
-    alpha: Any
-    kappa: Any
-    mu: Any
+    alpha: Any = None
+    kappa: Any = None
+    mu: Any = None
     gamma: Any = 1.0
     j: Any = 0.5
+    material: Prony | None = None
 
     def __post_init__(self) -> None:
+        if (self.alpha is None) == (self.material is None):
+            given = "neither" if self.alpha is None else "both"
+            raise ParameterError("alpha, material given", given, "exactly one of the two")
+        if self.material is not None:
+            if not isinstance(self.material, Prony):
+                raise ParameterError("material", f"{self.material!r:.60}", "a Prony series")
+            object.__setattr__(self, "alpha", self.material.alpha)
         arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
         for name in ("kappa", "mu", "gamma", "j"):
@@ -74,9 +85,21 @@ class Scene:
         """Shape that the parameters broadcast to; () for one scene."""
         return np.broadcast_shapes(*(np.shape(getattr(self, f.name)) for f in fields(self)))
 
-    def replace(self, **changes: ArrayLike) -> Scene:
-        """A copy with some parameters changed."""
+    def replace(self, **changes: Any) -> Scene:
+        """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
+        if "material" in changes and "alpha" not in changes:
+            changes["alpha"] = None
+        elif "alpha" in changes and "material" not in changes:
+            changes["material"] = None
+        elif self.material is not None and "alpha" not in changes:
+            changes["alpha"] = None
         return replace(self, **changes)
+
+    def in_own_time(self) -> tuple[Any, float]:
+        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
+        if self.material is None or not self.material.E.size:
+            return self.alpha, 1.0
+        return self.material.in_own_time()
 
     def validity(self, V: ArrayLike) -> Validity:
         """Which assumptions of the model the contact at speed V strains.
@@ -96,7 +119,8 @@ class Scene:
     def _validity(self, V: ArrayLike, wave_ratio: Any, plane: str) -> Validity:
         speed = checked("V", V)
         broadcast_shape(alpha=np.asarray(self.alpha), kappa=np.asarray(self.kappa), V=speed)
-        return judge(*contact_reach(self.alpha, self.kappa, speed), wave_ratio, plane)
+        material, unit = self.in_own_time()
+        return judge(*contact_reach(material, self.kappa, speed * unit), wave_ratio, plane)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
@@ -290,9 +314,9 @@ PRESETS = {
 PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 
-def kernel_scene(alpha: float, kappa: float, mu: float, j: float) -> Any:
+def kernel_scene(material: float | Prony, kappa: float, mu: float, j: float) -> Any:
     """The record that the kernels of a motion take, for this thread alone."""
     from .kernels.motion import records
-    from .material_tables import material
+    from .material_tables import record
 
-    return records.Scene(material(alpha), kappa, mu, j)
+    return records.Scene(record(material), kappa, mu, j)

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .material_tables import record
+
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
 REACH_LIMIT = 0.2
 #: the paper's ref. [31], Table 1: below this share of the wave speeds the load is within 10 % of the static one
@@ -47,13 +49,13 @@ class Validity(NamedTuple):
         return "\n".join(f"{name}: {assumption.sentence}" for name, assumption in self._asdict().items())
 
 
-def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
-    """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments."""
+def contact_reach(material: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
+    """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments; ``material``: alphas, or a series."""
     from .kernels.law.length import contact_length
-    from .kernels.law.material import generators, standard
+    from .kernels.law.material import generators
 
-    def state(alpha: float, kappa: float, V: float) -> tuple[float, float]:
-        material, u = standard(alpha), kappa * abs(V)
+    def state(given: Any, kappa: Any, V: Any) -> tuple[float, float]:
+        material, kappa, u = record(given), float(kappa), float(kappa * abs(V))
         lam, epsilon = 1.0, 0.0
         if u > 0.0:
             lam, _ = contact_length(u, material)
@@ -62,8 +64,8 @@ def contact_reach(alpha: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, 
             epsilon = generators(zeta, material)[0] / zeta if zeta > 0.0 else 0.0
         return lam * (1.0 + epsilon) / (2.0 * kappa), epsilon
 
-    points = np.broadcast(alpha, kappa, V)
-    values = np.array([state(*map(float, point)) for point in points]).reshape(*points.shape, 2)
+    points = np.broadcast(material, kappa, V)
+    values = np.array([state(*point) for point in points]).reshape(*points.shape, 2)
     return values[..., 0], values[..., 1]
 
 

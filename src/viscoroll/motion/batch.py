@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
-from ..material_tables import material
+from ..material_tables import record
 from ..rolling_contact import flattened
 from ..scene import Scene
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
@@ -187,23 +187,27 @@ def ensemble(
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
     count = shape[0] if shape else 1
-    flat = [flattened(array, (count,)) for array in arrays.values()]
+    material, unit = scene.in_own_time()
+    own_time = {"gamma": unit * unit, "V0": unit, "omega0": unit}
+    flat = [flattened(array * own_time.get(name, 1.0), (count,)) for name, array in arrays.items()]
     rows = tuple(FIELDS.index(name) for name in names)
     bar = "motions" if progress else None
     use_map = method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS)
-    chosen = _map_of(scene, flat[5], flat[6], speed, threads) if use_map else None
+    chosen = _map_of(scene, flat[5], flat[6], speed and speed * unit, threads) if use_map else None
     error = (
         np.nan if chosen is None else chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
     )
     if chosen is not None and error <= rtol:
-        answer = ask(chosen, scene.gamma, threshold, flat[5], flat[6], times, rows, threads=threads, progress=bar)
+        given = float(flat[3][0]), threshold * unit, flat[5], flat[6], times / unit
+        answer = ask(chosen, *given, rows, threads=threads, progress=bar)
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    own = np.ndim(scene.alpha) > 0
-    steps = _integrate_others(
-        answer, flat, own, times, rtol, threshold, max_steps, rows, bool(flow.any()), threads, bar
-    )
+    shared = None if np.ndim(scene.alpha) else material
+    limits = rtol, threshold * unit, max_steps
+    steps = _integrate_others(answer, flat, shared, times / unit, limits, rows, bool(flow.any()), threads, bar)
+    if unit != 1.0:
+        answer = _in_units(answer, rows, unit)
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
@@ -221,13 +225,20 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
+def _in_units(answer: Answer, rows: tuple[int, ...], unit: float) -> Answer:
+    """An answer with time in units of ``unit`` counted in T_ref."""
+    for n, row in enumerate(rows):
+        answer.out[n] /= {"V": unit, "omega": unit}.get(FIELDS[row], unit * unit if FIELDS[row] in LOSSES else 1.0)
+    return answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
+
+
 def _integrate_others(
-    answer: Answer, flat: list[NDArray], own: bool, times: NDArray, rtol: float, rest: float, max_steps: int,
+    answer: Answer, flat: list[NDArray], material: Any, times: NDArray, limits: tuple[float, float, int],
     rows: tuple[int, ...], mapped: bool, threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
     """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each.
 
-    ``own``: each has an alpha of its own.
+    ``material`` : the one that they share, or None where each has an alpha of its own.
     """
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
@@ -239,9 +250,9 @@ def _integrate_others(
         if not left.size:
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
-        one = Own(alpha) if own else material(alpha.item())
+        one = Own(alpha) if material is None else record(material)
         out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
-        given = (one, *inputs), times, (rtol, rest, max_steps), np.array(rows, np.int64), out, info
+        given = (one, *inputs), times, limits, np.array(rows, np.int64), out, info
         _roll_all(given, _among(tuple(FIELDS[row] for row in rows), *LOSSES), left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T

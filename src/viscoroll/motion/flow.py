@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks
+from ..prony import Prony
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .flow_store import FlowMap, load, path_of, save
@@ -39,11 +40,11 @@ _BLOCK = 1 << 14
 _OCTAVES = 4
 
 
-def asked(scene: Scene, speed: float) -> tuple[tuple[float, ...], int]:
+def asked(scene: Scene, speed: float) -> tuple[tuple[Any, ...], int]:
     """(parameters, octave) of the map for a scene and speeds up to ``speed`` > 0."""
     from ..kernels.flow.layout import OCTAVE_RANGE
 
-    parameters = (scene.alpha, scene.kappa, scene.mu, scene.j)
+    parameters = (scene.in_own_time()[0], scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVES) * _OCTAVES
     return parameters, min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
 
@@ -70,7 +71,7 @@ def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowM
     return found
 
 
-def build(parameters: tuple[float, ...], octave: int, threads: int | None = None) -> FlowMap:
+def build(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
     """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
     from ..kernels.flow.layout import ENTRY_OCTAVES, SIZE
 
@@ -96,9 +97,9 @@ def _fill(made: FlowMap, threads: int | None) -> str:
     from ..kernels.flow.octave import layer_octave
     from ..kernels.flow.read import CROSS, MINUS, PLUS
 
-    alpha, _, _, j = made.parameters
+    _, _, _, j = made.parameters
     flow, parts = kernel_map(made), views(made.table)
-    if alpha == 1.0:
+    if flow.scene.material.T_mean == 0.0:
         return "an elastic cylinder never slows down"
     found = fill_curves(parts, flow.scene)
     if found != FILLED:
@@ -145,8 +146,8 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
-    alpha, _, _, j = made.parameters
-    c = (alpha - 1.0) / alpha
+    _, _, _, j = made.parameters
+    c = kernel_map(made).scene.material.T_mean
     start = np.array([V0]), np.array([omega0])
 
     def flow(times: NDArray) -> Answer:
@@ -174,14 +175,15 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
 
 
 def _rolled(
-    parameters: tuple[float, ...], V0: float, omega0: float, times: NDArray, losses: bool
+    parameters: tuple[Any, ...], V0: float, omega0: float, times: NDArray, losses: bool
 ) -> tuple[NDArray, float]:
     """Outputs and onset time of a motion by the kernel that ``roll`` compiles: none is compiled for the map alone."""
     from ..kernels.motion.losses import ROWS, add_losses, loss_points
     from ..kernels.motion.output import OUTPUTS
 
-    alpha, kappa, mu, j = parameters
-    start = Scene(alpha, kappa, mu, 1.0, j), V0, omega0
+    material, kappa, mu, j = parameters
+    given = {"material": material} if isinstance(material, Prony) else {"alpha": material}
+    start = Scene(**given, kappa=kappa, mu=mu, gamma=1.0, j=j), V0, omega0
     limits, switches = (_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS), np.empty((0, 2))
     out, ends = np.full((ROWS, times.size), np.nan), np.zeros(_SAMPLE_ENDS)
     out[:OUTPUTS], info = rolled(*start, times, limits, (switches, ends))

@@ -8,12 +8,14 @@ import warnings
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import OutputError
 from ..files import seal, seal_holds, write_bytes
+from ..prony import Prony
 
 #: maps kept on disk; the one that was used longest ago goes first
 _KEPT = 64
@@ -25,7 +27,7 @@ class FlowMap:
 
     Attributes
     ----------
-    parameters : alpha, kappa, mu, j.
+    parameters : alpha or series in its own unit of time, kappa, mu, j.
     first : kappa V of the slowest stick onset in it is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
     error : stated error of V and omega relative to the larger of the two: four times the worst
@@ -36,7 +38,7 @@ class FlowMap:
     problem : why the scene has no map, or "".
     """
 
-    parameters: tuple[float, ...]
+    parameters: tuple[Any, ...]
     first: int
     table: NDArray[np.float64]
     error: float
@@ -56,13 +58,21 @@ def folder() -> Path:
     return cache_root() / f"flow-{sources_digest()}"
 
 
-def path_of(parameters: tuple[float, ...], octave: int) -> Path:
+def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
+    """The parameters as numbers: those of a series are alpha, the rates of relaxation, and their strengths."""
+    material, *others = parameters
+    if isinstance(material, Prony):
+        return (material.alpha, *material.modes.a.tolist(), *material.modes.E.tolist(), *others)
+    return parameters
+
+
+def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     """File of the map for kappa V < 2**octave at stick onset."""
-    name = hashlib.sha256(b"sealed" + np.array([*parameters, octave]).tobytes()).hexdigest()[:20]
+    name = hashlib.sha256(b"sealed" + np.array([*_numbers(parameters), octave]).tobytes()).hexdigest()[:20]
     return folder() / f"{name}.npz"
 
 
-def load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
+def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     """The map in a file; None if there is none, or after a warning, none that is whole."""
     try:
         content = path.read_bytes()
@@ -78,17 +88,18 @@ def load(path: Path, parameters: tuple[float, ...]) -> FlowMap | None:
     return found
 
 
-def _parsed(content: bytes, parameters: tuple[float, ...]) -> FlowMap:
+def _parsed(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
     from ..kernels.flow.layout import SIZE
 
     if not seal_holds(content):
         raise ValueError("its bytes differ from the SHA-256 at their end")
     with np.load(io.BytesIO(content)) as data:
+        numbers = tuple(data["parameters"].tolist())
         found = FlowMap(
-            tuple(data["parameters"].tolist()), int(data["first"]), data["table"],
+            parameters, int(data["first"]), data["table"],
             float(data["error"]), float(data["path_error"]), float(data["loss_error"]), str(data["problem"]),
         )  # fmt: skip
-    if found.parameters != parameters or found.table.shape != (SIZE,):
+    if numbers != _numbers(parameters) or found.table.shape != (SIZE,):
         raise ValueError("it is that of another scene")
     return found
 
@@ -99,7 +110,7 @@ def save(made: FlowMap, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         content = io.BytesIO()
         np.savez(
-            content, parameters=made.parameters, first=made.first, table=made.table,
+            content, parameters=_numbers(made.parameters), first=made.first, table=made.table,
             error=made.error, path_error=made.path_error, loss_error=made.loss_error, problem=made.problem,
         )  # fmt: skip
         write_bytes(path, seal(content.getvalue()))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
-from ..material_tables import material
+from ..material_tables import record
 from ..rolling_contact import Values, contact
 from ..scene import Scene
 from .checks import controls, output_times, start_speeds
@@ -228,13 +228,24 @@ def rolled(
     """Outputs of one motion, and its status, steps, switches, onset time, rest time: by the kernel for many motions.
 
     ``limits`` and ``notes`` are those of ``kernels.motion.records``, which the switches and the ends of steps are put
-    into.
+    into.  The kernel counts time in the material's own unit.
     """
+    rtol, rest, max_steps = limits
     from ..kernels.motion.loop import INFO, motion_loop
     from ..kernels.motion.output import OUTPUTS
 
-    one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0)).reshape(-1, 1)
+    material, unit = scene.in_own_time()
+    gamma = scene.gamma * unit * unit
+    one = np.array((scene.kappa, scene.mu, gamma, scene.j, V0 * unit, omega0 * unit)).reshape(-1, 1)
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     out, info = np.empty((OUTPUTS, 1, times.size)), np.empty((1, len(INFO)))
-    motion_loop((material(scene.alpha), *one), times, limits, np.arange(OUTPUTS), out, info, notes, 0, 1)
-    return out[:, 0], info[0].tolist()
+    given, own = (record(material), *one), (rtol, rest * unit, max_steps)
+    motion_loop(given, times / unit, own, np.arange(OUTPUTS), out, info, notes, 0, 1)
+    out, info = out[:, 0], info[0]
+    if unit != 1.0:
+        switches, ends = notes
+        out[:2] /= unit
+        info[3:] *= unit
+        switches[: int(info[2]), 0] *= unit
+        ends *= unit
+    return out, info.tolist()

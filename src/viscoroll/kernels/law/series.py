@@ -36,8 +36,8 @@ class Series(NamedTuple):
     Q: Any
 
 
-class Work(NamedTuple):
-    """Arrays of one evaluation: sqrt(r), a r', k, b k', x and f; X i2; B."""
+class Room(NamedTuple):
+    """Arrays of one evaluation: sqrt(r), a r', k, b k', x and f; B."""
 
     root: Any
     slope_r: Any
@@ -48,9 +48,18 @@ class Work(NamedTuple):
     matrix: Any
 
 
+class Solved(NamedTuple):
+    """A series, and the room that it is evaluated in."""
+
+    series: Series
+    work: Room
+
+
 @kernel(allocates=True)
-def _work(count):
-    return Work(
+def room(series):
+    """Room for the evaluations of a series."""
+    count = series.a.size
+    return Room(
         np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count),
         np.empty((count, count)),
     )  # fmt: skip
@@ -58,7 +67,7 @@ def _work(count):
 
 @kernel
 def _ratios(z, series, work):
-    """Ratios and slopes of every mode; returns 1/z."""
+    """Ratios and slopes of every mode."""
     for i in range(series.a.size):
         x = series.a[i] * z
         r, complement = ratio_r(x)
@@ -91,10 +100,16 @@ def _solve(series, work):
 
 
 @kernel
-def values(z, series, work):
-    """(g, h, m, b) at z > 0."""
+def solve(z, series, work):
+    """Fill the room at z > 0."""
     _ratios(z, series, work)
     _solve(series, work)
+
+
+@kernel
+def values(z, series, work):
+    """(g, h, m, b) at z > 0."""
+    solve(z, series, work)
     g = h = dh = pressed = 0.0
     for i in range(series.a.size):
         root, x, f = work.root[i], work.x[i], work.f[i]
@@ -111,7 +126,7 @@ def values(z, series, work):
 @kernel(allocates=True, seconds=3)
 def fill(series, first, stop, table):
     """Make the bins first..stop of z."""
-    work = _work(series.a.size)
+    work = room(series)
     for number in range(first, stop):
         middle = bin_place(number, quartet.BITS, 0.5)
         row, _ = quartet.row_of(middle, table)

@@ -22,8 +22,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..bessel.ratios import ratio_k, ratio_r
+from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics.nodes import gauss
+from .series import Solved, solve
+from .standard import Standard
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
@@ -60,13 +63,8 @@ def _memory(u, w, a, r_complement):
 
 
 @kernel
-def unit_shape(u, w, z, material):
-    """S/z at the distances u from the front and w from the rear edge, u + w = 2; 0 outside.
-
-    z = inf is the elastic limit V = 0.
-    """
-    if u <= 0.0 or w <= 0.0:
-        return 0.0
+def _shape_of_one(u, w, z, material):
+    """``unit_shape`` of one relaxation time, inside the contact."""
     alpha, c = material.alpha, material.T_mean
     ellipse = np.sqrt(u * w)
     a = alpha * z
@@ -75,6 +73,35 @@ def unit_shape(u, w, z, material):
     r, r_complement = ratio_r(a)
     k, _ = ratio_k(z)
     return ellipse + alpha * (c / (1.0 + r * k)) * _memory(u, w, a, r_complement)
+
+
+@kernel
+def _shape_of_several(u, w, z, material):
+    """``unit_shape`` of several modes, inside the contact: one memory each."""
+    shape = np.sqrt(u * w)
+    if z == np.inf:
+        return shape
+    series, work = material
+    solve(z, series, work)
+    for i in range(series.a.size):
+        a = series.a[i] * z
+        _, r_complement = ratio_r(a)
+        shape += series.a[i] * (series.e[i] * work.x[i] / work.root[i]) * _memory(u, w, a, r_complement)
+    return shape
+
+
+_shape = by_record(3, (Standard, _shape_of_one), (Solved, _shape_of_several))
+
+
+@kernel
+def unit_shape(u, w, z, material):
+    """S/z at the distances u from the front and w from the rear edge, u + w = 2; 0 outside.
+
+    z = inf is the elastic limit V = 0.
+    """
+    if u <= 0.0 or w <= 0.0:
+        return 0.0
+    return _shape(u, w, z, material)
 
 
 @kernel

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ..compile.choice import by_record
 from ..compile.jit import kernel
-from .material import standard
+from .material import Own, standard
+from .series import Series, Solved, room
 from .stress import stress_at
 
 
@@ -19,19 +21,44 @@ class Points(NamedTuple):
     epsilon: Any
     beta: Any
     zeta: Any
-    alpha: Any
 
 
 @kernel(inline=True)
-def _own(array, i):
+def _at(array, i):
     return array[min(i, array.size - 1)]
 
 
 @kernel
-def stress_loop(points, p, tau, start, stop):
-    """p/E' and |tau|/E' at points start..stop."""
+def _as_given(given):
+    return given
+
+
+@kernel(allocates=True)
+def _with_room(given):
+    return Solved(given, room(given))
+
+
+@kernel(inline=True)
+def _own(given, i):
+    return standard(_at(given.alpha, i))
+
+
+@kernel(inline=True, allocates=True)  # what it returns holds references to arrays
+def _shared(given, i):
+    return given
+
+
+#: what a block of points is computed from, and the material of point i
+_prepared = by_record(0, (Own, _as_given), (Series, _with_room))
+_material_of = by_record(0, (Own, _own), (Solved, _shared))
+
+
+@kernel(allocates=True, seconds=2)
+def stress_loop(given, points, p, tau, start, stop):
+    """p/E' and |tau|/E' at points start..stop; ``given``: an alpha each, or the modes of one material."""
+    prepared = _prepared(given)
     for i in range(start, stop):
         p[i], tau[i] = stress_at(
-            _own(points.x, i), _own(points.kappa, i), _own(points.mu, i), _own(points.lam, i),
-            _own(points.epsilon, i), _own(points.beta, i), _own(points.zeta, i), standard(_own(points.alpha, i)),
+            _at(points.x, i), _at(points.kappa, i), _at(points.mu, i), _at(points.lam, i),
+            _at(points.epsilon, i), _at(points.beta, i), _at(points.zeta, i), _material_of(prepared, i),
         )  # fmt: skip
