@@ -288,3 +288,13 @@ SENSITIVITY_INTERVAL = 0.08
 SENSITIVITY_SHARE = 0.1
 #: condition number of a motion in which slip returns in passing: sum over its inputs, by pipeline/prove/motion.py.
 GRAZING_CONDITION = 89.0
+
+# --- materials in SI units (test_material.py) ---
+#: moduli and compliances against sums written out: a few roundings a mode; measured 4.4e-16.
+MATERIAL = 4e-15
+#: relaxation against creep form, and shear with a constant bulk modulus: the conversion; measured 8.7e-15 at 34 modes.
+MATERIAL_FORMS = 3e-14
+#: numbers that a docstring gives to eight digits.
+MATERIAL_PRINTED = 1e-7
+#: Dundurs' constant and wave speeds: quotients of a few roundings.
+PAIR = 1e-14
