@@ -86,8 +86,7 @@ class Material(FromPrograms):
         """
         T_epsilon = number("T_epsilon", T_epsilon, low=0.0, strict=True)
         T_sigma = number("T_sigma", T_sigma, low=0.0, strict=True)
-        if T_epsilon < T_sigma:
-            raise ParameterError("T_epsilon", T_epsilon, f">= T_sigma = {T_sigma}")
+        refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
         prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
         return cls(E, nu, prony, T_epsilon, **more)
@@ -213,3 +212,9 @@ class Material(FromPrograms):
         """t over each of the times."""
         with np.errstate(over="ignore"):
             return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
+
+
+def refuse_short_retardation(T_epsilon: float, T_sigma: float) -> None:
+    """Raise ParameterError where T_epsilon < T_sigma."""
+    if T_epsilon < T_sigma:
+        raise ParameterError("T_epsilon", T_epsilon, f">= T_sigma = {T_sigma}")

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cylinder import scene_from_si
 from ..motion import ensemble
 from ..motion.batch import Ensemble
-from ..scene import Scene, scene_from_si
+from ..scene import Scene
 from . import draws
 from .runfile import Run
 from .sources import CYLINDER, SCENE, START
