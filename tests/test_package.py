@@ -39,7 +39,7 @@ def test_documented_names():
     assert {"rest", "max_steps"} <= set(parameters(vr.roll))
     assert inspect.signature(vr.roll).parameters["rtol"].default == 1e-8
     assert parameters(vr.ensemble)[:4] == ["scene", "V0", "omega0", "t"]
-    assert [f.name for f in dataclasses.fields(vr.Scene)] == ["alpha", "kappa", "mu", "gamma", "j"]
+    assert [f.name for f in dataclasses.fields(vr.Scene)] == ["alpha", "kappa", "mu", "gamma", "j", "material"]
     assert [f.name for f in dataclasses.fields(vr.Cylinder)] == [
         "R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "plane", "material", "base", "pressed",
     ]  # fmt: skip

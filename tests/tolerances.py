@@ -103,6 +103,11 @@ SLOPE_DIFFERENCE = 2e-5
 TABLE = 1e-14
 #: Their slopes, relative, and differences for slight creep, which are slopes; measured 6e-13.
 TABLE_SLOPE = 1e-12
+#: The slope of b, which itself holds the slopes of g and h: from where the unknown of the slow manifold is counted, no
+#: more; measured 1.1e-12 at alpha = 1e4.
+TABLE_B_SLOPE = 1e-11
+#: The alpha up to which that holds.
+SLOPES_OF_B = 1e6
 #: Motions of one material against those of the same alpha each, at rtol 1e-9: half of the stated error of either.
 KINDS = 1e-9
 #: Many states at one alpha against 50 digits, relative, beta times 1/(1 - s): Q loses a digit where 1 - H(eta)/H(zeta)
@@ -300,3 +305,31 @@ MATERIAL_PRINTED = 1e-7
 UNIT_OF_TIME = 3e-14
 #: Dundurs' constant and wave speeds: quotients of a few roundings.
 PAIR = 1e-14
+
+# --- prony.py, kernels/law/series.py (test_prony.py) ---
+#: One form from the other for one mode: roundings of a product or two.
+SERIES_FORMS = 1e-14
+#: Q Q^T - 1 and Q^T t - e of up to 12 modes: each entry is a product of 2 N gaps; measured 8e-15 at 29 modes.
+SERIES_ORTHOGONAL = 5e-14
+#: Relaxation from creep from relaxation: a weak mode between close times keeps fewer digits; measured 1.4e-14.
+SERIES_BACK = 1e-10
+#: Gaps between rates against 60 digits: a few roundings.
+SERIES_GAPS = 2e-15
+#: g, h and m against the matching conditions in 60 digits, relative: the bound asked; measured 2e-15.
+SERIES_FUNCTIONS = 1e-13
+#: Two modes 1e-13 apart against one.
+SERIES_SPLIT = 1e-11
+#: Another unit of time: powers of two are exact, others round the times.
+UNIT = 1e-12
+#: States by roots against those by tables; the equation of the length.
+SERIES_STATES = 1e-12
+#: Eqs. (10), (15) put back together from beta: differences of near numbers.
+SERIES_CLOSURE = 1e-8
+#: Integrals of stresses by 2,000 points; the layer at the front of a broad material is what they see least of.
+SERIES_STRESS = 1e-6
+#: Speeds at which slip returns, known to three digits from another program.
+SERIES_BANDS = 1e-3
+#: Motions of one mode by its series and by its alpha at rtol 1e-8.
+SERIES_MOTION = 1e-10
+#: The integrator's own error beside that of a map.
+SERIES_MAP = 3e-9

@@ -72,7 +72,7 @@ SLICE = [
     ("law/inverse_loop.py", "part, slight_status = slight_traction", "_, slight_status = slight_traction", _SLICE),
     ("numerics/quartet.py", "ir.Constant(_FOUR, [float(k)] * 4)", "ir.Constant(_FOUR, [float(k * 1.0000001)] * 4)", _SLICE),
     ("law/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
-    ("law/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _MOTION),
+    ("law/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
 ]  # fmt: skip
 MOTION = [
     ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),

@@ -115,15 +115,17 @@ class Prony:
             E, tau = (np.array(values) for values in self._relaxation)
             a = 1.0 / tau
             # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
-            gaps = zeros_from_poles(np.concatenate([[0.0], a]), np.concatenate([[1.0], E]), 0.0)
+            spread = np.zeros((tau.size + 1, tau.size + 1))
+            spread[1:, 1:], spread[1:, 0], spread[0, 1:] = _between(tau), a, -a
+            gaps = zeros_from_poles(spread, np.concatenate([[1.0], E]), 0.0)
             b, gap = gaps[0], -gaps[1:].T
-            return Modes(self._alpha, a, b, E, _strengths(gap, b, 1.0 / self._alpha) / b, gap)
+            return Modes(self._alpha, a, b, E, _strengths(gap, self._alpha)[0] / b, gap)
         assert self._creep is not None
         J, T = (np.array(values) for values in self._creep)
         b = 1.0 / T
-        gap = zeros_from_poles(b, J * b, 1.0 / self._alpha)
+        gap = zeros_from_poles(_between(T), J * b, 1.0 / self._alpha)
         a = b + np.diagonal(gap)
-        return Modes(self._alpha, a, b, _strengths(gap.T, a, self._alpha) / a, J, gap)
+        return Modes(self._alpha, a, b, _strengths(gap, self._alpha)[1] / a, J, gap)
 
     @property
     def alpha(self) -> float:
@@ -216,23 +218,27 @@ def _read_only(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return values
 
 
-def zeros_from_poles(pole: NDArray, weight: NDArray, constant: float) -> NDArray[np.float64]:
+def _between(times: NDArray) -> NDArray[np.float64]:
+    """rate[j] - rate[l] of the rates 1/times: of close times the difference is exact, of their rates it is not."""
+    return (times[None, :] - times[:, None]) / (times[:, None] * times[None, :])
+
+
+def zeros_from_poles(spread: NDArray, weight: NDArray, constant: float) -> NDArray[np.float64]:
     """gap[j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum weight_j/(pole_j - s).
 
-    Poles ascend and weights are positive, so that the sum rises from pole to pole: one zero between two
-    neighbours, and one right of the last if ``constant`` > 0.
+    spread[j, l] = pole_j - pole_l.  Poles ascend and weights are positive, so that the sum rises from pole to pole: one
+    zero between two neighbours, and one right of the last if ``constant`` > 0.
     """
-    between = np.diff(pole) * 0.5
-    if constant > 0.0:  # right of all poles every term is at least -weight over the distance from the last
-        between = np.concatenate([between, [2.0 * weight.sum() / constant]]) if pole.size else between
-    count = between.size
-    left = np.arange(count)
-    spread = pole[:, None] - pole[None, :]  # from pole to pole, exact where they are neighbours
-    in_left = np.ones(count, dtype=bool)
-    middle = _sum_at(between, left, 1.0, spread, weight, constant)
-    in_left[: pole.size - 1] = middle[: pole.size - 1] >= 0.0
+    poles = weight.size
+    half = 0.5 * np.diagonal(spread, -1)
+    if constant > 0.0 and poles:  # right of all poles every term is at least -weight over the distance from the last
+        half = np.concatenate([half, [2.0 * weight.sum() / constant]])
+    left = np.arange(half.size)
+    in_left = np.ones(half.size, dtype=bool)
+    middle = _sum_at(half, left, 1.0, spread, weight, constant)
+    in_left[: poles - 1] = middle[: poles - 1] >= 0.0
     origin, side = np.where(in_left, left, left + 1), np.where(in_left, 1.0, -1.0)
-    low, high = np.log(between * _CLOSEST), np.log(between)
+    low, high = np.log(half * _CLOSEST), np.log(half)
     for _ in range(_HALVINGS):
         mid = 0.5 * (low + high)
         beyond = side * _sum_at(np.exp(mid), origin, side, spread, weight, constant) > 0.0
@@ -263,12 +269,15 @@ def _polished(
     return np.where((new > 0.5 * distance) & (new < 2.0 * distance), new, distance)
 
 
-def _strengths(gap: NDArray, rate: NDArray, first: float) -> NDArray[np.float64]:
-    """first prod_i gap[j, i] / prod_{l != j} |rate_j - rate_l|, factors paired so that nothing overflows."""
-    apart = np.abs(rate[:, None] - rate[None, :])
-    np.fill_diagonal(apart, 1.0)
-    return (
-        first
-        * np.diagonal(np.abs(gap))
-        * np.prod(np.where(np.eye(rate.size, dtype=bool), 1.0, np.abs(gap) / apart), axis=1)
-    )
+def _strengths(gap: NDArray, alpha: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(J, E) times their rates: products of gaps over products of the differences of their own rates.
+
+    The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.  Factors are
+    paired so that nothing overflows.
+    """
+    size, own = np.abs(gap), np.eye(gap.shape[0], dtype=bool)
+    nearest = np.diagonal(size)
+    # b_j - b_l = (a_l - b_l) + (b_j - a_l) and a_i - a_l = (a_i - b_i) + (b_i - a_l), j, i > l
+    apart_b, apart_a = (np.tril(each, -1) for each in (nearest[None, :] + size, nearest[:, None] + size))
+    per_b, per_a = (np.where(own, 1.0, size / np.where(own, 1.0, each + each.T)) for each in (apart_b, apart_a))
+    return nearest / alpha * per_b.prod(axis=1), nearest * alpha * per_a.prod(axis=0)

@@ -59,10 +59,9 @@ class Scene:
     material: Prony | None = None
 
     def __post_init__(self) -> None:
-        if (self.alpha is None) == (self.material is None):
-            given = "neither" if self.alpha is None else "both"
-            raise ParameterError("alpha, material given", given, "exactly one of the two")
         if self.material is not None:
+            if self.alpha is not None:
+                raise ParameterError("alpha, material given", "both", "one of the two")
             if not isinstance(self.material, Prony):
                 raise ParameterError("material", f"{self.material!r:.60}", "a Prony series")
             object.__setattr__(self, "alpha", self.material.alpha)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .material_tables import record
+from .prony import Prony
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
 REACH_LIMIT = 0.2
@@ -56,10 +57,10 @@ class Validity(NamedTuple):
 def contact_reach(material: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
     """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments; ``material``: alphas, or a series."""
     from .kernels.law.length import contact_length
-    from .kernels.law.material import generators
+    from .kernels.law.material import generators, standard
 
-    def state(given: Any, kappa: Any, V: Any) -> tuple[float, float]:
-        material, kappa, u = record(given), float(kappa), float(kappa * abs(V))
+    def state(given: Any, kappa: float, V: float) -> tuple[float, float]:
+        material, u = record(given) if isinstance(given, Prony) else standard(given), kappa * abs(V)
         lam, epsilon = 1.0, 0.0
         if u > 0.0:
             lam, _ = contact_length(u, material)
@@ -69,7 +70,7 @@ def contact_reach(material: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[An
         return lam * (1.0 + epsilon) / (2.0 * kappa), epsilon
 
     points = np.broadcast(material, kappa, V)
-    values = np.array([state(*point) for point in points]).reshape(*points.shape, 2)
+    values = np.array([state(given, float(kappa), float(V)) for given, kappa, V in points]).reshape(*points.shape, 2)
     return values[..., 0], values[..., 1]
 
 

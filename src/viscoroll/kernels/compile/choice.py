@@ -26,5 +26,13 @@ def by_record(at: int, *versions: tuple[type, Callable]) -> Callable:
     def get_overload(signature: Any) -> Any:
         return version(sigutils.normalize_signature(signature)[0]).get_overload(signature)
 
+    def compile_for_python(signature: Any) -> Any:
+        given, _ = sigutils.normalize_signature(signature)
+        version(given).compile(signature)
+        compiled = version(given).overloads[tuple(given)]
+        stand_in.add_overload(compiled)
+        return compiled.entry_point
+
     stand_in.get_call_template, stand_in.get_overload = get_call_template, get_overload
+    stand_in.compile = compile_for_python
     return stand_in

@@ -28,7 +28,7 @@ def _at(array, i):
     return array[min(i, array.size - 1)]
 
 
-@kernel
+@kernel(allocates=True)  # what it returns holds a reference to an array
 def _as_given(given):
     return given
 

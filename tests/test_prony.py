@@ -1,0 +1,274 @@
+"""Materials of several relaxation times: both forms of a series, its functions, and what rolls on it."""
+
+from __future__ import annotations
+
+import mpmath as mp
+import numpy as np
+import pytest
+import tolerances as tol
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.kernels.law import series as kernels
+from viscoroll.kernels.law.material import at_contact, generators
+from viscoroll.kernels.law.standard import standard
+from viscoroll.material_tables import record, series
+from viscoroll.reference import series as raw
+
+MANY, DIGITS = 5000, 60
+WIDE = vr.Prony(E=[0.5, 3.0, 8.0, 20.0], tau=[1.0, 3e-2, 4e-5, 1e-9])
+#: random series: modes, decades that their times span, size of the strengths
+SERIES = st.tuples(st.integers(1, 12), st.floats(0.01, 14.0), st.floats(-3.0, 3.0), st.integers(0, 2**32 - 1))
+
+
+def random_series(modes: int, decades: float, size: float, seed: int) -> vr.Prony:
+    draw = np.random.default_rng(seed)
+    return vr.Prony(10.0 ** draw.uniform(size - 2.0, size, modes), 10.0 ** draw.uniform(-decades, 0.0, modes))
+
+
+# --- the two forms ---
+
+
+def test_one_mode_is_the_standard_linear_solid():
+    p = vr.Prony(E=[10.0], tau=[1.0 / 11.0])
+    assert (p.alpha, p.J.item(), p.T.item()) == pytest.approx((11.0, 10.0 / 11.0, 1.0), rel=tol.SERIES_FORMS)
+    back = vr.Prony.creep(J=[10.0 / 11.0], T=[1.0], alpha=11.0)
+    assert (back.E.item(), back.tau.item()) == pytest.approx((10.0, 1.0 / 11.0), rel=tol.SERIES_FORMS)
+
+
+@settings(max_examples=60, deadline=None)
+@given(SERIES)
+def test_forms_belong_together(drawn):
+    """Q is orthogonal, Q^T t = e, times interlace, and creep gives relaxation back."""
+    p = random_series(*drawn)
+    m = p.modes
+    known = series(p)
+    assert abs(known.Q @ known.Q.T - np.eye(m.a.size)).max() <= tol.SERIES_ORTHOGONAL
+    assert abs(known.Q.T @ known.t - known.e).max() <= tol.SERIES_ORTHOGONAL * known.e.max()
+    assert (m.b < m.a).all()
+    assert (m.a[:-1] < m.b[1:]).all()
+    assert p.T_mean == pytest.approx((m.J / m.b).sum(), rel=tol.SERIES_FORMS)
+    back = vr.Prony.creep(m.J, 1.0 / m.b, alpha=p.alpha)
+    np.testing.assert_allclose(back.tau, p.tau, rtol=tol.SERIES_BACK)
+    np.testing.assert_allclose(back.E, p.E, rtol=tol.SERIES_BACK)
+
+
+@pytest.mark.parametrize(
+    ("E", "tau"),
+    [([2.0, 6.0], [1.0, 1e-5]), ([1e-14, 2.0], [1.0, 1.0 - 1e-12]), ([1e8, 3.0, 1e-9], [1.0, 1e-7, 1e-14])],
+)
+def test_rates_of_creep_against_arbitrary_precision(E, tau):
+    with mp.workdps(DIGITS):
+        exact = raw.rates(mp, E, tau)
+        gaps = vr.Prony(E, tau).modes.gap
+        for j, b in enumerate(exact.b):
+            for i, a in enumerate(exact.a):
+                assert abs(mp.mpf(float(gaps[j, i])) / (a - b) - 1) <= tol.SERIES_GAPS
+
+
+def test_nothing_given_is_rescaled():
+    p = vr.Prony(E=[6.0, 0.0, 2.0, 1.0], tau=[1e-5, 3.0, 1.0, 1.0])
+    assert (p.E.tolist(), p.tau.tolist()) == ([3.0, 6.0], [1.0, 1e-5])  # equal times added up, zeros dropped
+    assert p == vr.Prony([3.0, 6.0], [1.0, 1e-5])
+    assert hash(p) == hash(vr.Prony([3.0, 6.0], [1.0, 1e-5]))
+    assert eval(repr(p), {"Prony": vr.Prony}) == p
+    with pytest.raises(ValueError, match="read-only"):
+        p.E[0] = 1.0
+    assert vr.Prony.elastic().alpha == 1.0
+
+
+def test_refusals():
+    for call, words in (
+        (lambda: vr.Prony([-1.0], [1.0]), ("E = -1.0", ">= 0")),
+        (lambda: vr.Prony([1.0], [0.0]), ("tau = 0.0", "> 0")),
+        (lambda: vr.Prony([1.0, 2.0], [1.0]), ("tau", "shape")),
+        (lambda: vr.Prony([np.nan], [1.0]), ("E",)),
+        (lambda: vr.Prony([1e13], [1.0]), ("E", "1e+12")),
+        (lambda: vr.Prony([1.0, 1.0], [1.0, 1e-25]), ("tau", "1e+20")),
+        (lambda: vr.Prony(np.ones(65), np.geomspace(1e-6, 1.0, 65)), ("tau", "64")),
+        (lambda: vr.Prony.creep([0.6, 0.4], [1.0, 0.1]), ("J", "below 1")),
+        (lambda: vr.Prony.creep([0.5], [1.0], alpha=3.0), ("alpha", "2.0")),
+        (lambda: vr.Scene(alpha=2.0, kappa=1.0, mu=0.1, material=WIDE), ("alpha, material", "both")),
+        (lambda: vr.Scene(kappa=1.0, mu=0.1), ("alpha = None",)),
+        (lambda: vr.Scene(kappa=1.0, mu=0.1, material=2.0), ("material = 2.0", "Prony")),
+        (lambda: vr.contact(scene(WIDE), 1.0, delta=0.0, method="direct"), ("method", "one relaxation time")),
+    ):
+        refused(call, *words)
+
+
+# --- the functions of z ---
+
+
+def scene(material: vr.Prony, **changes: float) -> vr.Scene:
+    return vr.Scene(material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_functions_against_the_conditions_as_they_stand(seed):
+    """Exact kernels and their table, from the instantaneous to the long-time limit."""
+    draw = np.random.default_rng(seed)
+    p = random_series(int(draw.integers(1, 9)), draw.uniform(0.1, 14.0), draw.uniform(-2.0, 4.0), seed)
+    known, table = series(p), record(p)
+    room = kernels.room(known)
+    with mp.workdps(DIGITS):
+        exact_rates = raw.rates(mp, p.E.tolist(), p.tau.tolist())
+        for z in np.exp(draw.uniform(np.log(table.tau) - 30.0, np.log(p.T[0]) + 28.0, 12)):
+            exact = raw.functions(mp, exact_rates, z)
+            g, h, m, _ = kernels.values(z, known, room)
+            for found in ((g, h, m), (*generators(z, table), at_contact(z, table)[4])):
+                for value, truth in zip(found, (exact.g, exact.h, exact.m), strict=True):
+                    assert abs(mp.mpf(float(value)) / truth - 1) <= tol.SERIES_FUNCTIONS, z
+
+
+@pytest.mark.parametrize("alpha", [1.5, 11.0, 300.0])
+def test_one_mode_is_the_law_of_bessel_ratios(alpha):
+    p = vr.Prony.creep([(alpha - 1.0) / alpha], [1.0], alpha=alpha)
+    table, by_ratios = record(p), standard(alpha)
+    for z in np.exp(np.random.default_rng(3).uniform(-60.0, 60.0, 500)):
+        g, h, dg, dh, m, dm, b, db = at_contact(z, by_ratios)
+        error = abs(np.array(at_contact(z, table)) - (g, h, dg, dh, m, dm, b, db))
+        assert error[0] <= tol.TABLE * (z + g)
+        assert error[1] <= tol.TABLE * h
+        assert error[4] <= tol.TABLE * m
+        assert error[6] <= tol.TABLE * b
+        assert error[2] <= tol.TABLE_SLOPE * (1.0 + dg)
+        assert z * error[3] <= tol.TABLE_SLOPE * (z + h + z * dh)
+        assert z * error[5] <= tol.TABLE_SLOPE * m
+        assert z * error[7] <= tol.TABLE_B_SLOPE * b
+
+
+@settings(max_examples=40, deadline=None)
+@given(SERIES)
+def test_shape_of_the_functions(drawn):
+    """z^2 < H < alpha z^2, 0 < g < T_mean/2, g < h, F' > 1, H' > 0, m rises from 0 to T_mean."""
+    p = random_series(*drawn)
+    table = record(p)
+    z = np.geomspace(1e-3 * table.tau, 1e3 * p.T[0], 200)
+    g, h, dg, dh, m, _, _, _ = np.array([at_contact(at, table) for at in z.tolist()]).T
+    rounding = tol.SERIES_FUNCTIONS * p.T_mean
+    assert (0.0 < g).all()
+    assert (g < 0.5 * p.T_mean + rounding).all()
+    assert (g < h + rounding).all()
+    assert (2.0 * h < (p.alpha - 1.0) * z * (1.0 + tol.SERIES_FUNCTIONS)).all()
+    assert (dg > -tol.TABLE_SLOPE).all()
+    assert (z + h + z * dh > 0.0).all()
+    assert (np.diff(m) > -rounding).all()
+    assert (m < p.T_mean + rounding).all()
+
+
+# --- contact and stress ---
+
+
+def test_a_mode_split_in_two_is_one_mode():
+    one, two = vr.Prony([6.0, 2.0], [1.0, 0.1]), vr.Prony([6.0, 1.0, 1.0], [1.0, 0.1, 0.1 * (1.0 + 1e-13)])
+    V = np.geomspace(1e-3, 1e2, 20)
+    for name in ("lam", "epsilon", "Q", "M"):
+        values = (getattr(vr.contact(scene(p), V, delta=1e-4), name) for p in (one, two))
+        np.testing.assert_allclose(*values, rtol=tol.SERIES_SPLIT)
+
+
+@pytest.mark.parametrize("unit", [2.0**40, 3.7e-9])
+def test_the_unit_of_time_is_free(unit):
+    """T_ref times 1/unit: V in R/T_ref changes, nothing physical does."""
+    far = WIDE.slower(unit)
+    V = np.geomspace(1e-3, 1e9, 40)
+    here = vr.contact(scene(WIDE), V, delta=1e-3, slopes=True)
+    there = vr.contact(scene(far), V / unit, delta=1e-3, slopes=True)
+    for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M"):
+        np.testing.assert_allclose(getattr(there, name), getattr(here, name), rtol=tol.UNIT)
+    np.testing.assert_allclose(there.zeta / unit, here.zeta, rtol=tol.UNIT)
+    for name in ("dQ_dV", "dM_dV", "dQ_domega"):
+        size = abs(getattr(here, name)).max()
+        np.testing.assert_allclose(getattr(there, name) / unit, getattr(here, name), atol=tol.UNIT * size)
+
+
+@settings(max_examples=20, deadline=None)
+@given(SERIES, st.floats(-4.0, 4.0), st.floats(0.01, 0.99))
+def test_states_alone_and_in_company(drawn, speed, s):
+    """By roots and by the inverses' tables; the equations that define the state close."""
+    p = random_series(*drawn)
+    one = scene(p)
+    V = 10.0**speed / 10.0 / p.T[0]
+    delta = s * vr.contact(one, V, delta=0.0).delta_star
+    alone = vr.contact(one, V, delta=delta)
+    many = vr.contact(one, np.full(MANY, V), delta=delta)
+    for name in ("lam", "epsilon", "delta_star", "Q", "M"):
+        assert getattr(many, name)[-1] == pytest.approx(getattr(alone, name), rel=tol.SERIES_STATES)
+    material, unit = p.in_own_time()
+    table, zeta = record(material), alone.zeta / unit
+    g, h = generators(zeta, table)
+    g_eta, h_eta = generators(alone.beta * zeta, table)
+    own = V * unit
+    assert (zeta * zeta + 2.0 * zeta * h) * (20.0 * own) ** 2 == pytest.approx(1.0, rel=tol.SERIES_STATES)
+    eta = alone.beta * zeta
+    assert (zeta + g - eta - g_eta) * 0.3 * own == pytest.approx(delta, rel=tol.SERIES_CLOSURE)
+    share = (eta * eta + 2.0 * eta * h_eta) / (zeta * zeta + 2.0 * zeta * h)
+    assert 1.0 - share == pytest.approx(alone.Q / 0.3, rel=tol.SERIES_CLOSURE)
+
+
+@pytest.mark.parametrize("V", [1e-3, 0.1, 3.0, 1e3])
+def test_stresses_close(V):
+    """Int p = P, Int tau = Q, and 0 <= tau <= mu p."""
+    state = vr.contact(scene(WIDE), V, delta=2e-3)
+    rear, front = 0.5 * state.lam * (state.epsilon - 1.0), 0.5 * state.lam * (state.epsilon + 1.0)
+    x, weight = np.polynomial.legendre.leggauss(1000)
+    load = traction = 0.0
+    for low, high in ((rear, front - state.beta * state.lam), (front - state.beta * state.lam, front)):
+        # stresses go as a root at the ends of the zones
+        at = 0.5 * (low + high) + 0.5 * (high - low) * np.sin(0.5 * np.pi * x)
+        per = 0.25 * np.pi * (high - low) * np.cos(0.5 * np.pi * x) * weight
+        found = vr.stress(scene(WIDE), at, V, delta=2e-3)
+        load, traction = load + (found.p * per).sum(), traction + (found.tau * per).sum()
+        assert (found.tau >= 0.0).all()
+        assert (found.tau <= 0.3 * found.p * (1.0 + 1e-14)).all()
+    assert load == pytest.approx(1.0 / 320.0, rel=tol.SERIES_STRESS)  # P/(E' l0) = l0/(32 R)
+    assert traction / load == pytest.approx(state.Q, rel=tol.SERIES_STRESS)
+
+
+# --- motions ---
+
+
+def test_slip_is_lost_and_regained_in_two_bands():
+    """M(V) has two humps (E = 2, 6, tau = 1, 1e-5): stick goes twice, where the condition of each says."""
+    two = vr.Scene(material=vr.Prony([2.0, 6.0], [1.0, 1e-5]), kappa=10.0, mu=1.39e-3, j=0.5)
+    motion = vr.roll(two, 5000.0, 5000.0, np.geomspace(1.0, 1e9, 50))
+    assert [switch.regime for switch in motion.switches[:3]] == ["full slip", "partial slip", "full slip"]
+    V = [motion.at([switch.t]).V.item() for switch in motion.switches[:3]]
+    assert V == pytest.approx([1264.0, 804.0, 0.0840], rel=tol.SERIES_BANDS)
+
+
+def test_motions_of_one_mode_are_those_of_its_alpha():
+    p = vr.Prony.creep([10.0 / 11.0], [1.0], alpha=11.0)
+    t = np.linspace(0.0, 3e-3, 31)
+    for V0, omega0 in vr.PAPER_STARTS.values():
+        old = vr.roll(vr.PAPER_SECTION_5_ROUNDED, V0, omega0, t)
+        new = vr.roll(vr.PAPER_SECTION_5_ROUNDED.replace(material=p), V0, omega0, t)
+        np.testing.assert_allclose(new.V, old.V, atol=tol.SERIES_MOTION)
+        assert new.onset_time == pytest.approx(old.onset_time, rel=tol.SERIES_MOTION)
+        far = vr.roll(
+            vr.PAPER_SECTION_5_ROUNDED.replace(material=p.slower(1e4), gamma=1.1e4 * 1e-8),
+            V0 / 1e4, omega0 / 1e4, t * 1e4,
+        )  # fmt: skip
+        np.testing.assert_allclose(far.V * 1e4, old.V, atol=tol.SERIES_MOTION)
+        np.testing.assert_allclose(far.x, old.x, atol=tol.SERIES_MOTION)
+        assert far.switches[0].t / 1e4 == pytest.approx(old.switches[0].t, rel=tol.SERIES_MOTION)
+
+
+def test_flow_map_of_a_series_and_its_unit():
+    three = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
+    starts = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 400))
+    t = np.linspace(0.0, 3e-3, 11)
+    fields = ("V", "omega", "x", "slip_loss", "rolling_loss")
+    rolled = vr.ensemble(scene(three), *starts, t, rtol=1e-10, method="integrate", fields=fields)
+    mapped = vr.ensemble(scene(three), *starts, t, rtol=1e-6, method="flow", fields=fields)
+    slow = scene(three.slower(2.0**20), gamma=1e4 * 2.0**-40)
+    apart = vr.ensemble(slow, *(starts * 2.0**-20), t * 2.0**20, rtol=1e-6, method="flow", fields=fields)
+    assert mapped.flow.all()
+    size = np.maximum(abs(rolled.V), abs(rolled.omega))
+    assert (abs(mapped.V - rolled.V) / size).max() <= mapped.flow_error + tol.SERIES_MAP
+    assert np.array_equal(apart.V * 2.0**20, mapped.V)
+    assert np.array_equal(apart.x, mapped.x)
+    assert np.array_equal(apart.slip_loss * 2.0**40, mapped.slip_loss)
+    assert np.array_equal(apart.onset_time * 2.0**-20, mapped.onset_time, equal_nan=True)
