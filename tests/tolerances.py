@@ -276,6 +276,8 @@ MOMENT = 1e-12
 #: Motions over seconds against those over T_epsilon at rtol 1e-10, over the largest value: roundings of time and
 #: gamma; measured 1.3e-14 (rolling_loss, others 1.2e-15).
 SI_UNITS = 1e-13
+#: the same of a series, at rtol 1e-10, another unit of time; measured 4.6e-15.
+SI_SERIES = 3e-14
 
 # --- motions in extended precision (test_reference_motions.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
