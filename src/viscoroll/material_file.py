@@ -121,12 +121,16 @@ def series_of(path: Any, name: str, prony: Any, creep: Any) -> Prony | None:
     """The series of section ``name`` by its keys prony and creep, None without; raises ConfigError."""
     if prony is not None and creep is not None:
         raise fault(path, name, "creep", "prony and creep: must be one of the two")
-    if prony is not None:
-        relaxation = as_struct(path, f"{name}.prony", prony, PronySection)
-        return Prony(relaxation.E, relaxation.tau)
-    if creep is not None:
-        given = as_struct(path, f"{name}.creep", creep, CreepSection)
-        return Prony.creep(given.J, given.T, alpha=given.alpha)
+    at = f"{name}.prony" if creep is None else f"{name}.creep"
+    try:
+        if prony is not None:
+            relaxation = as_struct(path, at, prony, PronySection)
+            return Prony(relaxation.E, relaxation.tau)
+        if creep is not None:
+            given = as_struct(path, at, creep, CreepSection)
+            return Prony.creep(given.J, given.T, alpha=given.alpha)
+    except ParameterError as error:  # at its own line: E is a key of the material too
+        raise fault(path, at, error.name, str(error)) from error
     return None
 
 
