@@ -21,6 +21,7 @@ _HOME = {
     "Scene": "scene",
     "Cylinder": "scene",
     "Prony": "prony",
+    "Bodies": "bodies",
     "PAPER_CYLINDER": "scene",
     "PAPER_SECTION_5": "scene",
     "PAPER_SECTION_5_ROUNDED": "scene",
