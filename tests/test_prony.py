@@ -227,6 +227,83 @@ def test_stresses_close(V):
     assert traction / load == pytest.approx(state.Q, rel=tol.SERIES_STRESS)
 
 
+# --- two bodies ---
+
+
+def shares(scene: vr.Scene, V: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    found = vr.contact(scene, V, delta=0.0, fields=("M_half_space", "M_cylinder", "M"))
+    return found.M_half_space, found.M_cylinder, found.M
+
+
+SPEEDS = np.geomspace(1e-6, 1e8, 60)
+
+
+def test_swapped_bodies_swap_their_moments():
+    soft, stiff = vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7])
+    here = shares(scene(vr.Bodies(soft, stiff, 0.3)), SPEEDS)
+    there = shares(scene(vr.Bodies(stiff, soft, 0.7)), SPEEDS)
+    np.testing.assert_allclose(here[0], there[1], rtol=tol.BODIES)
+    np.testing.assert_allclose(here[1], there[0], rtol=tol.BODIES)
+    np.testing.assert_allclose(here[0] + here[1], here[2], rtol=tol.BODIES)
+    assert (np.minimum(here[0], here[1]) > 0.0).all()
+    state, again = (
+        vr.contact(scene(b), 0.3, delta=1e-3) for b in (vr.Bodies(soft, stiff, 0.3), vr.Bodies(stiff, soft, 0.7))
+    )
+    for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M"):
+        assert getattr(state, name) == pytest.approx(getattr(again, name), rel=tol.BODIES)
+
+
+def test_like_bodies_are_one_material():
+    p = vr.Prony([2.0, 5.0], [1.0, 1e-3])
+    assert scene(vr.Bodies(p, p)).like_bodies
+    half, other, M = shares(scene(vr.Bodies(p, p)), SPEEDS)
+    assert np.array_equal(half, other)
+    assert np.array_equal(M, vr.contact(scene(p), SPEEDS, delta=0.0, fields="M").M)
+    t = np.linspace(0.0, 1e-3, 5)
+    assert np.array_equal(vr.roll(scene(vr.Bodies(p, p)), 0.5, 0.4, t).V, vr.roll(scene(p), 0.5, 0.4, t).V)
+
+
+@pytest.mark.parametrize("rigid", [0.0, 1.0])
+def test_all_of_M_is_that_of_the_body_that_yields(rigid):
+    p = vr.Prony([2.0, 5.0], [1.0, 1e-3])
+    pair = vr.Bodies(p, vr.Prony.elastic(), 1.0) if rigid else vr.Bodies(vr.Prony.elastic(), p, 0.0)
+    half, other, M = shares(scene(pair), SPEEDS)
+    np.testing.assert_allclose(M, vr.contact(scene(p), SPEEDS, delta=0.0, fields="M").M, rtol=tol.BODIES)
+    assert np.array_equal(half if rigid else other, np.zeros(SPEEDS.size))
+
+
+@pytest.mark.parametrize("share", [0.05, 0.4, 0.9])
+def test_elastic_partner_of_a_standard_linear_solid_is_another_one(share):
+    """alpha = alpha_1/(alpha_1 - share (alpha_1 - 1)), same T_epsilon: materials of the paper again."""
+    alpha = 11.0
+    pair = vr.Bodies(vr.Prony.creep([10.0 / 11.0], [1.0], alpha=alpha), vr.Prony.elastic(), share)
+    softer = vr.Scene(alpha=alpha / (alpha - share * (alpha - 1.0)), kappa=10.0, mu=0.3)
+    here, there = vr.contact(scene(pair), SPEEDS, delta=1e-4), vr.contact(softer, SPEEDS, delta=1e-4)
+    for name in ("lam", "epsilon", "delta_star", "Q", "M"):
+        np.testing.assert_allclose(getattr(here, name), getattr(there, name), rtol=tol.BODIES)
+    assert np.array_equal(here.M_half_space, np.zeros(SPEEDS.size))
+    assert scene(pair).alpha == pytest.approx(softer.alpha, rel=tol.SERIES_FORMS)
+
+
+def test_shares_of_modes_close_in_the_slow_and_the_fast_limit():
+    """Slow: M_h/M = sum of its J T over that of all.  Where a body has the fast modes alone, fast rolling is its."""
+    slow, fast = vr.Prony.creep([0.5], [1.0]), vr.Prony.creep([0.6], [1e-6])
+    half, _, M = shares(scene(vr.Bodies(slow, fast, 0.5)), np.array([1e-9, 1e5]))
+    assert half[0] / M[0] == pytest.approx(0.6e-6 / (0.5 + 0.6e-6), rel=tol.BODIES_LIMIT)
+    assert half[1] / M[1] == pytest.approx(1.0, abs=tol.BODIES_LIMIT)
+
+
+def test_bodies_refused():
+    p = vr.Prony([2.0], [1.0])
+    for call, words in (
+        (lambda: vr.Bodies(p, 2.0), ("half_space", "Prony")),
+        (lambda: vr.Bodies(p, p, 1.5), ("share = 1.5", "[0, 1]")),
+        (lambda: vr.roll(scene(vr.Bodies(p, p, 0.2)), 1.0, 1.0, [1.0]), ("material", "differ", "motion")),
+        (lambda: vr.ensemble(scene(vr.Bodies(p, p, 0.2)), 1.0, 1.0, [1.0]), ("material", "differ", "motion")),
+    ):
+        refused(call, *words)
+
+
 # --- motions ---
 
 

@@ -190,7 +190,6 @@ def test_time_of_a_pair():
 
 
 def test_scene_of_a_pair():
-    pytest.importorskip("viscoroll.bodies", exc_type=ImportError)
     cylinder = vr.Cylinder(**ROLLER, material=RUBBER, base=HARD)
     scene = cylinder.scene()
     assert scene.material == vr.Bodies(RUBBER.prony, HARD.prony.slower(2.0 / 0.3), cylinder.pair.share)

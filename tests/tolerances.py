@@ -335,3 +335,7 @@ SERIES_BANDS = 1e-3
 SERIES_MOTION = 1e-10
 #: The integrator's own error beside that of a map.
 SERIES_MAP = 3e-9
+#: Moments of two bodies: sums over modes of positive terms, and one table.
+BODIES = 1e-12
+#: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
+BODIES_LIMIT = 1e-2

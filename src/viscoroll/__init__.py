@@ -21,6 +21,7 @@ _HOME = {
     "Scene": "scene",
     "Cylinder": "cylinder",
     "Prony": "prony",
+    "Bodies": "bodies",
     "Material": "material",
     "WLF": "shift",
     "Arrhenius": "shift",

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
 from typing import Any, Literal
 
+from .bodies import Bodies
 from .errors import ParameterError
 from .material import Material
+from .prony import Prony
 
 Plane = Literal["strain", "stress"]
 
@@ -76,12 +77,12 @@ class Pair:
         return (self.cylinder if self.cylinder.prony.alpha > 1.0 else self.half_space).T_ref
 
     @cached_property
-    def law(self) -> Any:
-        """A :class:`Prony` series for like bodies, else ``Bodies``, with times over ``T_ref``."""
+    def law(self) -> Prony | Bodies:
+        """A :class:`Prony` series for like bodies, else :class:`Bodies`, with times over ``T_ref``."""
         if self.like:
             return self.cylinder.prony
-        series = [body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space)]
-        return import_module(".bodies", __package__).Bodies(*series, self.share)
+        one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))
+        return Bodies(one, other, self.share)
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:

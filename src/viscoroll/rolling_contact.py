@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .blocks import elements, run_blocks
+from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
 from .material_tables import inverses, record, series
@@ -20,6 +21,7 @@ from .prony import Prony
 from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
+OF_BODIES = ("M_half_space", "M_cylinder")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
@@ -29,6 +31,8 @@ _BLOCK = 1 << 15
 #: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
 WORTHWHILE = 4096
 _FASTEST = 1e300
+#: zeta that stands for V = 0
+_SLOWEST = 1e17
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
 
@@ -122,7 +126,8 @@ def contact(
     if (delta is None) == (omega is None):
         both = "both" if delta is not None else "neither"
         raise ParameterError("delta, omega given", both, "exactly one of the two")
-    names = _field_names(fields, slopes, method)
+    default = FIELDS if scene.like_bodies else FIELDS + OF_BODIES
+    names = _field_names(fields, default, slopes, method)
     creep_name = "omega" if delta is None else "delta"
     inputs = {
         "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
@@ -140,11 +145,38 @@ def contact(
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
-    given = None if np.ndim(material) or scene.material is None else material
-    rows = _compute(given, list(arrays.values()), shape, creep_name == "omega", names, method)
-    for n, name in enumerate(names):
-        rows[n] *= unit if name in _PER_SPEED else 1.0
-    return Values({name: _shaped(name, row, shape) for name, row in zip(names, rows, strict=True)})
+    moments = ("M", "zeta") if set(names) & set(OF_BODIES) else ()
+    solved = tuple(dict.fromkeys([*(name for name in names if name not in OF_BODIES), *moments]))
+    one = material if isinstance(material, Prony) else None
+    found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
+    rows = dict(zip(solved, found, strict=True))
+    if moments:
+        rows |= _moments_of_bodies(scene, rows)
+    for name in _PER_SPEED & rows.keys():
+        rows[name] *= unit
+    return Values({name: _shaped(name, rows[name], shape) for name in names})
+
+
+def _moments_of_bodies(scene: Scene, rows: dict[str, NDArray]) -> dict[str, NDArray]:
+    """What M takes of the half-space and of the cylinder, from M and zeta in the material's own time."""
+    M, zeta = rows["M"], rows["zeta"]
+    if scene.like_bodies:
+        return {"M_half_space": 0.5 * M, "M_cylinder": 0.5 * M}
+    from .kernels.law.series import weighted_loop
+
+    assert isinstance(scene.material, Bodies)
+    modes, weights = series(scene.in_own_time()[0]), scene.material.half_space_weights
+    found = np.empty((2, M.size))
+
+    def work(start: int, stop: int) -> None:
+        z = np.minimum(zeta[start:stop], _SLOWEST)  # V = 0: both are 0, and the ratio that of the limit
+        for n, each in enumerate((weights, 1.0 - weights)):
+            weighted_loop(modes, each, z, found[n, start:stop], 0, stop - start)
+
+    run_blocks(work, M.size, _BLOCK)
+    # each by its own positive terms; M, which has passed through a table, is shared in their proportion
+    share = found[0] / (found[0] + found[1])
+    return {"M_half_space": share * M, "M_cylinder": (1.0 - share) * M}
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
@@ -155,13 +187,13 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
-def _field_names(fields: Iterable[str] | None, slopes: bool, method: str) -> tuple[str, ...]:
+def _field_names(fields: Iterable[str] | None, default: tuple[str, ...], slopes: bool, method: str) -> tuple[str, ...]:
     if method not in ("table", "direct"):
         raise ParameterError("method", repr(method), "'table' or 'direct'")
-    names = FIELDS if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
     for name in names:
-        if name not in FIELDS + SLOPES:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS + SLOPES))
+        if name not in FIELDS + OF_BODIES + SLOPES:
+            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS + OF_BODIES + SLOPES))
     if slopes:
         names += tuple(name for name in SLOPES if name not in names)
     if method == "direct" and set(names) & set(SLOPES):

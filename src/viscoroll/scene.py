@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError
 from .prony import HIGHEST_ALPHA, Prony
-from .validity import Assumption, Validity, contact_reach, coupling, inertia, judge
+from .validity import Assumption, Validity, contact_reach, coupling, inertia, judge, unsteadiness
 
 
 def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -41,8 +42,8 @@ class Scene:
     mu : coefficient of friction, > 0.
     gamma : P T_epsilon^2/(m R), > 0; only scales time.  Not used by contact or stress.
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
-    material : a :class:`Prony` series in place of ``alpha``, which is then that of the material; the
-        unit of time is T_ref, in which the series counts its times.
+    material : a :class:`Prony` series, or two (:class:`Bodies`), in place of ``alpha``, which is then
+        that of the material; the unit of time is T_ref, in which a series counts its times.
 
     Raises
     ------
@@ -56,14 +57,14 @@ class Scene:
     mu: Any = None
     gamma: Any = 1.0
     j: Any = 0.5
-    material: Prony | None = None
+    material: Prony | Bodies | None = None
 
     def __post_init__(self) -> None:
         if self.material is not None:
             if self.alpha is not None:
                 raise ParameterError("alpha, material given", "both", "one of the two")
-            if not isinstance(self.material, Prony):
-                raise ParameterError("material", f"{self.material!r:.60}", "a Prony series")
+            if not isinstance(self.material, Prony | Bodies):
+                raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
             object.__setattr__(self, "alpha", self.material.alpha)
         arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
@@ -95,9 +96,15 @@ class Scene:
 
     def in_own_time(self) -> tuple[Any, float]:
         """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
-        if self.material is None or not self.material.E.size:
+        if self.material is None:
             return self.alpha, 1.0
-        return self.material.in_own_time()
+        series = self.material.total if isinstance(self.material, Bodies) else self.material
+        return series.in_own_time() if series.E.size else (1.0, 1.0)
+
+    @property
+    def like_bodies(self) -> bool:
+        """Whether cylinder and half-space deform alike, each taking half of M."""
+        return not isinstance(self.material, Bodies) or self.material.like
 
     def validity(self, V: ArrayLike) -> Validity:
         """Which assumptions of the model the contact at speed V strains.
@@ -119,7 +126,16 @@ class Scene:
         speed = checked("V", V)
         broadcast_shape(alpha=np.asarray(self.alpha), kappa=np.asarray(self.kappa), V=speed)
         material, unit = self.in_own_time()
-        return judge(*contact_reach(material, self.kappa, speed * unit), slow, bodies, plane)
+        nu = np.asarray(self.gamma * self._unsteadiness() / (1.0 + np.asarray(self.j)))
+        return judge(*contact_reach(material, self.kappa, speed * unit), slow, nu, bodies, plane)
+
+    def _unsteadiness(self) -> Any:
+        """The most that |N| may be, over the unit of time squared."""
+        if self.material is None:
+            alpha = np.asarray(self.alpha)
+            return unsteadiness((alpha - 1.0) / alpha**2, (alpha - 1.0) / alpha)
+        series = self.material.total if isinstance(self.material, Bodies) else self.material
+        return unsteadiness((series.E * series.tau**2).sum(), (series.J * series.T**2).sum())
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):

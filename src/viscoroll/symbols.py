@@ -61,6 +61,8 @@ SYMBOLS = {
     ),
     "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
     "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/law/standard.py"),
+    "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/law/series.py"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/law/series.py"),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
     "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/law/stick.py"),

@@ -17,6 +17,11 @@ REACH_LIMIT = 0.2
 WAVE_LIMIT = 0.2
 #: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
 DUNDURS_LIMIT = 0.05
+#: nu up to which a motion is within 10 % of its first speed, and beyond which it is another motion altogether: measured
+#: with a transient solver at alpha 3 and 11, kappa V from 0.29 to 4.4 (gamma 7 and 30 at alpha 11)
+STEADY_LIMIT, NOT_THIS_MOTION = 0.4, 1.6
+#: the highest N over the sum of J_j T_j^2
+_HIGHEST_N = 0.084
 
 
 class Assumption(NamedTuple):
@@ -40,6 +45,9 @@ class Validity(NamedTuple):
     under_axis : value: epsilon; where it exceeds 1 the contact lies wholly ahead of the
         axis, which is no fault of the model but worth knowing.
     quasistatic : value: speed over that of shear waves; needs a density.
+    steady : value: nu = gamma max|N|/(1 + j), M = M(V) + N V' for slow changes; an upper bound of it, from the
+        strengths of the material.  It rules whether the law of steady rolling may drive a motion; contact states and
+        rolling at constant speed are not concerned.
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
     plane : not to be seen from V.
     """
@@ -47,6 +55,7 @@ class Validity(NamedTuple):
     small_contact: Assumption
     under_axis: Assumption
     quasistatic: Assumption
+    steady: Assumption
     bodies: Assumption
     plane: Assumption
 
@@ -106,7 +115,26 @@ def coupling(long: float | None = None, instant: float | None = None, *, like: b
     )  # fmt: skip
 
 
-def judge(reach: Any, epsilon: Any, slow: Assumption, bodies: Assumption, plane: str) -> Validity:
+def unsteadiness(relaxation: Any, creep: Any) -> Any:
+    """The largest |N| of a material with these sums of E_i tau_i^2 and J_j T_j^2, found on 35 series, not proven."""
+    return np.maximum(relaxation, _HIGHEST_N * np.asarray(creep))
+
+
+def _motion(nu: Any) -> Assumption:
+    """Whether motions may be driven by the law of steady rolling."""
+    most = float(np.max(nu, initial=0.0))
+    return Assumption(
+        nu <= STEADY_LIMIT, nu,
+        f"nu = {most:.2g}: a motion by the law of steady rolling "
+        + (
+            f"is off by up to some {30.0 * most:.2g} % of the first speed"
+            if most <= NOT_THIS_MOTION
+            else "is not that of this cylinder, which rocks in its own imprint; contact states are not concerned"
+        ),
+    )  # fmt: skip
+
+
+def judge(reach: Any, epsilon: Any, slow: Assumption, nu: Any, bodies: Assumption, plane: str) -> Validity:
     """Numbers put into words."""
     far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
     small = Assumption(
@@ -119,4 +147,4 @@ def judge(reach: Any, epsilon: Any, slow: Assumption, bodies: Assumption, plane:
         f"epsilon = {ahead:.2g}: the contact "
         + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
     )  # fmt: skip
-    return Validity(small, under, slow, bodies, Assumption(None, None, plane))
+    return Validity(small, under, slow, _motion(nu), bodies, Assumption(None, None, plane))

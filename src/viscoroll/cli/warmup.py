@@ -42,17 +42,24 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own."""
     import numpy as np
 
-    from .. import PAPER_SECTION_5, Scene, contact, ensemble, roll, stress, tables
+    from .. import PAPER_SECTION_5, Bodies, Prony, Scene, contact, ensemble, roll, stress, tables
     from ..motion import flow
     from ..rolling_contact import WORTHWHILE
     from ..validation.direct_motion import roll_direct
 
     scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)
+    modes = Prony([1.0, 2.0], [1.0, 0.1])
+    series = Scene(material=modes, kappa=2.91, mu=0.2)
+    pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
     start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
     yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
     yield "contact at one alpha", lambda: contact(scene, many, delta=0.01)
     yield "contact by root solves", lambda: contact(scene, 0.5, delta=0.01, method="direct")
+    yield "contact of a series", lambda: contact(series, 0.5, delta=0.01)
+    yield "contact of a series, many states", lambda: contact(series, many, delta=0.01)
+    yield "stress of a series", lambda: stress(series, 0.5, 0.5, delta=0.01)
+    yield "moments of two bodies", lambda: contact(pair, 0.5, delta=0.01)
     yield "validity", lambda: scene.validity(0.5)
     yield "stress", lambda: stress(scene, 0.5, 0.5, delta=0.01)
     yield "roll", lambda: roll(scene, 1.0, 0.0, 1e-3)

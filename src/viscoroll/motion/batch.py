@@ -15,7 +15,7 @@ from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..rolling_contact import flattened
 from ..scene import Scene
-from .checks import SPEED_RANGE, controls, output_times, start_speeds
+from .checks import SPEED_RANGE, controls, like_bodies, output_times, start_speeds
 from .flow import Answer, FlowMap, ask, flow_map
 
 if TYPE_CHECKING:
@@ -171,6 +171,7 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_hostile.py``).
     """
+    like_bodies(scene)
     times = output_times(t)
     names = (fields,) if isinstance(fields, str) else tuple(fields)
     for name in names:

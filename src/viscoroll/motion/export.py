@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
+from ..bodies import Bodies
 from ..errors import MOTION_STATUS, ParameterError
 from ..symbols import SYMBOLS
 
@@ -54,6 +55,14 @@ def _globals(title: str) -> dict[str, str]:
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
 
 
+def _material(scene: Any) -> dict[str, Any]:
+    """The series that a scene counts time by; nothing where it has an alpha."""
+    if scene.material is None:
+        return {}
+    series = scene.material.total if isinstance(scene.material, Bodies) else scene.material
+    return {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+
+
 def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
     return xr.Variable(dims, values, attributes(name))
 
@@ -67,6 +76,7 @@ def motion_dataset(motion: Any) -> xr.Dataset:
         coords={"t": _variable(("t",), "t", motion.t)},
         attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
         | {name: getattr(motion.scene, name) for name in _PARAMETERS}
+        | _material(motion.scene)
         | {
             "onset_time": motion.onset_time,
             "rest_time": motion.rest_time,
@@ -94,7 +104,11 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
-    attrs = _globals("Ensemble of motions") | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
+    attrs = (
+        _globals("Ensemble of motions")
+        | _material(result.scene)
+        | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
+    )
     return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
 
 

@@ -14,7 +14,7 @@ from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..rolling_contact import Values, contact
 from ..scene import Scene
-from .checks import controls, output_times, start_speeds
+from .checks import controls, like_bodies, output_times, start_speeds
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -177,6 +177,7 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
+    like_bodies(scene)
     times = output_times(t)
     inputs = start_speeds(V0, omega0)
     for name, value in (("scene", scene), ("V0", inputs[0]), ("omega0", inputs[1])):

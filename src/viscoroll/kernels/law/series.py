@@ -107,6 +107,12 @@ def solve(z, series, work):
 
 
 @kernel
+def amplitude(i, series, work):
+    """X_i, of what :func:`solve` has found."""
+    return series.e[i] * work.x[i] / work.root[i]
+
+
+@kernel
 def values(z, series, work):
     """(g, h, m, b) at z > 0."""
     solve(z, series, work)
@@ -117,10 +123,47 @@ def values(z, series, work):
         g += series.t[i] * work.k[i] * f
         per = x / root
         dh += work.slope_r[i] * (per * per) - work.slope_k[i] * (f * f)
-        pressed += series.e[i] * per * ratio_i2(series.a[i] * z, root * root)
+        pressed += amplitude(i, series, work) * ratio_i2(series.a[i] * z, root * root)
     square = 1.0 + 2.0 * h / z  # 1/lam^2
     m = g + pressed / square
     return g, h, m, m * np.sqrt(square) / (1.0 + h / z + dh)
+
+
+@kernel
+def weighted_moment(z, weights, series, work):
+    """Sum of the shares of the creep modes in m at z > 0, each times its weight; every share is positive.
+
+    m_j = t_j k_j f_j + lam^2 J_j sum_i X_i a_i u_i/(a_i - b_j)
+    u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
+    """
+    solve(z, series, work)
+    count, h = series.a.size, 0.0
+    for i in range(count):
+        h += work.root[i] * series.e[i] * work.x[i]
+        work.slope_r[i] = ratio_i2(series.a[i] * z, work.root[i] * work.root[i])
+        work.slope_k[i] = amplitude(i, series, work)
+    square = 1.0 + 2.0 * h / z  # 1/lam^2
+    total = 0.0
+    for i in range(count):
+        u = work.slope_r[i]
+        for n in range(count):
+            rate = series.a[i] * series.a[n] / (series.a[i] + series.a[n])
+            u += work.slope_k[n] * rate * (work.slope_r[i] - work.slope_r[n])
+        pressed = work.slope_k[i] * series.a[i] * u / square
+        for j in range(count):
+            # J_j/(a_i - b_j) = Q_ji t_j/(e_i a_i)
+            total += weights[j] * pressed * series.Q[j, i] * series.t[j] / (series.e[i] * series.a[i])
+    for j in range(count):
+        total += weights[j] * series.t[j] * work.k[j] * work.f[j]
+    return total
+
+
+@kernel(allocates=True, seconds=2)
+def weighted_loop(series, weights, z, out, start, stop):
+    """``weighted_moment`` over an array."""
+    work = room(series)
+    for n in range(start, stop):
+        out[n] = weighted_moment(z[n], weights, series, work)
 
 
 @kernel(allocates=True, seconds=3)
