@@ -199,6 +199,25 @@ def test_scene_of_a_pair():
     assert rigid == vr.Bodies(vr.Prony.elastic(), HARD.prony, 0.0)
 
 
+def test_a_pair_swapped_swaps_its_moments():
+    """The same contact; what the one took of M the other takes.  A rigid base takes nothing."""
+    V, found = np.geomspace(1e-3, 1e3, 7), []
+    for material, base in ((RUBBER, HARD), (HARD, RUBBER), (RUBBER, vr.Material.rigid())):
+        cylinder = vr.Cylinder(**ROLLER, material=material, base=base)
+        found.append(vr.contact(cylinder.scene(), cylinder.V_from_si(V), delta=1e-3))
+    one, other, on_rigid = found
+    for name, swapped in (
+        ("lam", "lam"),
+        ("beta", "beta"),
+        ("Q", "Q"),
+        ("M_cylinder", "M_half_space"),
+        ("M_half_space", "M_cylinder"),
+    ):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, swapped), rtol=tol.PAIR_SWAPPED, atol=1e-15)
+    np.testing.assert_array_equal(on_rigid.M_half_space, 0.0)
+    np.testing.assert_allclose(on_rigid.M_cylinder, on_rigid.M, rtol=tol.PAIR_SWAPPED)
+
+
 def test_forces_of_a_pair():
     """Eqs. (20), (21) with the part of each body; M/2 is that of like bodies alone."""
     pair, like = vr.Cylinder(**ROLLER, material=RUBBER, base=STEEL), vr.Cylinder(**SI)
