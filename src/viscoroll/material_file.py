@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from os import PathLike
 from typing import Any
@@ -90,6 +91,17 @@ def read_materials(path: str | PathLike[str], temperature: float | None = None) 
 def materials_of(path: Any, content: Mapping[str, Any], temperature: float | None = None) -> dict[str, Material]:
     """The materials of a file that was read; arguments and errors as :func:`read_materials`."""
     return {name: _material(path, name, content[name], temperature) for name in SECTIONS if name in content}
+
+
+def as_toml(material: Material, section: str = "material") -> str:
+    """The section of a TOML file that reads back as this material, to the bit."""
+    series = f"{{ E = {material.prony.E.tolist()}, tau = {material.prony.tau.tolist()} }}"
+    values: dict[str, Any] = {
+        "name": json.dumps(material.name), "E": material.E, "nu": material.nu, "prony": series, "T_ref": material.T_ref,
+    }  # fmt: skip
+    if material.density is not None:
+        values["density"] = material.density
+    return "\n".join([f"[{section}]", *(f"{name} = {value}" for name, value in values.items()), ""])
 
 
 def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:

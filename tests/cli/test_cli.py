@@ -21,6 +21,7 @@ from processes import printed, python
 import viscoroll as vr
 from viscoroll import config
 from viscoroll.cli import main
+from viscoroll.material_file import read_materials
 from viscoroll.tables import AtlasGrid, LiteralGrid
 
 PRESET = ["--preset", "paper-section-5"]
@@ -28,7 +29,7 @@ START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
 DRAWN = [*PRESET, "-n", "8", "--V0", "uniform:-2:2", "--omega0", "normal:0:1"]
 EXPORT = ["tables", "export", "--kappa", "2.91", "--mu", "0.2", "--V", "0.1:1:5:log", "--delta", "-0.04:0.04:9"]
 TABLE_COMMANDS = ["tables build", "tables export", "tables info", "tables validate"]
-MATERIAL_COMMANDS = ["material show", "material plot"]
+MATERIAL_COMMANDS = ["material show", "material plot", "material fit"]
 COMMANDS = ["contact", "stress", "roll", "ensemble", *TABLE_COMMANDS, *MATERIAL_COMMANDS, "plot"]
 POINT = [sys.executable, "-m", "viscoroll", "contact", *PRESET, "--V", "1", "--delta", "0"]
 SMALL = {
@@ -245,7 +246,21 @@ def test_material_plot(run, here):
     assert (here / "a.png").stat().st_size > 10_000
 
 
+def test_material_fit(run, here):
+    """The report, and a file that holds the fit to the bit."""
+    data = str(ROOT / "docs/examples/dma.csv")
+    report = run("material", "fit", data, "--nu", "0.5", "--name", "a rubber", "-o", "a.toml")
+    fit = vr.fit_prony(*vr.read_dma(data))
+    assert report == f"{fit}\n"
+    assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
+    assert "Prony series of 2 modes" in run("material", "fit", data, "--modes", "2")
+
+
 NO_FILE_OF_A_MATERIAL = [
+    ("fit a.toml", "f E_stor E_loss\n1 2", "a.toml"),
+    ("fit none.csv", "", "none.csv: cannot be read"),
+    ("fit a.toml --modes 0", "", "'0' must be a whole number"),
+    ("fit a.toml -o a.txt", "", "'a.txt' must end in .toml"),
     ("show none.toml", "", "none.toml: cannot be read"),
     ("show a.toml", "[scene]\nalpha = 2", "a.toml: section [material] is missing"),
     ("show a.toml", RUBBER.replace("tau", "tua"), "did you mean 'tau'?"),

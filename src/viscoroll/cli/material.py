@@ -1,11 +1,11 @@
-"""``viscoroll material show|plot``."""
+"""``viscoroll material show|plot|fit``."""
 
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING, Any
 
-from .arguments import add_output_option, number
+from .arguments import add_output_option, count, number
 from .plot import FORMATS
 
 if TYPE_CHECKING:
@@ -38,6 +38,26 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--section", default="material", help="material (default) or base")
     add_output_option(parser, *FORMATS, required=True)
     parser.set_defaults(run=_plot)
+    _add_fit(group)
+
+
+def _add_fit(group: Any) -> None:
+    parser = group.add_parser(
+        "fit",
+        help="a material from the master curve of a DMA",
+        description="Fit a Prony series to columns of frequency, storage and loss modulus, with units in their\n"
+        "heading; print what the data say of it and what they do not, and with -o write it as a section [material].",
+        epilog="example:\n  viscoroll material fit docs/examples/dma.csv --nu 0.49 -o rubber.toml",
+    )
+    parser.add_argument("data", metavar="DATA", help="a text file of columns")
+    parser.add_argument("--modes", type=count, help="largest number of modes; default: as few as the misfit needs")
+    parser.add_argument(
+        "--misfit", type=number, default=0.01, help="rms of the relative errors asked for (default 0.01)"
+    )
+    parser.add_argument("--nu", type=number, default=0.49, help="Poisson's ratio, constant in time (default 0.49)")
+    parser.add_argument("--name", default="", help="of the material")
+    add_output_option(parser, ".toml")
+    parser.set_defaults(run=_fit)
 
 
 def _add_file(parser: ArgumentParser) -> None:
@@ -63,6 +83,19 @@ def _plot(arguments: Namespace) -> int:
     if arguments.section not in found:
         raise ParameterError("section", repr(arguments.section), f"out of {', '.join(found)}, which the file has")
     found[arguments.section].plot(arguments.output)
+    return 0
+
+
+def _fit(arguments: Namespace) -> int:
+    from ..dma import fit_prony, read_dma
+    from ..files import write_text
+    from ..material_file import as_toml
+
+    found = fit_prony(*read_dma(arguments.data), arguments.modes, misfit=arguments.misfit)
+    material = found.material(arguments.nu, name=arguments.name)
+    if arguments.output is not None:
+        write_text(arguments.output, as_toml(material))
+    print(found)
     return 0
 
 
