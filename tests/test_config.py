@@ -13,6 +13,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.config import read_grids, read_scene
+from viscoroll.material_file import read_materials
 
 PRODUCTION = PIPELINE / "config/production.toml"
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"
@@ -42,7 +43,82 @@ def test_scene(toml):
         assert read_scene(toml(content)) == scene
 
 
+ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
+RUBBER = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1e-4] }\nT_ref = 0.3\n"
+SERIES = vr.Prony([2.0, 6.0], [1.0, 1e-4])
+
+
+def test_scene_of_a_series(toml):
+    prony = SCENE.replace("alpha = 11", "prony = { E = [2.0, 6.0], tau = [1.0, 1e-4] }")
+    assert read_scene(toml(prony)) == vr.Scene(kappa=2.91, mu=0.2, material=SERIES)
+    creep = SCENE.replace("alpha = 11", "creep = { J = [0.5], T = [1.0], alpha = 2.0 }")
+    assert read_scene(toml(creep)) == vr.Scene(kappa=2.91, mu=0.2, material=vr.Prony.creep([0.5], [1.0]))
+
+
+def test_materials(toml):
+    rubber = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
+    more = 'name = "tread"\ndensity = 1100\n'
+    warm = "wlf = { T0 = 20.0 }\ntemperature = 30.0\n"
+    thermal = warm.replace("wlf = {", "arrhenius = { energy = 8e4,")
+    solid, creep = "T_epsilon = 10.7\nT_sigma = 0.97", "creep = { J = [0.5], T = [1.0] }"
+    for content, material in (
+        (RUBBER, rubber),
+        (RUBBER + more, replace(rubber, name="tread", density=1100.0)),
+        (RUBBER + warm, rubber.at(30.0, vr.WLF(T0=20.0))),
+        (RUBBER + thermal, rubber.at(30.0, vr.Arrhenius(energy=8e4, T0=20.0))),
+        ("[material]\nE = inf\nnu = 0.5", vr.Material.rigid()),
+        ("[material]\nE = 2e11\nnu = 0.3", vr.Material.elastic(2e11, 0.3)),
+        (f"[material]\nE = 2.3e5\nnu = 0.49\n{solid}", vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)),
+        (f"[material]\nE = 1e5\nnu = 0.4\n{creep}", vr.Material(1e5, 0.4, vr.Prony.creep([0.5], [1.0]))),
+    ):
+        assert read_materials(toml(content)) == {"material": material}
+    assert read_materials(toml(RUBBER + warm), 40.0)["material"] == rubber.at(40.0, vr.WLF(T0=20.0))
+    both = read_materials(toml(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n[other]\nanything = 1"))
+    assert both == {"material": rubber, "base": vr.Material.elastic(2e11, 0.3)}
+
+
+def test_cylinder_of_a_material(toml):
+    rubber = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
+    cylinder = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=rubber, load=500.0)
+    assert read_scene(toml(ROLLER + "load = 500\n" + RUBBER)) == cylinder.scene()
+
+
+NO_MATERIAL = [
+    ("", ["[material] is missing"]),
+    (RUBBER.replace("nu =", "mu ="), ["line 3", "'mu'", "did you mean 'nu'?"]),
+    (RUBBER.replace("tau", "tua"), ["[material.prony]", "'tua'", "did you mean 'tau'?"]),
+    (RUBBER.replace("6]", "-6]"), ["line 4: [material.prony] E = -6", "finite and >= 0"]),
+    (RUBBER.replace("1e-4]", "0.0]"), ["tau = 0.0"]),
+    (RUBBER.replace(", 1e-4]", "]"), ["tau = of shape (1,)"]),
+    (RUBBER.replace("0.5", "0.6"), ["line 3", "nu = 0.6"]),
+    (RUBBER.replace("0.3", "-0.3"), ["line 5", "T_ref = -0.3"]),
+    (RUBBER.replace("2.3e5", "inf"), ["line 2", "E = inf", "finite where the material relaxes"]),
+    (RUBBER + "creep = { J = [0.5], T = [1.0] }", ["prony and creep"]),
+    (RUBBER + "T_epsilon = 1.0\nT_sigma = 1.0", ["without T_ref"]),
+    ("[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0", ["go together"]),
+    (RUBBER + "temperature = 30.0", ["line 6", "needs wlf or arrhenius"]),
+    (RUBBER + "wlf = { T0 = 20.0 }\ntemperature = -40.0", ["temperature = -40.0", "pole"]),
+    (RUBBER + "wlf = { T0 = 20.0, C3 = 1.0 }", ["[material.wlf]", "'C3'"]),
+    (RUBBER + "wlf = { T0 = 20.0 }\narrhenius = { T0 = 20.0, energy = 1.0 }", ["one of the two"]),
+    (RUBBER + "arrhenius = { T0 = 20.0 }", ["[material.arrhenius]", "`energy`"]),
+    ("material = 3", ["section [material]"]),
+]
+
+
+def test_refused_materials(toml):
+    for content, words in NO_MATERIAL:
+        refused(partial(read_materials, toml(content)), "file.toml", *words, error=vr.ConfigError)
+    refused(partial(read_materials, toml(RUBBER), 30.0), "temperature = 30", "needs wlf", error=vr.ConfigError)
+
+
 NO_SCENE = [
+    (CYLINDER + RUBBER, ["[cylinder] material, E, nu, T_epsilon, T_sigma given = both"]),
+    (ROLLER, ["[cylinder]", "E = None"]),
+    (ROLLER + RUBBER.replace("0.5", "0.6"), ["[material] nu = 0.6"]),
+    (ROLLER + "[material]\nE = inf\nnu = 0.5", ["base = rigid"]),
+    (SCENE + RUBBER, ["'material'", "preset, scene, cylinder"]),
+    (SCENE + "prony = { E = [1.0], tau = [1.0] }", ["alpha, material given = both"]),
+    (SCENE.replace("alpha = 11", "prony = { E = [-1.0], tau = [1.0] }"), ["[scene.prony] E = -1.0"]),
     (SCENE.replace("alpha", "alhpa"), ["[scene]", "'alhpa'", "did you mean 'alpha'?"]),
     (SCENE.replace("[scene]", "[scnee]"), ["'scnee'", "preset, scene, cylinder", "did you mean 'scene'?"]),
     (CYLINDER + "Tsigma = 1", ["[cylinder]", "'Tsigma'", "did you mean 'T_sigma'?"]),

@@ -41,7 +41,7 @@ def test_documented_names():
     assert parameters(vr.ensemble)[:4] == ["scene", "V0", "omega0", "t"]
     assert [f.name for f in dataclasses.fields(vr.Scene)] == ["alpha", "kappa", "mu", "gamma", "j", "material"]
     assert [f.name for f in dataclasses.fields(vr.Cylinder)] == [
-        "R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "plane",
+        "R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "plane", "material", "base", "pressed",
     ]  # fmt: skip
     for preset in (vr.PAPER_SECTION_5, vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_FIGURES_2_3):
         assert isinstance(preset, vr.Scene)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import pickle
 from functools import partial
 
 import numpy as np
@@ -12,7 +13,7 @@ import tolerances as tol
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.scene import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
 
 SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
 
@@ -105,6 +106,130 @@ def test_force_and_torque():
     assert cylinder.traction_to_si(Q, M) == pytest.approx(cylinder.m * acceleration, rel=tol.SCENE)
     inertia = scene.j * cylinder.m * cylinder.R**2
     assert cylinder.torque_to_si(Q, M) == pytest.approx(-inertia * spin, rel=tol.SCENE)
+
+
+RUBBER = vr.Material(E=2.3e5, nu=0.5, prony=vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-4]), T_ref=0.3)
+HARD = vr.Material(E=1e6, nu=0.5, prony=vr.Prony(E=[4.0, 1.0], tau=[1.0, 1e-2]), T_ref=2.0)
+STEEL = vr.Material.elastic(2e11, 0.3)
+ROLLER = {"R": 0.1, "m": 35.5, "mu": 0.2}
+
+
+# --- materials and pairs ---
+
+
+def test_a_material_in_place_of_the_four_parameters():
+    """Of the paper's own the same kappa and gamma to the bit, and its creep; alpha is that of the series."""
+    own = vr.Material.sls(*(SI[name] for name in ("E", "nu", "T_epsilon", "T_sigma")))
+    cylinder = vr.Cylinder(**ROLLER, material=own)
+    scene, paper = cylinder.scene(), vr.PAPER_SECTION_5
+    assert scene.material is own.prony
+    assert (scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j) == (
+        paper.alpha, paper.kappa, paper.mu, paper.gamma, paper.j,
+    )  # fmt: skip
+    for name in ("E_prime", "l0", "load", "T_ref"):
+        assert getattr(cylinder, name) == getattr(vr.Cylinder(**SI), name)
+    assert cylinder.V_from_si(0.2) == vr.Cylinder(**SI).V_from_si(0.2)
+    assert vr.Cylinder(**SI, base=own).scene() == paper  # a base alike changes nothing
+    assert vr.Cylinder(*SI.values()) == vr.Cylinder(**SI)
+
+
+def test_a_given_load():
+    """kappa and gamma by P; the weight is made anew where another mass is given, a load is not."""
+    pressed = vr.Cylinder(**SI, load=1e3)
+    assert pressed.load == 1e3
+    assert pressed.l0 == pytest.approx(math.sqrt(32.0 * 0.1 * 1e3 / pressed.E_prime), rel=tol.SCENE)
+    assert pressed.scene().kappa == pytest.approx(0.1 / pressed.l0, rel=tol.SCENE)
+    assert pressed.scene().gamma == pytest.approx(1e3 * 10.7**2 / (35.5 * 0.1), rel=tol.SCENE)
+    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == vr.PAPER_SECTION_5
+    assert dataclasses.replace(vr.Cylinder(**SI), m=1.0).load == 9.81
+    assert dataclasses.replace(pressed, m=1.0).load == 1e3
+    assert dataclasses.replace(pressed, load=5.0).load == 5.0
+    assert pickle.loads(pickle.dumps(pressed)) == pressed
+
+
+def test_the_unit_of_time_is_free():
+    """Times three times longer in a unit three times shorter: the same contact at the same speed in m/s."""
+    other = dataclasses.replace(RUBBER, prony=RUBBER.prony.slower(3.0), T_ref=RUBBER.T_ref / 3.0)
+    V, found = np.geomspace(1e-3, 1e3, 7), []
+    for material in (RUBBER, other):
+        cylinder = vr.Cylinder(**ROLLER, material=material)
+        found.append(vr.contact(cylinder.scene(), cylinder.V_from_si(V), delta=1e-3))
+    for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M"):
+        one, same = (getattr(each, name) for each in found)
+        np.testing.assert_allclose(same, one, rtol=tol.UNIT_OF_TIME, atol=tol.UNIT_OF_TIME)
+
+
+def test_moduli_of_a_pair():
+    """2/E' = 1/E'_1 + 1/E'_2, and the shares of the compliance: by hand and at the ends."""
+    one, other = (math.pi * body.E / (1.0 - body.nu**2) for body in (RUBBER, STEEL))
+    pair = vr.Cylinder(**ROLLER, material=RUBBER, base=STEEL)
+    assert 2.0 / pair.E_prime == pytest.approx(1.0 / one + 1.0 / other, rel=tol.SCENE)
+    assert pair.pair.share == pytest.approx((1.0 / one) / (1.0 / one + 1.0 / other), rel=tol.SCENE)
+    swapped = vr.Cylinder(**ROLLER, material=STEEL, base=RUBBER)
+    assert swapped.E_prime == pair.E_prime
+    assert swapped.pair.share + pair.pair.share == pytest.approx(1.0, rel=tol.SCENE)
+    on_rigid = vr.Cylinder(**ROLLER, material=RUBBER, base=vr.Material.rigid())
+    assert (on_rigid.E_prime, on_rigid.pair.share) == (2.0 * one, 1.0)
+    rigid = vr.Cylinder(**ROLLER, material=vr.Material.rigid(), base=RUBBER)
+    assert (rigid.E_prime, rigid.pair.share) == (2.0 * one, 0.0)
+    for base in (None, RUBBER, dataclasses.replace(RUBBER, name="the same")):
+        like = vr.Cylinder(**ROLLER, material=RUBBER, base=base)
+        assert (like.E_prime, like.scene().material) == (one, RUBBER.prony)
+
+
+def test_time_of_a_pair():
+    """The cylinder's, or the base's where the cylinder does not relax."""
+    for material, base, T in (
+        (RUBBER, HARD, 0.3), (HARD, RUBBER, 2.0), (RUBBER, STEEL, 0.3), (STEEL, RUBBER, 0.3),
+        (vr.Material.rigid(), HARD, 2.0), (HARD, vr.Material.rigid(), 2.0),
+    ):  # fmt: skip
+        cylinder = vr.Cylinder(**ROLLER, material=material, base=base)
+        assert cylinder.T_ref == T
+        assert cylinder.t_to_si(1.0) == T
+        assert cylinder.V_from_si(1.0) == T / 0.1
+
+
+def test_scene_of_a_pair():
+    pytest.importorskip("viscoroll.bodies", exc_type=ImportError)
+    cylinder = vr.Cylinder(**ROLLER, material=RUBBER, base=HARD)
+    scene = cylinder.scene()
+    assert scene.material == vr.Bodies(RUBBER.prony, HARD.prony.slower(2.0 / 0.3), cylinder.pair.share)
+    assert scene.kappa == pytest.approx(0.1 / cylinder.l0, rel=tol.SCENE)
+    assert scene.gamma == pytest.approx(cylinder.load * 0.3**2 / (35.5 * 0.1), rel=tol.SCENE)
+    rigid = vr.Cylinder(**ROLLER, material=vr.Material.rigid(), base=HARD).scene().material
+    assert rigid == vr.Bodies(vr.Prony.elastic(), HARD.prony, 0.0)
+
+
+def test_forces_of_a_pair():
+    """Eqs. (20), (21) with the part of each body; M/2 is that of like bodies alone."""
+    pair, like = vr.Cylinder(**ROLLER, material=RUBBER, base=STEEL), vr.Cylinder(**SI)
+    P = pair.load
+    assert pair.traction_to_si(0.1, M_half_space=0.03) == pytest.approx(P * 0.07, rel=tol.SCENE)
+    assert pair.torque_to_si(0.1, M_cylinder=0.03) == pytest.approx(P * 0.1 * 0.13, rel=tol.SCENE)
+    assert like.traction_to_si(0.1, M_half_space=0.015) == like.traction_to_si(0.1, 0.03)
+    refused(partial(pair.traction_to_si, 0.1, 0.03), "M given", "M_half_space=")
+    refused(partial(pair.torque_to_si, 0.1, 0.03), "M given", "M_cylinder=")
+    refused(partial(like.torque_to_si, 0.1), "neither")
+    refused(partial(like.torque_to_si, 0.1, 0.1, M_cylinder=0.1), "both")
+
+
+BAD_PAIRS = [
+    ({"material": RUBBER, "E": 1e6, "T_sigma": 1.0}, "material, E, T_sigma given = both: must be one of"),
+    ({}, "E = None"),
+    ({"E": 1e6, "nu": 0.4, "T_epsilon": 1.0}, "T_sigma = None"),
+    ({"material": "rubber"}, "material = 'rubber': must be a Material"),
+    ({"material": RUBBER, "base": 2e11}, "base = 200000000000.0: must be a Material"),
+    ({"material": vr.Material.rigid()}, "base = rigid: must be a body that deforms"),
+    ({"material": vr.Material.rigid(), "base": vr.Material.rigid()}, "base = rigid"),
+    ({"material": RUBBER, "load": 0.0}, "load = 0.0"),
+    ({"material": RUBBER, "load": [1.0, 2.0]}, "load"),
+    ({"material": RUBBER, "mu": None}, "mu = None"),
+]
+
+
+def test_refused_pairs():
+    for change, words in BAD_PAIRS:
+        refused(partial(vr.Cylinder, **ROLLER | change), words)
 
 
 def test_frozen():

@@ -11,7 +11,7 @@ import tolerances as tol
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.validity import REACH_LIMIT, WAVE_LIMIT
+from viscoroll.validity import REACH_LIMIT, WAVE_LIMIT, coupling
 
 SCENE = vr.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
@@ -76,7 +76,7 @@ def test_a_sentence_each():
     lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
     assert [line.split(":")[0] for line in lines] == list(SCENE.validity(1.0)._fields)
     assert "plane strain" in lines[-1]
-    assert SCENE.validity(1.0).same_material.holds is None
+    assert SCENE.validity(1.0).bodies.holds is None
 
 
 def test_bad_input():
@@ -96,3 +96,71 @@ def test_whether_steady_rolling_may_drive_a_motion():
     same = vr.Scene(material=series, kappa=29.1, mu=0.2, gamma=7.0).validity(0.1).steady
     assert same.value == pytest.approx(nu[1].value)
     assert vr.PAPER_SECTION_5.validity(0.1).steady.value == pytest.approx(600.0, rel=0.05)  # the paper's own example
+
+
+# --- pairs ---
+
+RUBBER = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0)
+STEEL = vr.Material.elastic(2e11, 0.3, density=7850.0)
+
+
+def pair(material: vr.Material, base: vr.Material | None, plane: str = "strain") -> vr.Cylinder:
+    return vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base, plane=plane)
+
+
+def test_dundurs_constant_by_hand():
+    """0.5 (G_1 (1 - 2 nu_2) - G_2 (1 - 2 nu_1))/(G_1 (1 - nu_2) + G_2 (1 - nu_1)), of long times and at once."""
+    long, instant = pair(RUBBER, STEEL).pair.dundurs
+    for found, G_1 in ((long, RUBBER.G), (instant, 9.0 * RUBBER.G)):
+        by_hand = 0.5 * (G_1 * 0.4 - STEEL.G * 0.02) / (G_1 * 0.7 + STEEL.G * 0.51)
+        assert found == pytest.approx(by_hand, rel=tol.PAIR)
+    back = pair(STEEL, RUBBER).pair.dundurs
+    assert back == pytest.approx((-long, -instant), rel=tol.PAIR)
+
+
+def test_dundurs_constant_at_its_ends():
+    """0 of like bodies, of two incompressible ones, of one on a rigid base; else -(1 - 2 nu)/(2 (1 - nu)) there."""
+    soft = vr.Material.elastic(1e6, 0.5)
+    assert pair(soft, vr.Material.rigid()).pair.dundurs == (0.0, 0.0)
+    assert pair(vr.Material.rigid(), soft).pair.dundurs == (0.0, 0.0)
+    assert pair(soft, vr.Material.elastic(3e7, 0.5)).pair.dundurs == (0.0, 0.0)
+    assert pair(RUBBER, None).pair.dundurs == (0.0, 0.0)
+    pressed = pair(vr.Material.elastic(1e6, 0.3), vr.Material.rigid()).pair.dundurs
+    assert pressed == pytest.approx(2 * (-0.4 / 1.4,), rel=tol.PAIR)
+    # plane stress, k = (3 - nu)/(1 + nu): even an incompressible disc on a rigid base is coupled, by -(1 - nu)/2
+    assert pair(soft, vr.Material.rigid(), "stress").pair.dundurs == pytest.approx((-0.25, -0.25), rel=tol.PAIR)
+
+
+def test_bodies_assumption():
+    for material, base, holds, words in (
+        (RUBBER, None, True, "alike"),
+        (vr.Material.elastic(1e6, 0.5), vr.Material.elastic(3e7, 0.5), True, "Dundurs' constant is 0:"),
+        (RUBBER, STEEL, True, "-0.02 for long times, -0.02 at once"),
+        (vr.Material.elastic(1e6, 0.3), STEEL, False, "-0.29 for long times"),
+    ):
+        cylinder = pair(material, base)
+        found = coupling(*cylinder.pair.dundurs, like=cylinder.pair.like)
+        assert found.holds is holds
+        assert words in found.sentence
+    assert found.value == pytest.approx(cylinder.pair.dundurs[0], rel=tol.PAIR)
+    assert vr.PAPER_CYLINDER.validity(1.0).bodies == coupling(0.0, 0.0, like=True)
+
+
+def test_waves_of_materials_that_know_their_density():
+    """The slowest of those that are known; a density that is missing is named."""
+    cylinder = pair(RUBBER, None)
+    found = cylinder.validity(cylinder.V_from_si(1.0)).quasistatic
+    assert found.value == pytest.approx(1.0 / math.sqrt(RUBBER.G / 1100.0), rel=tol.PAIR)
+    assert cylinder.validity(1.0, 4400.0).quasistatic.value == pytest.approx(
+        2.0 * cylinder.validity(1.0).quasistatic.value, rel=tol.PAIR
+    )
+
+
+def test_waves_of_a_pair():
+    pytest.importorskip("viscoroll.bodies", exc_type=ImportError)
+    for cylinder in (pair(RUBBER, STEEL), pair(STEEL, RUBBER), pair(RUBBER, vr.Material.rigid())):
+        found = cylinder.validity(cylinder.V_from_si(1.0)).quasistatic
+        assert found.value == pytest.approx(1.0 / math.sqrt(RUBBER.G / 1100.0), rel=tol.PAIR)
+        assert "not known" not in found.sentence
+    found = pair(RUBBER, vr.Material.elastic(2e11, 0.3)).validity(1.0).quasistatic
+    assert found.sentence.endswith("the density of the base is not known")

@@ -276,6 +276,8 @@ MOMENT = 1e-12
 #: Motions over seconds against those over T_epsilon at rtol 1e-10, over the largest value: roundings of time and
 #: gamma; measured 1.3e-14 (rolling_loss, others 1.2e-15).
 SI_UNITS = 1e-13
+#: the same of a series, at rtol 1e-10, another unit of time; measured 4.6e-15.
+SI_SERIES = 3e-14
 
 # --- motions in extended precision (test_reference_motions.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
@@ -293,6 +295,18 @@ SENSITIVITY_INTERVAL = 0.08
 SENSITIVITY_SHARE = 0.1
 #: condition number of a motion in which slip returns in passing: sum over its inputs, by pipeline/prove/motion.py.
 GRAZING_CONDITION = 89.0
+
+# --- materials in SI units (test_material.py) ---
+#: moduli and compliances against sums written out: a few roundings a mode; measured 4.4e-16.
+MATERIAL = 4e-15
+#: relaxation against creep form, and shear with a constant bulk modulus: the conversion; measured 8.7e-15 at 34 modes.
+MATERIAL_FORMS = 3e-14
+#: numbers that a docstring gives to eight digits.
+MATERIAL_PRINTED = 1e-7
+#: contact in two units of time: the times themselves round; measured 7.2e-15 (Q), the rest 9e-16.
+UNIT_OF_TIME = 3e-14
+#: Dundurs' constant and wave speeds: quotients of a few roundings.
+PAIR = 1e-14
 
 # --- prony.py, kernels/law/series.py (test_prony.py) ---
 #: One form from the other for one mode: roundings of a product or two.

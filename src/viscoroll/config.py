@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
+from .cylinder import Cylinder
 from .errors import ConfigError, ParameterError
-from .scene import PRESETS, Cylinder, Scene
+from .material_file import SECTIONS, materials_of, series_of
+from .presets import PRESETS
+from .scene import Scene
 from .sections import as_struct, fault, hint, read, refuse_unknown
 
 if TYPE_CHECKING:
@@ -20,14 +23,32 @@ if TYPE_CHECKING:
 _SCENES = ("preset", "scene", "cylinder")
 
 
-class SceneSection(msgspec.Struct):
-    """[scene]: the parameters of :class:`Scene`, one number each."""
+class SceneSection(msgspec.Struct, kw_only=True):
+    """[scene]: the parameters of :class:`Scene`, one number each; alpha, or the series in its place."""
 
-    alpha: float
+    alpha: float | None = None
     kappa: float
     mu: float
     gamma: float = 1.0
     j: float = 0.5
+    prony: dict[str, Any] | None = None
+    creep: dict[str, Any] | None = None
+
+
+class CylinderSection(msgspec.Struct, kw_only=True):
+    """[cylinder]: the parameters of :class:`Cylinder`, but for the materials."""
+
+    R: float
+    m: float
+    E: float | None = None
+    nu: float | None = None
+    T_epsilon: float | None = None
+    T_sigma: float | None = None
+    mu: float
+    j: float = 0.5
+    g: float = 9.81
+    plane: Literal["strain", "stress"] = "strain"
+    load: float | None = None
 
 
 class Spread(msgspec.Struct):
@@ -79,8 +100,9 @@ def preset(name: str) -> Scene:
 def read_scene(path: str | PathLike[str]) -> Scene:
     """Scene of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
 
-    ``preset`` names a scene of the paper, ``[scene]`` gives alpha, kappa, mu (gamma, j),
-    ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane) in SI units.
+    ``preset`` names a scene of the paper, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
+    ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane, load) in SI units; E to T_sigma stand in a
+    section [material] instead where there is one, and [base] is the half-space where it differs.
 
     Raises
     ------
@@ -89,20 +111,28 @@ def read_scene(path: str | PathLike[str]) -> Scene:
         misspelt or missing key, a value of the wrong type or out of its range.
     """
     content = read(path)
-    refuse_unknown(path, "", content, _SCENES)
+    refuse_unknown(path, "", content, (*_SCENES, *SECTIONS))
     given = [name for name in _SCENES if name in content]
     if len(given) != 1:
         found = " and ".join(given) or "none"
         raise ConfigError(path, f"must hold exactly one of preset, [scene] and [cylinder], found {found}")
+    if given != ["cylinder"]:
+        refuse_unknown(path, "", content, _SCENES)
     try:
         if "preset" in content:
             return preset(content["preset"])
         if "cylinder" in content:
-            return as_struct(path, "cylinder", content["cylinder"], Cylinder).scene()
-        return Scene(**msgspec.structs.asdict(as_struct(path, "scene", content["scene"], SceneSection)))
+            rolls = msgspec.structs.asdict(as_struct(path, "cylinder", content["cylinder"], CylinderSection))
+            return Cylinder(**(rolls | materials_of(path, content))).scene()
+        return _scene(path, as_struct(path, "scene", content["scene"], SceneSection))
     except ParameterError as error:
         section = "" if "preset" in content else given[0]
         raise fault(path, section, error.name, str(error)) from error
+
+
+def _scene(path: Any, given: SceneSection) -> Scene:
+    parameters = {name: getattr(given, name) for name in ("alpha", "kappa", "mu", "gamma", "j")}
+    return Scene(**parameters, material=series_of(path, "scene", given.prony, given.creep))
 
 
 def read_grids(path: str | PathLike[str] | None = None) -> dict[str, AtlasGrid | LiteralGrid]:

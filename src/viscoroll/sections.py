@@ -39,7 +39,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
         key = _AT.search(str(error))
-        raise fault(path, name, key.group(1) if key else "", str(error)) from error
+        problem = str(error).replace(" | null", "")  # TOML has none
+        raise fault(path, name, key.group(1) if key else "", problem) from error
 
 
 def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:

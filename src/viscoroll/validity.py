@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ WAVE_LIMIT = 0.2
 STEADY_LIMIT, NOT_THIS_MOTION = 0.4, 1.6
 #: the highest N over the sum of J_j T_j^2
 _HIGHEST_N = 0.084
+#: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
+DUNDURS_LIMIT = 0.05
 
 
 class Assumption(NamedTuple):
@@ -45,14 +48,15 @@ class Validity(NamedTuple):
     steady : value: nu = gamma max|N|/(1 + j), M = M(V) + N V' for slow changes; an upper bound of it, from the
         strengths of the material.  It rules whether the law of steady rolling may drive a motion; contact states and
         rolling at constant speed are not concerned.
-    same_material, plane : not to be seen from V.
+    bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
+    plane : not to be seen from V.
     """
 
     small_contact: Assumption
     under_axis: Assumption
     quasistatic: Assumption
     steady: Assumption
-    same_material: Assumption
+    bodies: Assumption
     plane: Assumption
 
     def __str__(self) -> str:
@@ -84,7 +88,7 @@ def unsteadiness(relaxation: Any, creep: Any) -> Any:
     return np.maximum(relaxation, _HIGHEST_N * np.asarray(creep))
 
 
-def _motion(nu: Any) -> Assumption:
+def steadiness(nu: Any) -> Assumption:
     """Whether motions may be driven by the law of steady rolling."""
     most = float(np.max(nu, initial=0.0))
     return Assumption(
@@ -98,8 +102,40 @@ def _motion(nu: Any) -> Assumption:
     )  # fmt: skip
 
 
-def judge(reach: Any, epsilon: Any, wave_ratio: Any, nu: Any, plane: str) -> Validity:
-    """Numbers put into words; ``wave_ratio`` None where it is not known."""
+def inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
+    """Speed over that of shear waves, None where it is not known; ``unknown``: bodies without a density."""
+    if wave_ratio is None:
+        return Assumption(
+            None, None, "inertia of the deformed bodies is neglected; give a density to see whether it may"
+        )
+    return Assumption(
+        wave_ratio <= WAVE_LIMIT, wave_ratio,
+        f"the speed is {100.0 * float(np.max(wave_ratio, initial=0.0)):.2g} % of that of shear waves; up to "
+        f"{100.0 * WAVE_LIMIT:g} % the load is within 10 % of the static one"
+        + "".join(f"; the density of {body} is not known" for body in unknown),
+    )  # fmt: skip
+
+
+def coupling(long: float | None = None, instant: float | None = None, *, like: bool = False) -> Assumption:
+    """Dundurs' constant of long times and at once, None where it is not known; ``like``: it is 0 at all times."""
+    if long is None or instant is None:
+        return Assumption(None, None, "of the bodies' elastic constants Dundurs' constant must be 0, as of like bodies")
+    if like:
+        return Assumption(True, 0.0, "cylinder and half-space are alike: Dundurs' constant is 0")
+    worst = max(long, instant, key=abs)
+    sizes = f"{long:.2g} for long times, {instant:.2g} at once"
+    if worst == 0.0:
+        return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not move the pressure")
+    within = abs(worst) <= DUNDURS_LIMIT
+    return Assumption(
+        within, worst,
+        f"Dundurs' constant is {sizes}, where the theory asks for 0: shear bends the surface by up to mu times as much "
+        f"as the pressure does; up to {DUNDURS_LIMIT} counts as small",
+    )  # fmt: skip
+
+
+def judge(reach: Any, epsilon: Any, slow: Assumption, steady: Assumption, bodies: Assumption, plane: str) -> Validity:
+    """Numbers put into words."""
     far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
     small = Assumption(
         reach <= REACH_LIMIT, reach,
@@ -111,17 +147,4 @@ def judge(reach: Any, epsilon: Any, wave_ratio: Any, nu: Any, plane: str) -> Val
         f"epsilon = {ahead:.2g}: the contact "
         + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
     )  # fmt: skip
-    if wave_ratio is None:
-        slow = Assumption(
-            None, None, "inertia of the deformed bodies is neglected; give a density to see whether it may"
-        )
-    else:
-        slow = Assumption(
-            wave_ratio <= WAVE_LIMIT, wave_ratio,
-            f"the speed is {100.0 * float(np.max(wave_ratio, initial=0.0)):.2g} % of that of shear waves; up to "
-            f"{100.0 * WAVE_LIMIT:g} % the load is within 10 % of the static one",
-        )  # fmt: skip
-    same = Assumption(
-        None, None, "cylinder and half-space are of the same material; for others the law is not this one"
-    )
-    return Validity(small, under, slow, _motion(nu), same, Assumption(None, None, plane))
+    return Validity(small, under, slow, steady, bodies, Assumption(None, None, plane))

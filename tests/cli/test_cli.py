@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from places import ROOT
 from processes import printed, python
 
 import viscoroll as vr
@@ -27,7 +28,8 @@ START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
 DRAWN = [*PRESET, "-n", "8", "--V0", "uniform:-2:2", "--omega0", "normal:0:1"]
 EXPORT = ["tables", "export", "--kappa", "2.91", "--mu", "0.2", "--V", "0.1:1:5:log", "--delta", "-0.04:0.04:9"]
 TABLE_COMMANDS = ["tables build", "tables export", "tables info", "tables validate"]
-COMMANDS = ["contact", "stress", "roll", "ensemble", *TABLE_COMMANDS, "plot"]
+MATERIAL_COMMANDS = ["material show", "material plot"]
+COMMANDS = ["contact", "stress", "roll", "ensemble", *TABLE_COMMANDS, *MATERIAL_COMMANDS, "plot"]
 POINT = [sys.executable, "-m", "viscoroll", "contact", *PRESET, "--V", "1", "--delta", "0"]
 SMALL = {
     "atlas": AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2)),
@@ -144,11 +146,12 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
     assert err.count("\n") == bool(words)
 
 
-@pytest.mark.parametrize("command", ["", "tables", *COMMANDS])
+@pytest.mark.parametrize("command", ["", "tables", "material", *COMMANDS])
 def test_example_of_help_runs(run, tables, here, figures, monkeypatch, command):
     monkeypatch.setattr(config, "read_grids", lambda path: SMALL)
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
+    (here / "docs").symlink_to(ROOT / "docs")
     example = run(*command.split(), "--help").partition("example:\n  viscoroll ")[2]
     if command in ("tables", "tables build"):
         example = example.replace("-o data/tables", "-o built")
@@ -209,6 +212,71 @@ def test_failed_write_leaves_the_old_file(refuse, here, monkeypatch, suffix):
     (here / f"out.{suffix}").write_text("as it was")
     monkeypatch.setattr(os, "replace", full)
     assert "No space left" in refuse("contact", *PRESET, "--V", "1", "--delta", "0", "-o", f"out.{suffix}")
+
+
+# --- materials ---
+
+RUBBER = """
+[material]
+name = "tread"
+E = 3e6
+nu = 0.5
+prony = { E = [0.5, 1.0], tau = [1.0, 0.01] }
+T_ref = 2.0
+wlf = { T0 = 20.0 }
+"""
+ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
+
+
+def test_material_show(run, here):
+    (here / "a.toml").write_text(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n")
+    first, base = run("material", "show", "a.toml").split("\n\n[base]")
+    assert first.startswith("[material] tread\nE(0) = 7.5e+06 Pa at once, E = 3e+06 Pa for long times")
+    slow = re.search(r"^ *0\.5 +2 ", first, re.M)  # E_1, and tau_1 in seconds
+    assert slow
+    assert "elastic\nE = 2e+11, nu = 0.3" in base
+    warm = run("material", "show", "a.toml", "--temperature", "30")
+    assert f"T_ref = {2.0 * vr.WLF(T0=20.0)(30.0):.10g}" in warm
+
+
+def test_material_plot(run, here):
+    (here / "a.toml").write_text(RUBBER)
+    assert run("material", "plot", "a.toml", "--temperature", "30", "-o", "a.png") == ""
+    assert (here / "a.png").stat().st_size > 10_000
+
+
+NO_FILE_OF_A_MATERIAL = [
+    ("show none.toml", "", "none.toml: cannot be read"),
+    ("show a.toml", "[scene]\nalpha = 2", "a.toml: section [material] is missing"),
+    ("show a.toml", RUBBER.replace("tau", "tua"), "did you mean 'tau'?"),
+    ("show a.toml --temperature -40", RUBBER, "temperature = -40.0: must be > T0 - C2 = -31.6, the pole"),
+    ("show a.toml --temperature 20", RUBBER.replace("wlf = { T0 = 20.0 }", ""), "needs wlf or arrhenius"),
+    ("show a.toml --temperature warm", RUBBER, "'warm' must be a number"),
+    ("plot a.toml -o a.png --section base", RUBBER, "section = 'base': must be out of material"),
+    ("plot a.toml -o a.png", "[material]\nE = inf\nnu = 0.5", "material = rigid"),
+    ("plot a.toml", RUBBER, "required: -o"),
+]
+
+
+def test_refused_materials(refuse, here):
+    for argv, text, words in NO_FILE_OF_A_MATERIAL:
+        (here / "a.toml").write_text(text)
+        assert words in refuse("material", *argv.split()), argv
+
+
+def test_a_scene_of_a_series_reaches_the_commands(run, here):
+    """In place of alpha, until --alpha is given."""
+    (here / "a.toml").write_text(ROLLER + RUBBER)
+    material = vr.Material(3e6, 0.5, vr.Prony([0.5, 1.0], [1.0, 0.01]), T_ref=2.0)
+    scene = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material).scene()
+    point = ["--scene", "a.toml", "--V", "0.5", "--delta", "0.01", "--fields", "M"]
+    assert f"M = {vr.contact(scene, 0.5, delta=0.01).M:.10g}" in run("contact", *point)
+    paper = scene.replace(alpha=11.0)
+    assert f"M = {vr.contact(paper, 0.5, delta=0.01).M:.10g}" in run("contact", *point, "--alpha", "11")
+    start = ["--V0", "1", "--omega0", "0.5", "--t-end", "1e-4"]
+    assert "alpha = 2.5" in run("roll", "--scene", "a.toml", *start)
+    start[1], start[3] = "uniform:1:2", "0.5"
+    assert "alpha = 2.5" in run("ensemble", "--scene", "a.toml", "-n", "8", *start, "--mu", "uniform:0.1:0.2")
 
 
 # --- contact and stress ---

@@ -18,7 +18,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.motion import single
-from viscoroll.scene import PAPER_STARTS
+from viscoroll.presets import PAPER_STARTS
 
 SECTION_5 = DATA / "reference/section5.csv"
 ROUNDED, UNROUNDED = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_SECTION_5

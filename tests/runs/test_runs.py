@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from functools import partial
 
 import numpy as np
@@ -320,6 +321,55 @@ def test_a_cylinder_from_its_flow_map(read):
         V = columns_of(run, values, motions)["V"][i]
         assert np.allclose(V, cylinder.V_to_si(one.V[0]), rtol=0.0, atol=1e-7 * abs(values["V0"][i]), equal_nan=True)
         assert motions.rest_time[i] == pytest.approx(cylinder.t_to_si(one.rest_time[0]), rel=1e-6, nan_ok=True)
+
+
+RUBBER = """
+[material]
+E = 2.3e5
+nu = 0.49
+prony = { E = [2.0, 6.0], tau = [1.0, 1e-3] }
+T_ref = 3.0
+"""
+LOAD = "load = { distribution = 'uniform', loc = 300.0, scale = 100.0 }\n"
+ROLLER = re.sub(r"^(E|nu|T_epsilon|T_sigma) = .*\n", "", SI.replace("mu =", LOAD + "mu ="), flags=re.M)
+
+
+def test_a_material_of_a_run(read):
+    """Motions of a series, over seconds, against those of the cylinder with each its own radius and load."""
+    run = read(RUBBER + ROLLER)
+    assert run.inputs.uncertain == ("R", "load", "V0", "omega0")
+    values, motions = roll_block(run, 0)
+    columns = columns_of(run, values, motions)
+    material = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-3]), T_ref=3.0)
+    for i in range(3):
+        cylinder = vr.Cylinder(R=values["R"][i], m=35.5, mu=0.2, load=values["load"][i], material=material)
+        V0, omega0 = cylinder.V_from_si(values["V0"][i]), cylinder.omega_from_si(values["omega0"][i])
+        one = vr.roll(cylinder.scene(), V0, omega0, cylinder.t_from_si(run.t), rtol=1e-10)
+        for name, value in (("V", cylinder.V_to_si(one.V)), ("x", cylinder.x_to_si(one.x))):
+            np.testing.assert_allclose(columns[name][i], value, rtol=0.0, atol=tol.SI_SERIES * np.abs(value).max())
+
+
+def test_a_run_with_a_material_is_another_run(read):
+    """Of the paper's four numbers the same motions, by a series; any change of the material is another digest."""
+    solid = "[material]\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n"
+    bare = re.sub(r"^(E|nu|T_epsilon|T_sigma) = .*\n", "", ONE, flags=re.M)
+    one, other = read(ONE), read(solid + bare)
+    assert one.digest != other.digest
+    assert other.digest != read(solid.replace("0.97", "0.98") + bare).digest
+    (values, motions), (_, same) = roll_block(one, 0), roll_block(other, 0)
+    assert scales(values)["V"] == 0.1 / 10.7
+    np.testing.assert_allclose(same.V, motions.V, rtol=0.0, atol=tol.SI_SERIES * np.abs(motions.V).max())
+
+
+def test_refused_materials_of_a_run(read):
+    for text, words in (
+        (RUBBER + SI, ["[cylinder]", "unknown key 'E'"]),
+        (RUBBER.replace("material", "base") + SI, ["[base] needs [material]"]),
+        (RUBBER.replace("6.0", "-6.0") + ROLLER, ["line 5", "E = -6"]),
+        ("[material]\nE = inf\nnu = 0.5\n" + ROLLER, ["base = rigid"]),
+        (RUBBER + "[scene]\nalpha = 2\n[start]\n[run]\nn = 1\nt = 1", ["[material] goes with [cylinder]"]),
+    ):
+        refused(partial(read, text), *words, error=vr.ConfigError)
 
 
 def test_refused_in_si_units(read):

@@ -108,7 +108,7 @@ def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = numb
 
 
 def scene_parameters(arguments: Namespace) -> dict[str, Any]:
-    """The five parameters, or those given of them: file or preset first, options over it.
+    """The five parameters, or those given of them, and a series for alpha: file or preset first, options over it.
 
     Raises
     ------
@@ -125,7 +125,10 @@ def scene_parameters(arguments: Namespace) -> dict[str, Any]:
     elif arguments.scene is not None:
         base = read_scene(arguments.scene)
     parameters = {} if base is None else {name: getattr(base, name) for name in PARAMETERS}
-    parameters |= {name: getattr(arguments, name) for name in PARAMETERS if getattr(arguments, name) is not None}
+    changed = {name: getattr(arguments, name) for name in PARAMETERS if getattr(arguments, name) is not None}
+    if base is not None and base.material is not None and "alpha" not in changed:
+        parameters |= {"alpha": None, "material": base.material}
+    parameters |= changed
     if not {"alpha", "kappa", "mu"} <= parameters.keys():
         given = ", ".join(f"--{name}" for name in parameters) or "nothing"
         raise ParameterError("scene", given, "--preset, --scene, or --alpha, --kappa and --mu")

@@ -47,7 +47,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _start(arguments: Namespace) -> tuple[float, float]:
-    from ..scene import PAPER_STARTS
+    from ..presets import PAPER_STARTS
 
     given = {f"--{name}": value for name in ("V0", "omega0", "ic") if (value := getattr(arguments, name)) is not None}
     if given.keys() == {"--V0", "--omega0"}:

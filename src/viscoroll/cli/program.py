@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import ViscorollError
-from . import contact, ensemble, motion, plot, sensitivity, tables, warmup
+from . import contact, ensemble, material, motion, plot, sensitivity, tables, warmup
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
@@ -37,13 +37,13 @@ def parser() -> Parser:
     program = Parser(
         prog="viscoroll",
         description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
-        "material.  Everything is dimensionless but the [cylinder] section of a scene file, and a run file with one\n"
-        "(all SI).",
+        "material or of another.  Everything is dimensionless but the sections [cylinder], [material] and [base] of a\n"
+        "scene file, and a run file with them (all SI).",
         epilog="example:\n  viscoroll roll --preset paper-section-5 --ic IC1 --t-end 3e-3",
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     commands = program.add_subparsers(metavar="COMMAND", required=True)
-    for group in (contact, motion, ensemble, sensitivity, tables, plot, warmup):
+    for group in (contact, motion, ensemble, sensitivity, tables, material, plot, warmup):
         group.add_commands(commands)
     return program
 

@@ -8,12 +8,9 @@ in grey.
 from __future__ import annotations
 
 from collections.abc import Callable
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import OutputError
-from ..files import replacing
+from ..material_plot import save
 from .deceleration import figure_5, figure_6, figure_7
 from .distribution import ensemble_distribution
 from .law import figure_2, figure_3
@@ -40,19 +37,3 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "atlas-errors": atlas_errors,
     "ensemble": ensemble_distribution,
 }
-
-
-def save(figure: Figure, path: str | PathLike[str]) -> None:
-    """Write a figure, whole or not at all; the suffix of ``path`` chooses the format.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written there, or the suffix names no format.
-    """
-    formats = sorted(figure.canvas.get_supported_filetypes())
-    suffix = Path(path).suffix
-    if suffix.removeprefix(".").lower() not in formats:
-        raise OutputError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
-    with replacing(path) as temporary:
-        figure.savefig(temporary)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..motion import Motion, roll
+from ..presets import PAPER_SECTION_5, PAPER_STARTS
 from ..rolling_contact import stress
-from ..scene import PAPER_SECTION_5, PAPER_STARTS, Scene
+from ..scene import Scene
 from ..symbols import label
 from .style import LINES, MARKERS, THIN, describe, new_figure, number, scaled
 

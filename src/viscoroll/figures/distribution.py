@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..scene import PAPER_SECTION_5_ROUNDED
+from ..presets import PAPER_SECTION_5_ROUNDED
 from ..symbols import label
 from .style import THIN, new_figure, number, scaled
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..presets import PAPER_FIGURES_2_3
 from ..rolling_contact import contact
-from ..scene import PAPER_FIGURES_2_3, Scene
+from ..scene import Scene
 from ..symbols import label
 from .style import LINES, THIN, describe, new_figure, scaled
 

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..motion import Motion, roll
+from ..presets import PAPER_SECTION_5
 from ..rolling_contact import contact
-from ..scene import PAPER_SECTION_5, Scene
+from ..scene import Scene
 from ..symbols import SYMBOLS, label
 from .style import SHADES, describe, new_figure
 

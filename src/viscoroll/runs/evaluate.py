@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cylinder import scene_from_si, scene_of_pair
 from ..motion import ensemble
 from ..motion.batch import Ensemble
-from ..scene import Scene, scene_from_si
+from ..scene import Scene
 from . import draws
 from .runfile import Run
 from .sources import CYLINDER, SCENE, START
-from .units import are_si, dimensionless
+from .units import are_si, dimensionless, unit_of_time
 
 
 def block_inputs(run: Run, block: int) -> dict[str, Any]:
@@ -30,7 +31,11 @@ def block_inputs(run: Run, block: int) -> dict[str, Any]:
 def scene_of(values: Mapping[str, Any]) -> Scene:
     """The scene, or the scenes, of inputs; raises ParameterError where one is out of range."""
     if are_si(values):
-        return scene_from_si(**{name: values[name] for name in (*CYLINDER, "plane")})
+        given = {name: values[name] for name in (*CYLINDER, "plane") if name in values}
+        if "pair" in values:
+            del given["plane"]
+            return scene_of_pair(**given, pair=values["pair"])
+        return scene_from_si(**given)
     return Scene(**{name: values[name] for name in SCENE})
 
 
@@ -39,7 +44,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) ->
     motion_count = max((np.size(value) for value in values.values()), default=1)
     scene = scene_of(values)
     if are_si(values):
-        scene = scene.replace(gamma=scene.gamma / values["T_epsilon"])
+        scene = scene.replace(gamma=scene.gamma / unit_of_time(values))
     V0, omega0 = (_column(dimensionless(values, name), motion_count) for name in START)
     return ensemble(
         scene, V0, omega0, run.t,

@@ -11,7 +11,7 @@
     seed = 7
     t = [1e-3, 2e-3, 3e-3]
 
-All dimensionless, or all in SI units with [cylinder].  All keys: docs/ensembles.md.
+All dimensionless, or all in SI units with [cylinder], and perhaps [material] and [base].  All keys: docs/ensembles.md.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ from numpy.typing import NDArray
 
 from ..config import preset
 from ..errors import ParameterError
+from ..material_file import SECTIONS as MATERIALS
+from ..material_file import materials_of
 from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
 from ..sections import as_struct, fault, read, refuse_unknown
@@ -40,7 +42,7 @@ from .units import dimensionless
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
-_SECTIONS = ("preset", "scene", "cylinder", "start", "correlation", "run")
+_SECTIONS = ("preset", "scene", "cylinder", *MATERIALS, "start", "correlation", "run")
 
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
@@ -168,9 +170,10 @@ def read_run(path: str | PathLike[str]) -> Run:
     settings = as_struct(path, "run", content["run"], RunSection)
     sections, base = _parameters(path, content)
     correlation = content.get("correlation", {})
-    inputs = read_inputs(Path(path), sections, base, correlation)
+    inputs = read_inputs(Path(path), sections, base, correlation, materials_of(path, content))
     times = _checked(path, settings, inputs)
-    digest = _digest(settings, times, sections, base, correlation, inputs)
+    described = sections | {name: content[name] for name in MATERIALS if name in content}
+    digest = _digest(settings, times, described, base, correlation, inputs)
     return Run(Path(path).read_text(encoding="utf-8"), settings, inputs, times, digest)
 
 
@@ -178,6 +181,11 @@ def _parameters(path: Any, content: dict[str, Any]) -> tuple[dict[str, dict[str,
     """(sections of inputs, values that a preset gives)."""
     if "cylinder" in content and ("scene" in content or "preset" in content):
         raise fault(path, "", "cylinder", "[cylinder] stands alone: without preset and [scene]")
+    for name in MATERIALS:
+        if name in content and "cylinder" not in content:
+            raise fault(path, "", name, f"[{name}] goes with [cylinder]")
+    if "base" in content and "material" not in content:
+        raise fault(path, "", "base", "[base] needs [material]: E, nu, T_epsilon and T_sigma there, not in [cylinder]")
     if not content.keys() & {"preset", "scene", "cylinder"}:
         raise fault(path, "", "scene", "one of preset, [scene] and [cylinder] is needed")
     if "start" not in content:

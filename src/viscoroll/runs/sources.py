@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ConfigError
+from ..errors import ConfigError, ParameterError
 from ..extras import imported
+from ..material import Material
+from ..pair import Pair, Plane
 from ..scene import HIGHEST_ALPHA
 from ..sections import fault, hint, refuse_unknown
 from .inputs import Distribution, Inputs, Joint
@@ -54,7 +56,10 @@ CYLINDER = {
     "mu": _positive(),
     "j": _positive(default=0.5),
     "g": _positive("m/s^2", default=9.81),
+    "load": _positive("N/m"),
 }
+#: what a section [material] says in their place, and what a cylinder may go without
+SOLID, OPTIONAL = ("E", "nu", "T_epsilon", "T_sigma"), ("load",)
 START = {"V0": Range(-1e100, high=1e100), "omega0": Range(-1e100, high=1e100)}
 START_SI = {"V0": START["V0"]._replace(unit="m/s"), "omega0": START["omega0"]._replace(unit="rad/s")}
 _PLANES = ("strain", "stress")
@@ -192,32 +197,49 @@ def read_column(path: Path, column: str) -> NDArray[np.float64]:
 
 
 def read_inputs(
-    path: Path, sections: dict[str, dict[str, Any]], base: dict[str, Any], correlation: dict[str, Any]
+    path: Path,
+    sections: dict[str, dict[str, Any]],
+    base: dict[str, Any],
+    correlation: dict[str, Any],
+    materials: dict[str, Material],
 ) -> Inputs:
     """Inputs of the sections; ``base`` fills in what they leave out.  Raises ConfigError."""
     reader = _Reader(path)
-    ranges = {"cylinder": CYLINDER, "start": START_SI} if "cylinder" in sections else {"scene": SCENE, "start": START}
+    cylinder = {name: allowed for name, allowed in CYLINDER.items() if not (materials and name in SOLID)}
+    ranges = {"cylinder": cylinder, "start": START_SI} if "cylinder" in sections else {"scene": SCENE, "start": START}
     for section, given in sections.items():
         reader.section = section
         others = ("plane",) if section == "cylinder" else ()
         refuse_unknown(path, section, given, (*ranges[section], *others))
         for name, allowed in ranges[section].items():
             value = given.get(name, base.get(name, allowed.default))
-            if value is None:
+            if value is not None:
+                reader.put(name, value, allowed)
+            elif name not in OPTIONAL:
                 raise fault(path, "", section, f"[{section}] needs {name}")
-            reader.put(name, value, allowed)
     if "cylinder" in sections:
         reader.section = "cylinder"
         plane = sections["cylinder"].get("plane", "strain")
         if plane not in _PLANES:
             raise reader.fault("plane", f"plane = {plane!r}: must be 'strain' or 'stress'")
         reader.fixed["plane"] = plane
+        if materials:
+            pair = _pair(path, materials, plane)
+            reader.fixed |= {"pair": pair, "T_ref": pair.T_ref}
     joint = {file: Joint(columns) for file, columns in reader.joint.items()}
     correlated, mixing = _copula(path, correlation, reader.random)
     inputs = Inputs(reader.fixed, reader.random, joint, correlated, mixing)
-    if "cylinder" in sections:
+    if "cylinder" in sections and not materials:
         _refuse_short_retardation(reader, inputs)
     return inputs
+
+
+def _pair(path: Path, materials: dict[str, Material], plane: Plane) -> Pair:
+    """Both bodies of a run; raises ConfigError."""
+    try:
+        return Pair(materials["material"], materials.get("base"), plane)
+    except ParameterError as error:
+        raise fault(path, "", "material", str(error)) from error
 
 
 def _copula(path: Path, given: dict[str, Any], random: dict[str, Distribution]) -> tuple[tuple[str, ...], Any]:

@@ -1,7 +1,8 @@
 """SI units of a run with [cylinder]: all that its file says, and all that its results hold.
 
-Its motions are rolled dimensionless, each with its own R and T_epsilon, but for the time: gamma does nothing but
-scale it (Eq. (22)), so that gamma/T_epsilon in place of gamma makes it seconds, the same for every cylinder.
+Its motions are rolled dimensionless, each with its own R and unit of time T (T_epsilon, or T_ref of the materials), but
+for the time: gamma does nothing but scale it (Eq. (22)), so that gamma/T in place of gamma makes it seconds, the same
+for every cylinder.
 """
 
 from __future__ import annotations
@@ -43,11 +44,16 @@ def are_si(values: Mapping[str, Any]) -> bool:
     return "R" in values
 
 
+def unit_of_time(values: Mapping[str, Any]) -> Any:
+    """What times of a cylinder's scene are counted in, s; a number or one a motion."""
+    return values["T_ref"] if "T_ref" in values else values["T_epsilon"]
+
+
 def scales(values: Mapping[str, Any]) -> dict[str, Any]:
     """Column -> what it is multiplied by to be in SI units; numbers or one a motion; nothing for a scene."""
     if not are_si(values):
         return {}
-    speed, spin = values["R"] / values["T_epsilon"], 1.0 / values["T_epsilon"]
+    speed, spin = values["R"] / unit_of_time(values), 1.0 / unit_of_time(values)
     energy = values["m"] * speed**2
     # the integrals over time are over seconds already
     return {
@@ -59,7 +65,7 @@ def dimensionless(values: Mapping[str, Any], name: str) -> Any:
     """A start speed, or the rest threshold, from inputs in either units."""
     if not are_si(values):
         return values[name]
-    return values[name] * (values["T_epsilon"] if name == "omega0" else values["T_epsilon"] / values["R"])
+    return values[name] * (unit_of_time(values) if name == "omega0" else unit_of_time(values) / values["R"])
 
 
 def attributes(name: str, si: bool) -> dict[str, Any]:

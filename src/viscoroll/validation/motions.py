@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..motion import roll
-from ..scene import PAPER_SECTION_5_ROUNDED, PAPER_STARTS, Scene
+from ..presets import PAPER_SECTION_5_ROUNDED, PAPER_STARTS
+from ..scene import Scene
 from .direct_motion import roll_direct
 from .report import Check
 

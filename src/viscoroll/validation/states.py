@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import roll
+from ..presets import PAPER_SECTION_5, PAPER_SECTION_5_ROUNDED, PAPER_STARTS
 from ..rolling_contact import Values, contact
-from ..scene import PAPER_SECTION_5, PAPER_SECTION_5_ROUNDED, PAPER_STARTS, Scene
+from ..scene import Scene
 from .report import Check
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")

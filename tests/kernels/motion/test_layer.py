@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
-from viscoroll.scene import PAPER_STARTS
+from viscoroll.presets import PAPER_STARTS
 from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED

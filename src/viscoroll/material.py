@@ -1,0 +1,220 @@
+"""A material in SI units: :class:`Material`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import checked, number
+from .errors import ParameterError
+from .importers import FromPrograms, poisson
+from .prony import Prony
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Material(FromPrograms):
+    """An isotropic linear viscoelastic material, in SI units.
+
+    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.
+
+    Parameters
+    ----------
+    E : long-time Young's modulus, Pa, > 0; infinite for a rigid body.
+    nu : Poisson's ratio, in (-1, 0.5].  It is taken constant in time: shear, bulk and tensile modulus relax alike.
+    prony : strengths over E, and times over T_ref; none (default): elastic.
+    T_ref : what the times of ``prony`` are counted in, s.
+    name : in words, for tables and figures.
+    density : kg/m^3, to compare speeds with those of waves.
+
+    Raises
+    ------
+    ParameterError
+        A value that is not finite or out of range, a rigid body that relaxes.
+
+    Notes
+    -----
+    Immutable, hashable, equal where all fields are.
+    """
+
+    E: float
+    nu: float
+    prony: Prony = field(default_factory=Prony.elastic)
+    T_ref: float = 1.0
+    name: str = ""
+    density: float | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.prony, Prony):
+            raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
+        if isinstance(self.E, (int, float, np.floating)) and float(self.E) == math.inf:
+            object.__setattr__(self, "E", math.inf)
+            if self.prony.alpha > 1.0:
+                raise ParameterError("E", self.E, "finite where the material relaxes")
+        else:
+            object.__setattr__(self, "E", number("E", self.E, low=0.0, strict=True))
+        object.__setattr__(self, "nu", poisson(self.nu))
+        object.__setattr__(self, "T_ref", number("T_ref", self.T_ref, low=0.0, strict=True))
+        if not isinstance(self.name, str):
+            raise ParameterError("name", f"{self.name!r:.60}", "a text")
+        if self.density is not None:
+            object.__setattr__(self, "density", number("density", self.density, low=0.0, strict=True))
+
+    @classmethod
+    def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
+        """A standard linear solid, the paper's material.
+
+        Parameters
+        ----------
+        E : long-time Young's modulus, Pa.
+        nu : Poisson's ratio.
+        T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.
+        more : ``name`` and ``density``.
+
+        Raises
+        ------
+        ParameterError
+            A value out of range.
+        """
+        T_epsilon = number("T_epsilon", T_epsilon, low=0.0, strict=True)
+        T_sigma = number("T_sigma", T_sigma, low=0.0, strict=True)
+        refuse_short_retardation(T_epsilon, T_sigma)
+        ratio = T_sigma / T_epsilon
+        prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
+        return cls(E, nu, prony, T_epsilon, **more)
+
+    @classmethod
+    def elastic(cls, E: float, nu: float, **more: Any) -> Material:
+        """A material that does not relax: E in Pa, nu; ``name`` and ``density``.
+
+        Raises
+        ------
+        ParameterError
+            A value out of range.
+        """
+        return cls(E, nu, **more)
+
+    @classmethod
+    def rigid(cls, **more: Any) -> Material:
+        """A body that does not deform; E is infinite.  ``name`` and ``density`` may be given."""
+        return cls(math.inf, 0.5, **more)
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether E is infinite."""
+        return math.isinf(self.E)
+
+    @property
+    def instant(self) -> float:
+        """Instantaneous Young's modulus, Pa."""
+        return self.E * self.prony.alpha
+
+    @property
+    def G(self) -> float:
+        """Long-time shear modulus E/(2 (1 + nu)), Pa."""
+        return self.E / (2.0 * (1.0 + self.nu))
+
+    def at(self, temperature: float, shift: Callable[[float], float]) -> Material:
+        """The material at another temperature: every time, that is T_ref, times a_T.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius.
+        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature that gives a_T; the material
+            as it is has the temperature where that is 1.
+
+        Raises
+        ------
+        ParameterError
+            A temperature that the shift does not allow.
+        """
+        factor = number("a_T", shift(temperature), low=0.0, strict=True)
+        return replace(self, T_ref=self.T_ref * factor)
+
+    def storage(self, omega: ArrayLike) -> Any:
+        """Storage modulus E', Pa, at angular frequencies >= 0, rad/s.
+
+        Raises
+        ------
+        ParameterError
+            A frequency that is negative, NaN or infinite.
+        """
+        return self.E * self._storage(omega)[()]
+
+    def loss(self, omega: ArrayLike) -> Any:
+        """Loss modulus E'', Pa; arguments and errors of :meth:`storage`."""
+        return self.E * self._loss(omega)[()] if not self.is_rigid else 0.0 * self._loss(omega)[()]
+
+    def tan_delta(self, omega: ArrayLike) -> Any:
+        """Loss factor E''/E'; arguments and errors of :meth:`storage`."""
+        return (self._loss(omega) / self._storage(omega))[()]
+
+    def relaxation(self, t: ArrayLike) -> Any:
+        """Tensile relaxation modulus E(t), Pa, at times >= 0, s.
+
+        Raises
+        ------
+        ParameterError
+            A time that is negative, NaN or infinite.
+        """
+        decay = np.exp(-self._over(t, "t", self.prony.tau))
+        return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
+
+    def creep(self, t: ArrayLike) -> Any:
+        """Creep compliance in tension over 1/E, from E/E(0) to 1; arguments and errors of :meth:`relaxation`."""
+        risen = -np.expm1(-self._over(t, "t", self.prony.T))
+        return (1.0 / self.prony.alpha + (self.prony.J * risen).sum(axis=-1))[()]
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+        """E', E'' and tan delta over frequency, and E(t), in a figure of matplotlib.
+
+        Parameters
+        ----------
+        path : also write it there, in the format of the suffix.
+
+        Raises
+        ------
+        OutputError
+            If it cannot be written there.
+        """
+        from .material_plot import master_curve, save
+
+        figure = master_curve(self)
+        if path is not None:
+            save(figure, path)
+        return figure
+
+    def _storage(self, omega: ArrayLike) -> NDArray[np.float64]:
+        product = self._products(omega)
+        ratio = np.where(product > 1.0, 1.0 / np.maximum(product, 1.0), product)
+        share = np.where(product > 1.0, 1.0, ratio * ratio) / (1.0 + ratio * ratio)
+        return 1.0 + (self.prony.E * share).sum(axis=-1)
+
+    def _loss(self, omega: ArrayLike) -> NDArray[np.float64]:
+        product = self._products(omega)
+        ratio = np.where(product > 1.0, 1.0 / np.maximum(product, 1.0), product)
+        return (self.prony.E * (ratio / (1.0 + ratio * ratio))).sum(axis=-1)
+
+    def _products(self, omega: ArrayLike) -> NDArray[np.float64]:
+        """omega times each relaxation time; beyond the doubles it is as good as infinite."""
+        with np.errstate(over="ignore"):
+            return checked("omega", omega, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+
+    def _over(self, t: ArrayLike, name: str, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """t over each of the times."""
+        with np.errstate(over="ignore"):
+            return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
+
+
+def refuse_short_retardation(T_epsilon: float, T_sigma: float) -> None:
+    """Raise ParameterError where T_epsilon < T_sigma."""
+    if T_epsilon < T_sigma:
+        raise ParameterError("T_epsilon", T_epsilon, f">= T_sigma = {T_sigma}")

@@ -1,0 +1,145 @@
+"""Materials in TOML files: sections [material] and [base] -> :class:`Material`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from typing import Any
+
+import msgspec
+
+from .errors import ParameterError
+from .material import Material
+from .prony import Prony
+from .sections import as_struct, fault, read
+from .shift import WLF, Arrhenius
+
+SECTIONS = ("material", "base")
+
+
+class MaterialSection(msgspec.Struct):
+    """[material] or [base]: the parameters of :class:`Material`, or of :meth:`Material.sls`, and a temperature."""
+
+    E: float
+    nu: float
+    T_epsilon: float | None = None
+    T_sigma: float | None = None
+    prony: dict[str, Any] | None = None
+    creep: dict[str, Any] | None = None
+    T_ref: float | None = None
+    name: str = ""
+    density: float | None = None
+    wlf: dict[str, Any] | None = None
+    arrhenius: dict[str, Any] | None = None
+    temperature: float | None = None
+
+
+class PronySection(msgspec.Struct):
+    """prony = { E = [...], tau = [...] }."""
+
+    E: list[float]
+    tau: list[float]
+
+
+class CreepSection(msgspec.Struct):
+    """creep = { J = [...], T = [...] }, perhaps with alpha."""
+
+    J: list[float]
+    T: list[float]
+    alpha: float | None = None
+
+
+class WLFSection(msgspec.Struct):
+    """wlf = { T0 = ... }."""
+
+    T0: float
+    C1: float = 17.44
+    C2: float = 51.6
+
+
+class ArrheniusSection(msgspec.Struct):
+    """arrhenius = { T0 = ..., energy = ... }."""
+
+    T0: float
+    energy: float
+
+
+def read_materials(path: str | PathLike[str], temperature: float | None = None) -> dict[str, Material]:
+    """The materials of a TOML file by section, "material" and "base"; other sections are not looked at.
+
+    Parameters
+    ----------
+    path : a file with [material], [base] or both: a scene file, a run file, or one of its own.
+    temperature : degrees Celsius, in place of those in the file, of the sections that have a shift.
+
+    Raises
+    ------
+    ConfigError
+        A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key, a value of
+        the wrong type or out of its range, a temperature without a shift.
+    """
+    content = read(path)
+    found = materials_of(path, content, temperature)
+    if not found:
+        raise fault(path, "", "material", "section [material] is missing: it needs E and nu")
+    if temperature is not None and not any("wlf" in content[name] or "arrhenius" in content[name] for name in found):
+        raise fault(path, next(iter(found)), "", f"temperature = {temperature:g}: needs wlf or arrhenius in the file")
+    return found
+
+
+def materials_of(path: Any, content: Mapping[str, Any], temperature: float | None = None) -> dict[str, Material]:
+    """The materials of a file that was read; arguments and errors as :func:`read_materials`."""
+    return {name: _material(path, name, content[name], temperature) for name in SECTIONS if name in content}
+
+
+def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
+    given = as_struct(path, name, content, MaterialSection)
+    try:
+        shift = _shift(path, name, given)
+        found = _unshifted(path, name, given)
+        at = given.temperature if temperature is None or shift is None else temperature
+        if at is None:
+            return found
+        if shift is None:
+            raise fault(path, name, "temperature", f"temperature = {at:g}: needs wlf or arrhenius beside it")
+        return found.at(at, shift)
+    except ParameterError as error:
+        raise fault(path, name, error.name, str(error)) from error
+
+
+def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
+    more: dict[str, Any] = {"name": given.name, "density": given.density}
+    series = series_of(path, name, given.prony, given.creep)
+    if given.T_epsilon is not None or given.T_sigma is not None:
+        if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:
+            raise fault(path, name, "", "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep")
+        return Material.sls(given.E, given.nu, given.T_epsilon, given.T_sigma, **more)
+    return Material(given.E, given.nu, series or Prony.elastic(), 1.0 if given.T_ref is None else given.T_ref, **more)
+
+
+def series_of(path: Any, name: str, prony: Any, creep: Any) -> Prony | None:
+    """The series of section ``name`` by its keys prony and creep, None without; raises ConfigError."""
+    if prony is not None and creep is not None:
+        raise fault(path, name, "creep", "prony and creep: must be one of the two")
+    at = f"{name}.prony" if creep is None else f"{name}.creep"
+    try:
+        if prony is not None:
+            relaxation = as_struct(path, at, prony, PronySection)
+            return Prony(relaxation.E, relaxation.tau)
+        if creep is not None:
+            given = as_struct(path, at, creep, CreepSection)
+            return Prony.creep(given.J, given.T, alpha=given.alpha)
+    except ParameterError as error:  # at its own line: E is a key of the material too
+        raise fault(path, at, error.name, str(error)) from error
+    return None
+
+
+def _shift(path: Any, name: str, given: MaterialSection) -> WLF | Arrhenius | None:
+    if given.wlf is not None and given.arrhenius is not None:
+        raise fault(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
+    if given.wlf is not None:
+        return WLF(**msgspec.structs.asdict(as_struct(path, f"{name}.wlf", given.wlf, WLFSection)))
+    if given.arrhenius is not None:
+        section = as_struct(path, f"{name}.arrhenius", given.arrhenius, ArrheniusSection)
+        return Arrhenius(energy=section.energy, T0=section.T0)
+    return None

@@ -1,0 +1,108 @@
+"""Two bodies in contact, in SI units: :class:`Pair`.
+
+Compliances add up: 2/E' = 1/E'_1 + 1/E'_2, E'_k = pi E_k/(1 - nu_k^2) (Sect. 3.1), and each body creeps for its
+share of them.  Shear and pressure decouple where Dundurs' constant beta_D is 0 at all times.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from typing import Any, Literal
+
+from .errors import ParameterError
+from .material import Material
+
+Plane = Literal["strain", "stress"]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Cylinder and half-space.
+
+    Parameters
+    ----------
+    cylinder : material of the cylinder.
+    base : material of the half-space; None: that of the cylinder.
+    plane : "strain", or "stress".
+
+    Raises
+    ------
+    ParameterError
+        What is no :class:`Material`, or two bodies that are both rigid.
+    """
+
+    cylinder: Material
+    base: Material | None = None
+    plane: Plane = "strain"
+
+    def __post_init__(self) -> None:
+        for name in ("cylinder", "base"):
+            body = getattr(self, name)
+            if not isinstance(body, Material) and not (name == "base" and body is None):
+                named = "material" if name == "cylinder" else name
+                raise ParameterError(named, f"{body!r:.60}", "a Material")
+        if self.cylinder.is_rigid and self.half_space.is_rigid:
+            raise ParameterError("base", "rigid", "a body that deforms: the cylinder is rigid")
+
+    @property
+    def half_space(self) -> Material:
+        """Material of the half-space."""
+        return self.cylinder if self.base is None else self.base
+
+    @property
+    def like(self) -> bool:
+        """Whether both bodies deform and relax alike."""
+        one, other = self.cylinder, self.half_space
+        return (one.E, one.nu, one.prony, one.T_ref) == (other.E, other.nu, other.prony, other.T_ref)
+
+    @cached_property
+    def E_prime(self) -> float:
+        """E' of the pair, Pa, of long times: 2 E'_1 on a rigid base."""
+        one, other = (effective_modulus(body.E, body.nu, self.plane) for body in (self.cylinder, self.half_space))
+        return one if self.like else 2.0 * min(one, other) / (1.0 + min(one, other) / max(one, other))
+
+    @cached_property
+    def share(self) -> float:
+        """The cylinder's part of the long-time compliance: 0 where it is rigid, 1 on a rigid base."""
+        one, other = (effective_modulus(body.E, body.nu, self.plane) for body in (self.cylinder, self.half_space))
+        return 1.0 / (1.0 + one / other) if math.isfinite(one) else 0.0
+
+    @property
+    def T_ref(self) -> float:
+        """What times are counted in, s: the cylinder's T_ref, or that of the base where the cylinder does not relax."""
+        return (self.cylinder if self.cylinder.prony.alpha > 1.0 else self.half_space).T_ref
+
+    @cached_property
+    def law(self) -> Any:
+        """A :class:`Prony` series for like bodies, else ``Bodies``, with times over ``T_ref``."""
+        if self.like:
+            return self.cylinder.prony
+        series = [body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space)]
+        return import_module(".bodies", __package__).Bodies(*series, self.share)
+
+    @cached_property
+    def dundurs(self) -> tuple[float, float]:
+        """Dundurs' constant beta_D of the long-time and of the instantaneous moduli; body 1 is the cylinder."""
+        one, other = self.cylinder, self.half_space
+        moduli = (one.G, other.G), (one.G * one.prony.alpha, other.G * other.prony.alpha)
+        long, instant = (dundurs(first, one.nu, second, other.nu, self.plane) for first, second in moduli)
+        return long, instant
+
+
+def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
+    """E' of Sect. 3.1, Pa."""
+    return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
+
+
+def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:
+    """beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), k = 3 - 4 nu in plane strain.
+
+    In plane stress k = (3 - nu)/(1 + nu).  Moduli in any unit, one of them may be infinite.
+    """
+    k_1, k_2 = (3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2))
+    largest = max(G_1, G_2)
+    g_1, g_2 = (1.0 if G == largest else G / largest for G in (G_1, G_2))
+    return (g_1 * (k_2 - 1.0) - g_2 * (k_1 - 1.0)) / (g_1 * (k_2 + 1.0) + g_2 * (k_1 + 1.0))

@@ -1,0 +1,23 @@
+"""What the paper computes: its cylinder, its scenes by name, its starts."""
+
+from __future__ import annotations
+
+from .cylinder import Cylinder
+from .scene import Scene
+
+#: Sect. 5 as it was computed: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and
+#: mu = 0.2.  Gives alpha = 11.031, kappa = 2.9210, gamma = 11231 and the paper's numbers.
+PAPER_CYLINDER = Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+PAPER_SECTION_5 = PAPER_CYLINDER.scene()
+#: The rounded parameters printed at the end of Sect. 4; stick onset of IC1 moves 2 % later.
+PAPER_SECTION_5_ROUNDED = Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0.5)
+#: Figs. 2 and 3 use kappa = 29.1, ten times that of Sects. 4-5; alpha is varied there
+#: (1, 1.5, 21.5, 81.5 in Figs. 2 and 3b, 11 in Fig. 3a).
+PAPER_FIGURES_2_3 = Scene(alpha=11.0, kappa=29.1, mu=0.2, gamma=1.1e4, j=0.5)
+PRESETS = {
+    "paper-section-5": PAPER_SECTION_5,
+    "paper-section-5-rounded": PAPER_SECTION_5_ROUNDED,
+    "paper-figures-2-3": PAPER_FIGURES_2_3,
+}
+#: Initial conditions (V, omega) of Sect. 5.1.
+PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
