@@ -26,7 +26,7 @@ from .errors import ParameterError
 #: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
 HIGHEST_ALPHA = 1e12
 #: most modes of a series, and longest over shortest time
-MOST_MODES, WIDEST = 64, 1e20
+MOST_MODES, WIDEST = 64, 1e32
 #: halvings of ln(distance) until it is good to rounding, and steps of Newton's iteration behind them
 _HALVINGS, _POLISH = 64, 3
 #: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved
@@ -60,7 +60,7 @@ class Prony:
     ------
     ParameterError
         Negative strengths, times that are not positive, more than 64 modes, times that span more than
-        20 decades, or 1 + sum E above 1e12.
+        32 decades, or 1 + sum E above 1e12.
 
     Notes
     -----
