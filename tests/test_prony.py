@@ -86,7 +86,7 @@ def test_refusals():
         (lambda: vr.Prony([1.0, 2.0], [1.0]), ("tau", "shape")),
         (lambda: vr.Prony([np.nan], [1.0]), ("E",)),
         (lambda: vr.Prony([1e13], [1.0]), ("E", "1e+12")),
-        (lambda: vr.Prony([1.0, 1.0], [1.0, 1e-35]), ("tau", "1e+32")),
+        (lambda: vr.Prony([1.0, 1.0], [1.0, 1e-33]), ("tau", "1e+32")),
         (lambda: vr.Prony(np.ones(65), np.geomspace(1e-6, 1.0, 65)), ("tau", "64")),
         (lambda: vr.Prony.creep([0.6, 0.4], [1.0, 0.1]), ("J", "below 1")),
         (lambda: vr.Prony.creep([0.5], [1.0], alpha=3.0), ("alpha", "2.0")),
@@ -105,14 +105,14 @@ def scene(material: vr.Prony, **changes: float) -> vr.Scene:
     return vr.Scene(material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes))
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_functions_against_the_conditions_as_they_stand(seed):
+@pytest.mark.parametrize(("seed", "decades"), [*((n, (0.1, 14.0)) for n in range(6)), (15, (31.0, 32.0))])
+def test_functions_against_the_conditions_as_they_stand(seed, decades):
     """Exact kernels and their table, from the instantaneous to the long-time limit."""
     draw = np.random.default_rng(seed)
-    p = random_series(int(draw.integers(1, 9)), draw.uniform(0.1, 14.0), draw.uniform(-2.0, 4.0), seed)
+    p = random_series(int(draw.integers(1, 9)), draw.uniform(*decades), draw.uniform(-2.0, 4.0), seed)
     known, table = series(p), record(p)
     room = kernels.room(known)
-    with mp.workdps(DIGITS):
+    with mp.workdps(DIGITS + int(decades[1])):
         exact_rates = raw.rates(mp, p.E.tolist(), p.tau.tolist())
         for z in np.exp(draw.uniform(np.log(table.tau) - 30.0, np.log(p.T[0]) + 28.0, 12)):
             exact = raw.functions(mp, exact_rates, z)

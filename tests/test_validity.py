@@ -86,6 +86,18 @@ def test_bad_input():
     refused(lambda: SCENE.replace(alpha=[1.0, 2.0]).validity([1.0, 2.0, 3.0]), "broadcast")
 
 
+def test_whether_steady_rolling_may_drive_a_motion():
+    """The measured rule at alpha = 11, j = 1/2: gamma 0.7 is within 1 % of V0, 7 within 10 %, 30 is another motion."""
+    nu = [vr.Scene(11.0, 29.1, 0.2, gamma).validity(0.1).steady for gamma in (0.7, 7.0, 30.1)]
+    assert nu[0].value == pytest.approx(0.7 * 10.0 / 121.0 / 1.5)
+    assert [each.holds for each in nu] == [True, True, False]
+    assert "not that of this cylinder" in nu[2].sentence
+    series = vr.Prony.creep([10.0 / 11.0], [1.0], alpha=11.0)
+    same = vr.Scene(material=series, kappa=29.1, mu=0.2, gamma=7.0).validity(0.1).steady
+    assert same.value == pytest.approx(nu[1].value)
+    assert vr.PAPER_SECTION_5.validity(0.1).steady.value == pytest.approx(600.0, rel=0.05)  # the paper's own example
+
+
 # --- pairs ---
 
 RUBBER = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0)
@@ -151,15 +163,3 @@ def test_waves_of_a_pair():
         assert "not known" not in found.sentence
     found = pair(RUBBER, vr.Material.elastic(2e11, 0.3)).validity(1.0).quasistatic
     assert found.sentence.endswith("the density of the base is not known")
-
-
-def test_whether_steady_rolling_may_drive_a_motion():
-    """The measured rule at alpha = 11, j = 1/2: gamma 0.7 is within 1 % of V0, 7 within 10 %, 30 is another motion."""
-    nu = [vr.Scene(11.0, 29.1, 0.2, gamma).validity(0.1).steady for gamma in (0.7, 7.0, 30.1)]
-    assert nu[0].value == pytest.approx(0.7 * 10.0 / 121.0 / 1.5)
-    assert [each.holds for each in nu] == [True, True, False]
-    assert "not that of this cylinder" in nu[2].sentence
-    series = vr.Prony.creep([10.0 / 11.0], [1.0], alpha=11.0)
-    same = vr.Scene(material=series, kappa=29.1, mu=0.2, gamma=7.0).validity(0.1).steady
-    assert same.value == pytest.approx(nu[1].value)
-    assert vr.PAPER_SECTION_5.validity(0.1).steady.value == pytest.approx(600.0, rel=0.05)  # the paper's own example

@@ -12,7 +12,7 @@ from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError
 from .prony import HIGHEST_ALPHA, Prony
-from .validity import Assumption, Validity, contact_reach, coupling, inertia, judge, unsteadiness
+from .validity import Assumption, Validity, contact_reach, coupling, inertia, judge, steadiness, unsteadiness
 
 
 def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -127,7 +127,7 @@ class Scene:
         broadcast_shape(alpha=np.asarray(self.alpha), kappa=np.asarray(self.kappa), V=speed)
         material, unit = self.in_own_time()
         nu = np.asarray(self.gamma * self._unsteadiness() / (1.0 + np.asarray(self.j)))
-        return judge(*contact_reach(material, self.kappa, speed * unit), slow, nu, bodies, plane)
+        return judge(*contact_reach(material, self.kappa, speed * unit), slow, steadiness(nu), bodies, plane)
 
     def _unsteadiness(self) -> Any:
         """The most that |N| may be, over the unit of time squared."""

@@ -15,13 +15,13 @@ from .prony import Prony
 REACH_LIMIT = 0.2
 #: the paper's ref. [31], Table 1: below this share of the wave speeds the load is within 10 % of the static one
 WAVE_LIMIT = 0.2
-#: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
-DUNDURS_LIMIT = 0.05
 #: nu up to which a motion is within 10 % of its first speed, and beyond which it is another motion altogether: measured
 #: with a transient solver at alpha 3 and 11, kappa V from 0.29 to 4.4 (gamma 7 and 30 at alpha 11)
 STEADY_LIMIT, NOT_THIS_MOTION = 0.4, 1.6
 #: the highest N over the sum of J_j T_j^2
 _HIGHEST_N = 0.084
+#: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
+DUNDURS_LIMIT = 0.05
 
 
 class Assumption(NamedTuple):
@@ -83,6 +83,25 @@ def contact_reach(material: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[An
     return values[..., 0], values[..., 1]
 
 
+def unsteadiness(relaxation: Any, creep: Any) -> Any:
+    """The largest |N| of a material with these sums of E_i tau_i^2 and J_j T_j^2, found on 35 series, not proven."""
+    return np.maximum(relaxation, _HIGHEST_N * np.asarray(creep))
+
+
+def steadiness(nu: Any) -> Assumption:
+    """Whether motions may be driven by the law of steady rolling."""
+    most = float(np.max(nu, initial=0.0))
+    return Assumption(
+        nu <= STEADY_LIMIT, nu,
+        f"nu = {most:.2g}: a motion by the law of steady rolling "
+        + (
+            f"is off by up to some {30.0 * most:.2g} % of the first speed"
+            if most <= NOT_THIS_MOTION
+            else "is not that of this cylinder, which rocks in its own imprint; contact states are not concerned"
+        ),
+    )  # fmt: skip
+
+
 def inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
     """Speed over that of shear waves, None where it is not known; ``unknown``: bodies without a density."""
     if wave_ratio is None:
@@ -115,26 +134,7 @@ def coupling(long: float | None = None, instant: float | None = None, *, like: b
     )  # fmt: skip
 
 
-def unsteadiness(relaxation: Any, creep: Any) -> Any:
-    """The largest |N| of a material with these sums of E_i tau_i^2 and J_j T_j^2, found on 35 series, not proven."""
-    return np.maximum(relaxation, _HIGHEST_N * np.asarray(creep))
-
-
-def _motion(nu: Any) -> Assumption:
-    """Whether motions may be driven by the law of steady rolling."""
-    most = float(np.max(nu, initial=0.0))
-    return Assumption(
-        nu <= STEADY_LIMIT, nu,
-        f"nu = {most:.2g}: a motion by the law of steady rolling "
-        + (
-            f"is off by up to some {30.0 * most:.2g} % of the first speed"
-            if most <= NOT_THIS_MOTION
-            else "is not that of this cylinder, which rocks in its own imprint; contact states are not concerned"
-        ),
-    )  # fmt: skip
-
-
-def judge(reach: Any, epsilon: Any, slow: Assumption, nu: Any, bodies: Assumption, plane: str) -> Validity:
+def judge(reach: Any, epsilon: Any, slow: Assumption, steady: Assumption, bodies: Assumption, plane: str) -> Validity:
     """Numbers put into words."""
     far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
     small = Assumption(
@@ -147,4 +147,4 @@ def judge(reach: Any, epsilon: Any, slow: Assumption, nu: Any, bodies: Assumptio
         f"epsilon = {ahead:.2g}: the contact "
         + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
     )  # fmt: skip
-    return Validity(small, under, slow, _motion(nu), bodies, Assumption(None, None, plane))
+    return Validity(small, under, slow, steady, bodies, Assumption(None, None, plane))
