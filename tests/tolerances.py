@@ -339,3 +339,28 @@ SERIES_MAP = 3e-9
 BODIES = 1e-12
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
+
+# --- DMA to Prony (test_dma.py) ---
+#: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
+DMA_EXACT = 1e-6
+#: Ten modes over eight decades, 0.5 % noise: rms misfit of E' and E'' each, as asked for by default.
+DMA_MISFIT = 0.01
+#: alpha and E of that rubber from 60 points; measured 0.33 % (six seeds).
+DMA_ALPHA = 0.01
+#: M over nine decades of speed at the same load; measured 0.52 %, between the fit and wider grids 1.1 %.
+DMA_MOMENT = 0.02
+#: A window of two decades, 14 points, 0.5 % noise: misfits of G' and G'' of a trial on a measured EPDM rubber.
+DMA_WINDOW = (0.009, 0.006)
+#: M inside that window at the same load, though neither alpha nor E is seen; measured 7.6 % (six seeds, four of
+#: them below 4.1 %).
+DMA_WINDOW_MOMENT = 0.1
+#: Two fits of data that differ by a factor in frequency or modulus: paths of the iterations that round otherwise.
+DMA_SCALED = 1e-6
+#: Median of the local Kramers-Kronig ratio of broad spectra, noise 0.5 %; measured 0.021.
+DMA_KRAMERS_KRONIG = 0.05
+#: that of the curve shipped from pyvisco, "about 1.65"; measured 1.68.
+DMA_PYVISCO = (1.55, 1.75)
+#: log10 a_T of WLF-made data: 21 points in three decades without noise (the interpolant; measured 1.3e-4), and 11
+#: points with 0.5 % noise (that of the overlaps, added up over four neighbours; measured 6e-3).
+DMA_SHIFT = 5e-4
+DMA_SHIFT_NOISY = 0.02

@@ -1,0 +1,116 @@
+"""Columns of frequency, storage and loss modulus from a text file: :func:`read_dma`."""
+
+from __future__ import annotations
+
+import math
+import re
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import TableError
+
+_FREQUENCY = {"hz": 2.0 * math.pi, "khz": 2e3 * math.pi, "rad/s": 1.0, "1/s": 1.0, "s^-1": 1.0}
+_MODULUS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
+#: names of the three columns, in lower case without blanks and underscores, with what may follow them
+_NAMES = (
+    r"(f|freq\w*|omega|ω|w)$|(frequency|angularfrequency)",
+    r"[eg](stor|sto|')?$|.*storage",
+    r"[eg](loss|''|\"|’’)$|.*loss",
+)
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+
+
+def read_dma(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Read a master curve: columns of frequency, storage modulus, loss modulus.
+
+    Columns are parted by blanks, tabs, commas or semicolons.  Lines before the numbers are headings, as are those
+    that begin with ``#``: they may name the columns (``f``, ``omega``, ``E_stor``, ``E'``, ``G''``, ``loss modulus``
+    ...; by default the first three in this order) and give units, behind a name or in a row of their own (Hz or
+    rad/s; Pa, kPa, MPa or GPa).  Without units, ``f`` is in Hz, other frequencies are in rad/s, and moduli in Pa.
+    The CSV of pyvisco is such a file.
+
+    Parameters
+    ----------
+    path : a text file in UTF-8.
+
+    Returns
+    -------
+    omega, storage, loss
+        rad/s, Pa, Pa; in the order of the file.
+
+    Raises
+    ------
+    TableError
+        If the file cannot be read, a row has no numbers where it must, columns are missing, or a unit is unknown.
+    """
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise TableError(path, f"cannot be read ({error})") from error
+    headings, rows = _parted(path, lines)
+    columns, units = _columns(path, headings, len(rows[0]))
+    values = np.array([[row[n] for n in columns] for row in rows]).T
+    names = [" ".join(line[n] for line in headings if n < len(line)) for n in columns]
+    names = [name + "".join(f" [{line[n]}]" for line in units) for name, n in zip(names, columns, strict=True)]
+    frequency = _unit(path, names[0], _FREQUENCY, "hz" if re.match(r"f(req|$|\W)", names[0].lower()) else "rad/s")
+    moduli = [_unit(path, name, _MODULUS, "pa") for name in names[1:]]
+    return values[0] * frequency, values[1] * moduli[0], values[2] * moduli[1]
+
+
+def _parted(path: str | PathLike[str], lines: list[str]) -> tuple[list[list[str]], list[list[float]]]:
+    """Cells of the headings, and the rows of numbers."""
+    headings: list[list[str]] = []
+    rows: list[list[float]] = []
+    for number, line in enumerate(lines, 1):
+        text = line.strip()
+        cells = _cells(text.lstrip("#").strip())
+        if not cells or (text.startswith("#") and rows):
+            continue
+        if not text.startswith("#") and all(_NUMBER.match(cell) for cell in cells):
+            rows.append([float(cell) for cell in cells])
+            if len(cells) != len(rows[0]):
+                raise TableError(path, f"line {number} has {len(cells)} columns, those before it {len(rows[0])}")
+        elif rows:
+            raise TableError(path, f"line {number} is no row of numbers: {text[:60]!r}")
+        else:
+            headings.append(cells)
+    if not rows:
+        raise TableError(path, "has no row of numbers")
+    return headings, rows
+
+
+def _cells(text: str) -> list[str]:
+    if re.search(r"[,;]", text):
+        return [cell.strip() for cell in re.split(r"[,;]", text)]
+    # a unit in brackets belongs to the name before it, and so does the word behind storage, loss or angular
+    text = re.sub(r"\s+(?=[\[(])", "", text)
+    text = re.sub(r"(?i)\b(storage|loss|angular)\s+(?=(modulus|frequency))", r"\1", text)
+    return text.split()
+
+
+def _columns(path: str | PathLike[str], headings: list[list[str]], width: int) -> tuple[list[int], list[list[str]]]:
+    """Which columns are frequency, storage and loss modulus, and the rows below their names, which give units."""
+    if width < len(_NAMES):
+        raise TableError(path, f"has {width} columns: must be frequency, storage and loss modulus")
+    for row, line in enumerate(headings):
+        bare = [re.sub(r"[\s_*]|[\[(].*", "", cell.lower()) for cell in line[:width]]
+        found = [[n for n, cell in enumerate(bare) if re.match(pattern, cell)] for pattern in _NAMES]
+        if all(len(hits) == 1 for hits in found) and len({hits[0] for hits in found}) == len(_NAMES):
+            below = headings.pop(row + 1) if len(headings) > row + 1 and len(headings[row + 1]) == width else None
+            return [hits[0] for hits in found], [] if below is None else [[c.strip("[()] ") for c in below]]
+    if width > len(_NAMES):
+        raise TableError(path, f"has {width} columns, and no heading that names frequency, storage and loss modulus")
+    return [0, 1, 2], []
+
+
+def _unit(path: str | PathLike[str], name: str, units: dict[str, float], default: str) -> float:
+    """The factor of the unit that a heading gives."""
+    words = re.findall(r"[A-Za-zµ]*(?:rad/s|1/s|s\^-1|hz|pa)\b", name, re.IGNORECASE)
+    bracketed = re.findall(r"[\[(]([^\])]+)[\])]", name)
+    found = {word.strip().lower() for word in [*words, *bracketed]} or {default}
+    if len(found) > 1 or not found <= units.keys():
+        raise TableError(path, f"unit {', '.join(sorted(found))!r} of a column: must be one of {', '.join(units)}")
+    return units[found.pop()]

@@ -1,0 +1,115 @@
+"""Least squares of a master curve by a discrete spectrum: strengths on given times, and times that move.
+
+The residuals are the relative errors of E' and of E'', all points alike.  On given times the strengths are those of
+non-negative least squares (as in M. Baumgaertel and H. H. Winter, Rheologica Acta 28, 511-519, 1989,
+doi:10.1007/BF01332922, few modes do once their times are free to move).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .curve import Curve
+
+#: modes whose part of the curve is smaller, relative to it, are left out
+_NOTHING = 1e-12
+#: the long-time modulus is at least this share of the lowest storage modulus
+FLOOR = 0.01
+
+
+class Spectrum(NamedTuple):
+    """Long-time modulus, strengths and times of the modes, times descending; units of the curve."""
+
+    E: float
+    strength: NDArray[np.float64]
+    tau: NDArray[np.float64]
+
+    def modulus(self, omega: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Storage and loss modulus."""
+        storage, loss = responses(omega, self.tau)
+        return self.E + storage @ self.strength, loss @ self.strength
+
+
+def responses(omega: NDArray, tau: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Storage and loss modulus of modes of strength 1, a column each: z^2/(1 + z^2), z/(1 + z^2), z = omega tau."""
+    z = omega[:, None] * tau
+    loss = 1.0 / (z + 1.0 / z)
+    return z * loss, loss
+
+
+def misfits(curve: Curve, spectrum: Spectrum) -> tuple[float, float]:
+    """Root mean square of the relative error of E' and of E''."""
+    storage, loss = spectrum.modulus(curve.omega)
+    return _rms(storage / curve.storage - 1.0), _rms(loss / curve.loss - 1.0)
+
+
+def on_times(curve: Curve, tau: NDArray) -> Spectrum:
+    """The least squares with non-negative strengths on given times; modes without strength are left out."""
+    from scipy.optimize import nnls
+
+    storage, loss = responses(curve.omega, tau)
+    constant = np.concatenate([1.0 / curve.storage, np.zeros_like(curve.loss)])
+    modes = np.concatenate([storage / curve.storage[:, None], loss / curve.loss[:, None]])
+    columns = np.column_stack([constant, modes])
+    floor = _floor(curve)
+    size = np.sqrt((columns * columns).sum(axis=0))
+    found, _ = nnls(columns / size, 1.0 - floor * constant, maxiter=100 * size.size)
+    order = np.argsort(-tau, kind="stable")
+    order = order[found[1:][order] > _NOTHING * np.sqrt(tau.size)]
+    found = found / size
+    return Spectrum(floor + float(found[0]), found[1:][order], tau[order])
+
+
+def has_plateau(curve: Curve, spectrum: Spectrum) -> bool:
+    """Whether the curve asks for a long-time modulus by itself."""
+    return spectrum.E > 1.0001 * _floor(curve)
+
+
+def polished(curve: Curve, spectrum: Spectrum, ends: tuple[float, float], calls: int) -> Spectrum:
+    """The spectrum with its times moved too, between ``ends``, in at most so many calls of the residuals."""
+    from scipy.optimize import least_squares
+
+    count = spectrum.tau.size
+    if not count:
+        return spectrum
+    start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
+    low, high = np.full(start.size, -np.inf), np.full(start.size, np.inf)
+    low[0], low[1 + count :], high[1 + count :] = np.log(_floor(curve)), np.log(ends[0]), np.log(ends[1])
+    low[1 : 1 + count], high[1 : 1 + count] = start[1 : 1 + count] - _RANGE, start[1 : 1 + count] + _RANGE
+    done = least_squares(
+        _residuals, np.clip(start, low, high), _slopes, bounds=(low, high), args=(curve,), x_scale="jac",
+        ftol=_STILL, xtol=_STILL, gtol=_STILL, max_nfev=calls,
+    )  # fmt: skip
+    return on_times(curve, np.exp(done.x[1 + count :]))
+
+
+#: a strength may change by a factor of exp(_RANGE); and where the iteration stops
+_RANGE, _STILL = 20.0, 1e-14
+
+
+def _residuals(logs: NDArray, curve: Curve) -> NDArray[np.float64]:
+    values, count = np.exp(logs), logs.size // 2
+    storage, loss = Spectrum(values[0], values[1 : 1 + count], values[1 + count :]).modulus(curve.omega)
+    return np.concatenate([storage / curve.storage - 1.0, loss / curve.loss - 1.0])
+
+
+def _slopes(logs: NDArray, curve: Curve) -> NDArray[np.float64]:
+    """Of the residuals over the logarithms of long-time modulus, strengths and times."""
+    values, count = np.exp(logs), logs.size // 2
+    strength = values[1 : 1 + count]
+    storage, loss = responses(curve.omega, values[1 + count :])
+    constant = np.full((curve.omega.size, 1), values[0])
+    upper = np.hstack([constant, storage * strength, 2.0 * loss * loss * strength]) / curve.storage[:, None]
+    lower = np.hstack([0.0 * constant, loss * strength, loss * (1.0 - 2.0 * storage) * strength]) / curve.loss[:, None]
+    return np.vstack([upper, lower])
+
+
+def _floor(curve: Curve) -> float:
+    return FLOOR * float(curve.storage.min())
+
+
+def _rms(values: NDArray) -> float:
+    return float(np.sqrt(np.mean(values * values)))

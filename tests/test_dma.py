@@ -1,0 +1,338 @@
+"""From storage and loss modulus to a Prony series: what is recovered, what is said, what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from places import DATA
+from processes import printed
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.dma.spectrum import FLOOR
+
+PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
+#: a rubber of ten modes over eight decades, times in s
+E, TAU = 1e6, np.logspace(2, -6, 10)
+STRENGTHS = 3e5 * np.array([0.3, 0.5, 0.4, 0.6, 0.9, 1.5, 3.0, 8.0, 20.0, 40.0])
+RUBBER = vr.Prony(STRENGTHS / E, TAU)
+ALPHA = 1.0 + STRENGTHS.sum() / E
+
+
+def curve(omega, strengths=STRENGTHS, tau=TAU, E=E, noise=0.0, seed=1):
+    """omega, E', E'' of a series, with relative noise."""
+    rng, z = np.random.default_rng(seed), np.multiply.outer(omega, tau)
+    storage, loss = E + (z**2 / (1.0 + z**2)) @ np.asarray(strengths), (z / (1.0 + z**2)) @ np.asarray(strengths)
+    errors = 1.0 + noise * rng.standard_normal((2, omega.size))
+    return omega, storage * errors[0], loss * errors[1]
+
+
+def moment(prony, kappa, V):
+    return vr.contact(vr.Scene(material=prony, kappa=kappa, mu=1.0), V, delta=0.0, fields="M").M
+
+
+WHOLE = np.logspace(-2.5, 6.5, 60)
+
+
+@pytest.fixture(scope="module")
+def whole():
+    return vr.fit_prony(*curve(WHOLE, noise=0.005))
+
+
+# --- what is recovered ---
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_rubber_of_ten_modes_with_noise(seed):
+    fit = vr.fit_prony(*curve(WHOLE, noise=0.005, seed=seed))
+    assert max(fit.misfit) <= tol.DMA_MISFIT
+    assert fit.reached
+    assert fit.plateau
+    assert fit.prony.E.size <= TAU.size
+    assert fit.alpha == pytest.approx(ALPHA, rel=tol.DMA_ALPHA)
+    assert pytest.approx(E, rel=tol.DMA_ALPHA) == fit.E
+    V = np.logspace(-3, 6, 40)  # m/s on R = 1 m, kappa = 1 at the true modulus
+    true, found = moment(RUBBER, 1.0, V), moment(fit.prony, np.sqrt(fit.E / E), V * fit.T_ref)
+    assert found == pytest.approx(true, rel=tol.DMA_MOMENT)
+
+
+def test_two_modes_are_found_exactly():
+    data = curve(np.logspace(-2, 5, 50), [2.0, 6.0], [1.0, 1e-3], 1.0)
+    for modes in (None, 2, 5):
+        fit = vr.fit_prony(*data, modes)
+        assert fit.prony.tau == pytest.approx([1.0, 1e-3], rel=tol.DMA_EXACT)
+        assert fit.prony.E == pytest.approx([2.0, 6.0], rel=tol.DMA_EXACT)
+        assert (fit.E, fit.T_ref) == pytest.approx((1.0, 1.0), rel=tol.DMA_EXACT)
+        assert not fit.outside.any()
+    assert fit.alpha == pytest.approx(9.0, rel=tol.DMA_EXACT)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_window_of_two_decades(seed):
+    """As good as a trial on 14 measured points of an EPDM rubber; M inside the window needs neither E nor alpha."""
+    omega, tau = np.logspace(0, 2, 14), np.logspace(4, -4, 10)
+    fit = vr.fit_prony(*curve(omega, tau=tau, noise=0.005, seed=seed), misfit=0.006)
+    assert fit.misfit.storage <= tol.DMA_WINDOW[0]
+    assert fit.misfit.loss <= tol.DMA_WINDOW[1]
+    assert fit.prony.E.size <= 6
+    first = fit.wider[0]
+    speeds = first.V / fit.T_ref
+    true = moment(vr.Prony(STRENGTHS / E, tau), np.sqrt(E / fit.E), speeds)
+    assert first.M_fit == pytest.approx(true, rel=tol.DMA_WINDOW_MOMENT)
+
+
+def test_number_of_modes_is_an_upper_bound(whole):
+    data = whole.omega, whole.storage, whole.loss
+    errors = []
+    for modes in (1, 3, 6, 12):
+        fit = vr.fit_prony(*data, modes)
+        assert fit.prony.E.size <= modes
+        assert fit.prony.E.size == modes or modes == 12
+        errors.append(np.hypot(*fit.misfit))
+    assert errors == sorted(errors, reverse=True)
+
+
+def test_scaling_of_frequency_and_modulus(whole):
+    other = vr.fit_prony(1e3 * whole.omega, 1e-6 * whole.storage, 1e-6 * whole.loss)
+    assert other.prony.E == pytest.approx(whole.prony.E, rel=tol.DMA_SCALED)
+    assert other.prony.tau == pytest.approx(whole.prony.tau, rel=tol.DMA_SCALED)
+    assert (1e6 * other.E, 1e3 * other.T_ref) == pytest.approx((whole.E, whole.T_ref), rel=tol.DMA_SCALED)
+
+
+def test_order_does_not_matter_and_points_may_repeat(whole):
+    mixed = np.random.default_rng(0).permutation(whole.omega.size)
+    again = vr.fit_prony(whole.omega[mixed], whole.storage[mixed], whole.loss[mixed])
+    assert again.prony == whole.prony
+    twice = vr.fit_prony(*(np.repeat(column, 2) for column in (whole.omega, whole.storage, whole.loss)))
+    assert twice.prony.E == pytest.approx(whole.prony.E, rel=tol.DMA_SCALED)
+    same = vr.fit_prony([1.0, 1.0, 1.0], [2.0, 2.1, 2.0], [0.5, 0.5, 0.52])
+    assert np.isnan(same.kramers_kronig.median)
+    assert "too few different frequencies" in str(same)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(3, 40), st.floats(0.0, 0.3), st.floats(0.5, 9.0))
+def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, decades):
+    omega, storage, loss = curve(np.logspace(-2, -2 + decades, points), noise=noise, seed=seed)
+    fit = vr.fit_prony(omega, np.abs(storage), np.abs(loss))
+    assert (fit.prony.E > 0.0).all()
+    assert FLOOR * fit.storage.min() * 0.999 <= fit.E
+    assert np.isfinite(fit.misfit).all()
+    beyond = np.concatenate(
+        [fit.prony.tau * fit.T_ref * fit.omega[0], 1.0 / (fit.prony.tau * fit.T_ref * fit.omega[-1])]
+    )
+    assert (beyond <= 10.0 * (1.0 + tol.DMA_EXACT)).all()
+
+
+def test_modulus_and_misfit_agree(whole):
+    storage, loss = whole.modulus(whole.omega)
+    assert np.sqrt(np.mean((storage / whole.storage - 1.0) ** 2)) == pytest.approx(whole.misfit.storage)
+    assert np.sqrt(np.mean((loss / whole.loss - 1.0) ** 2)) == pytest.approx(whole.misfit.loss)
+    assert np.ndim(whole.modulus(1.0)[0]) == 0
+
+
+# --- what is said ---
+
+
+def test_storage_and_loss_go_together_in_a_broad_spectrum():
+    tau = np.logspace(6, -6, 37)
+    for slope in (0.05, 0.15):
+        fit = vr.fit_prony(*curve(np.logspace(-4, 4, 80), 1e6 * tau**-slope, tau, 1e5, noise=0.005))
+        assert fit.kramers_kronig.median == pytest.approx(1.0, abs=tol.DMA_KRAMERS_KRONIG)
+        assert "do not go together" not in str(fit)
+    assert fit.kramers_kronig.ratio.shape == fit.kramers_kronig.omega.shape == (80,)
+
+
+def test_a_grid_that_is_wider_changes_what_the_data_do_not_hold(whole):
+    assert [other.decades for other in whole.wider] == [1, 2]
+    for other in whole.wider:
+        assert other.M_change <= tol.DMA_MOMENT
+        assert np.hypot(*other.misfit) <= np.hypot(*whole.misfit)
+    window = vr.fit_prony(*curve(np.logspace(0, 2, 14), tau=np.logspace(4, -4, 10), noise=0.005))
+    assert abs(np.log(window.alpha / ALPHA)) > 0.1  # not seen ...
+    assert max(abs(np.log(other.alpha / window.alpha)) for other in window.wider) > 0.1  # ... and said
+
+
+def test_report(whole):
+    text = str(whole)
+    for words in ("Prony series of", "T_ref", "misfit", "1.00% was asked for", "Kramers-Kronig", "outside", "wider"):
+        assert words in text
+    assert "not reached" not in text
+    few = vr.fit_prony(whole.omega, whole.storage, whole.loss, 2)
+    assert not few.reached
+    assert "and not reached" in str(few)
+    assert "outside the data" in str(vr.fit_prony(*curve(np.logspace(0, 2, 14), tau=np.logspace(4, -4, 10))))
+
+
+def test_material_by_the_fit(whole):
+    if not hasattr(vr, "Material"):
+        pytest.skip("there is no Material yet")
+    rubber = whole.material(0.5, name="rubber", density=1100.0)
+    assert (rubber.E, rubber.T_ref, rubber.prony) == (whole.E, whole.T_ref, whole.prony)
+
+
+# --- several temperatures ---
+
+TEMPERATURES = np.array([-40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 40.0])
+
+
+def wlf(T):
+    return 10.0 ** (-8.86 * T / (101.6 + T))
+
+
+def isotherms(points, noise):
+    omega = 2.0 * np.pi * np.geomspace(0.1, 100.0, points)
+    made = [curve(omega * wlf(T), noise=noise, seed=n)[1:] for n, T in enumerate(TEMPERATURES)]
+    return [omega] * TEMPERATURES.size, [one[0] for one in made], [one[1] for one in made]
+
+
+@pytest.mark.parametrize(("points", "noise", "allowed"), [(21, 0.0, tol.DMA_SHIFT), (11, 0.005, tol.DMA_SHIFT_NOISY)])
+def test_shift_factors_are_found(points, noise, allowed):
+    curves = isotherms(points, noise)
+    fit = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0)
+    assert np.log10(fit.shifts.a_T) == pytest.approx(np.log10(wlf(TEMPERATURES)), abs=allowed)
+    assert max(fit.misfit) <= tol.DMA_MISFIT
+    assert fit.alpha == pytest.approx(ALPHA, rel=tol.DMA_ALPHA)
+    assert "log10 a_T" in str(fit)
+    flat = [np.concatenate(column) for column in curves]
+    again = vr.fit_prony(*flat, temperature=np.repeat(TEMPERATURES, points), reference=0.0)
+    assert again.prony == fit.prony
+
+
+def test_reference_between_curves_and_shifts_that_are_given():
+    curves = isotherms(21, 0.0)
+    fit = vr.fit_prony(*curves, temperature=TEMPERATURES)
+    assert fit.shifts.reference == 0.0
+    assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
+    for shift in (wlf, wlf(TEMPERATURES)):
+        given = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
+        assert given.shifts.a_T == pytest.approx(wlf(TEMPERATURES))
+        assert np.isnan(given.shifts.mismatch).all()
+        assert given.alpha == pytest.approx(ALPHA, rel=tol.DMA_ALPHA)
+        assert "neighbouring" not in str(given)
+
+
+# --- what is refused ---
+
+GOOD = curve(np.logspace(-2, 4, 20))
+
+
+@pytest.mark.parametrize("column", range(3))
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf, "E"])
+def test_values_that_are_no_modulus(column, bad):
+    data = [list(values) for values in GOOD]
+    data[column][3] = bad
+    refused(lambda: vr.fit_prony(*data), ("omega", "storage", "loss")[column])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (([1.0, 2.0], [1.0, 2.0], [1.0, 2.0]), ("omega", "at least 3 points")),
+        ((*GOOD[:2], GOOD[2][:-1]), ("loss", "shape")),
+        ((1.0, 1.0, 1.0), ("omega", "column")),
+        (([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]), ("omega", "within a factor")),
+        ((GOOD[0], GOOD[0] ** 2, GOOD[0]), ("storage", "fluid")),
+        ((*GOOD, 0), ("modes = 0", "whole number")),
+        ((*GOOD, 2.5), ("modes = 2.5",)),
+        ((*GOOD, 65), ("modes = 65", "to 64")),
+    ],
+)
+def test_refusals(arguments, words):
+    refused(lambda: vr.fit_prony(*arguments), *words)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "words"),
+    [
+        ({"misfit": 0.0}, ("misfit = 0",)),
+        ({"misfit": np.nan}, ("misfit",)),
+        ({"reference": 20.0}, ("reference", "with temperature only")),
+        ({"shift": wlf}, ("shift", "with temperature only")),
+        ({"temperature": 20.0}, ("temperature", "column")),
+        ({"temperature": np.zeros(19)}, ("omega", "one a temperature")),
+        ({"temperature": np.arange(20.0)}, ("omega", "at least 2 points")),
+        ({"temperature": np.repeat([0.0, 1.0], 10), "reference": 2.0}, ("reference = 2", "within [0, 1]")),
+        ({"temperature": np.repeat([1.0, 0.0], 10), "shift": [1.0]}, ("shift", "factor each of 2")),
+        ({"temperature": np.repeat([1.0, 0.0], 10), "shift": [1.0, -1.0]}, ("shift", "> 0")),
+    ],
+)
+def test_refused_keywords(keywords, words):
+    refused(lambda: vr.fit_prony(*GOOD, **keywords), *words)
+
+
+def test_curves_that_do_not_overlap():
+    omega = np.logspace(-1, 1, 11)
+    apart = [omega, omega], [1.0 + 0.01 * omega, 50.0 + omega], [0.01 * omega, omega]
+    refused(lambda: vr.fit_prony(*apart, temperature=[20.0, 0.0]), "temperature = 0 and 20", "overlap")
+    refused(lambda: vr.fit_prony(*apart, temperature=[20.0]), "temperature", "one a curve")
+
+
+# --- files ---
+
+
+def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ():
+    omega, storage, loss = vr.read_dma(PYVISCO)
+    assert omega.size == 206
+    assert (omega[0], storage[0], loss[0]) == pytest.approx(
+        (2.0 * np.pi * 1e-12, 88.79651575665739e6, 10.502460140936773e6)
+    )
+    assert (omega[-1], storage[-1], loss[-1]) == pytest.approx((2e14 * np.pi, 9580.501294188056e6, 277.6387509050372e6))
+    fit = vr.fit_prony(omega, storage, loss)
+    low, high = tol.DMA_PYVISCO
+    assert low < fit.kramers_kronig.median < high
+    assert not fit.reached
+    text = str(fit)
+    assert f"{fit.kramers_kronig.median:.2f} times what the slope of E' allows" in text
+    assert "do not go together" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "factors"),
+    [
+        ("1 2 3\n4 5 6\n", (1, 1, 1)),
+        ("# a comment\nomega E' E''\n\n1\t2\t3\n4 5 6\n", (1, 1, 1)),
+        ("f, E_stor, E_loss\n1,2,3\n4,5,6\n", (2 * np.pi, 1, 1)),
+        ("f, E_stor, E_loss\nHz, MPa, kPa\n1,2,3\n4,5,6\n", (2 * np.pi, 1e6, 1e3)),
+        ("omega (rad/s); G' [GPa]; G'' [Pa]\n1;2;3\n4;5;6\n", (1, 1e9, 1)),
+        ("# omega (rad/s)   E' (MPa)   E'' (MPa)\n1 2 3\n4 5 6\n", (1, 1e6, 1e6)),
+        ("Angular Frequency (rad/s)\tStorage Modulus (Pa)\tLoss Modulus (Pa)\n1\t2\t3\n4\t5\t6\n", (1, 1, 1)),
+        ("Frequency (Hz), Storage Modulus (MPa), Loss Modulus (MPa)\n1,2,3\n4,5,6", (2 * np.pi, 1e6, 1e6)),
+        ("T, f, E_loss, E_stor\nC, Hz, Pa, MPa\n20,1,3,2\n20,4,6,5\n", (2 * np.pi, 1e6, 1)),
+    ],
+)
+def test_forms_of_a_file(tmp_path, text, factors):
+    (tmp_path / "dma.txt").write_text(text, encoding="utf-8-sig")
+    found = vr.read_dma(tmp_path / "dma.txt")
+    assert np.array(found) == pytest.approx(np.array(factors)[:, None] * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "no row of numbers"),
+        ("f, E_stor, E_loss\n", "no row of numbers"),
+        ("1 2\n3 4\n", "has 2 columns"),
+        ("1 2 3\n4 5\n", "line 2 has 2 columns"),
+        ("1 2 3\nnan 5 6\n", "line 2 is no row"),
+        ("1 2 3 4\n", "no heading that names"),
+        ("f (Hz), E_stor (psi), E_loss (psi)\n1,2,3\n", "unit 'psi'"),
+        ("f, E_stor, E_loss\nHz, psi, psi\n1,2,3\n", "unit 'psi'"),
+        ("f, E_stor, E_loss\nMPa, Pa, Pa\n1,2,3\n", "unit 'mpa'"),
+    ],
+)
+def test_files_that_are_refused(tmp_path, text, words):
+    (tmp_path / "dma.txt").write_text(text, encoding="utf-8")
+    refused(lambda: vr.read_dma(tmp_path / "dma.txt"), "dma.txt", words, error=vr.TableError)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    refused(lambda: vr.read_dma(tmp_path / "none.csv"), "none.csv", "cannot be read", error=vr.TableError)
+
+
+def test_the_import_stays_light():
+    code = "import viscoroll as vr; vr.fit_prony; import sys; print('scipy' in sys.modules, 'numba' in sys.modules)"
+    assert printed(code).split() == ["False", "False"]
