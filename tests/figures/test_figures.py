@@ -12,6 +12,7 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from matplotlib.figure import Figure
+from places import DATA
 from processes import made, printed, stage_refused
 
 import viscoroll as vr
@@ -25,6 +26,7 @@ from viscoroll.figures import (
     figure_6,
     figure_7,
     phase_portrait,
+    rolling_resistance,
     run_distributions,
     save,
 )
@@ -32,7 +34,10 @@ from viscoroll.figures.run_distributions import even_bars
 from viscoroll.runs import open_summaries, read_run, run_ensemble
 
 PNG = b"\x89PNG\r\n\x1a\n"
-NAMES = {"figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble"}
+NAMES = {
+    "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble",
+    "rolling-resistance",
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -140,6 +145,16 @@ def test_figure_6_and_7_at_the_four_times():
         tau, bound = line(panel, r"$|\tau|/E'$")[1], line(panel, r"$\mu p/E'$")[1]
         assert (tau <= bound * (1.0 + tol.FIGURE)).all()
     assert r"$\beta$ = 0.981" in panels[1].get_title()
+
+
+def test_rolling_resistance_shifts_with_temperature():
+    """Twice as slow a rubber has at half the speed what it had; the data stand beside their fit."""
+    fit = vr.fit_prony(*vr.read_dma(DATA / "materials/pyvisco_freq_user_master.csv"), 4)
+    left, right = rolling_resistance(fit, {"warm": 1.0, "cold": 10.0}).axes
+    assert np.array_equal(line(left, "$E'$")[1], fit.storage)
+    (V, warm), (_, cold) = line(right, "warm"), line(right, "cold")
+    decade = int(np.argmin(np.abs(V - 10.0 * V[0])))
+    assert np.allclose(cold[:-decade], warm[decade:], rtol=tol.FIGURE)
 
 
 def test_a_start_that_rolls_and_a_scene_that_never_stops():

@@ -15,6 +15,7 @@ from .deceleration import figure_5, figure_6, figure_7
 from .distribution import ensemble_distribution
 from .law import figure_2, figure_3
 from .maps import atlas_errors
+from .material import rolling_resistance
 from .portrait import phase_portrait
 from .run_distributions import run_distributions
 from .sensitivity import sobol_bars
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FIGURES", "atlas_errors", "ensemble_distribution", "figure_2", "figure_3", "figure_5", "figure_6", "figure_7",
-    "phase_portrait", "run_distributions", "save", "sobol_bars",
+    "phase_portrait", "rolling_resistance", "run_distributions", "save", "sobol_bars",
 ]  # fmt: skip
 
 FIGURES: dict[str, Callable[..., Figure]] = {
@@ -36,4 +37,5 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "phase-portrait": phase_portrait,
     "atlas-errors": atlas_errors,
     "ensemble": ensemble_distribution,
+    "rolling-resistance": rolling_resistance,
 }
