@@ -168,10 +168,10 @@ def test_report(whole):
 
 
 def test_material_by_the_fit(whole):
-    if not hasattr(vr, "Material"):
-        pytest.skip("there is no Material yet")
     rubber = whole.material(0.5, name="rubber", density=1100.0)
     assert (rubber.E, rubber.T_ref, rubber.prony) == (whole.E, whole.T_ref, whole.prony)
+    for found, fitted in zip((rubber.storage(WHOLE), rubber.loss(WHOLE)), whole.modulus(WHOLE), strict=True):
+        assert found == pytest.approx(fitted, rel=tol.DMA_EXACT)
 
 
 # --- several temperatures ---
@@ -207,7 +207,7 @@ def test_reference_between_curves_and_shifts_that_are_given():
     fit = vr.fit_prony(*curves, temperature=TEMPERATURES)
     assert fit.shifts.reference == 0.0
     assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
-    for shift in (wlf, wlf(TEMPERATURES)):
+    for shift in (wlf, wlf(TEMPERATURES), vr.WLF(C1=8.86, C2=101.6, T0=0.0)):
         given = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
         assert given.shifts.a_T == pytest.approx(wlf(TEMPERATURES))
         assert np.isnan(given.shifts.mismatch).all()

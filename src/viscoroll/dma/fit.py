@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import import_module
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +17,9 @@ from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
 from .shift import Shifts, master_curve
 from .spectrum import FLOOR, Spectrum, misfits
+
+if TYPE_CHECKING:
+    from ..material import Material
 
 #: highest over lowest frequency; times reach a decade beyond on either side
 MOST_SPREAD = WIDEST / 100.0
@@ -93,16 +95,22 @@ class Fit:
         curve = Curve(self.omega, self.storage, self.loss)
         return tuple(wider(curve, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2))
 
-    def material(self, nu: float = 0.49, *, name: str = "", density: float | None = None) -> Any:
-        """The fit as a ``Material``; the data must have been in Pa.
+    def material(self, nu: float = 0.49, *, name: str = "", density: float | None = None) -> Material:
+        """The fit as a :class:`viscoroll.Material`; the data must have been in Pa.
 
         Parameters
         ----------
         nu : Poisson's ratio, constant in time.
         name, density : as there; density in kg/m^3.
+
+        Raises
+        ------
+        ParameterError
+            As there.
         """
-        made: Any = import_module("..material", __package__).Material
-        return made(E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density)
+        from ..material import Material
+
+        return Material(E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density)
 
     def __str__(self) -> str:
         from .report import report
