@@ -293,6 +293,11 @@ def test_shares_of_modes_close_in_the_slow_and_the_fast_limit():
     assert half[1] / M[1] == pytest.approx(1.0, abs=tol.BODIES_LIMIT)
 
 
+def test_two_elastic_bodies_take_nothing():
+    stiff = vr.Prony.elastic()
+    assert shares(scene(vr.Bodies(stiff, stiff, 0.3)), np.array([0.1])) == (0.0, 0.0, 0.0)
+
+
 def test_bodies_refused():
     p = vr.Prony([2.0], [1.0])
     for call, words in (

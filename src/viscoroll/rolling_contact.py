@@ -80,13 +80,14 @@ def contact(
 
     Parameters
     ----------
-    scene : alpha, kappa and mu are used.
+    scene : alpha or material, kappa and mu are used.
     V : velocity of the axis, any sign.
     delta, omega : exactly one: creep ratio (omega - V)/V, or angular velocity; any sign.
         At V = 0 a given ``delta`` means the limit V -> 0+.
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
-        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV``); only these are computed.
-        Default: all nine.
+        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV``), and ``M_half_space M_cylinder``, the
+        parts of M in either body; only these are computed.  Default: the first nine, of bodies that
+        differ the two parts too.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
@@ -160,12 +161,13 @@ def contact(
 def _moments_of_bodies(scene: Scene, rows: dict[str, NDArray]) -> dict[str, NDArray]:
     """What M takes of the half-space and of the cylinder, from M and zeta in the material's own time."""
     M, zeta = rows["M"], rows["zeta"]
-    if scene.like_bodies:
+    material, _ = scene.in_own_time()
+    if scene.like_bodies or not isinstance(material, Prony):  # two elastic bodies: M = 0
         return {"M_half_space": 0.5 * M, "M_cylinder": 0.5 * M}
     from .kernels.law.series import weighted_loop
 
     assert isinstance(scene.material, Bodies)
-    modes, weights = series(scene.in_own_time()[0]), scene.material.half_space_weights
+    modes, weights = series(material), scene.material.half_space_weights
     found = np.empty((2, M.size))
 
     def work(start: int, stop: int) -> None:
