@@ -79,8 +79,7 @@ def _series_table(prony: Prony) -> Any:
     fill(series(prony), first, stop, table)
     weights = modes.J * modes.b
     logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
-    squares = (modes.E / modes.a**2).sum() + (modes.J / modes.b**2).sum()
-    ends = Ends(True, float(weights.sum()), float((weights * logs).sum()), float(squares))
+    ends = Ends(True, float(weights.sum()), float((weights * logs).sum()), sum(prony.second_moments))
     return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), table, ends)
 
 

@@ -158,10 +158,14 @@ class Prony:
         return math.fsum(self.E * self.tau) if self._relaxation is not None else math.fsum(self.J * self.T)
 
     @property
+    def second_moments(self) -> tuple[float, float]:
+        """(sum E_i tau_i^2, sum J_j T_j^2) over T_ref^2."""
+        return math.fsum(self.E * self.tau**2), math.fsum(self.J * self.T**2)
+
+    @property
     def slow_time(self) -> float:
         """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean over T_ref: kappa V beside its inverse tells slow from fast."""
-        E, tau, J, T = self.E, self.tau, self.J, self.T
-        return math.fsum(E * tau * tau + J * T * T) / self.T_mean if E.size else 1.0
+        return sum(self.second_moments) / self.T_mean if self.E.size else 1.0
 
     def slower(self, factor: float) -> Prony:
         """All times longer by a factor, as a colder rubber has them."""

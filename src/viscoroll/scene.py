@@ -135,7 +135,7 @@ class Scene:
             alpha = np.asarray(self.alpha)
             return unsteadiness((alpha - 1.0) / alpha**2, (alpha - 1.0) / alpha)
         series = self.material.total if isinstance(self.material, Bodies) else self.material
-        return unsteadiness((series.E * series.tau**2).sum(), (series.J * series.T**2).sum())
+        return unsteadiness(*series.second_moments)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
