@@ -83,26 +83,33 @@ def length_until(event, node, panel, case):
 
 
 @kernel
-def cut(event, length, panel, slopes, frame, case):
+def cut(event, length, longest, panel, slopes, frame, case):
     """(Event, panel that ends on it, error of that over its tolerance); the error is infinite where there is none.
 
-    By solving panels, of this length first, then corrected by the slope at their ends.  Another event that shows before
-    takes its place.
+    By solving panels, of this length first, then corrected by the slope at their ends, up to the ``longest``.  Another
+    event that shows before takes its place.
     """
     nodes, near = case.work.nodes, max(_ON * case.limits.rtol, _LEAST)
+    low, high, met = 0.0, longest, longest <= panel.length
     for _ in range(_CUTS):
         panel = Panel(panel.tau, length, panel.power, panel.piece, panel.free)
-        if not (length > 0.0 and solve(_NEWTON, panel, slopes, frame, case)):
+        if not (0.0 < length < np.inf and solve(_NEWTON, panel, slopes, frame, case)):
             break
         size = panel_error(panel, slopes, frame, case)
         if size > _HOPELESS:
             return event, panel, size
         earlier, node = first_event(frame, nodes)
         if earlier not in (NO_EVENT, event) and node < N:
+            low, high, met = 0.0, length, True
             event, length = earlier, length_until(earlier, node, panel, case)
             continue
         off = nodes[EVENT + event, N]
         if abs(off) <= near * _size(event, nodes):
             return event, panel, size
+        low, high, met = length if off > 0.0 else low, high if off > 0.0 else length, met or off <= 0.0
         length -= off / _end_slope(event, panel, nodes)
+        if not low < length < high:
+            if not met:
+                break
+            length = 0.5 * (low + high)
     return event, panel, np.inf

@@ -14,7 +14,7 @@ from ..law.stick import stick_length
 from ..motion.collocation import N
 from .load import acting, load_at, piece_end, undriven
 from .origin import STAYS, STICKS, depart, leaving_time
-from .output import coast, put_still, regime_of
+from .output import coast, put_still, put_to_end, regime_of
 from .phase import phase
 from .rates import rates_at
 from .records import (
@@ -172,7 +172,9 @@ def follow(moving, state, frame, clock, case, switches):
             clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps)
             frame = at_new_piece(state, frame, clock, case) if moving else frame
         event = NO_EVENT
-        if not moving:
+        if moving and clock.tau >= case.tau[case.tau.size - 1]:
+            clock = put_to_end(state, frame, clock, case)
+        elif not moving:
             moving, state, frame, clock = stay(clock, case)
         elif coasts(state, frame, clock, case):
             clock, rest_time = coast(state, frame, clock, case)

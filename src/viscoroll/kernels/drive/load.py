@@ -1,21 +1,31 @@
-"""The drive at a time.  A piece of it is a row of numbers; what changes within the piece are cubic polynomials of tau
-since its start, tau = gamma t."""
+"""The drive at a time.  A piece of it is a row of numbers: when it begins, the scale of its time, and the coefficients
+of four polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the piece; tau = gamma t."""
 
 from __future__ import annotations
-
-import numpy as np
 
 from ..compile.jit import kernel
 from .records import OMEGA, SPEED, Load
 
-#: columns: start; force and torque; the slope over tau of the speed that is prescribed; most that the brake can take
-START, FORCE, TORQUE, RATE, BRAKE, COLUMNS = 0, 1, 5, 9, 13, 17
+#: columns: start, scale, and from here on as many coefficients for each function as there are terms
+START, SCALE, FIRST = 0, 1, 2
+#: the functions: force and torque; the slope over tau of the speed that is prescribed; most that the brake can take
+FORCE, TORQUE, RATE, BRAKE, FUNCTIONS = range(5)
 
 
 @kernel(inline=True)
-def cubic(row, column, since):
-    """The polynomial whose coefficients begin in this column."""
-    return row[column] + since * (row[column + 1] + since * (row[column + 2] + since * row[column + 3]))
+def terms_of(row):
+    """Number of coefficients of each function."""
+    return (row.size - FIRST) // FUNCTIONS
+
+
+@kernel(inline=True)
+def value(row, function, x):
+    """One of the functions of a piece."""
+    terms = terms_of(row)
+    first, total = FIRST + function * terms, 0.0
+    for n in range(terms - 1, -1, -1):
+        total = row[first + n] + x * total
+    return total
 
 
 @kernel(inline=True)
@@ -23,15 +33,15 @@ def load_at(tau, piece, frame, case):
     """The drive at tau in the frame of the motion, without feedback."""
     drive, j = case.drive, case.scene.j
     row = drive.pieces[piece]
-    since, direction = tau - row[START], frame.direction
-    rate = direction * cubic(row, RATE, since)
+    x, direction = (tau - row[START]) * row[SCALE] - 1.0, frame.direction
     by_omega, by_V = drive.prescribed == OMEGA, drive.prescribed == SPEED
+    rate = direction * value(row, RATE, x) if by_omega or by_V else 0.0
     return Load(
-        direction * cubic(row, FORCE, since),
-        direction * cubic(row, TORQUE, since),
+        direction * value(row, FORCE, x),
+        direction * value(row, TORQUE, x),
         rate if by_V else 0.0,
         rate if by_omega else 0.0,
-        max(cubic(row, BRAKE, since), 0.0),
+        max(value(row, BRAKE, x), 0.0),
         0.0 if by_V else 1.0,
         0.0 if by_omega or frame.locked else 1.0 / j,
         drive.gains,
@@ -52,7 +62,7 @@ def undriven(piece, drive):
     if piece + 1 < drive.pieces.shape[0] or drive.prescribed != 0:
         return False
     acting = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)
-    for column in range(FORCE, COLUMNS):
+    for column in range(FIRST, drive.pieces.shape[1]):
         acting += abs(drive.pieces[piece, column])
     return acting == 0.0
 

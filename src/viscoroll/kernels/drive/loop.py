@@ -9,15 +9,15 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.loop import keep, motion_of
 from ..motion.records import Batch, Limits
-from ..numerics.arrays import fill
+from ..numerics.arrays import copy, fill
 from .integrate import integrate
-from .load import COLUMNS, START
+from .load import FIRST, RATE, SCALE, START, terms_of
 from .output import OUTPUTS
 from .records import Drive, Gains
 
 
 class Drives(NamedTuple):
-    """Pieces, (m, k, COLUMNS) over t with m one for all or one a motion; gains, (4, 1) or (4, n)."""
+    """Pieces, (m, k, columns) over t with m one for all or one a motion; gains, (4, 1) or (4, n)."""
 
     pieces: Any
     gains: Any
@@ -26,20 +26,17 @@ class Drives(NamedTuple):
 
 @kernel
 def _drive_of(drives, gamma, i, pieces):
-    """The drive of motion i over tau = gamma t, in ``pieces``; slopes of prescribed speeds are over t."""
+    """The gains of motion i, and its drive over tau = gamma t in ``pieces``; slopes of prescribed speeds are over t."""
     source = drives.pieces[min(i, drives.pieces.shape[0] - 1)]
     for k in range(pieces.shape[0]):
-        for column in range(COLUMNS):
-            power = 0 if column == START else (column - 1) % 4
-            per = 1.0
-            for _ in range(power):
-                per /= gamma
-            pieces[k, column] = source[k, column] * (gamma if column == START else per)
-        for column in range(9, 13):
-            pieces[k, column] /= gamma
+        copy(source[k], pieces[k])
+        pieces[k, START] *= gamma
+        pieces[k, SCALE] /= gamma
+        terms = terms_of(pieces[k])
+        for n in range(RATE * terms, (RATE + 1) * terms):
+            pieces[k, FIRST + n] /= gamma
     n = min(i, drives.gains.shape[1] - 1)
-    gains = Gains(drives.gains[0, n], drives.gains[1, n], drives.gains[2, n], drives.gains[3, n])
-    return gains
+    return Gains(drives.gains[0, n], drives.gains[1, n], drives.gains[2, n], drives.gains[3, n])
 
 
 @kernel(allocates=True, seconds=15)
@@ -49,7 +46,7 @@ def drive_loop(batch, drives, t, limits, rows, out, info, switches):
     Records come as plain tuples: it takes numba microseconds to tell the type of a record.
     """
     motions, drives, limits = Batch(*batch), Drives(*drives), Limits(*limits)
-    one, pieces = np.empty((OUTPUTS, t.size)), np.empty((drives.pieces.shape[1], COLUMNS))
+    one, pieces = np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
     for i in range(out.shape[1]):
         for row in one:
             fill(np.nan, row)

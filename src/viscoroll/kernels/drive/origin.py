@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .load import BRAKE, FORCE, RATE, TORQUE, load_at, piece_end
+from .load import FIRST, FUNCTIONS, load_at, piece_end, terms_of
 from .records import Frame, Load
 
 STAYS, STICKS, SLIDES = range(3)
@@ -97,10 +97,11 @@ def leaving_time(tau, piece, case):
 @kernel
 def constant(piece, pieces):
     """Whether the drive stays as it is within a piece."""
-    change = 0.0
-    for column in (FORCE, TORQUE, RATE, BRAKE):
-        for n in range(1, 4):
-            change += abs(pieces[piece, column + n])
+    row, change = pieces[piece], 0.0
+    terms = terms_of(row)
+    for function in range(FUNCTIONS):
+        for n in range(1, terms):
+            change += abs(row[FIRST + function * terms + n])
     return change == 0.0
 
 

@@ -44,21 +44,38 @@ def put_still(until, closed, regime, clock, case):
         for n in range(PATHS):
             _put_path(at, n, case.work.totals[n], case)
         at += 1
-    return Clock(until, at, clock.piece, clock.steps)
+    return Clock(until, at, clock.piece, clock.steps + 1)
 
 
 @kernel
-def _put(column, v, panel, frame, case):
-    """One column from the interpolants of a panel."""
-    nodes, powers, out, direction = case.work.nodes, case.work.powers, case.out, frame.direction
-    s = nodes[S, 0] + rise_at(v, powers, _OF_S)
-    second = nodes[SECOND, 0] + rise_at(v, powers, _OF_SECOND)
-    load = load_at(case.tau[column], panel.piece, frame, case)
+def _put_state(column, s, second, piece, frame, case):
+    """One column but for what adds up."""
+    out, direction = case.out, frame.direction
+    load = load_at(case.tau[column], piece, frame, case)
     rates = rates_at(s, second, load, frame, case.scene)
     force, torque, _ = needed(rates, load, frame, case.scene.j)
     out[0, column], out[1, column] = direction * rates.V, direction * rates.omega
     out[4, column], out[5, column] = rates.delta, regime_of(frame)
     out[FORCE, column], out[FORCE + 1, column] = direction * force, direction * torque
+
+
+@kernel
+def put_to_end(state, frame, clock, case):
+    """All outputs that are left, of a motion that is where it ends; the clock then."""
+    for column in range(clock.at, case.tau.size):
+        _put_state(column, state.s, state.second, clock.piece, frame, case)
+        for n in range(PATHS):
+            _put_path(column, n, case.work.totals[n], case)
+    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps)
+
+
+@kernel
+def _put(column, v, panel, frame, case):
+    """One column from the interpolants of a panel."""
+    nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
+    s = nodes[S, 0] + rise_at(v, powers, _OF_S)
+    second = nodes[SECOND, 0] + rise_at(v, powers, _OF_SECOND)
+    _put_state(column, s, second, panel.piece, frame, case)
     for n in range(PATHS):
         way = rise_at(v, powers, _OF_PATH + n)
         _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
@@ -74,16 +91,17 @@ def _terms(panel, nodes, powers):
 
 
 @kernel
-def pass_panel(closed, panel, frame, clock, case):
-    """Outputs before the end of a panel, or on it too, and what adds up over it; the clock behind.
+def pass_panel(end, panel, frame, clock, case):
+    """Outputs before the ``end`` of a panel, and what adds up over it; the clock behind.
 
-    At its end, where the drive may jump, what follows tells.
+    At its end, where the drive may jump, what follows tells; but the last of the outputs is there.
     """
-    tau, at, end = case.tau, clock.at, panel.tau + panel.length
-    if at < tau.size and (tau[at] < end or (closed and tau[at] == end)):
+    tau, at = case.tau, clock.at
+    closed = end == tau[tau.size - 1]
+    if at < tau.size and (tau[at] < end or closed):
         _terms(panel, case.work.nodes, case.work.powers)
-        while at < tau.size and (tau[at] < end or (closed and tau[at] == end)):
-            share = max(tau[at] - panel.tau, 0.0) / panel.length
+        while at < tau.size and (tau[at] < end or closed):
+            share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
             _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
             at += 1
     for n in range(PATHS):

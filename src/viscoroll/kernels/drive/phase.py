@@ -60,7 +60,7 @@ def _pace_to_zero(panel, state, frame, case):
 
 
 @kernel(inline=True)
-def _attempt(panel, aimed, slopes, frame, case):
+def _attempt(panel, left, aimed, slopes, frame, case):
     """(Event, panel, error over its tolerance, length to go on with) of a panel, cut where the regime ends."""
     nodes, power = case.work.nodes, panel.power
     size, event = np.inf, NO_EVENT
@@ -71,13 +71,13 @@ def _attempt(panel, aimed, slopes, frame, case):
         return event, panel, size, ahead
     # where the regime ends the law bends: the panel that ends there may be good where this one is not
     event, node = first_event(frame, nodes)
-    at = panel.length
+    at = longest = panel.length
     if event != NO_EVENT:
         at = length_until(event, node, panel, case)
     elif aimed and size <= 1.0 and nodes[S, N] < _NEARLY * nodes[S, 0]:
-        event = TURN
+        event, longest = TURN, left
     if event != NO_EVENT:
-        event, panel, size = cut(event, at, panel, slopes, frame, case)
+        event, panel, size = cut(event, at, longest, panel, slopes, frame, case)
         ahead = next_length(panel.length, size, power)
     return event, panel, size, ahead
 
@@ -99,7 +99,7 @@ def phase(fresh, state, frame, clock, case):
     """Follow a regime: (event, state, frame, clock).  ``fresh``: the stick zone has just formed."""
     nodes, limits = case.work.nodes, case.limits
     end, length, rejected = piece_end(clock.piece, case), 0.0, 0
-    power, closed = _GRADED if fresh else 1, end == case.tau[case.tau.size - 1]
+    power = _GRADED if fresh else 1
     while clock.tau < end and clock.steps < limits.max_steps:
         frame, slopes = _begin(state, frame, clock, case)
         if length == 0.0:
@@ -107,20 +107,18 @@ def phase(fresh, state, frame, clock, case):
         left = end - clock.tau
         panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > 1e-90)
         zero = _pace_to_zero(panel, state, frame, case)
-        aimed = zero < panel.length
-        if aimed:
+        aimed = zero < panel.length and rejected == 0
+        if zero < panel.length:
             panel = Panel(panel.tau, zero, power, panel.piece, panel.free)
         clock = Clock(clock.tau, clock.at, clock.piece, clock.steps + 1)
-        event, panel, size, length = _attempt(panel, aimed, slopes, frame, case)
+        event, panel, size, length = _attempt(panel, left, aimed, slopes, frame, case)
         rejected += 1
         if not size <= 1.0:
             if rejected > _MOST_REJECTIONS or not clock.tau + length > clock.tau:
                 return STUCK, state, frame, clock
             continue
         last = panel.length == left and event == NO_EVENT
-        clock = pass_panel(closed, panel, frame, clock, case)
-        if last:
-            clock = Clock(end, clock.at, clock.piece, clock.steps)
+        clock = pass_panel(end if last else panel.tau + panel.length, panel, frame, clock, case)
         state = State(nodes[S, N], nodes[SECOND, N])
         if event != NO_EVENT:
             return event, state, frame, clock

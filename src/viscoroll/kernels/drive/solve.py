@@ -93,15 +93,16 @@ def _time(panel, i):
 
 
 @kernel
-def _guess(panel, slopes, nodes):
+def _guess(panel, slopes, frame, nodes):
     """Unknowns at the nodes: s at its pace, the other on its way to where it comes to stand."""
+    most = np.inf if frame.slips else 1.0
     weight = slopes.weight
     pace, fall = nodes[RATE, 0] / weight, slopes.rate / weight
     for i in range(1, N + 1):
         since = panel.length * (0.5 * (1.0 + NODES[i])) ** panel.power
         lasting = np.expm1(fall * since) / fall if fall < 0.0 and fall * since < -1e-8 else since
         nodes[S, i] = nodes[S, 0] + nodes[S_RATE, 0] * since
-        nodes[SECOND, i] = nodes[SECOND, 0] + pace * lasting
+        nodes[SECOND, i] = min(max(nodes[SECOND, 0] + pace * lasting, -most), most)
 
 
 @kernel
@@ -168,7 +169,7 @@ def solve(share, panel, slopes, frame, case):
     left = max(share * tolerance, _LEAST)
     nodes, right = work.nodes, work.right
     if panel.free:
-        _guess(panel, slopes, nodes)
+        _guess(panel, slopes, frame, nodes)
     else:
         _guess_from_rest(panel, frame, case)
     before, anew = np.inf, True
