@@ -42,8 +42,6 @@ second_slopes = _either("second_slopes", 1)
 at_contact = _either("at_contact", 1)
 #: (g, h, h', m) at z > 0
 at_slide = _either("at_slide", 1)
-#: (g, h, g', h', m of the half-space, m of the cylinder) at z > 0
-at_rolling = _either("at_rolling", 1)
 #: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D
 mean_slopes = _either("mean_slopes", 2)
 #: m at zeta, from zeta, lam, g and h

@@ -154,11 +154,3 @@ def mean_slopes(zeta, D, material):
         slope_g += GAUSS_W[n] * dg
         slope_zh += GAUSS_W[n] * (h + z * dh)
     return slope_g, slope_zh
-
-
-@kernel(inline=True)
-def at_rolling(z, material):
-    """(g, h, g', h', m of the half-space, m of the cylinder) at z > 0."""
-    g, h, dg, dh = generator_slopes(z, material)
-    half = 0.5 * moment_of(z, 1.0 / np.sqrt(1.0 + 2.0 * h / z), g, h, material)
-    return g, h, dg, dh, half, half

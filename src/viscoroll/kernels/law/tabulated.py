@@ -162,11 +162,3 @@ def mean_slopes(zeta, D, material):
         per = offset_slope(zeta)
         return dg * per, generators(zeta, material)[1] + eta * (dh * per)
     return _gauss_slopes(zeta, D, material)
-
-
-@kernel(inline=True)
-def at_rolling(z, material):
-    """(g, h, g', h', m of the half-space, m of the cylinder) at z > 0."""
-    g, h, m, _, dg, dh, _, _ = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
-    per = offset_slope(z)
-    return g, h, dg * per, dh * per, 0.5 * m, 0.5 * m
