@@ -339,6 +339,8 @@ SERIES_MOTION = 1e-10
 SERIES_MAP = 3e-9
 #: Moments of two bodies: sums over modes of positive terms, and one table.
 BODIES = 1e-12
+#: Their parts of m over m, by a table; limits of g, h and m beyond its ends.
+SHARES = 1e-14
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
 
