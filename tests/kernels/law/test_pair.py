@@ -53,8 +53,8 @@ def test_the_table_is_the_sum_over_the_modes(seed):
         g, h, dg, dh, half_space, cylinder = at_rolling(z, pair)
         exact = kernels.shares(z, known, room)
         m = at_contact(z, whole)[4]
-        assert abs(half_space - exact[0]) <= tol.SHARES * m
-        assert abs(cylinder - exact[1]) <= tol.SHARES * m
+        assert abs(half_space - exact[0]) <= tol.SHARES_OF_MODES * m
+        assert abs(cylinder - exact[1]) <= tol.SHARES_OF_MODES * m
         assert half_space + cylinder == pytest.approx(m, rel=tol.SHARES)
         assert_generators((g, h, dg, dh), generator_slopes(z, whole), z)
         assert np.array_equal(at_contact(z, pair), at_contact(z, whole))
@@ -62,7 +62,9 @@ def test_the_table_is_the_sum_over_the_modes(seed):
 
 def test_swapped_bodies_swap():
     here, there = rolling(UNLIKE, PLACES), rolling(vr.Bodies(STIFF, SOFT, 0.7), PLACES)
-    np.testing.assert_allclose(there[[0, 1, 2, 3, 5, 4]], here, rtol=tol.BODIES)
+    for z, (*one, half_space, cylinder), (*other, second, first) in zip(PLACES, here.T, there.T, strict=True):
+        assert_generators(tuple(one), tuple(other), z)
+        assert (half_space, cylinder) == pytest.approx((first, second), rel=tol.BODIES)
 
 
 def test_a_rigid_body_takes_nothing():
@@ -104,4 +106,4 @@ def test_own_time_of_a_pair():
     slow = vr.Bodies(SOFT.slower(2.0**30), STIFF.slower(2.0**30), 0.3)
     (here, unit), (there, again) = slow.in_own_time(), UNLIKE.in_own_time()
     assert (unit, again) == (2.0**30 * again, UNLIKE.total.in_own_time()[1])
-    np.testing.assert_allclose(rolling(here, PLACES), rolling(there, PLACES), rtol=tol.BODIES)
+    np.testing.assert_allclose(rolling(here, PLACES)[4:], rolling(there, PLACES)[4:], rtol=tol.BODIES)

@@ -145,14 +145,14 @@ def shares(z, parts, work):
 
     m_j = t_j k_j f_j + lam^2 J_j sum_i X_i a_i u_i/(a_i - b_j)
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
+
+    What their sum differs from m by, roundings of alpha times the size of one, is taken from both alike.
     """
-    solve(z, parts, work)
-    count, h = parts.a.size, 0.0
-    for i in range(count):
-        h += work.root[i] * parts.e[i] * work.x[i]
-        work.i2[i] = ratio_i2(parts.a[i] * z, work.root[i] * work.root[i])
-    square = 1.0 + 2.0 * h / z  # 1/lam^2
+    _, h, m, _ = values(z, parts, work)
+    count, square = parts.a.size, 1.0 + 2.0 * h / z  # 1/lam^2
     half_space = cylinder = 0.0
+    for i in range(count):
+        work.i2[i] = ratio_i2(parts.a[i] * z, work.root[i] * work.root[i])
     for i in range(count):
         u, a = work.i2[i], parts.a[i]
         for n in range(count):
@@ -167,7 +167,8 @@ def shares(z, parts, work):
         share = parts.t[j] * work.k[j] * work.f[j]
         half_space += parts.weights[j] * share
         cylinder += (1.0 - parts.weights[j]) * share
-    return half_space, cylinder, 0.0, 0.0
+    whole = m / (half_space + cylinder)
+    return half_space * whole, cylinder * whole, 0.0, 0.0
 
 
 #: the four functions of a table: of a material, or of the parts that two bodies have in it
