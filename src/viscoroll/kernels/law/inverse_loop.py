@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .inverses import at_speed, at_stick, slight_traction
+from .inverses import SLIGHTEST, at_speed, at_stick, slight_traction, slightest_traction
 from .length import OK
 from .state import (
     BETA,
@@ -57,7 +57,10 @@ def _traction(inverses, u, lam, L, D, need, far):
         if need.beta:
             beta = min(share * w / lam, 1.0)
     if not far:
-        part, slight_status = slight_traction(u, L, D, inverses)
+        if D <= SLIGHTEST * L:
+            part, slight_status = slightest_traction(u, L, D, inverses)
+        else:
+            part, slight_status = slight_traction(u, L, D, inverses)
         status = max(status, slight_status)
     return beta, min(part, 1.0), status
 
