@@ -25,7 +25,7 @@ class _Kept(threading.local):
 
     def __init__(self) -> None:
         self.materials: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
-        self.inverses: OrderedDict[float | Prony, Any] = OrderedDict()
+        self.inverses: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
 
 
 _kept = _Kept()
@@ -41,13 +41,13 @@ def record(given: float | Prony | Bodies) -> Any:
     return _found(_kept.materials, given, _tabulated)
 
 
-def inverses(given: float | Prony) -> Any:
-    """The record of one material and of the inverses of its law, for this thread alone."""
+def inverses(given: float | Prony | Bodies) -> Any:
+    """The record of one material, or of two bodies unlike each other, and of the inverses of its law, likewise."""
     from .kernels.law.inverses import inverses_of
     from .kernels.law.standard import standard
 
-    def made(given: float | Prony) -> Any:
-        return inverses_of(_tabulated(given) if isinstance(given, Prony) else standard(given))
+    def made(given: float | Prony | Bodies) -> Any:
+        return inverses_of(_tabulated(given) if isinstance(given, Prony | Bodies) else standard(given))
 
     return _found(_kept.inverses, given, made)
 
@@ -55,13 +55,10 @@ def inverses(given: float | Prony) -> Any:
 def _tabulated(given: float | Prony | Bodies) -> Any:
     from .kernels.law.tabulated import tabulated
 
-    if isinstance(given, Bodies):
-        whole = _pair_tables(given)
-        return whole._replace(table=whole.table.copy())
-    if not isinstance(given, Prony):
+    if not isinstance(given, Prony | Bodies):
         return tabulated(given)
-    whole = _series_table(given)
-    return whole._replace(table=whole.table.copy())
+    whole = _pair_tables(given) if isinstance(given, Bodies) else _series_table(given)
+    return whole._replace(table=whole.table.copy())  # parts are read only
 
 
 def series(prony: Prony) -> Any:

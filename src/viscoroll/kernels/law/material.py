@@ -46,6 +46,8 @@ second_slopes = _either("second_slopes", 1)
 at_contact = _either("at_contact", 1)
 #: (g, h, h', m) at z > 0
 at_slide = _either("at_slide", 1)
+#: (g/z, m/z) from z and h there, where z is so small that its square may underflow
+fast_limit = _either("fast_limit", 2)
 #: (g, h, g', h', m of the half-space, m of the cylinder) at z > 0: halves of m where bodies are alike
 at_rolling = by_record(1, (Standard, ratios.at_rolling), (Tabulated, table.at_rolling), (Pair, pair.at_rolling))
 #: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D

@@ -46,12 +46,29 @@ def tabulated(alpha: float) -> Tabulated:
 
 @kernel(inline=True)
 def moment_at_an_end(z, T_mean, ends, material):
-    """What a table of m ends in, of the whole material or of one body."""
+    """(m, m') where the table of several modes ends, of the whole material or of one body."""
     if z < material.tau:
         half = 0.5 * material.alpha * z * z
         bracket = ends.log_weight - ends.weight * np.log(z)
-        return half * (bracket + 0.25 * ends.weight)
-    return T_mean - 4.0 * ends.squares * (0.125 / z)
+        return half * (bracket + 0.25 * ends.weight), material.alpha * z * (bracket - 0.25 * ends.weight)
+    fall = 4.0 * ends.squares * (0.125 / z)
+    return T_mean - fall, fall / z
+
+
+@kernel(inline=True)
+def moment_over_z(z, ends, material):
+    """m/z of the whole material, or of one body, at z < tau so small that its square may underflow."""
+    return 0.5 * material.alpha * z * (ends.log_weight - ends.weight * np.log(z) + 0.25 * ends.weight)
+
+
+@kernel(inline=True)
+def fast_limit(z, h, material):
+    """(g/z, m/z) at a z that is so small that its square may underflow."""
+    ends = material.ends
+    if not ends.known:
+        return standard.fast_limit(z, h, material)
+    g = 0.5 * material.alpha * z * (ends.log_weight - ends.weight * np.log(z))
+    return g, moment_over_z(z, ends, material)
 
 
 @kernel
@@ -71,7 +88,7 @@ def _values(z, material):
     """(g, h, m, b) at z."""
     if material.ends.known:
         g, h, _, dh = at_an_end(z, material)
-        m = moment_at_an_end(z, material.T_mean, material.ends, material)
+        m, _ = moment_at_an_end(z, material.T_mean, material.ends, material)
         return g, h, m, m * np.sqrt(1.0 + 2.0 * h / z) / (1.0 + h / z + dh)
     g, h, _, _, m, _, b, _ = standard.at_contact(z, Standard(material.alpha, material.T_mean, material.tau))
     return g, h, m, b
@@ -150,8 +167,8 @@ def at_rolling(z, material):
     if rarely(not there):
         if material.ends.known:
             g, h, dg, dh = at_an_end(z, material)
-            half = 0.5 * moment_at_an_end(z, material.T_mean, material.ends, material)
-            return g, h, dg, dh, half, half
+            m, _ = moment_at_an_end(z, material.T_mean, material.ends, material)
+            return g, h, dg, dh, 0.5 * m, 0.5 * m
         row = _make(row, z, material)
     g, h, m, _, dg, dh, _, _ = quartet.slopes(material.table, row, quartet.offset(z))
     per = offset_slope(z)
