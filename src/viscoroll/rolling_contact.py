@@ -23,16 +23,17 @@ from .scene import Scene
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
+#: of bodies that are alike, half of each
+_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 #: slopes over a speed, which follows the unit of time
-_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV"}
+_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
 #: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
 WORTHWHILE = 4096
 _FASTEST = 1e300
-#: zeta that stands for V = 0
-_SLOWEST = 1e17
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
 
@@ -85,13 +86,13 @@ def contact(
     delta, omega : exactly one: creep ratio (omega - V)/V, or angular velocity; any sign.
         At V = 0 a given ``delta`` means the limit V -> 0+.
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
-        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV``), and ``M_half_space M_cylinder``, the
-        parts of M in either body; only these are computed.  Default: the first nine, of bodies that
-        differ the two parts too.
+        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
+        ``M_half_space M_cylinder``, the parts of M in either body; only these are computed.  Default:
+        the first nine, of bodies that differ the two parts too.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
-        ``dQ_domega`` is infinite.
+        ``dQ_domega`` is infinite.  Of bodies that differ, ``dM_half_space_dV`` and ``dM_cylinder_dV`` too.
     method : "table" (the explicit law on tabulated Bessel ratios) or "direct" (the paper's
         equations as printed, solved by Brent-Dekker; no slopes).
 
@@ -127,8 +128,7 @@ def contact(
     if (delta is None) == (omega is None):
         both = "both" if delta is not None else "neither"
         raise ParameterError("delta, omega given", both, "exactly one of the two")
-    default = FIELDS if scene.like_bodies else FIELDS + OF_BODIES
-    names = _field_names(fields, default, slopes, method)
+    names = _field_names(fields, scene.like_bodies, slopes, method)
     creep_name = "omega" if delta is None else "delta"
     inputs = {
         "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
@@ -146,39 +146,26 @@ def contact(
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
-    moments = ("M", "zeta") if set(names) & set(OF_BODIES) else ()
-    solved = tuple(dict.fromkeys([*(name for name in names if name not in OF_BODIES), *moments]))
-    one = material if isinstance(material, Prony) else None
+    one = _one_material(scene, material, names)
+    # what the kernels are asked for, and what is half of it
+    halved = {} if isinstance(one, Bodies) else {name: _HALVES[name] for name in names if name in _HALVES}
+    solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
     found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
     rows = dict(zip(solved, found, strict=True))
-    if moments:
-        rows |= _moments_of_bodies(scene, rows)
+    rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
     for name in _PER_SPEED & rows.keys():
         rows[name] *= unit
     return Values({name: _shaped(name, rows[name], shape) for name in names})
 
 
-def _moments_of_bodies(scene: Scene, rows: dict[str, NDArray]) -> dict[str, NDArray]:
-    """What M takes of the half-space and of the cylinder, from M and zeta in the material's own time."""
-    M, zeta = rows["M"], rows["zeta"]
-    material, _ = scene.in_own_time()
-    if scene.like_bodies or not isinstance(material, Prony):  # two elastic bodies: M = 0
-        return {"M_half_space": 0.5 * M, "M_cylinder": 0.5 * M}
-    from .kernels.law.series import weighted_loop
-
+def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | Bodies | None:
+    """What serves all states: a series; bodies that differ, where parts of M are asked for; or, None, alphas."""
+    if not isinstance(material, Prony):
+        return None
+    if scene.like_bodies or not _HALVES.keys() & set(names):
+        return material
     assert isinstance(scene.material, Bodies)
-    modes, weights = series(material), scene.material.half_space_weights
-    found = np.empty((2, M.size))
-
-    def work(start: int, stop: int) -> None:
-        z = np.minimum(zeta[start:stop], _SLOWEST)  # V = 0: both are 0, and the ratio that of the limit
-        for n, each in enumerate((weights, 1.0 - weights)):
-            weighted_loop(modes, each, z, found[n, start:stop], 0, stop - start)
-
-    run_blocks(work, M.size, _BLOCK)
-    # each by its own positive terms; M, which has passed through a table, is shared in their proportion
-    share = found[0] / (found[0] + found[1])
-    return {"M_half_space": share * M, "M_cylinder": (1.0 - share) * M}
+    return scene.material.in_own_time()[0]
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
@@ -189,16 +176,18 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
-def _field_names(fields: Iterable[str] | None, default: tuple[str, ...], slopes: bool, method: str) -> tuple[str, ...]:
+def _field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: str) -> tuple[str, ...]:
     if method not in ("table", "direct"):
         raise ParameterError("method", repr(method), "'table' or 'direct'")
+    default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
     names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    known = FIELDS + OF_BODIES + SLOPES + SLOPES_OF_BODIES
     for name in names:
-        if name not in FIELDS + OF_BODIES + SLOPES:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS + OF_BODIES + SLOPES))
+        if name not in known:
+            raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
     if slopes:
-        names += tuple(name for name in SLOPES if name not in names)
-    if method == "direct" and set(names) & set(SLOPES):
+        names += tuple(name for name in default_slopes if name not in names)
+    if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
         raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
     return names
 
@@ -224,14 +213,14 @@ def _compute(
 ) -> NDArray:
     """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
 
-    ``material``: a series in place of the alphas, or None.
+    ``material``: a series or bodies in place of the alphas, or None.
     """
     from .kernels.law.state import ROWS, Need, States
 
     wanted = set(names)
     need = Need(
         bool(wanted & _NEEDS_SHIFT), bool(wanted & _NEEDS_STICK), "beta" in wanted,
-        bool(wanted & {"M", "dM_dV"}), bool(wanted & set(SLOPES)),
+        bool(wanted & {"M", "dM_dV", *_HALVES}), bool(wanted & set(SLOPES + SLOPES_OF_BODIES)),
     )  # fmt: skip
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)

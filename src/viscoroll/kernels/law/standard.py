@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
+from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes, small_k_over_z
 from ..compile.jit import kernel
 from ..numerics.nodes import gauss
 
@@ -107,6 +107,13 @@ def moment_of(zeta, lam, g, h, material):
 
 
 @kernel(inline=True)
+def fast_limit(z, h, material):
+    """(g/z, m/z) at a z that is so small that its square may underflow: lam^2 = 1/alpha, i2 = (alpha z)^2/8."""
+    g = h * small_k_over_z(z)
+    return g, 0.125 * material.T_mean * material.alpha * z + g
+
+
+@kernel(inline=True)
 def at_contact(z, material):
     """(g, h, g', h', m, m', b, b') at z = zeta from one pair of ratios; M = V m."""
     alpha, c = material.alpha, material.T_mean
@@ -129,19 +136,33 @@ def at_contact(z, material):
 
 
 @kernel(inline=True)
-def at_slide(z, material):
-    """(g, h, h', m) at z > 0."""
+def _steady(z, material):
+    """(g, h, g', h', m) at z > 0."""
     alpha, c = material.alpha, material.T_mean
     if c == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     x, r, k, s, dk, _, per_z = ratios_and_slopes(z, alpha)
     p = r * k
     whole = 1.0 / (1.0 + p)
     share = c * whole
-    h = share * r
+    h, dr = share * r, alpha * s
     lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
     m = share * (lam2 * ratio_i2(x, r) + p)
-    return share * p, h, share * whole * (alpha * s - r * r * dk), m
+    return share * p, h, share * whole * (dr * k + r * dk), share * whole * (dr - r * r * dk), m
+
+
+@kernel(inline=True)
+def at_slide(z, material):
+    """(g, h, h', m) at z > 0."""
+    g, h, _, dh, m = _steady(z, material)
+    return g, h, dh, m
+
+
+@kernel(inline=True)
+def at_rolling(z, material):
+    """(g, h, g', h', m of the half-space, m of the cylinder) at z > 0."""
+    g, h, dg, dh, m = _steady(z, material)
+    return g, h, dg, dh, 0.5 * m, 0.5 * m
 
 
 @kernel(inline=True)
