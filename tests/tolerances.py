@@ -339,6 +339,10 @@ SERIES_MOTION = 1e-10
 SERIES_MAP = 3e-9
 #: Moments of two bodies: sums over modes of positive terms, and one table.
 BODIES = 1e-12
+#: Their parts of m together, by a table, against m; measured 3e-15.
+SHARES = 1e-14
+#: Each against the sum over its modes, over m; measured 2.1e-15, and 4e-14 between two ways of adding up.
+SHARES_OF_MODES = 1e-13
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
 

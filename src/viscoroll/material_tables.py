@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from .prony import Prony
+from .bodies import Bodies
+from .prony import Modes, Prony
 
 #: materials that a thread keeps, of each kind
 _KEPT = 8
@@ -23,15 +24,20 @@ class _Kept(threading.local):
     """Tables are written to without the GIL, so threads do not share them."""
 
     def __init__(self) -> None:
-        self.materials: OrderedDict[float | Prony, Any] = OrderedDict()
+        self.materials: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
         self.inverses: OrderedDict[float | Prony, Any] = OrderedDict()
 
 
 _kept = _Kept()
 
 
-def record(given: float | Prony) -> Any:
-    """The record of one material, an alpha or a series, for this thread alone."""
+def record(given: float | Prony | Bodies) -> Any:
+    """The record of one material, an alpha or a series, or of two bodies, for this thread alone.
+
+    Bodies that are alike, or both elastic, are one material: only others need the record of a pair.
+    """
+    if isinstance(given, Bodies) and (given.like or given.alpha == 1.0):
+        return record(given.total if given.total.E.size else 1.0)
     return _found(_kept.materials, given, _tabulated)
 
 
@@ -46,9 +52,12 @@ def inverses(given: float | Prony) -> Any:
     return _found(_kept.inverses, given, made)
 
 
-def _tabulated(given: float | Prony) -> Any:
+def _tabulated(given: float | Prony | Bodies) -> Any:
     from .kernels.law.tabulated import tabulated
 
+    if isinstance(given, Bodies):
+        whole = _pair_tables(given)
+        return whole._replace(table=whole.table.copy())
     if not isinstance(given, Prony):
         return tabulated(given)
     whole = _series_table(given)
@@ -64,26 +73,65 @@ def series(prony: Prony) -> Any:
     return Series(modes.a, modes.b, np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b), root / modes.gap)
 
 
-@lru_cache(maxsize=_KEPT)
-def _series_table(prony: Prony) -> Any:
-    """The table of several modes, filled between its ends."""
-    from .kernels.law.series import fill
-    from .kernels.law.tabulated import Ends, Tabulated
+def _bins(prony: Prony) -> tuple[int, int]:
+    """The first bin of z of the table of a series, and the one behind the last."""
     from .kernels.numerics.bins import bin_number
-    from .kernels.numerics.quartet import BITS, empty_table
+    from .kernels.numerics.quartet import BITS
 
     modes = prony.modes
     octaves = math.floor(-math.log2(modes.a[-1])) - _MARGIN, math.ceil(-math.log2(modes.b[0])) + _MARGIN
     first, stop = (int(bin_number(2.0**octave, BITS)) for octave in octaves)
+    return first, stop
+
+
+def _filled(known: Any, prony: Prony) -> Any:
+    """The table of functions of z of a series, between its ends."""
+    from .kernels.law.series import fill
+    from .kernels.numerics.quartet import empty_table
+
+    first, stop = _bins(prony)
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
-    fill(series(prony), first, stop, table)
-    weights = modes.J * modes.b
+    fill(known, first, stop, table)
+    return table
+
+
+def _ends(modes: Modes, share: Any, squares: float) -> Any:
+    """The numbers of the ends of a table, for this share of every creep mode."""
+    from .kernels.law.tabulated import Ends
+
+    weights = share * modes.J * modes.b
     logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
-    ends = Ends(True, float(weights.sum()), float((weights * logs).sum()), sum(prony.second_moments))
-    return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), table, ends)
+    return Ends(True, float(weights.sum()), float((weights * logs).sum()), squares)
 
 
-def _found(kept: OrderedDict[float | Prony, Any], given: float | Prony, make: Callable[[Any], Any]) -> Any:
+@lru_cache(maxsize=_KEPT)
+def _series_table(prony: Prony) -> Any:
+    """The table of several modes."""
+    from .kernels.law.tabulated import Tabulated
+
+    modes = prony.modes
+    ends = _ends(modes, 1.0, sum(prony.second_moments))
+    return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), _filled(series(prony), prony), ends)
+
+
+@lru_cache(maxsize=_KEPT)
+def _pair_tables(bodies: Bodies) -> Any:
+    """The tables of two bodies that deform unlike each other."""
+    from .kernels.law.pair import Body, Pair
+    from .kernels.law.series import Parts
+
+    whole, modes, weights = bodies.total, bodies.total.modes, bodies.half_space_weights
+    # m_j = J_j T_j - c_j/z as z -> infinity
+    rises = modes.J * ((modes.E / modes.gap) @ (1.0 / modes.a + (modes.E / (modes.a[:, None] + modes.a)).sum(axis=1)))
+    half_space, cylinder = (
+        Body(math.fsum(share * modes.J / modes.b), _ends(modes, share, 2.0 * math.fsum(share * rises)))
+        for share in (weights, 1.0 - weights)
+    )
+    parts = _filled(Parts(**series(whole)._asdict(), weights=weights), whole)
+    return Pair(**_series_table(whole)._asdict(), parts=parts, half_space=half_space, cylinder=cylinder)
+
+
+def _found(kept: OrderedDict[Any, Any], given: float | Prony | Bodies, make: Callable[[Any], Any]) -> Any:
     """What is kept of this material, or was made now; the last used is the last to go."""
     if given in kept:
         kept.move_to_end(given)

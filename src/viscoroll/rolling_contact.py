@@ -31,8 +31,6 @@ _BLOCK = 1 << 15
 #: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
 WORTHWHILE = 4096
 _FASTEST = 1e300
-#: zeta that stands for V = 0
-_SLOWEST = 1e17
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
 
@@ -164,18 +162,12 @@ def _moments_of_bodies(scene: Scene, rows: dict[str, NDArray]) -> dict[str, NDAr
     material, _ = scene.in_own_time()
     if scene.like_bodies or not isinstance(material, Prony):  # two elastic bodies: M = 0
         return {"M_half_space": 0.5 * M, "M_cylinder": 0.5 * M}
-    from .kernels.law.series import weighted_loop
+    from .kernels.law.pair import parts_loop
 
     assert isinstance(scene.material, Bodies)
-    modes, weights = series(material), scene.material.half_space_weights
+    own, _ = scene.material.in_own_time()
     found = np.empty((2, M.size))
-
-    def work(start: int, stop: int) -> None:
-        z = np.minimum(zeta[start:stop], _SLOWEST)  # V = 0: both are 0, and the ratio that of the limit
-        for n, each in enumerate((weights, 1.0 - weights)):
-            weighted_loop(modes, each, z, found[n, start:stop], 0, stop - start)
-
-    run_blocks(work, M.size, _BLOCK)
+    parts_loop(record(own), zeta, found[0], found[1])
     # each by its own positive terms; M, which has passed through a table, is shared in their proportion
     share = found[0] / (found[0] + found[1])
     return {"M_half_space": share * M, "M_cylinder": (1.0 - share) * M}

@@ -4,8 +4,9 @@
 
 The last is that of the slow manifold: D = zeta - eta is proportional to it in slow rolling.
 
-All that the law and the motion know of a material they read here, from one of two kinds of record:
-:class:`Standard`, an alpha, whose functions are Bessel ratios; and :class:`Tabulated`, polynomials in a table.
+All that the law and the motion know of a material they read here, from one of three kinds of record:
+:class:`Standard`, an alpha, whose functions are Bessel ratios; :class:`Tabulated`, polynomials in a table; and
+:class:`Pair`, two of these tables, of bodies that deform unlike each other.
 Which one a call has is settled when it is compiled.  Where many states or motions each have an alpha of their own
 the ratios serve, and where one material serves all, the table.
 """
@@ -16,8 +17,10 @@ from typing import Any, Callable, NamedTuple
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
+from . import pair
 from . import standard as ratios
 from . import tabulated as table
+from .pair import Pair
 from .standard import Standard, standard
 from .tabulated import Tabulated
 
@@ -29,7 +32,8 @@ class Own(NamedTuple):
 
 
 def _either(name: str, at: int) -> Callable:
-    return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, getattr(table, name)))
+    of_table = getattr(table, name)
+    return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, of_table), (Pair, of_table))
 
 
 #: (g, h) at z; 0 for z <= 0 (no stick zone)
@@ -42,6 +46,8 @@ second_slopes = _either("second_slopes", 1)
 at_contact = _either("at_contact", 1)
 #: (g, h, h', m) at z > 0
 at_slide = _either("at_slide", 1)
+#: (g, h, g', h', m of the half-space, m of the cylinder) at z > 0: halves of m where bodies are alike
+at_rolling = by_record(1, (Standard, ratios.at_rolling), (Tabulated, table.at_rolling), (Pair, pair.at_rolling))
 #: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D
 mean_slopes = _either("mean_slopes", 2)
 #: m at zeta, from zeta, lam, g and h
@@ -59,7 +65,7 @@ def _own(material, i):
 
 
 #: the material of state or motion i, from what is given for all
-material_of = by_record(0, (Tabulated, _shared), (Own, _own))
+material_of = by_record(0, (Tabulated, _shared), (Pair, _shared), (Own, _own))
 
 
 @kernel

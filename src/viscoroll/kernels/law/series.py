@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics import quartet
 from ..numerics.bins import bin_place
@@ -36,8 +37,19 @@ class Series(NamedTuple):
     Q: Any
 
 
+class Parts(NamedTuple):
+    """A series of two bodies: as :class:`Series`, and what of the strength of each creep mode is the half-space's."""
+
+    a: Any
+    b: Any
+    e: Any
+    t: Any
+    Q: Any
+    weights: Any
+
+
 class Room(NamedTuple):
-    """Arrays of one evaluation: sqrt(r), a r', k, b k', x and f; B."""
+    """Arrays of one evaluation: sqrt(r), a r', k, b k', x, f, X and i2; B."""
 
     root: Any
     slope_r: Any
@@ -45,6 +57,8 @@ class Room(NamedTuple):
     slope_k: Any
     x: Any
     f: Any
+    X: Any
+    i2: Any
     matrix: Any
 
 
@@ -61,7 +75,7 @@ def room(series):
     count = series.a.size
     return Room(
         np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count),
-        np.empty((count, count)),
+        np.empty(count), np.empty(count), np.empty((count, count)),
     )  # fmt: skip
 
 
@@ -79,7 +93,7 @@ def _ratios(z, series, work):
 
 @kernel
 def _solve(series, work):
-    """x from B x = sqrt(r) e, and f."""
+    """x from B x = sqrt(r) e, X and f."""
     count, matrix = series.a.size, work.matrix
     for i in range(count):
         for n in range(i + 1):
@@ -92,6 +106,8 @@ def _solve(series, work):
         work.x[i] = work.root[i] * series.e[i]
     factorize(matrix, count)
     substitute(matrix, work.x, count)
+    for i in range(count):
+        work.X[i] = series.e[i] * work.x[i] / work.root[i]
     for j in range(count):
         total = 0.0
         for i in range(count):
@@ -107,12 +123,6 @@ def solve(z, series, work):
 
 
 @kernel
-def amplitude(i, series, work):
-    """X_i, of what :func:`solve` has found."""
-    return series.e[i] * work.x[i] / work.root[i]
-
-
-@kernel
 def values(z, series, work):
     """(g, h, m, b) at z > 0."""
     solve(z, series, work)
@@ -123,47 +133,46 @@ def values(z, series, work):
         g += series.t[i] * work.k[i] * f
         per = x / root
         dh += work.slope_r[i] * (per * per) - work.slope_k[i] * (f * f)
-        pressed += amplitude(i, series, work) * ratio_i2(series.a[i] * z, root * root)
+        pressed += work.X[i] * ratio_i2(series.a[i] * z, root * root)
     square = 1.0 + 2.0 * h / z  # 1/lam^2
     m = g + pressed / square
     return g, h, m, m * np.sqrt(square) / (1.0 + h / z + dh)
 
 
 @kernel
-def weighted_moment(z, weights, series, work):
-    """Sum of the shares of the creep modes in m at z > 0, each times its weight; every share is positive.
+def shares(z, parts, work):
+    """(m of the half-space, m of the cylinder, 0, 0) at z > 0: sums of the shares of the creep modes, all positive.
 
     m_j = t_j k_j f_j + lam^2 J_j sum_i X_i a_i u_i/(a_i - b_j)
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
+
+    What their sum differs from m by, roundings of alpha times the size of one, is taken from both alike.
     """
-    solve(z, series, work)
-    count, h = series.a.size, 0.0
+    _, h, m, _ = values(z, parts, work)
+    count, square = parts.a.size, 1.0 + 2.0 * h / z  # 1/lam^2
+    half_space = cylinder = 0.0
     for i in range(count):
-        h += work.root[i] * series.e[i] * work.x[i]
-        work.slope_r[i] = ratio_i2(series.a[i] * z, work.root[i] * work.root[i])
-        work.slope_k[i] = amplitude(i, series, work)
-    square = 1.0 + 2.0 * h / z  # 1/lam^2
-    total = 0.0
+        work.i2[i] = ratio_i2(parts.a[i] * z, work.root[i] * work.root[i])
     for i in range(count):
-        u = work.slope_r[i]
+        u, a = work.i2[i], parts.a[i]
         for n in range(count):
-            rate = series.a[i] * series.a[n] / (series.a[i] + series.a[n])
-            u += work.slope_k[n] * rate * (work.slope_r[i] - work.slope_r[n])
-        pressed = work.slope_k[i] * series.a[i] * u / square
+            u += work.X[n] * a * parts.a[n] / (a + parts.a[n]) * (work.i2[i] - work.i2[n])
+        pressed = work.X[i] * u / (square * parts.e[i])
         for j in range(count):
             # J_j/(a_i - b_j) = Q_ji t_j/(e_i a_i)
-            total += weights[j] * pressed * series.Q[j, i] * series.t[j] / (series.e[i] * series.a[i])
+            share = parts.t[j] * (parts.Q[j, i] * pressed)
+            half_space += parts.weights[j] * share
+            cylinder += (1.0 - parts.weights[j]) * share
     for j in range(count):
-        total += weights[j] * series.t[j] * work.k[j] * work.f[j]
-    return total
+        share = parts.t[j] * work.k[j] * work.f[j]
+        half_space += parts.weights[j] * share
+        cylinder += (1.0 - parts.weights[j]) * share
+    whole = m / (half_space + cylinder)
+    return half_space * whole, cylinder * whole, 0.0, 0.0
 
 
-@kernel(allocates=True, seconds=2)
-def weighted_loop(series, weights, z, out, start, stop):
-    """``weighted_moment`` over an array."""
-    work = room(series)
-    for n in range(start, stop):
-        out[n] = weighted_moment(z[n], weights, series, work)
+#: the four functions of a table: of a material, or of the parts that two bodies have in it
+_four = by_record(1, (Series, values), (Parts, shares))
 
 
 @kernel(allocates=True, seconds=3)
@@ -174,6 +183,6 @@ def fill(series, first, stop, table):
         middle = bin_place(number, quartet.BITS, 0.5)
         row, _ = quartet.row_of(middle, table)
         for n in range(quartet.TERMS):
-            g, h, m, b = values(quartet.node(middle, n), series, work)
-            quartet.put(table, row, n, g, h, m, b)
+            one, two, three, four = _four(quartet.node(middle, n), series, work)
+            quartet.put(table, row, n, one, two, three, four)
         quartet.finish(table, row, middle)

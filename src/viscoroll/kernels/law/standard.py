@@ -129,19 +129,33 @@ def at_contact(z, material):
 
 
 @kernel(inline=True)
-def at_slide(z, material):
-    """(g, h, h', m) at z > 0."""
+def _steady(z, material):
+    """(g, h, g', h', m) at z > 0."""
     alpha, c = material.alpha, material.T_mean
     if c == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     x, r, k, s, dk, _, per_z = ratios_and_slopes(z, alpha)
     p = r * k
     whole = 1.0 / (1.0 + p)
     share = c * whole
-    h = share * r
+    h, dr = share * r, alpha * s
     lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
     m = share * (lam2 * ratio_i2(x, r) + p)
-    return share * p, h, share * whole * (alpha * s - r * r * dk), m
+    return share * p, h, share * whole * (dr * k + r * dk), share * whole * (dr - r * r * dk), m
+
+
+@kernel(inline=True)
+def at_slide(z, material):
+    """(g, h, h', m) at z > 0."""
+    g, h, _, dh, m = _steady(z, material)
+    return g, h, dh, m
+
+
+@kernel(inline=True)
+def at_rolling(z, material):
+    """(g, h, g', h', m of the half-space, m of the cylinder) at z > 0."""
+    g, h, dg, dh, m = _steady(z, material)
+    return g, h, dg, dh, 0.5 * m, 0.5 * m
 
 
 @kernel(inline=True)

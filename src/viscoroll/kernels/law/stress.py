@@ -25,7 +25,7 @@ from ..bessel.ratios import ratio_k, ratio_r
 from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics.nodes import gauss
-from .series import Solved, amplitude, solve
+from .series import Solved, solve
 from .standard import Standard
 
 _NODES, _WEIGHTS = gauss(28)
@@ -86,7 +86,7 @@ def _shape_of_several(u, w, z, material):
     for i in range(series.a.size):
         a = series.a[i] * z
         _, r_complement = ratio_r(a)
-        shape += series.a[i] * amplitude(i, series, work) * _memory(u, w, a, r_complement)
+        shape += series.a[i] * work.X[i] * _memory(u, w, a, r_complement)
     return shape
 
 

@@ -44,27 +44,35 @@ def tabulated(alpha: float) -> Tabulated:
     return Tabulated(*standard.standard(alpha), quartet.empty_table(), Ends(False, 0.0, 0.0, 0.0))
 
 
-@kernel
-def _at_an_end(z, material):
-    """(g, h, m, b) where the table of several modes ends: to rounding, the first terms for z -> 0 and z -> infinity."""
-    T, ends = material.T_mean, material.ends
+@kernel(inline=True)
+def moment_at_an_end(z, T_mean, ends, material):
+    """What a table of m ends in, of the whole material or of one body."""
     if z < material.tau:
         half = 0.5 * material.alpha * z * z
         bracket = ends.log_weight - ends.weight * np.log(z)
-        g, m, dh = half * bracket, half * (bracket + 0.25 * ends.weight), 0.5 * (material.alpha - 1.0)
-        h = dh * z
-    else:
-        per = 0.125 / z
-        g, h = 0.5 * T - ends.squares * per, 0.5 * T + T * T * per
-        m, dh = T - 4.0 * ends.squares * per, -T * T * per / z
-    return g, h, m, m * np.sqrt(1.0 + 2.0 * h / z) / (1.0 + h / z + dh)
+        return half * (bracket + 0.25 * ends.weight)
+    return T_mean - 4.0 * ends.squares * (0.125 / z)
+
+
+@kernel
+def at_an_end(z, material):
+    """(g, h, g', h') where the table of several modes ends: to rounding, the first terms for z -> 0 and infinity."""
+    T, ends = material.T_mean, material.ends
+    if z < material.tau:
+        rise = material.alpha * z
+        bracket, dh = ends.log_weight - ends.weight * np.log(z), 0.5 * (material.alpha - 1.0)
+        return 0.5 * rise * z * bracket, dh * z, rise * (bracket - 0.5 * ends.weight), dh
+    per = 0.125 / z
+    return 0.5 * T - ends.squares * per, 0.5 * T + T * T * per, ends.squares * per / z, -T * T * per / z
 
 
 @kernel
 def _values(z, material):
     """(g, h, m, b) at z."""
     if material.ends.known:
-        return _at_an_end(z, material)
+        g, h, _, dh = at_an_end(z, material)
+        m = moment_at_an_end(z, material.T_mean, material.ends, material)
+        return g, h, m, m * np.sqrt(1.0 + 2.0 * h / z) / (1.0 + h / z + dh)
     g, h, _, _, m, _, b, _ = standard.at_contact(z, Standard(material.alpha, material.T_mean, material.tau))
     return g, h, m, b
 
@@ -133,6 +141,21 @@ def at_slide(z, material):
     """(g, h, h', m) at z."""
     g, h, m, _, _, dh, _, _ = quartet.slopes(material.table, _row(z, material), quartet.offset(z))
     return g, h, dh * offset_slope(z), m
+
+
+@kernel(inline=True)
+def at_rolling(z, material):
+    """(g, h, g', h', m of the half-space, m of the cylinder) at z."""
+    row, there = quartet.row_of(z, material.table)
+    if rarely(not there):
+        if material.ends.known:
+            g, h, dg, dh = at_an_end(z, material)
+            half = 0.5 * moment_at_an_end(z, material.T_mean, material.ends, material)
+            return g, h, dg, dh, half, half
+        row = _make(row, z, material)
+    g, h, m, _, dg, dh, _, _ = quartet.slopes(material.table, row, quartet.offset(z))
+    per = offset_slope(z)
+    return g, h, dg * per, dh * per, 0.5 * m, 0.5 * m
 
 
 @kernel(inline=True)
