@@ -1,7 +1,8 @@
 """Rolling resistance over speed: the humps of M(V), and between them the branches on which it can be inverted.
 
 kappa M is one function of kappa V for a material, and zeta, which falls as the speed rises, gives both
-(:mod:`kernels.law.steady_loop`).  A gain G on the speed turns M(V) = load into M(V) - G V = load: the same with another curve.
+(:mod:`..kernels.law.steady_loop`).  A gain G on the speed turns M(V) = load into M(V) - G V = load, which is the same
+with another curve.
 """
 
 from __future__ import annotations
@@ -14,10 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ParameterError
-from .material_tables import record
-from .prony import Prony
-from .scene import Scene
+from ..bodies import Bodies
+from ..errors import ParameterError
+from ..material_tables import record
+from ..prony import Prony
+from ..scene import Scene
+from .zeros import zeros
 
 #: zeta in the material's own time that is looked at, and of it octaves beyond the shortest and the longest time that
 #: are looked at closely: farther out the curve has one simple extremum at most
@@ -25,9 +28,6 @@ _LEAST, _MOST = -432, 432
 _MARGIN = 14
 #: nodes an octave, close and far; an extremum keeps others away by this part of zeta
 _CLOSE, _FAR, _APART = 16, 2, 1e-6
-_HALVINGS = 60
-#: where the slope comes near 0 and turns back, it is looked at this often with so many points
-_ZOOMS, _ZOOMED = 4, 33
 #: kappa times a load, and a gain over the own time, that the nodes reach
 LEAST_LOAD, MOST_LOAD = 1e-120, 1e80
 _GAINS = (1e-40, 1e8)
@@ -45,6 +45,38 @@ class Humps(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Law:
+    """The material of a scene in its own time.
+
+    material : an alpha or a series, of both bodies together.  bodies : the same, or both where they are not alike.
+    unit : the own time over T_ref.
+    """
+
+    material: float | Prony
+    bodies: float | Prony | Bodies
+    unit: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> Law:
+        """That of a scene."""
+        material, unit = scene.in_own_time()
+        if isinstance(scene.material, Bodies) and not scene.like_bodies and isinstance(material, Prony):
+            return cls(material, scene.material.in_own_time()[0], unit)
+        return cls(material, material, unit)
+
+    @property
+    def elastic(self) -> bool:
+        """Whether nothing relaxes."""
+        return self.material == 1.0
+
+    @property
+    def T_mean(self) -> float:
+        """M/V of slow rolling, over T_ref."""
+        own = self.material.T_mean if isinstance(self.material, Prony) else (self.material - 1.0) / self.material
+        return own * self.unit
+
+
+@dataclass(frozen=True)
 class Branches:
     """kappa (M - G V) over the speed: nodes by rising speed, and those between which it is monotone."""
 
@@ -59,7 +91,7 @@ class Branches:
     @property
     def curve(self) -> Any:
         """The nodes as kernels take them."""
-        from .kernels.law.steady_loop import Curve
+        from ..kernels.law.steady_loop import Curve
 
         return Curve(self.zeta, self.rise, self.flat, self.gain)
 
@@ -96,9 +128,11 @@ def humps(scene: Scene) -> Humps:
     for name in ("alpha", "kappa"):
         if np.ndim(getattr(scene, name)):
             raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")
-    material, unit = scene.in_own_time()
-    found = branches(material, 0.0)
-    V, M = found.speed[found.flat] / (scene.kappa * unit), found.rise[found.flat] / scene.kappa
+    law = Law.of(scene)
+    if law.elastic:
+        return Humps(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
+    found = branches(law.material, 0.0)
+    V, M = found.speed[found.flat] / (scene.kappa * law.unit), found.rise[found.flat] / scene.kappa
     return Humps(V, M, np.arange(V.size) % 2 == 0)
 
 
@@ -113,12 +147,9 @@ def branches(material: float | Prony, gain: float) -> Branches:
     """
     if gain and not _GAINS[0] <= abs(gain) <= _GAINS[1]:
         raise ParameterError("gain on V", f"{gain:g}", f"0, or of a size in [{_GAINS[0]:g}, {_GAINS[1]:g}]")
-    zeta = _grid(material)
-    slope = _rows(material, gain, zeta)[2]
-    zeta = np.unique(np.concatenate([zeta, *_zoomed(material, gain, zeta, slope)]))[::-1]
-    slope = _rows(material, gain, zeta)[2]
-    turns = np.flatnonzero(np.sign(slope[1:]) * np.sign(slope[:-1]) < 0.0)
-    flat = _zeros(material, gain, zeta[turns], zeta[turns + 1])
+    nodes = grid(material)
+    flat = np.exp2(zeros(lambda x: _rows(material, gain, np.exp2(x))[2], nodes))
+    zeta = np.exp2(nodes)
     for at in flat:
         zeta = zeta[np.abs(zeta - at) > _APART * at]
     whole = np.concatenate([zeta, flat])
@@ -129,54 +160,22 @@ def branches(material: float | Prony, gain: float) -> Branches:
     return Branches(zeta, speed, rise, is_flat, gain, ends[:-1].copy(), ends[1:].copy())
 
 
-def _grid(material: float | Prony) -> NDArray[np.float64]:
-    """zeta by rising speed, close where the material relaxes."""
+def grid(material: float | Prony) -> NDArray[np.float64]:
+    """Nodes of log2(zeta), ascending: close where the material relaxes."""
     if isinstance(material, Prony):
         shortest, longest = 1.0 / material.modes.a[-1], 1.0 / material.modes.b[0]
     else:
         shortest, longest = 1.0 / material, 1.0
     low, high = math.floor(math.log2(shortest)) - _MARGIN, math.ceil(math.log2(longest)) + _MARGIN
-    parts = (_MOST, high, _FAR), (high, low, _CLOSE), (low, _LEAST, _FAR)
-    steps = [np.linspace(start, stop, (start - stop) * per, endpoint=False) for start, stop, per in parts]
-    return np.exp2(np.concatenate([*steps, [_LEAST]]))
+    parts = (_LEAST, low, _FAR), (low, high, _CLOSE), (high, _MOST, _FAR)
+    steps = [np.linspace(start, stop, (stop - start) * per, endpoint=False) for start, stop, per in parts]
+    return np.concatenate([*steps, [_MOST]])
 
 
 def _rows(material: float | Prony, gain: float, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
     """kappa V, kappa (M - gain V) and its slope at zeta."""
-    from .kernels.law.steady_loop import curve_loop
+    from ..kernels.law.steady_loop import curve_loop
 
     out = np.empty((3, zeta.size))
     curve_loop(record(material), gain, np.ascontiguousarray(zeta), out)
     return out
-
-
-def _zoomed(
-    material: float | Prony, gain: float, zeta: NDArray[np.float64], slope: NDArray[np.float64]
-) -> list[NDArray[np.float64]]:
-    """Points between two extrema closer than the nodes: there the slope nears 0 and turns back."""
-    size, sign = np.abs(slope), np.sign(slope)
-    near = (size[1:-1] < size[:-2]) & (size[1:-1] < size[2:]) & (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
-    found = []
-    for n in np.flatnonzero(near) + 1:
-        high, low = zeta[n - 1], zeta[n + 1]
-        for _ in range(_ZOOMS):
-            points = np.geomspace(high, low, _ZOOMED)
-            values = _rows(material, gain, points)[2] * sign[n]
-            least = int(np.clip(np.argmin(values), 1, _ZOOMED - 2))
-            if values[least] <= 0.0:
-                found.append(points)
-                break
-            high, low = points[least - 1], points[least + 1]
-    return found
-
-
-def _zeros(
-    material: float | Prony, gain: float, high: NDArray[np.float64], low: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Where the slope is 0 between each pair of zeta."""
-    rising = _rows(material, gain, high)[2] > 0.0
-    for _ in range(_HALVINGS):
-        middle = np.sqrt(high) * np.sqrt(low)
-        before = (_rows(material, gain, middle)[2] > 0.0) == rising
-        high, low = np.where(before, middle, high), np.where(before, low, middle)
-    return np.sqrt(high) * np.sqrt(low)

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import broadcast_shape, checked
-from .drive import Feedback
-from .errors import ParameterError
-from .rolling_contact import refuse_overflow
-from .scene import Scene
+from ..checks import broadcast_shape, checked
+from ..drive import Feedback
+from ..errors import ParameterError
+from ..scene import Scene
+
+#: kappa |V| of a given speed
+FASTEST = 1e100
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ def loads_of(
     shape = broadcast_shape(**arrays)
     kappa = arrays["kappa"] / np.sqrt(cosine)
     if V is not None:
-        refuse_overflow(kappa, arrays["V"], 1e100)
+        _refuse_overflow(kappa, arrays["V"])
 
     def flat(array: Any) -> NDArray[np.float64]:
         return np.broadcast_to(array, shape).ravel()
@@ -99,6 +101,13 @@ def loads_of(
         shape, flat(arrays["force"] + tangent), flat(arrays["torque"]), Gains(f.V, f.omega, q.V, q.omega), given,
         flat(kappa), flat(arrays["mu"]), flat(arrays["j"]), flat(arrays["V"]) if V is not None else None,
     )  # fmt: skip
+
+
+def _refuse_overflow(kappa: NDArray, V: NDArray) -> None:
+    with np.errstate(over="ignore"):
+        largest = (kappa * np.abs(V)).max(initial=0.0)
+    if largest > FASTEST:
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {FASTEST:g}")
 
 
 def _feedback(name: str, value: ArrayLike | Feedback | None) -> Feedback:

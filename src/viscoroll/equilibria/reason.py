@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .steady_loads import Loads
+from .loads import Loads
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Reasons:
 
     shape : of the call.  count : equilibria.  total : force + torque at rest.  traction, speed : of the state that asks
     for the least friction, NaN where there is none.  mu : friction.  top : largest M, and its V; NaN with feedback.
-    elastic : whether nothing resists.  names, units : of the total, the moment and the speed; factors from dimensionless.
+    elastic : whether nothing resists.  words : total and moment, units of both and of speeds.  factors : to these.
     """
 
     shape: tuple[int, ...]
@@ -28,7 +28,7 @@ class Reasons:
     mu: NDArray[np.float64]
     top: tuple[NDArray[np.float64], NDArray[np.float64]]
     elastic: bool
-    words: tuple[str, str, str] = ("force + torque", "", "")
+    words: tuple[str, str, str, str] = ("force + torque", "rolling moment", "", "")
     factors: tuple[Any, Any] = (1.0, 1.0)
 
     def text(self) -> Any:
@@ -37,13 +37,14 @@ class Reasons:
         return np.array(found, dtype=object).reshape(self.shape) if self.shape else found[0]
 
     def _of(self, n: int) -> str:
-        name, of_load, of_speed = self.words
+        name, moment, of_load, of_speed = self.words
         load, speed = (np.broadcast_to(factor, self.count.shape)[n] for factor in self.factors)
         total, needed, mu = self.total[n] * load, self.traction[n], self.mu[n]
         if not np.isnan(needed):
             at = f"at V = {self.speed[n] * speed:.6g}{of_speed}"
             if abs(needed) == mu:
-                return f"a continuum: Q = {needed:.6g} is all of the friction, and {at} any omega beyond the stick limit is steady"
+                beyond = f"{at} any omega beyond the stick limit is steady"
+                return f"a continuum: Q = {needed:.6g} is all of the friction, and {beyond}"
             return f"Q = {needed:.6g} is needed {at}, beyond the friction mu = {mu:.6g}"
         if self.elastic:
             if self.total[n] == 0.0:
@@ -53,7 +54,7 @@ class Reasons:
         if np.isnan(M):
             return f"{name} with its feedback, {total:.6g}{of_load} at rest, meets the rolling moment at no speed"
         return (
-            f"{name} = {total:.6g}{of_load} exceeds the largest rolling moment {M * load:.6g}{of_load}"
+            f"{name} = {total:.6g}{of_load} exceeds the largest {moment} {M * load:.6g}{of_load}"
             f" (at V = {V * speed:.6g}{of_speed})"
         )
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .steady_loads import Loads
-from .steady_reason import Reasons
+from .loads import Loads
+from .reason import Reasons
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,12 @@ class States:
     @classmethod
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, rows: NDArray, unit: float) -> States:
         """From the rows of a kernel, in the material's own time and a frame where V > 0."""
-        from .kernels.law import steady_loop as row
+        from ..kernels.law import steady_loop as row
 
         slopes = unit * rows[[row.DQ_DV, row.DQ_DOMEGA, row.DM_HALF_SPACE, row.DM_CYLINDER]]
         return cls(
             load, sign * rows[row.V] / unit, rows[row.DELTA], sign * rows[row.Q], sign * rows[row.M_HALF_SPACE],
-            sign * rows[row.M_CYLINDER], rows[row.BETA], _eigenvalues(*slopes, loads, loads.j[load]),
+            sign * rows[row.M_CYLINDER], rows[row.BETA], _eigenvalues(slopes, loads, loads.j[load]),
         )  # fmt: skip
 
     @classmethod
@@ -121,7 +121,7 @@ class States:
     def none(cls) -> States:
         """No state."""
         empty = np.empty(0)
-        return cls(np.empty(0, np.int64), *[empty] * 6, np.empty((0, 2), np.complex128))
+        return cls(np.empty(0, np.int64), empty, empty, empty, empty, empty, empty, np.empty((0, 2), np.complex128))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
@@ -140,13 +140,15 @@ class States:
         )  # fmt: skip
 
 
-def _eigenvalues(
-    a: NDArray, b: NDArray, d_half_space: NDArray, d_cylinder: NDArray, loads: Loads, j: NDArray
-) -> NDArray[np.complex128]:
-    """Of (V, omega) over gamma t, the faster first; a, b: slopes of Q over V and omega.
+def _eigenvalues(slopes: NDArray, loads: Loads, j: NDArray) -> NDArray[np.complex128]:
+    """Of (V, omega) over gamma t, the faster first.
 
-    The determinant is put together so that a and b, which are large, do not cancel: b (M'(V) - gain)/j without a gain on omega.
+    slopes : a, b of Q over V and omega, then those of both moments over V.
+
+    The determinant is put together so that a and b, which are large, do not cancel: b (M'(V) - gain)/j without a gain
+    on omega.
     """
+    a, b, d_half_space, d_cylinder = slopes
     gains = loads.gains
     with np.errstate(invalid="ignore"):
         det = b * (d_half_space + d_cylinder - gains.V)
@@ -185,14 +187,16 @@ def packed(loads: Loads, states: States, count: NDArray, reasons: Reasons) -> St
     put_in = np.maximum(force * V, 0.0) + np.maximum(torque * omega, 0.0)
     speed = np.where(moving, np.abs(V), 1.0)
     coefficient = np.where(moving, (slip + half_space + cylinder) / speed, np.abs(Q * delta))
-    efficiency = np.divide(-taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
+    efficiency = np.divide(0.0 - taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
     loss = Loss(*map(spread, (slip, half_space, cylinder, coefficient, efficiency)))
     stable = np.all(states.eigenvalues.real < 0.0, axis=-1)
     grip = 1.0 - np.abs(Q) / loads.mu[number]
     return Steady(
-        *map(spread, (V, omega, delta, Q, M, states.M_half_space, states.M_cylinder, states.beta, grip)),
-        spread(stable, False), spread(states.eigenvalues), spread(force), spread(torque), loss,
-        count.reshape(loads.shape) if loads.shape else int(count[0]), reasons,
+        V=spread(V), omega=spread(omega), delta=spread(delta), Q=spread(Q), M=spread(M),
+        M_half_space=spread(states.M_half_space), M_cylinder=spread(states.M_cylinder), beta=spread(states.beta),
+        grip=spread(grip), stable=spread(stable, False), eigenvalues=spread(states.eigenvalues), force=spread(force),
+        torque=spread(torque), loss=loss, count=count.reshape(loads.shape) if loads.shape else int(count[0]),
+        reasons=reasons,
     )  # fmt: skip
 
 
