@@ -33,8 +33,7 @@ def add_commands(commands: Any) -> None:
         help="steady rolling under force, torque or slope",
         description="Every equilibrium of rolling under each load, a row each; where there is none, why.\n"
         f"Options are {NUMBERS}, all of one length or single.",
-        epilog="examples:\n  viscoroll steady --preset paper-section-5-rounded --slope 0deg:6deg:61\n"
-        "  viscoroll steady --preset paper-section-5-rounded --V 0.01:0.5:50:log --torque 0",
+        epilog="example:\n  viscoroll steady --preset paper-section-5-rounded --slope 0deg:6deg:61",
     )
     parser.add_argument("--force", type=numbers, help="over P, along V (default 0)")
     parser.add_argument("--torque", type=numbers, help="over P R, along omega (default 0)")

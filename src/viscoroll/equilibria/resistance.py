@@ -96,10 +96,14 @@ class Branches:
         return Curve(self.zeta, self.rise, self.flat, self.gain)
 
     def crossed(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which loads meet this branch; an extremum belongs to the branch that ends in it."""
+        """Which loads meet this branch; an extremum belongs to the branch that ends in it, and so do loads next to it."""
+        from ..kernels.law.steady_loop import SNAP
+
         first, last = self.rise[self.first[branch]], self.rise[self.last[branch]]
         inside = (load > min(first, last)) & (load < max(first, last))
-        return inside | (load == last) if self.flat[self.last[branch]] else inside
+        if self.flat[self.first[branch]]:
+            inside &= np.abs(load - first) > SNAP * np.abs(load)
+        return inside | (np.abs(load - last) <= SNAP * np.abs(load)) if self.flat[self.last[branch]] else inside
 
 
 def humps(scene: Scene) -> Humps:

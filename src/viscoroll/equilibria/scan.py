@@ -6,7 +6,7 @@ With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu where the contact slips fully
 
 Between the speeds where omega - V is 0 or the limit of stick, which are found first, R is smooth.  Where fw + qw = 0
-the sum fixes V, and R is an equation in omega.  Everything here is in the material's own time and in a frame where V > 0.
+the sum fixes V, and R is an equation in omega.  All here is in the own time of the material and in a frame where V > 0.
 """
 
 from __future__ import annotations

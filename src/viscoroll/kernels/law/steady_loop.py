@@ -32,6 +32,8 @@ ROWS = (
 V, DELTA, Q, M_HALF_SPACE, M_CYLINDER, BETA, DQ_DV, DQ_DOMEGA, DM_HALF_SPACE, DM_CYLINDER = range(len(ROWS))
 #: which of force and torque are given
 BOTH, TORQUE, FORCE = range(3)
+#: a load this close to an extremum, relative, is at it
+SNAP = 1e-15
 _MAX_STEPS = 40
 #: a step of Newton's iteration of this size in ln zeta, over the distance from an extremum, leaves its square
 _SQUARED = 1e-8
@@ -99,7 +101,7 @@ def _bracket(load, first, last, rise):
 def _crossing(load, n, curve, material):
     """zeta between the nodes n and n + 1 where the curve meets the load: Newton's iteration in a closed bracket."""
     high, low = curve.zeta[n], curve.zeta[n + 1]
-    if load == curve.rise[n + 1]:
+    if curve.flat[n + 1] and abs(load - curve.rise[n + 1]) <= SNAP * abs(load):
         return low
     part = (load - curve.rise[n]) / (curve.rise[n + 1] - curve.rise[n])
     top = 0.0
