@@ -348,6 +348,33 @@ SHARES_OF_MODES = 1e-13
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
 
+# --- steady rolling (test_steady.py) ---
+#: The tops of M(V), kappa V and kappa M, as printed by another program.
+STEADY_TABLE_V, STEADY_TABLE_M = 1e-6, 1e-8
+#: Speeds of humps known to two or three digits.
+STEADY_HUMPS = 4e-2
+STEADY_HUMP_V = 1e-11
+#: Speeds, times the root of what is missing to the top; moments and other identities.
+STEADY = 1e-12
+#: V M'(V) over M where it should be 0.
+STEADY_FLAT = 1e-10
+#: Zeros of a parabola 1e-5 apart: each is rounding of the values over its slope.
+STEADY_PAIR = 1e-11
+#: The next term of a small load, over (kappa V)^2.
+STEADY_SECOND_ORDER = 20.0
+#: What is left of an equation of motion at an equilibrium, over the grip: b of some hundred times rounding of omega.
+STEADY_RESIDUAL = 1e-12
+STEADY_BETA = 1e-9
+STEADY_DIFFERENCES = 1e-3
+STEADY_DETERMINANT = 1e-8
+STEADY_SLOW_RATE = 1e-4
+STEADY_FAINT = 1e-4
+STEADY_CONTROLLED = 1e-9
+STEADY_SCAN = 1e-10
+STEADY_SMALL_GAIN = 1e-6
+STEADY_GRIP = 1e-14
+STEADY_POWER = 1e-11
+
 # --- DMA to Prony (test_dma.py) ---
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
 DMA_EXACT = 1e-6

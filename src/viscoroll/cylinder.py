@@ -5,18 +5,22 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .checks import checked, number
+from .drive import Feedback
 from .errors import ParameterError
 from .importers import poisson
 from .material import Material, refuse_short_retardation
 from .pair import Pair, Plane, effective_modulus
 from .scene import Scene
 from .validity import Validity, coupling, inertia
+
+if TYPE_CHECKING:
+    from .equilibria import Steady
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 
@@ -263,6 +267,37 @@ class Cylinder:
             Both or neither moment, or M alone where the bodies differ: the cylinder's part is needed.
         """
         return self.load * self.R * (np.asarray(Q, float) + self._part(M, M_cylinder, "M_cylinder"))[()]
+
+    def steady(
+        self,
+        *,
+        force: ArrayLike | Feedback | None = None,
+        torque: ArrayLike | Feedback | None = None,
+        slope: ArrayLike | None = None,
+        V: ArrayLike | None = None,
+    ) -> Steady:
+        """Steady rolling under load as :func:`viscoroll.steady`, in SI units.
+
+        Parameters
+        ----------
+        force, torque : N and N m per m of length, numbers, arrays or a :class:`Feedback` with gains over m/s and rad/s.
+        slope : rad, > 0 drives along +V; the load is then P cos(slope), and P sin(slope) adds to ``force``.
+        V : m/s, in place of one of force and torque.
+
+        Returns
+        -------
+        Steady
+            ``V`` in m/s, ``omega`` in rad/s, ``force`` and ``torque`` as above, ``eigenvalues`` in 1/s, powers of
+            ``loss`` in W/m; ``Q``, ``M`` and its parts over load, and load times R, as everywhere.
+
+        Raises
+        ------
+        ParameterError, ConvergenceError
+            As :func:`viscoroll.steady`; values in messages are dimensionless, but those of ``reason``.
+        """
+        from .equilibria.si import steady_of
+
+        return steady_of(self, force, torque, slope, V)
 
     def _part(self, M: ArrayLike | None, own: ArrayLike | None, name: str) -> Any:
         """The moment of one body."""

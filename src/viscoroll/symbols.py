@@ -61,6 +61,16 @@ SYMBOLS = {
     ),
     "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
     "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/law/standard.py"),
+    "force": Symbol("f", "force along V over load", "finite", "", "equilibria/loads.py"),
+    "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "equilibria/loads.py"),
+    "slope": Symbol(r"\vartheta", "angle of the slope, radians", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
+    "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "equilibria/result.py"),
+    "rate_fast": Symbol(
+        r"\lambda_1", "rate of the faster small disturbance over gamma", "finite", "Eq. (22)", "equilibria/result.py"
+    ),
+    "rate_slow": Symbol(
+        r"\lambda_2", "rate of the slower small disturbance over gamma", "finite", "Eq. (22)", "equilibria/result.py"
+    ),
     "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/law/series.py"),
     "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/law/series.py"),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),

@@ -91,7 +91,7 @@ def meaning(name: str) -> str:
     if name.startswith("d") and "_d" in name:
         upper, _, lower = name[1:].partition("_d")
         return f"partial derivative of {upper} with respect to {lower}"
-    return {"full_slip": "1 where the contact slips fully"}.get(name, "")
+    return {"full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die"}.get(name, "")
 
 
 def _attributes(name: str) -> dict[str, Any]:

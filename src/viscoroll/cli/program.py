@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import ViscorollError
-from . import contact, ensemble, material, motion, plot, sensitivity, tables, warmup
+from . import contact, ensemble, material, motion, plot, sensitivity, steady, tables, warmup
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
@@ -43,7 +43,7 @@ def parser() -> Parser:
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     commands = program.add_subparsers(metavar="COMMAND", required=True)
-    for group in (contact, motion, ensemble, sensitivity, tables, material, plot, warmup):
+    for group in (contact, motion, steady, ensemble, sensitivity, tables, material, plot, warmup):
         group.add_commands(commands)
     return program
 

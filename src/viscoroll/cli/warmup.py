@@ -42,7 +42,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own."""
     import numpy as np
 
-    from .. import PAPER_SECTION_5, Bodies, Prony, Scene, contact, ensemble, roll, stress, tables
+    from .. import PAPER_SECTION_5, Bodies, Feedback, Prony, Scene, contact, ensemble, roll, steady, stress, tables
     from ..motion import flow
     from ..rolling_contact import WORTHWHILE
     from ..validation.direct_motion import roll_direct
@@ -60,6 +60,10 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "contact of a series, many states", lambda: contact(series, many, delta=0.01)
     yield "stress of a series", lambda: stress(series, 0.5, 0.5, delta=0.01)
     yield "moments of two bodies", lambda: contact(pair, 0.5, delta=0.01)
+    yield "steady rolling", lambda: steady(scene, force=0.01)
+    yield "steady rolling of two bodies", lambda: steady(pair, force=0.01)
+    yield "steady rolling with feedback", lambda: steady(scene, torque=Feedback(0.01, omega=-0.1))
+    yield "steady rolling at a speed", lambda: steady(scene, V=0.1, torque=0.0)
     yield "validity", lambda: scene.validity(0.5)
     yield "stress", lambda: stress(scene, 0.5, 0.5, delta=0.01)
     yield "roll", lambda: roll(scene, 1.0, 0.0, 1e-3)

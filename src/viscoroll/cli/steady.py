@@ -1,0 +1,77 @@
+"""``viscoroll steady``."""
+
+from __future__ import annotations
+
+import math
+from argparse import ArgumentTypeError, Namespace
+from typing import Any
+
+from .arguments import FORMATS, NUMBERS, add_output_option, add_scene_options, numbers, scene_of
+
+#: columns, as of :class:`viscoroll.equilibria.Steady`
+_COLUMNS = ("force", "torque", "V", "omega", "delta", "Q", "M", "beta", "grip", "stable")
+_TITLE = "Steady rolling of a viscoelastic cylinder"
+#: loads without an equilibrium that are told of
+_LINES = 3
+
+
+def angles(text: str) -> Any:
+    """Numbers in rad, or in degrees with ``deg`` behind them: 3deg, 0deg:6deg:61."""
+    if "deg" not in text:
+        return numbers(text)
+    low, *rest = text.split(":")
+    ends = [low, *rest[:1]]
+    if any(not end.endswith("deg") for end in ends):
+        raise ArgumentTypeError(f"{text!r} must be degrees throughout, as in 0deg:6deg:61")
+    return numbers(":".join([end.removesuffix("deg") for end in ends] + rest[1:])) * (math.pi / 180.0)
+
+
+def add_commands(commands: Any) -> None:
+    """Add the command to the program."""
+    parser = commands.add_parser(
+        "steady",
+        help="steady rolling under force, torque or slope",
+        description="Every equilibrium of rolling under each load, a row each; where there is none, why.\n"
+        f"Options are {NUMBERS}, all of one length or single.",
+        epilog="example:\n  viscoroll steady --preset paper-section-5-rounded --slope 0deg:6deg:61",
+    )
+    parser.add_argument("--force", type=numbers, help="over P, along V (default 0)")
+    parser.add_argument("--torque", type=numbers, help="over P R, along omega (default 0)")
+    parser.add_argument("--slope", type=angles, help="angle in rad, or as 3deg or 0deg:6deg:61; > 0 pushes along +V")
+    parser.add_argument("--V", type=numbers, help="the speed, in place of --force or --torque, which is found")
+    add_scene_options(parser)
+    add_output_option(parser, *FORMATS)
+    parser.set_defaults(run=_steady)
+
+
+def _steady(arguments: Namespace) -> int:
+    import numpy as np
+
+    from ..equilibria import steady
+    from .output import Sheet, as_dataset, deliver
+
+    scene = scene_of(arguments)
+    given = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
+    given = {name: np.atleast_1d(value) for name, value in given.items() if value is not None}
+    found = steady(scene, **given)
+    held = np.isfinite(found.V)
+    columns: dict[str, Any] = {}
+    if "slope" in given:
+        columns["slope"] = np.broadcast_to(given["slope"], np.shape(found.count))[np.nonzero(held)[0]]
+    columns |= {name: getattr(found, name)[held] for name in _COLUMNS}
+    rates = found.eigenvalues[held].real
+    columns |= {"rate_fast": rates[:, 0], "rate_slow": rates[:, 1]}
+    constants = {name: getattr(scene, name) for name in ("alpha", "kappa", "mu", "j")}
+    deliver(
+        arguments.output,
+        lambda: Sheet((_TITLE, *_without(found.reason)), constants, columns),
+        lambda: as_dataset(_TITLE, {"row": np.arange(rates.shape[0])}, columns, constants),
+    )
+    return 0
+
+
+def _without(reasons: Any) -> list[str]:
+    """A line for the first loads without an equilibrium, and how many more there are."""
+    lines = [f"load {n + 1}: {reason}" for n, reason in enumerate(reasons) if reason]
+    more = len(lines) - _LINES
+    return lines if more <= 0 else [*lines[:_LINES], f"{more} more loads have none"]

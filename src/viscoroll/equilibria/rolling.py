@@ -1,0 +1,126 @@
+"""Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
+
+Sum and difference of V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0 (over gamma t) give
+M(V) = force + torque, from which V, and Q = torque - M_cylinder, from which the creep.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..drive import Feedback
+from ..errors import ParameterError
+from ..scene import Scene
+from .loads import Loads, loads_of
+from .reason import reasons_of
+from .resistance import LEAST_LOAD, MOST_LOAD, Law, branches
+from .result import States, Steady, packed
+from .scan import scanned
+from .solve import crossings, lengths, states_at
+
+
+def steady(
+    scene: Scene,
+    *,
+    force: ArrayLike | Feedback | None = None,
+    torque: ArrayLike | Feedback | None = None,
+    slope: ArrayLike | None = None,
+    V: ArrayLike | None = None,
+) -> Steady:
+    """Steady rolling: every pair of V and omega that force and torque hold, and whether it is stable.
+
+    Everything is dimensionless.  Arguments, kappa, mu and j broadcast against each other.
+
+    Parameters
+    ----------
+    scene : alpha or material, kappa, mu and j are used.
+    force : over P, along V; torque : over P R, along omega; default 0.  Either may be a :class:`Feedback`.
+    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta): tan(theta) adds to
+        ``force``, kappa becomes kappa/sqrt(cos(theta)), and forces and torques are over that load.
+    V : the speed, in place of one of force and torque, which is found (a slope alone counts as the force given).
+
+    Returns
+    -------
+    Steady
+        Of one load exactly its equilibria by rising |V|, none to many.  Of arrays of loads a last axis in
+        addition, padded with NaN, and their ``count``.  ``reason`` says why there is none.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite input, a slope out of range, V together with both or neither of force and torque or
+        with a feedback, an array of alphas, shapes that do not broadcast, kappa |force + torque| in (0, 1e-120) or
+        above 1e80.
+    ConvergenceError
+        If a solve hits its iteration cap.
+
+    Notes
+    -----
+    For |force + torque| below the largest M(V) there are two equilibria a hump, on its rising and its falling
+    branch; they need |Q| < mu.  force + torque = 0: V = 0 alone, where ``delta`` and ``eigenvalues`` are those
+    of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic bodies without a drive; Q = mu
+    exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan of V, some 0.05 s a load.
+
+    Stability is that of (V, omega) under force and torque as named, also where V was given.  Without feedback
+    det = (dQ/domega) M'(V)/j, so the falling branch of a hump is a saddle.
+
+    Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
+    to that over ``grip`` (``tests/test_steady.py``).
+    """
+    loads = loads_of(scene, force, torque, slope, V)
+    law = Law.of(scene)
+    gained = bool(loads.gains.V or loads.gains.omega)
+    if loads.given is not None:
+        rolling = _at_speed(law, loads)
+    elif loads.gains.omega:
+        rolling = scanned(law, loads)
+    else:
+        rolling = _under_load(law, loads)
+    neutral = law.elastic and loads.given is None and not gained
+    states = States.joined(rolling, States.at_rest(loads, _resting(loads, neutral), law.T_mean))
+    held = states.held()
+    number = np.bincount(held.load, minlength=loads.mu.size)
+    top = (math.nan, math.nan) if gained or law.elastic else _top(law)
+    return packed(loads, held, number, reasons_of(loads, number, states, top, neutral))
+
+
+def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:
+    """Loads that leave the cylinder at rest, if friction does; where ``neutral`` it need not be at rest under them."""
+    if loads.V is not None:
+        return np.flatnonzero(loads.V == 0.0)
+    total = loads.force + loads.torque
+    return np.flatnonzero((total == 0.0) & ((np.abs(loads.torque) > loads.mu) | (not neutral)))
+
+
+def _top(law: Law) -> tuple[float, float]:
+    """The largest kappa M, and kappa V there."""
+    found = branches(law.material, 0.0)
+    n = int(np.argmax(found.rise))
+    return float(found.rise[n]), float(found.speed[n]) / law.unit
+
+
+def _under_load(law: Law, loads: Loads) -> States:
+    """All states of rolling under loads without a gain on omega."""
+    gain, total = loads.gains.V / law.unit, loads.kappa * (loads.force + loads.torque)
+    size = np.abs(total)
+    wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
+    if wrong.any():
+        allowed = f"0, or of a size in [{LEAST_LOAD:g}, {MOST_LOAD:g}]"
+        raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
+    if not gain and law.elastic:
+        return States.none()
+    load, sign, zeta = crossings(law, gain, total)
+    return states_at(law, loads, load, sign, zeta)
+
+
+def _at_speed(law: Law, loads: Loads) -> States:
+    """The states at given speeds but 0, where one of force and torque is found."""
+    assert loads.V is not None
+    load = np.flatnonzero(loads.V)
+    speed = loads.V[load]
+    zeta = lengths(law, loads.kappa[load] * np.abs(speed) * law.unit)
+    return replace(states_at(law, loads, load, np.sign(speed), zeta), V=speed)

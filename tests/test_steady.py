@@ -1,0 +1,613 @@
+"""Steady rolling under load: humps, all equilibria, stability, feedback, limits of existence, and bad input."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import partial
+
+import mpmath as mp
+import numpy as np
+import pytest
+import tolerances as tol
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.cli import main
+from viscoroll.equilibria.zeros import zeros
+from viscoroll.reference.series import functions, rates
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+KAPPA, MU = SCENE.kappa, SCENE.mu
+#: alpha, kappa V and kappa M at the largest M, from another program
+TOPS = {
+    1.2: (0.525651, 0.02828775), 2.0: (0.543497, 0.09864525), 5.0: (0.608982, 0.19385991),
+    11.0: (0.684028, 0.24659784), 21.5: (0.743392, 0.27401809), 81.5: (0.815493, 0.29897582),
+    1000.0: (0.848366, 0.30820235),
+}  # fmt: skip
+TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
+#: a hump a mode, of ever smaller height
+TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
+UNLIKE = vr.Bodies(TWO, vr.Prony([1.0, 3.0], [0.3, 3e-4]), 0.3)
+
+
+def series_scene(material, kappa: float = 10.0, mu: float = 0.2, j: float = 0.5) -> vr.Scene:
+    return vr.Scene(material=material, kappa=kappa, mu=mu, j=j)
+
+
+def residuals(scene: vr.Scene, s) -> tuple[np.ndarray, np.ndarray]:
+    """V' and j omega' over gamma t at what was found, by the contact law."""
+    c = vr.contact(scene, s.V, omega=s.omega, fields=("Q", "M_half_space", "M_cylinder"))
+    return c.Q - c.M_half_space + s.force, -c.Q - c.M_cylinder + s.torque
+
+
+# --- humps ---
+
+
+def test_tops_of_one_mode():
+    for alpha, (kappa_V, kappa_M) in TOPS.items():
+        hump = vr.humps(vr.Scene(alpha, KAPPA, MU))
+        assert hump.top.tolist() == [True]
+        assert hump.V[0] * KAPPA == pytest.approx(kappa_V, abs=tol.STEADY_TABLE_V)
+        assert hump.M[0] * KAPPA == pytest.approx(kappa_M, abs=tol.STEADY_TABLE_M)
+
+
+def test_humps_of_several_modes():
+    two = vr.humps(series_scene(TWO, kappa=1.0))
+    np.testing.assert_allclose(two.V, [0.194, 2.2, 9.1], rtol=tol.STEADY_HUMPS)
+    np.testing.assert_allclose(two.M, [0.151, 0.081, 0.096], rtol=tol.STEADY_HUMPS)
+    ten = vr.humps(series_scene(TEN))
+    assert ten.top.tolist() == [True, False] * 9 + [True]
+    slopes = vr.contact(series_scene(TEN), ten.V, delta=0.0, fields=("M", "dM_dV"))
+    np.testing.assert_allclose(slopes.M, ten.M, rtol=tol.STEADY)
+    assert (np.abs(slopes.dM_dV * ten.V) <= tol.STEADY_FLAT * ten.M).all()
+    assert vr.humps(vr.Scene(1.0, KAPPA, MU)).V.size == 0
+
+
+def test_humps_do_not_follow_the_unit_of_time():
+    one, other = vr.humps(series_scene(TWO)), vr.humps(series_scene(TWO.slower(37.0)))
+    np.testing.assert_allclose(other.V * 37.0, one.V, rtol=tol.STEADY_HUMP_V)
+    np.testing.assert_allclose(other.M, one.M, rtol=tol.STEADY)
+
+
+def test_zeros_finds_close_pairs():
+    x = np.linspace(-1.0, 1.0, 30)
+    for apart in (1e-2, 1e-3, 1e-5):
+        found = zeros(lambda x, apart=apart: (x - 0.1234) ** 2 - apart**2, x)
+        np.testing.assert_allclose(found, [0.1234 - apart, 0.1234 + apart], atol=tol.STEADY_PAIR)
+    assert zeros(lambda x: (x - 0.1234) ** 2 + 1e-6, x).size == 0
+
+
+# --- one mode ---
+
+
+def test_small_loads():
+    """M = c V (1 - (1 + 1/alpha) kappa |V| + O(V^3)): V1 = g/c and its next term, whatever kappa and mu."""
+    for alpha in (1.5, 11.0, 200.0):
+        g = np.array([1e-2, 1e-3]) / KAPPA * (alpha - 1.0) / alpha
+        s, V0 = vr.steady(vr.Scene(alpha, KAPPA, 50.0), torque=g), g * alpha / (alpha - 1.0)
+        error = s.V[:, 0] / (V0 * (1.0 + (1.0 + 1.0 / alpha) * KAPPA * V0)) - 1.0
+        assert abs(error[1]) < tol.STEADY_SECOND_ORDER * (KAPPA * V0[1]) ** 2
+        assert error[0] / error[1] == pytest.approx(100.0, rel=0.1)
+    tiny = vr.steady(SCENE, force=1e-100)
+    assert tiny.V[0] == pytest.approx(1.1e-100, rel=tol.STEADY)
+
+
+def test_equilibria_by_the_contact_law():
+    rng = np.random.default_rng(1)
+    for alpha in (1.0 + 1e-6, 1.3, 11.0, 1e3):
+        scene = vr.Scene(alpha, KAPPA, 0.05, j=0.3)
+        top = vr.humps(scene).M[0]
+        g, q = rng.uniform(-1.1, 1.1, 200) * top, rng.uniform(-0.1, 0.1, 200)
+        s = vr.steady(scene, force=g - q, torque=q)
+        count = np.where(np.abs(g) < top, 2, 0) * (np.abs(2.0 * q - g) < 0.1)
+        np.testing.assert_array_equal(s.count, count)
+        s = vr.steady(scene, force=(g - q)[count > 0], torque=q[count > 0])
+        for off in residuals(scene, s):
+            assert (np.abs(off) <= tol.STEADY_RESIDUAL / np.minimum(s.grip, 1.0)).all()
+        assert (s.V * g[count > 0, None] > 0.0).all()
+        assert (np.abs(s.V[:, 0]) < np.abs(s.V[:, 1])).all()
+        assert (s.stable == [True, False]).all()
+        c = vr.contact(scene, s.V, omega=s.omega)
+        np.testing.assert_allclose(c.beta, s.beta, rtol=0.0, atol=tol.STEADY_BETA)
+        np.testing.assert_allclose(1.0 - np.abs(c.Q) / scene.mu, s.grip, rtol=0.0, atol=tol.STEADY_BETA)
+
+
+def test_signs():
+    """Force and torque turned around turn V, omega, Q and M around."""
+    one, other = vr.steady(SCENE, force=0.02, torque=0.03), vr.steady(SCENE, force=-0.02, torque=-0.03)
+    for name in ("V", "omega", "Q", "M"):
+        np.testing.assert_array_equal(getattr(other, name), -getattr(one, name))
+    for name in ("delta", "beta", "eigenvalues", "stable"):
+        np.testing.assert_array_equal(getattr(other, name), getattr(one, name))
+
+
+# --- accuracy ---
+
+
+def exact_curve(E: list[float], tau: list[float]):
+    """ln zeta -> (kappa V, kappa M) in extended precision."""
+    with mp.workdps(100):
+        known = rates(mp, E, tau)
+
+    def of(x):
+        z = mp.exp(x)
+        f = functions(mp, known, z)
+        u = 1 / (2 * z * mp.sqrt(1 + 2 * f.h / z))
+        return u, u * f.m
+
+    return of
+
+
+def exact_speed(curve, near, far, load):
+    """kappa V at which kappa M is ``load``, between an extremum and beyond; bisection in ln zeta."""
+    for _ in range(110):
+        middle = (near + far) / 2
+        near, far = (middle, far) if (curve(middle)[1] - load) * (curve(near)[1] - load) > 0 else (near, middle)
+    return curve((near + far) / 2)[0]
+
+
+@pytest.mark.parametrize(("E", "tau"), [([10.0], [1.0 / 11.0]), ([2.0, 6.0], [1.0, 1e-2])])
+def test_speeds_against_extended_precision(E, tau):
+    """Also close to the fold: an error of 1e-16 of the load is one of its square root there."""
+    with mp.workdps(35):
+        curve = exact_curve(E, tau)
+        scene = vr.Scene(material=vr.Prony(E, tau), kappa=KAPPA, mu=10.0)
+        hump = vr.humps(scene)
+        start = mp.log(mp.mpf(1) / (2 * mp.mpf(hump.V[0] * KAPPA)))
+        x_top = mp.findroot(
+            lambda x: mp.diff(lambda y: curve(y)[1], x, h=mp.mpf(10) ** -12), (start - 0.3, start), tol=1e-18
+        )
+        u_top, top = curve(x_top)
+        assert abs(hump.V[0] * KAPPA / u_top - 1) < tol.STEADY_HUMP_V
+        assert abs(hump.M[0] * KAPPA / top - 1) < tol.STEADY
+        bottom = vr.contact(scene, hump.V[1], delta=0.0).zeta if hump.V.size > 1 else 0.01
+        ends = x_top + 4, mp.log(mp.mpf(bottom))
+        for short in (0.4, 1e-2, 1e-5, 1e-9, 1e-12):
+            force = float(top * (1 - mp.mpf(short)) / mp.mpf(KAPPA))
+            load = mp.mpf(force) * mp.mpf(KAPPA)
+            s = vr.steady(scene, force=force)
+            for n in range(2):
+                exact = exact_speed(curve, x_top, ends[n], load) / mp.mpf(KAPPA)
+                assert abs(mp.mpf(s.V[n]) / exact - 1) * mp.sqrt(short) < tol.STEADY, (short, n)
+
+
+def test_creep_against_extended_precision():
+    """(1 - |Q|/mu) H(zeta) = H(eta): from slight creep to friction all but spent."""
+    E, tau = [2.0, 6.0], [1.0, 1e-2]
+    with mp.workdps(100):
+        known = rates(mp, E, tau)
+    with mp.workdps(35):
+
+        def F_H(z):
+            f = functions(mp, known, z)
+            return z + f.g, z * z + 2 * z * f.h
+
+        for part in (1e-12, 1e-6, 1e-3, 0.3, 0.9, 1.0 - 1e-6, 1.0 - 1e-10):
+            for mu in (0.2 / part,):
+                scene = vr.Scene(material=vr.Prony(E, tau), kappa=KAPPA, mu=mu)
+                s = vr.steady(scene, V=0.3, torque=0.2 + vr.contact(scene, 0.3, delta=0.0, fields="M").M / 2.0)
+                zeta = mp.findroot(lambda z: F_H(z)[1] * (2 * mp.mpf(KAPPA) * mp.mpf(0.3)) ** 2 - 1, 0.5)
+                rest = 1 - mp.mpf(s.Q[0]) / mp.mpf(mu)
+                F, H = F_H(zeta)
+                eta = mp.findroot(lambda z: F_H(z)[1] / (rest * H) - 1, zeta * mp.sqrt(rest))
+                delta = mp.mpf(mu) * mp.mpf(0.3) * (F - F_H(eta)[0])
+                assert abs(mp.mpf(s.delta[0]) / delta - 1) < tol.STEADY / s.grip[0], part
+                assert abs(mp.mpf(s.beta[0]) * zeta / eta - 1) < tol.STEADY / s.grip[0], part
+
+
+# --- several modes, two bodies ---
+
+
+def brute(scene: vr.Scene, force: float, torque: float, speeds: np.ndarray) -> int:
+    """Equilibria with V > 0 by changes of sign of M(V) - force - torque, friction sufficing."""
+    c = vr.contact(scene, speeds, delta=0.0, fields=("M", "M_cylinder"))
+    off = c.M - force - torque
+    turns = off[1:] * off[:-1] < 0.0
+    return int((turns & (np.abs(torque - c.M_cylinder[1:]) < scene.mu)).sum())
+
+
+def test_all_equilibria_of_random_materials():
+    rng = np.random.default_rng(2)
+    for n in range(12):
+        modes = int(rng.integers(1, 6))
+        series = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
+        other = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
+        scene = series_scene(series if n % 2 else vr.Bodies(series, other, rng.uniform(0.1, 0.9)), mu=0.03)
+        speeds = np.geomspace(1e-7, 1e12, 40001)
+        top = vr.humps(scene).M.max()
+        for _ in range(8):
+            g, q = rng.uniform(0.0, 1.1) * top, rng.uniform(-0.03, 0.03)
+            s = vr.steady(scene, force=g - q, torque=q)
+            within = (s.V > speeds[0]) & (s.V < speeds[-1])
+            assert within.sum() == brute(scene, g - q, q, speeds)
+            for off in residuals(scene, s):
+                assert (np.abs(off) <= tol.STEADY_RESIDUAL / np.minimum(s.grip, 1.0)).all()
+
+
+def test_ten_humps():
+    scene = series_scene(TEN)
+    hump = vr.humps(scene)
+    for g in (0.5 * hump.M.min(), 0.5 * (hump.M[2] + hump.M[4]), 0.99 * hump.M[0]):
+        s = vr.steady(scene, force=g)
+        assert s.count == 2 * (np.diff(np.sign(np.concatenate([[0.0], hump.M, [0.0]]) - g)) > 0.0).sum()
+        assert s.stable.tolist() == [True, False] * (s.count // 2)
+        np.testing.assert_array_equal(s.M, [g] * s.count)
+    at_top = vr.steady(scene, force=hump.M[0])
+    assert at_top.count == 1
+    assert at_top.V[0] == pytest.approx(hump.V[0], rel=tol.SCENE)
+    assert vr.steady(scene, force=hump.M[0] * (1.0 + 1e-14)).count == 0
+    at_bottom = vr.steady(scene, force=hump.M[1])
+    assert at_bottom.count == 3
+    assert at_bottom.V[1] == pytest.approx(hump.V[1], rel=tol.SCENE)
+
+
+def test_bodies_swapped():
+    """Which body is the wheel: force and torque, V and omega change roles; at small creep V stays, Q turns around."""
+    swapped = vr.Bodies(UNLIKE.half_space, UNLIKE.cylinder, 1.0 - UNLIKE.share)
+    one = vr.steady(series_scene(UNLIKE), force=0.004, torque=0.003)
+    other = vr.steady(series_scene(swapped), force=0.003, torque=0.004)
+    np.testing.assert_allclose(other.V, one.V, rtol=tol.BODIES)
+    np.testing.assert_allclose(other.Q, -one.Q, rtol=tol.BODIES)
+    np.testing.assert_allclose(other.M_cylinder, one.M_half_space, rtol=tol.BODIES)
+    np.testing.assert_allclose(other.delta, -one.delta, rtol=tol.BODIES)
+
+
+def test_unlike_bodies_need_friction_of_their_own():
+    """Q = torque - M_cylinder: a rigid cylinder driven by torque alone needs all of it, a rigid base none."""
+    steel = vr.Prony.elastic()
+    rigid_base = vr.steady(series_scene(vr.Bodies(TWO, steel, 1.0)), torque=0.008)
+    np.testing.assert_allclose(rigid_base.Q, 0.0, atol=tol.STEADY_BETA)
+    rigid_wheel = vr.steady(series_scene(vr.Bodies(steel, TWO, 0.0)), torque=0.008)
+    np.testing.assert_allclose(rigid_wheel.Q, 0.008, rtol=tol.STEADY)
+    assert vr.steady(series_scene(vr.Bodies(steel, TWO, 0.0), mu=0.007), torque=0.008).count == 0
+
+
+# --- stability ---
+
+
+def jacobian(scene: vr.Scene, V: float, omega: float, force, torque) -> np.ndarray:
+    """Of (V', omega') over gamma t by central differences of the contact law."""
+
+    def rate(V, omega):
+        c = vr.contact(scene, V, omega=omega, fields=("Q", "M_half_space", "M_cylinder"))
+        f = force.value + force.V * V + force.omega * omega
+        q = torque.value + torque.V * V + torque.omega * omega
+        return np.array([c.Q - c.M_half_space + f, (-c.Q - c.M_cylinder + q) / scene.j])
+
+    step = 1e-6 * abs(omega - V) + 1e-9 * abs(V)
+    columns = [
+        (rate(V + dV, omega + dw) - rate(V - dV, omega - dw)) / (2.0 * step) for dV, dw in ((step, 0), (0, step))
+    ]
+    return np.stack(columns, axis=1)
+
+
+def test_eigenvalues_by_differences():
+    for scene in (SCENE.replace(j=0.3), series_scene(TWO), series_scene(UNLIKE, j=2.0)):
+        g = 0.6 * vr.humps(scene).M[0]
+        for force, torque in (
+            (vr.Feedback(0.3 * g), vr.Feedback(0.7 * g)),
+            (vr.Feedback(0.3 * g, V=-0.02), vr.Feedback(0.7 * g, V=0.01)),
+            (vr.Feedback(0.3 * g, V=-0.02, omega=0.01), vr.Feedback(0.7 * g, V=0.01, omega=-0.05)),
+        ):
+            s = vr.steady(scene, force=force, torque=torque)
+            assert s.count >= 1
+            for n in range(s.count):
+                numeric = np.linalg.eigvals(jacobian(scene, s.V[n], s.omega[n], force, torque))
+                numeric = numeric[np.argsort(numeric.real)]
+                np.testing.assert_allclose(s.eigenvalues[n], numeric, rtol=tol.STEADY_DIFFERENCES)
+                assert s.stable[n] == (numeric.real < 0.0).all()
+
+
+def test_determinant_is_b_times_the_slope_of_M():
+    """Hence the falling branch of every hump is a saddle, of unlike bodies too."""
+    for scene in (SCENE, series_scene(TEN), series_scene(UNLIKE, j=1.7)):
+        s = vr.steady(scene, force=0.3 * vr.humps(scene).M[0])
+        c = vr.contact(scene, s.V, omega=s.omega, fields=("dQ_domega", "dM_dV"))
+        det = s.eigenvalues.prod(axis=-1)
+        np.testing.assert_allclose(det.real, c.dQ_domega * c.dM_dV / scene.j, rtol=tol.STEADY_DETERMINANT)
+        assert (det.imag == 0.0).all()
+        assert ((c.dM_dV < 0.0) == ~s.stable).all()
+
+
+def test_slow_rate_of_slow_rolling():
+    """(1 + j) V' = -M' V at last."""
+    s = vr.steady(SCENE, force=1e-6)
+    assert s.eigenvalues[0, 1].real == pytest.approx(-(10.0 / 11.0) / 1.5, rel=tol.STEADY_SLOW_RATE)
+    rest = vr.steady(SCENE)
+    assert (rest.V.tolist(), rest.omega.tolist(), rest.stable.tolist()) == ([0.0], [0.0], [True])
+    assert rest.eigenvalues[0].real == pytest.approx([-np.inf, -(10.0 / 11.0) / 1.5])
+
+
+def test_focus_where_friction_is_all_but_spent():
+    """Complex eigenvalues: |Q| -> mu, j < 1."""
+    hump = vr.humps(SCENE)
+    f = 0.5 * hump.M[0]
+    s = vr.steady(SCENE.replace(mu=0.5 * f * (1.0 + 1e-8), j=0.1), force=f)
+    assert s.grip[0] == pytest.approx(1e-8, rel=1e-6)
+    first, second = s.eigenvalues[0]
+    assert second == first.conjugate()
+    assert first.imag != 0.0
+    assert s.stable.tolist() == [True, False]
+
+
+# --- slope ---
+
+
+def critical_slope(scene: vr.Scene) -> float:
+    """tan(theta) = M_top of kappa/sqrt(cos(theta)), by bisection of the definition."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        theta = 0.5 * (low + high)
+        top = vr.humps(scene.replace(kappa=scene.kappa / math.sqrt(math.cos(theta)))).M[0]
+        low, high = (theta, high) if math.tan(theta) < top else (low, theta)
+    return 0.5 * (low + high)
+
+
+def test_critical_slope():
+    theta = critical_slope(SCENE)
+    assert math.degrees(theta) == pytest.approx(4.8, abs=0.05)
+    s = vr.steady(SCENE, slope=theta * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
+    assert s.count.tolist() == [2, 0]
+    assert s.reason[0] == ""
+    assert "exceeds the largest rolling moment" in s.reason[1]
+    turned = SCENE.replace(kappa=SCENE.kappa / np.sqrt(np.cos(0.05)))
+    np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned, force=np.tan(0.05)).V)
+
+
+def test_terminal_speed_of_faint_slopes():
+    """V1 = g/c: in SI tan(theta) (R/T_epsilon) alpha/(alpha - 1), whatever load, modulus and friction."""
+    cylinder = vr.PAPER_CYLINDER
+    alpha = cylinder.T_epsilon / cylinder.T_sigma
+    for m, E, mu in ((35.5, 2.3e5, 0.2), (5.0, 1e6, 0.5)):
+        own = vr.Cylinder(0.1, m, E, 0.49, cylinder.T_epsilon, cylinder.T_sigma, mu)
+        s = own.steady(slope=1e-6)
+        limit = 1e-6 * cylinder.R / cylinder.T_epsilon * alpha / (alpha - 1.0)
+        assert s.V[0] == pytest.approx(limit, rel=tol.STEADY_FAINT)
+
+
+# --- prescribed speeds ---
+
+
+def test_given_speed_finds_the_other_load():
+    V = np.array([-0.5, -0.1, 0.0, 0.1, 0.5])
+    towed = vr.steady(SCENE, V=V, torque=0.0)
+    np.testing.assert_array_equal(towed.V[:, 0], V)
+    np.testing.assert_allclose(towed.force, towed.M, rtol=tol.STEADY, atol=tol.STEADY)
+    np.testing.assert_allclose(towed.Q, -0.5 * towed.M, rtol=tol.STEADY, atol=tol.STEADY)
+    driven = vr.steady(SCENE, V=V, force=0.01)
+    np.testing.assert_allclose(driven.torque, driven.M - 0.01, rtol=tol.STEADY)
+    again = vr.steady(SCENE, force=0.01, torque=driven.torque[3, 0])
+    assert again.V[0] == pytest.approx(0.1, rel=tol.STEADY)
+    assert again.omega[0] == pytest.approx(driven.omega[3, 0], rel=tol.STEADY)
+    up = vr.steady(SCENE, V=0.1, slope=-0.02)
+    assert up.torque[0] == pytest.approx(up.M[0] + math.tan(0.02), rel=tol.STEADY)
+    assert vr.steady(SCENE, V=0.1, torque=-0.3).count == 0
+
+
+# --- feedback ---
+
+
+def test_speed_controller_holds_the_falling_branch():
+    """q = q0 - K V: det = b (M' + K)/j, so V2 is held iff K > -M'(V2)."""
+    V = vr.steady(SCENE, torque=0.04).V[1]
+    fall = -vr.contact(SCENE, V, delta=0.0, fields="dM_dV").dM_dV
+    for K, held in ((0.99 * fall, False), (1.01 * fall, True)):
+        s = vr.steady(SCENE, torque=vr.Feedback(0.04 + K * V, V=-K))
+        n = int(np.argmin(np.abs(s.V - V)))
+        assert s.V[n] == pytest.approx(V, rel=tol.STEADY_CONTROLLED)
+        assert s.stable[n] == held
+
+
+def test_gain_that_unsettles_rest():
+    c = 10.0 / 11.0
+    for share, stable in ((0.99, True), (1.01, False)):
+        s = vr.steady(SCENE, force=vr.Feedback(0.0, V=0.6 * share * c), torque=vr.Feedback(0.0, V=0.4 * share * c))
+        assert s.V[0] == 0.0
+        assert s.stable[0] == stable
+        # M < c V: the gain alone holds a speed where it is below c
+        assert s.count == (3 if stable else 1)
+
+
+def brute_feedback(scene: vr.Scene, force: vr.Feedback, torque: vr.Feedback, V: np.ndarray) -> int:
+    """Equilibria with V > 0: omega by the sum of the equations, changes of sign of what is left of the first."""
+    total, gain_V, gain = force.value + torque.value, force.V + torque.V, force.omega + torque.omega
+    M = vr.contact(scene, V, delta=0.0, fields="M").M
+    omega = (M - gain_V * V - total) / gain
+    c = vr.contact(scene, V, omega=omega, fields=("Q", "M_half_space"))
+    off = c.Q - c.M_half_space + force.value + force.V * V + force.omega * omega
+    return int((off[1:] * off[:-1] < 0.0).sum())
+
+
+def test_feedback_on_omega_misses_none():
+    rng = np.random.default_rng(3)
+    V, several = np.geomspace(1e-5, 1e6, 400001), 0
+    for n in range(24):
+        scene = (SCENE, series_scene(TWO, mu=0.02), series_scene(UNLIKE, mu=0.02))[n % 3]
+        size = vr.humps(scene).M[0]
+        gains = rng.uniform(-1.0, 1.0, 4) * 10.0 ** rng.uniform(-2.0, 0.0)
+        force = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[0], omega=gains[1])
+        torque = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[2], omega=gains[3])
+        s = vr.steady(scene, force=force, torque=torque)
+        for off in residuals(scene, s):
+            assert (np.abs(off) <= tol.STEADY_SCAN * (1.0 + np.abs(s.omega))).all()
+        within = (s.V > V[0]) & (s.V < V[-1])
+        assert within.sum() == brute_feedback(scene, force, torque, V), n
+        several += s.count > 2
+    assert several > 2
+
+
+def test_feedback_on_omega_tends_to_none():
+    """Small gains: the equilibria of the loads alone, and beyond them those that only a gain makes."""
+    bare = vr.steady(SCENE, torque=0.05)
+    gained = vr.steady(SCENE, torque=vr.Feedback(0.05, omega=-1e-9))
+    np.testing.assert_allclose(gained.V[:2], bare.V, rtol=tol.STEADY_SMALL_GAIN)
+    assert gained.stable[:2].tolist() == [True, False]
+    assert gained.V[2] > 1e6
+
+
+def test_opposite_gains_on_omega():
+    """fw = -qw: V as without, and up to three slips at each, those of full slip included."""
+    s = vr.steady(SCENE, force=vr.Feedback(0.05, omega=-0.3), torque=vr.Feedback(0.0, omega=0.3))
+    bare = vr.steady(SCENE, force=0.05)
+    assert set(np.round(s.V, 12)) == set(np.round(bare.V, 12))
+    assert s.count == 4
+    assert (np.sort(s.grip)[:3] == 0.0).all()
+    for off in residuals(SCENE, s):
+        assert (np.abs(off) <= tol.STEADY_SCAN).all()
+    elastic = vr.steady(vr.Scene(1.0, KAPPA, MU), torque=vr.Feedback(0.3, omega=-1.0))
+    assert elastic.V == pytest.approx([0.3])
+
+
+# --- existence ---
+
+
+def test_why_there_is_none():
+    top = vr.humps(SCENE)
+    reason = vr.steady(SCENE, force=0.05, torque=0.07).reason
+    assert reason == (
+        f"force + torque = 0.12 exceeds the largest rolling moment {top.M[0]:.6g} (at V = {top.V[0]:.6g})"
+    )
+    assert "beyond the friction mu = 0.2" in vr.steady(SCENE, force=0.3, torque=-0.28).reason
+    assert "beyond the friction" in vr.steady(SCENE, force=0.3, torque=-0.3).reason
+    assert "at no speed" in vr.steady(SCENE, force=-0.3, torque=vr.Feedback(5.0, omega=1.0)).reason
+    si = vr.PAPER_CYLINDER.steady(slope=0.1).reason
+    assert re.fullmatch(r"force \+ torque/R = \S+ N/m exceeds .* over R \S+ N/m \(at V = \S+ m/s\)", si)
+
+
+def test_continua_are_said_to_be_one():
+    edge = vr.steady(SCENE, force=-0.175, torque=0.225)
+    assert edge.count == 0
+    assert edge.reason.startswith("a continuum: Q = 0.2")
+    elastic = vr.Scene(1.0, KAPPA, MU)
+    assert vr.steady(elastic).reason.startswith("a continuum")
+    assert vr.steady(elastic, force=-0.1, torque=0.1).reason.startswith("a continuum")
+    assert "elastic" in vr.steady(elastic, force=0.1).reason
+    assert "friction" in vr.steady(elastic, force=-0.3, torque=0.3).reason
+    assert vr.steady(elastic, V=1.0, torque=0.1).force == pytest.approx([-0.1])
+
+
+def test_edge_of_grip():
+    """|torque - force| < 2 mu for like bodies; there the stick zone closes."""
+    for short in (1e-3, 1e-9):
+        s = vr.steady(SCENE, force=0.025 - MU * (1.0 - short), torque=0.025 + MU * (1.0 - short))
+        np.testing.assert_allclose(s.grip, short, rtol=tol.STEADY_GRIP / short)
+        star = vr.contact(SCENE, s.V, delta=0.0, fields="delta_star").delta_star
+        assert (s.delta < star).all()
+        np.testing.assert_allclose(s.delta, star, rtol=2.0 * math.sqrt(short))
+    assert vr.steady(SCENE, force=0.025 - 1.001 * MU, torque=0.025 + 1.001 * MU).count == 0
+
+
+# --- losses ---
+
+
+def test_losses_are_what_the_loads_put_in():
+    rng = np.random.default_rng(4)
+    for scene in (SCENE, series_scene(UNLIKE)):
+        g = rng.uniform(-0.9, 0.9, 50) * vr.humps(scene).M[0]
+        q = rng.uniform(-0.3, 0.3, 50) * scene.mu
+        s = vr.steady(scene, force=g - q, torque=q)
+        put_in, lost = s.force * s.V + s.torque * s.omega, s.loss.slip + s.loss.half_space + s.loss.cylinder
+        held = np.isfinite(s.V)
+        np.testing.assert_allclose(lost[held], put_in[held], rtol=tol.STEADY_POWER)
+        assert (s.loss.slip[held] >= 0.0).all()
+        np.testing.assert_allclose(s.loss.coefficient[held], (lost / np.abs(s.V))[held], rtol=tol.STEADY)
+    pulling = vr.steady(SCENE, force=-0.06, torque=0.1)
+    expected = 0.06 * pulling.V / (0.1 * pulling.omega)
+    np.testing.assert_allclose(pulling.loss.efficiency, expected, rtol=tol.STEADY)
+    turned = vr.steady(SCENE, force=0.1, torque=-0.06)
+    np.testing.assert_allclose(turned.loss.efficiency, 0.06 * turned.omega / (0.1 * turned.V), rtol=tol.STEADY)
+    assert (vr.steady(SCENE, torque=0.05).loss.efficiency == 0.0).all()
+    assert math.isnan(vr.steady(SCENE).loss.efficiency[0])
+
+
+def test_si_units():
+    cylinder, scene = vr.PAPER_CYLINDER, vr.PAPER_SECTION_5
+    theta = np.array([0.01, 0.03])
+    s = cylinder.steady(force=-2.0, torque=0.15, slope=theta)
+    P, R = cylinder.load * np.cos(theta), cylinder.R
+    bare = vr.steady(scene, force=-2.0 / P, torque=0.15 / (P * R), slope=theta)
+    np.testing.assert_allclose(s.V, cylinder.V_to_si(bare.V), rtol=tol.SCENE)
+    np.testing.assert_allclose(s.omega, cylinder.omega_to_si(bare.omega), rtol=tol.SCENE)
+    np.testing.assert_allclose(s.torque, 0.15, rtol=tol.SCENE)
+    np.testing.assert_allclose(s.force[:, 0], cylinder.load * np.sin(theta) - 2.0, rtol=tol.STEADY)
+    lost = s.loss.slip + s.loss.half_space + s.loss.cylinder
+    np.testing.assert_allclose(lost, s.force * s.V + s.torque * s.omega, rtol=tol.STEADY_POWER)
+    # the slow rate of faint loads: c/(T_epsilon (1 + j)) gamma
+    faint = cylinder.steady(slope=1e-6).eigenvalues[0, 1].real
+    rate = cylinder.load * cylinder.T_epsilon / (cylinder.m * R) * (1.0 - 1.0 / scene.alpha) / 1.5
+    assert faint == pytest.approx(-rate, rel=tol.STEADY_SLOW_RATE)
+    damped = cylinder.steady(torque=vr.Feedback(2.0, V=-100.0, omega=-10.0))
+    np.testing.assert_allclose(damped.torque, 2.0 - 100.0 * damped.V - 10.0 * damped.omega, rtol=tol.STEADY)
+
+
+# --- arrays ---
+
+
+def test_many_loads_are_single_calls_bit_for_bit():
+    scene = series_scene(TEN)
+    f = np.random.default_rng(5).uniform(-0.011, 0.011, 100_000)
+    s = vr.steady(scene, force=f)
+    assert s.V.shape == (100_000, s.count.max())
+    assert (np.isfinite(s.V).sum(axis=1) == s.count).all()
+    for n in range(0, f.size, 997):
+        one, held = vr.steady(scene, force=f[n]), slice(0, s.count[n])
+        assert one.count == s.count[n]
+        for name in ("V", "omega", "delta", "Q", "M", "beta", "grip", "eigenvalues", "stable"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(s, name)[n][held])
+
+
+def test_shapes_broadcast():
+    scene = SCENE.replace(mu=np.array([0.01, 0.2]))
+    s = vr.steady(scene, force=np.array([[0.01], [0.05], [0.2]]))
+    assert s.V.shape == (3, 2, 2)
+    assert s.eigenvalues.shape == (3, 2, 2, 2)
+    assert s.count.tolist() == [[2, 2], [0, 2], [0, 0]]
+    assert s.reason.shape == (3, 2)
+    assert vr.steady(SCENE, force=np.empty(0)).V.shape == (0, 0)
+
+
+# --- bad input ---
+
+
+def test_refusals():
+    refuse = partial(partial, vr.steady, SCENE)
+    refused(refuse(force=math.nan), "force = nan")
+    refused(refuse(torque="fast"), "torque = 'fast'")
+    refused(refuse(slope=[0.1, 0.5 * math.pi]), "slope = 1.5708", "(-pi/2, pi/2)")
+    refused(refuse(slope=-2.0), "slope = -2")
+    refused(refuse(V=0.1), "V given", "one of force, torque, slope")
+    refused(refuse(V=0.1, force=0.0, torque=0.0), "V, force, torque given", "two of them")
+    refused(refuse(V=0.1, torque=vr.Feedback(0.0, V=1.0)), "torque = a feedback")
+    refused(refuse(V=math.inf, torque=0.0), "V = inf")
+    refused(refuse(V=1e200, torque=0.0), "kappa |V| = 2.91e+200")
+    refused(refuse(force=[0.1, 0.2], torque=[0.1, 0.2, 0.3]), "force (2,)", "torque (3,)")
+    refused(refuse(force=1e-200), "kappa (force + torque)", "1e-120")
+    refused(refuse(torque=vr.Feedback(0.1, V=1e20)), "gain on V = 1e+20")
+    refused(partial(vr.steady, vr.Scene([2.0, 3.0], KAPPA, MU)), "alpha = an array")
+    refused(partial(vr.humps, SCENE.replace(kappa=np.ones(2))), "kappa = an array")
+    refused(partial(vr.Feedback, math.nan), "value = nan")
+    refused(partial(vr.Feedback, 0.0, V=[1.0, 2.0]), "V = [1.0, 2.0]", "a single number")
+    refused(partial(vr.Feedback, 0.0, omega=math.inf), "omega = inf")
+    controlled = partial(vr.PAPER_CYLINDER.steady, torque=vr.Feedback(1.0, V=-1.0), slope=[0.0, 0.1])
+    refused(controlled, "slope = an array", "torque is a feedback")
+
+
+# --- the command ---
+
+
+def test_command(capsys, tmp_path):
+    scene = ["--preset", "paper-section-5-rounded"]
+    assert main(["steady", *scene, "--slope", "0deg:6deg:7", "-o", str(tmp_path / "s.csv")]) == 0
+    rows = np.genfromtxt(tmp_path / "s.csv", delimiter=",", names=True)
+    s = vr.steady(SCENE, slope=np.radians(np.linspace(0.0, 6.0, 7)))
+    np.testing.assert_array_equal(rows["V"], s.V[np.isfinite(s.V)])
+    np.testing.assert_array_equal(rows["stable"] == 1, s.stable[np.isfinite(s.V)])
+    assert main(["steady", *scene, "--slope", "3deg,4deg"]) == 2
+    assert main(["steady", *scene, "--force", "0.12"]) == 0
+    assert "load 1: force + torque = 0.12 exceeds" in capsys.readouterr().out
+    assert main(["steady", *scene, "--V", "0.1", "--torque", "0"]) == 0
+    assert "angular velocity" in capsys.readouterr().out
+    for words in (["--slope", "90deg"], ["--V", "1"], ["--slope", "1:3deg:2"], ["--force", "nan"]):
+        assert main(["steady", *scene, *words]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
