@@ -24,6 +24,7 @@ from .records import (
     KINK,
     NO_EVENT,
     REST,
+    REVERSED,
     SLOW,
     STOP,
     STUCK,
@@ -31,6 +32,7 @@ from .records import (
     Case,
     Clock,
     Frame,
+    Notes,
     State,
     Work,
 )  # fmt: skip
@@ -120,25 +122,32 @@ def switch(event, state, frame, clock, case):
 
 
 @kernel
+def _still_regime(clock, case):
+    """The regime of V = omega = 0."""
+    still = Frame(False, 1.0, 1.0, 0.0, False)
+    return HELD if load_at(clock.tau, clock.piece, still, case).brake > 0.0 else REST
+
+
+@kernel
 def stay(clock, case):
     """At V = omega = 0: (state, frame, clock) once the cylinder departs, or the piece of the drive ends."""
-    state, end = State(0.0, 0.0), piece_end(clock.piece, case)
+    state = State(0.0, 0.0)
     kind, frame, b = depart(clock.tau, clock.piece, case)
     if kind == STAYS:
-        brakes = load_at(clock.tau, clock.piece, frame, case).brake > 0.0
         until = leaving_time(clock.tau, clock.piece, case)
         closed = until == case.tau[case.tau.size - 1]
-        clock = put_still(until, closed, HELD if brakes else REST, clock, case)
+        clock = put_still(until, closed, _still_regime(clock, case), clock, case)
         return False, state, frame, clock
     return True, State(0.0, b if kind == STICKS else 0.0), frame, clock
 
 
 @kernel
-def note(regime, turns, clock, case, switches):
-    """Note a change of regime; how many there were."""
-    if turns < switches.shape[0]:
-        switches[turns, 0], switches[turns, 1] = clock.tau / case.gamma, regime
-    return turns + 1
+def note(what, noted, clock, case):
+    """Note a change of regime or of the sign of V; how many there were."""
+    switches = case.notes.switches
+    if noted < switches.shape[0]:
+        switches[noted, 0], switches[noted, 1] = clock.tau / case.gamma, what
+    return noted + 1
 
 
 @kernel
@@ -162,17 +171,18 @@ def coasts(state, frame, clock, case):
 
 
 @kernel
-def follow(moving, state, frame, clock, case, switches):
-    """From phase to phase until outputs end: (status, clock, switches, onset time, rest time)."""
-    onset_time, turns, fresh, regime = np.nan, 0, False, regime_of(frame) if moving else -1
+def follow(moving, state, frame, clock, case):
+    """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
+    onset_time, turns, noted, fresh = np.nan, 0, 0, False
+    regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
     while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
             return STEP_LIMIT, clock, turns, onset_time, np.nan
         if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
             clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps)
             frame = at_new_piece(state, frame, clock, case) if moving else frame
-        event = NO_EVENT
-        if moving and clock.tau >= case.tau[case.tau.size - 1]:
+        event, direction = NO_EVENT, frame.direction
+        if moving and clock.tau >= end:
             clock = put_to_end(state, frame, clock, case)
         elif not moving:
             moving, state, frame, clock = stay(clock, case)
@@ -181,37 +191,39 @@ def follow(moving, state, frame, clock, case, switches):
             return DONE if np.isnan(rest_time) else RESTED, clock, turns, onset_time, rest_time
         else:
             event, state, frame, clock = phase(fresh, state, frame, clock, case)
-        fresh = False
+        fresh = event == EDGE and frame.slips
         if event == STUCK:
             return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
         if event == SLOW:
+            note(REST, noted, clock, case)
             rest_time = clock.tau / case.gamma
-            clock = put_still(case.tau[case.tau.size - 1], True, REST, clock, case)
-            return RESTED, clock, note(REST, turns, clock, case, switches), onset_time, rest_time
+            return RESTED, put_still(end, True, REST, clock, case), turns + 1, onset_time, rest_time
         if event != NO_EVENT:
-            fresh = event == EDGE and frame.slips
             state, frame, still = switch(event, state, frame, clock, case)
             moving = not still
-        now = regime_of(frame) if moving else regime
-        if now != regime:
-            turns = note(now, turns, clock, case, switches) if regime >= 0 else turns
+        if moving and regime >= 0 and frame.direction != direction:
+            noted = note(REVERSED, noted, clock, case)
+        now = regime_of(frame) if moving else _still_regime(clock, case)
+        if now != regime and (moving or event == NO_EVENT):
+            if regime >= 0:
+                turns, noted = turns + 1, note(now, noted, clock, case)
             onset_time = clock.tau / case.gamma if fresh and np.isnan(onset_time) else onset_time
             regime = now
     return DONE, clock, turns, onset_time, np.nan
 
 
 @kernel(allocates=True)
-def integrate(scene, drive, gamma, V0, omega0, t, limits, out_switches):
+def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
 
-    ``out_switches`` : outputs, (OUTPUTS, n), and the changes of regime, (k, 2).
+    ``sink`` : room for the outputs, (OUTPUTS, n), for the changes of regime, and for the ends of panels (Notes).
     """
-    out, switches = out_switches
+    out, switches, ends = sink
     tau = np.empty(t.size)
     for i in range(tau.size):
         tau[i] = t[i] * gamma
     work = Work(np.empty((ROWS, N + 1)), np.empty((10, N + 2)), np.empty((2 * N, 2 * N)), np.empty(2 * N), np.zeros(PATHS))
-    case = Case(scene, drive, limits, tau, out, gamma, work)
+    case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0)
     state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False
     if V0 != 0.0 or omega0 != 0.0:
@@ -221,5 +233,5 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, out_switches):
         return NOT_CONVERGED, 0, 0, np.nan, np.nan
     if moving:
         frame = at_new_piece(state, frame, clock, case)
-    status, clock, turns, onset_time, rest_time = follow(moving, state, frame, clock, case, switches)
+    status, clock, turns, onset_time, rest_time = follow(moving, state, frame, clock, case)
     return status, clock.steps, turns, onset_time, rest_time

@@ -40,11 +40,12 @@ def _drive_of(drives, gamma, i, pieces):
 
 
 @kernel(allocates=True, seconds=15)
-def drive_loop(batch, drives, t, limits, rows, out, info, switches):
+def drive_loop(batch, drives, t, limits, rows, out, info, notes):
     """All motions of a batch; ``rows`` picks output quantities into out[quantity, motion, time].
 
     Records come as plain tuples: it takes numba microseconds to tell the type of a record.
     """
+    switches, ends = notes
     motions, drives, limits = Batch(*batch), Drives(*drives), Limits(*limits)
     one, pieces = np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
     for i in range(out.shape[1]):
@@ -53,5 +54,5 @@ def drive_loop(batch, drives, t, limits, rows, out, info, switches):
         scene, gamma, V0, omega0 = motion_of(motions, i)
         gains = _drive_of(drives, gamma, i, pieces)
         drive = Drive(pieces, gains, drives.prescribed)
-        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, switches))
+        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, switches, ends))
         keep(i, rows, one, result, out, info)

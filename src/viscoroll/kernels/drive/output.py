@@ -91,6 +91,16 @@ def _terms(panel, nodes, powers):
 
 
 @kernel
+def _note_end(end, case):
+    """Note where a panel ends."""
+    ends = case.notes.ends
+    if ends.size > 0:
+        ends[0] += 1.0
+        if ends[0] < ends.size:
+            ends[int(ends[0])] = end / case.gamma
+
+
+@kernel
 def pass_panel(end, panel, frame, clock, case):
     """Outputs before the ``end`` of a panel, and what adds up over it; the clock behind.
 
@@ -104,6 +114,7 @@ def pass_panel(end, panel, frame, clock, case):
             share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
             _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
             at += 1
+    _note_end(end, case)
     for n in range(PATHS):
         way = risen(PATH + n, panel, case.work.nodes)
         case.work.totals[n] += frame.direction * way if n < 2 else way

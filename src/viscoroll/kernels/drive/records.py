@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 
 #: regimes, as outputs give them: omega = 0 while V is not, and V = omega = 0 by a brake, beside those of a free motion
 FULL, PARTIAL, REST, LOCKED, HELD = range(5)
+#: stands among the changes of regime for a change of the sign of V
+REVERSED = -1
 #: what ends a phase: the edge of the stick zone, delta = 0, V = 0, omega = 0 under a brake, both speeds below a
 #: threshold, the brake lets go; in the order of the rows of event functions; and no panel that is short enough
 EDGE, KINK, TURN, STOP, SLOW, FREED, NO_EVENT, STUCK = range(8)
@@ -91,6 +93,14 @@ class Work(NamedTuple):
     totals: Any
 
 
+class Notes(NamedTuple):
+    """Room for what is noted on the way: (t, regime behind) of the switches, REVERSED among them, (k, 2), and the ends
+    of panels, the first of which is how many there were."""
+
+    switches: Any
+    ends: Any
+
+
 class Case(NamedTuple):
     """All that stays the same from start to end of a motion; times in tau."""
 
@@ -100,4 +110,5 @@ class Case(NamedTuple):
     tau: Any
     out: Any
     gamma: float
+    notes: Notes
     work: Work
