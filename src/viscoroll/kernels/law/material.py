@@ -4,8 +4,9 @@
 
 The last is that of the slow manifold: D = zeta - eta is proportional to it in slow rolling.
 
-All that the law and the motion know of a material they read here, from one of two kinds of record:
-:class:`Standard`, an alpha, whose functions are Bessel ratios; and :class:`Tabulated`, polynomials in a table.
+All that the law and the motion know of a material they read here, from one of these records:
+:class:`Standard`, an alpha, whose functions are Bessel ratios; and :class:`Tabulated`, polynomials in a table, or
+:class:`Filled`, where each motion has its own series.
 Which one a call has is settled when it is compiled.  Where many states or motions each have an alpha of their own
 the ratios serve, and where one material serves all, the table.
 """
@@ -18,6 +19,7 @@ from ..compile.choice import by_record
 from ..compile.jit import kernel
 from . import standard as ratios
 from . import tabulated as table
+from .each import Each, Filled, of_each
 from .standard import Standard, standard
 from .tabulated import Tabulated
 
@@ -29,7 +31,8 @@ class Own(NamedTuple):
 
 
 def _either(name: str, at: int) -> Callable:
-    return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, getattr(table, name)))
+    tabulated = getattr(table, name)
+    return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, tabulated), (Filled, tabulated))
 
 
 #: (g, h) at z; 0 for z <= 0 (no stick zone)
@@ -59,7 +62,7 @@ def _own(material, i):
 
 
 #: the material of state or motion i, from what is given for all
-material_of = by_record(0, (Tabulated, _shared), (Own, _own))
+material_of = by_record(0, (Tabulated, _shared), (Own, _own), (Each, of_each))
 
 
 @kernel
