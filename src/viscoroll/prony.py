@@ -133,6 +133,11 @@ class Prony:
         return of_creep(J, T, self._alpha)
 
     @property
+    def by_creep(self) -> bool:
+        """Whether it was given by its creep compliance."""
+        return self._creep is not None
+
+    @property
     def alpha(self) -> float:
         """Instantaneous over long-time modulus."""
         return self._alpha

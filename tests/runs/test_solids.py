@@ -99,6 +99,19 @@ def test_the_digest_follows_the_material(read):
     assert read(EXAMPLE).digest != read(EXAMPLE.replace("1.5,", "1.6,")).digest
 
 
+def test_a_material_of_a_file(read, tmp_path):
+    """The run is another one where the file is."""
+    text = EXAMPLE[: EXAMPLE.index("E = {")] + 'file = "rubber.nc"\n\n' + EXAMPLE[EXAMPLE.index("[start]") :]
+    digests = set()
+    for E in (3e6, 4e6):
+        rubber = vr.Material(E, 0.5, vr.Prony([0.3, 1.5], [2e-2, 1e-5]))
+        rubber.to_netcdf(tmp_path / "rubber.nc")
+        run = read(text)
+        digests.add(run.digest)
+        assert run.inputs.fixed["pair"].cylinder == rubber
+    assert len(digests) == 2
+
+
 def test_store_and_export(read, tmp_path):
     """The same files for any number of threads; strengths are kept with each motion."""
     run, store = read(SCENE), tmp_path / "results.zarr"

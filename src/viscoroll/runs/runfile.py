@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from ..config import preset
 from ..errors import ParameterError
 from ..material_file import SECTIONS as MATERIALS
+from ..material_file import as_toml, materials_of
 from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
 from ..sections import as_struct, fault, read, refuse_unknown
@@ -173,7 +174,9 @@ def read_run(path: str | PathLike[str]) -> Run:
     materials = {name: content[name] for name in MATERIALS if name in content}
     inputs = read_inputs(Path(path), sections, base, correlation, materials)
     times = _checked(path, settings, inputs)
-    digest = _digest(settings, times, sections | materials, base, correlation, inputs)
+    stored = materials_of(path, {name: given for name, given in materials.items() if "file" in given})
+    described = sections | materials | {f"{name} stored": as_toml(found) for name, found in stored.items()}
+    digest = _digest(settings, times, described, base, correlation, inputs)
     return Run(Path(path).read_text(encoding="utf-8"), settings, inputs, times, digest)
 
 
