@@ -278,6 +278,8 @@ MOMENT = 1e-12
 SI_UNITS = 1e-13
 #: the same of a series, at rtol 1e-10, another unit of time; measured 4.6e-15.
 SI_SERIES = 3e-14
+#: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
+SI_SERIES_RTOL = 1e-7
 
 # --- motions in extended precision (test_reference_motions.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against

@@ -7,6 +7,7 @@ the fields that were named.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -16,8 +17,9 @@ from .blocks import elements, run_blocks
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .material_tables import inverses, record, series
+from .material_tables import inverses, record, records, series
 from .prony import Prony
+from .prony_array import PronyArray
 from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
@@ -31,6 +33,8 @@ _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 #: slopes over a speed, which follows the unit of time
 _PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
+#: where each has a material of its own, which costs tens of microseconds and some kilobytes
+_BLOCK_EACH = 1 << 8
 #: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
 WORTHWHILE = 4096
 _FASTEST = 1e300
@@ -147,6 +151,8 @@ def contact(
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
     one = _one_material(scene, material, names)
+    if isinstance(one, PronyArray):
+        arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
     halved = {} if isinstance(one, Bodies) else {name: _HALVES[name] for name in names if name in _HALVES}
     solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
@@ -158,9 +164,9 @@ def contact(
     return Values({name: _shaped(name, rows[name], shape) for name in names})
 
 
-def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | Bodies | None:
-    """What serves all states: a series; bodies that differ, where parts of M are asked for; or, None, alphas."""
-    if not isinstance(material, Prony):
+def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
+    """What serves all states: a series or many; bodies that differ, where parts of M are asked for; or, None, alphas."""
+    if not isinstance(material, Prony | PronyArray):
         return None
     if scene.like_bodies or not _HALVES.keys() & set(names):
         return material
@@ -213,7 +219,8 @@ def _compute(
 ) -> NDArray:
     """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
 
-    ``material``: a series or bodies in place of the alphas, or None.
+    ``material``: a series or bodies in place of the alphas, or None; or many series, with their numbers in place of
+    the alphas.
     """
     from .kernels.law.state import ROWS, Need, States
 
@@ -237,7 +244,7 @@ def _compute(
             failures.append(start)
         out[:, start:stop] = found
 
-    run_blocks(work, count, _BLOCK)
+    run_blocks(work, count, _BLOCK_EACH if isinstance(material, PronyArray) else _BLOCK)
     if failures:
         raise ConvergenceError(f"contact: an iteration hit its cap near element {min(failures)} (method {method!r})")
     return out
@@ -249,6 +256,8 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
     from .kernels.law.lockstep import TOGETHER
     from .kernels.law.material import Own
 
+    if isinstance(material, PronyArray):
+        return lambda numbers, *rest: _loop_each(records(material, numbers.astype(np.int64)), *rest)
     if method == "direct":
         from .kernels.printed.loop import direct_loop
 
@@ -262,6 +271,26 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
         return lambda alphas, *rest: state_loop(record(material), *rest)
     loop = state_loop if count < TOGETHER else contact_loop
     return lambda alphas, *rest: loop(Own(alphas), *rest)
+
+
+def _loop_each(given: tuple, states: Any, need: Any, rows: NDArray, out: NDArray, start: int, stop: int) -> Any:
+    """``state_loop`` of states with a material each, each in its own time."""
+    from .kernels.law.contact_loop import state_loop
+    from .kernels.law.state import ROWS
+
+    record, unit = given
+    states = states._replace(V=_times(states.V, unit))
+    if states.creep_is_omega:
+        states = states._replace(creep=_times(states.creep, unit))
+    status = state_loop(record, states, need, rows, out, start, stop)
+    for n, row in enumerate(rows):
+        if ROWS[row] in _PER_SPEED:
+            out[n] *= unit
+    return status
+
+
+def _times(values: NDArray, unit: NDArray) -> NDArray:
+    return flattened(values * unit, np.broadcast_shapes(values.shape, unit.shape))
 
 
 def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
@@ -310,15 +339,18 @@ def stress(
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
+    many = isinstance(scene.material, PronyArray)
     material, unit = scene.in_own_time()
     given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
     given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta")}
-    given |= {"zeta": np.asarray(state.zeta) / unit, "alpha": scene.alpha}
+    given |= {"zeta": np.asarray(state.zeta) / unit}
+    given |= {"alpha": np.arange(len(material), dtype=np.float64) if many else scene.alpha}
     given |= {"mirror": mirror, "sign": np.sign(state.delta) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
     x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
     modes = series(material) if isinstance(material, Prony) else None
+    loop = _stress_each(material) if many else lambda alphas, *rest: stress_loop(modes or Own(alphas), *rest)
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 
@@ -326,8 +358,24 @@ def stress(
         mirrored = mirror_of(start, stop) * x_of(start, stop)
         mirrored.flags.writeable = False  # as all that a kernel reads, see elements
         points = Points(mirrored, *(part(start, stop) for part in others))
-        stress_loop(modes or Own(alpha_of(start, stop)), points, p[start:stop], tau[start:stop], 0, stop - start)
+        loop(alpha_of(start, stop), points, p[start:stop], tau[start:stop], 0, stop - start)
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
     return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)})
+
+
+def _stress_each(materials: PronyArray) -> Callable:
+    """``stress_loop`` over points with a material each, which lie together where they share one."""
+    from .kernels.law.material import Own
+    from .kernels.law.stress_loop import stress_loop
+
+    def loop(numbers: NDArray, points: Any, p: NDArray, tau: NDArray, start: int, stop: int) -> None:
+        for first, last in pairwise([start, *(1 + np.flatnonzero(np.diff(numbers))), stop]):
+            own, unit = materials[int(numbers[min(first, numbers.size - 1)])].in_own_time()
+            some = points._make(part[first:last] if part.size > 1 else part for part in points)
+            some = some._replace(zeta=flattened(some.zeta / unit, some.zeta.shape))
+            given = series(own) if own.E.size else Own(flattened(np.ones(1), (1,)))
+            stress_loop(given, some, p[first:last], tau[first:last], 0, last - first)
+
+    return loop

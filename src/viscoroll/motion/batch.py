@@ -13,9 +13,11 @@ from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
+from ..prony_array import PronyArray
 from ..rolling_contact import flattened
 from ..scene import Scene
 from .checks import SPEED_RANGE, controls, like_bodies, output_times, start_speeds
+from .each import roll_each, to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 
 if TYPE_CHECKING:
@@ -204,7 +206,7 @@ def ensemble(
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    shared = None if np.ndim(scene.alpha) else material
+    shared = None if scene.material is None and np.ndim(scene.alpha) else material
     limits = rtol, threshold * unit, max_steps
     steps = _integrate_others(answer, flat, shared, times / unit, limits, rows, bool(flow.any()), threads, bar)
     if unit != 1.0:
@@ -228,8 +230,7 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
 
 def _in_units(answer: Answer, rows: tuple[int, ...], unit: float) -> Answer:
     """An answer with time in units of ``unit`` counted in T_ref."""
-    for n, row in enumerate(rows):
-        answer.out[n] /= {"V": unit, "omega": unit}.get(FIELDS[row], unit * unit if FIELDS[row] in LOSSES else 1.0)
+    to_unit(answer.out, tuple(FIELDS[row] for row in rows), unit)
     return answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
 
 
@@ -239,8 +240,10 @@ def _integrate_others(
 ) -> NDArray[np.int64]:  # fmt: skip
     """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each.
 
-    ``material`` : the one that they share, or None where each has an alpha of its own.
+    ``material`` : the one that they share, those that they have each, or None where each has an alpha of its own.
     """
+    names = tuple(FIELDS[row] for row in rows)
+    picked, losses = np.array(rows, np.int64), _among(names, *LOSSES)
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -251,10 +254,16 @@ def _integrate_others(
         if not left.size:
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
-        one = Own(alpha) if material is None else record(material)
-        out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
-        given = (one, *inputs), times, limits, np.array(rows, np.int64), out, info
-        _roll_all(given, _among(tuple(FIELDS[row] for row in rows), *LOSSES), left.size)
+        if isinstance(material, PronyArray):
+            which = np.minimum(left, len(material) - 1)
+            out, info = roll_each(
+                material, which, inputs, times, limits, names,
+                lambda given, limits, *found: _roll_all((*given, limits, picked, *found), losses, len(found[1])),
+            )  # fmt: skip
+        else:
+            one = Own(alpha) if material is None else record(material)
+            out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
+            _roll_all(((one, *inputs), times, limits, picked, out, info), losses, left.size)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 

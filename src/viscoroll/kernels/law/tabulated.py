@@ -1,6 +1,7 @@
 """A material by polynomials of z, whatever its functions cost.
 
-The bins of one relaxation time are made where they are met; those of several are there (:mod:`series`)."""
+The bins of one relaxation time are made where they are met; those of several are there (:mod:`series`), or, where each
+motion has a material of its own, made where they are met too (:mod:`each`)."""
 
 from __future__ import annotations
 
@@ -8,25 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
 from ..numerics.bins import offset_slope
 from . import standard
+from .each import Ends, Filled, made
 from .standard import GAUSS_W, GAUSS_X, Standard
-
-
-class Ends(NamedTuple):
-    """Several modes: the table is full but for its ends, where g, h and m are known by these numbers.
-
-    weight, log_weight : sum J_j b_j, and sum J_j b_j (ln(2/b_j) - gamma), gamma that of Euler
-    squares : sum E_i tau_i^2 + sum J_j T_j^2
-    """
-
-    known: bool
-    weight: float
-    log_weight: float
-    squares: float
 
 
 class Tabulated(NamedTuple):
@@ -95,7 +85,7 @@ def _values(z, material):
 
 
 @kernel
-def _make(row, z, material):
+def _make_own(row, z, material):
     """Make the bin of z; returns its row."""
     if material.ends.known:  # the rows are those of the bins between the ends
         row = quartet.spare_row(material.table)
@@ -104,6 +94,15 @@ def _make(row, z, material):
         quartet.put(material.table, row, n, g, h, m, b)
     quartet.finish(material.table, row, z)
     return row
+
+
+@kernel
+def _make_met(row, z, material):
+    """As the last, of a material that is one of many."""
+    return row if made(row, z, material) else _make_own(row, z, material)
+
+
+_make = by_record(2, (Tabulated, _make_own), (Filled, _make_met))
 
 
 @kernel(inline=True)
