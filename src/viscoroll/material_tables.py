@@ -1,0 +1,178 @@
+"""Materials as kernels take them: tables that fill where they are met, a few of which every thread keeps."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bodies import Bodies
+from .prony import Modes, Prony
+from .prony_array import PronyArray
+
+#: materials that a thread keeps, of each kind
+_KEPT = 8
+#: octaves beyond the shortest and the longest time of a material from which on it is in its limits
+_MARGIN = 28
+
+
+class _Kept(threading.local):
+    """Tables are written to without the GIL, so threads do not share them."""
+
+    def __init__(self) -> None:
+        self.materials: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
+        self.inverses: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
+
+
+_kept = _Kept()
+
+
+def record(given: float | Prony | Bodies) -> Any:
+    """The record of one material, an alpha or a series, or of two bodies, for this thread alone.
+
+    Bodies that are alike, or both elastic, are one material: only others need the record of a pair.
+    """
+    if isinstance(given, Bodies) and (given.like or given.alpha == 1.0):
+        return record(given.total if given.total.E.size else 1.0)
+    return _found(_kept.materials, given, _tabulated)
+
+
+def inverses(given: float | Prony | Bodies) -> Any:
+    """The record of one material, or of two bodies unlike each other, and of the inverses of its law, likewise."""
+    from .kernels.law.inverses import inverses_of
+    from .kernels.law.standard import standard
+
+    def made(given: float | Prony | Bodies) -> Any:
+        return inverses_of(_tabulated(given) if isinstance(given, Prony | Bodies) else standard(given))
+
+    return _found(_kept.inverses, given, made)
+
+
+def _tabulated(given: float | Prony | Bodies) -> Any:
+    from .kernels.law.tabulated import tabulated
+
+    if not isinstance(given, Prony | Bodies):
+        return tabulated(given)
+    whole = _pair_tables(given) if isinstance(given, Bodies) else _series_table(given)
+    return whole._replace(table=whole.table.copy())  # parts are read only
+
+
+def series(prony: Prony) -> Any:
+    """The record of a series by its modes."""
+    return _series_of(prony.modes)
+
+
+def _series_of(modes: Modes) -> Any:
+    from .kernels.law.series import Series
+
+    strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
+    e, t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
+    return Series(modes.a, modes.b, e, t, np.sqrt(strengths) / modes.gap)
+
+
+def _bins(fastest: float, slowest: float) -> tuple[int, int]:
+    """First bin of a table, and that behind its last, from the highest rate of relaxation and the least of creep."""
+    from .kernels.numerics.bins import bin_number
+    from .kernels.numerics.quartet import BITS
+
+    octaves = math.floor(-math.log2(fastest)) - _MARGIN, math.ceil(-math.log2(slowest)) + _MARGIN
+    first, stop = (int(bin_number(2.0**octave, BITS)) for octave in octaves)
+    return first, stop
+
+
+def _filled(known: Any, prony: Prony) -> Any:
+    """The table of functions of z of a series, between its ends."""
+    from .kernels.law.series import fill
+    from .kernels.numerics.quartet import empty_table
+
+    first, stop = _bins(prony.modes.a[-1], prony.modes.b[0])
+    table = empty_table(2 ** math.ceil(math.log2(stop - first)))
+    fill(known, first, stop, table)
+    return table
+
+
+def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any]:
+    """``weight`` and ``log_weight`` of the ends of a table, for this share of every creep mode."""
+    weights = share * modes.J * modes.b
+    logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
+    return weights.sum(axis=-1), (weights * logs).sum(axis=-1)
+
+
+def _ends(modes: Modes, share: Any, squares: float) -> Any:
+    """The numbers of the ends of a table, for this share of every creep mode."""
+    from .kernels.law.tabulated import Ends
+
+    weight, log_weight = map(float, _weights(modes, share))
+    return Ends(True, weight, log_weight, squares)
+
+
+def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArray[np.float64]]:
+    """(The record of states or motions that have the materials ``which``, what times of each material are counted in).
+
+    For one thread and one call: it holds the table of one of them at a time.
+    """
+    from .kernels.law.each import Each, Room, Series
+    from .kernels.numerics.quartet import empty_table
+
+    some, of = np.unique(which, return_inverse=True)
+    blocks = list(materials.blocks(some))
+    count, most = some.size, max((block.modes.a.shape[-1] for block in blocks), default=0)
+    numbers, bins, modes_of = np.empty((count, 6)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
+    arrays = Series._make(np.zeros((count, most, most)[: 3 if name == "Q" else 2]) for name in Series._fields)
+    unit = np.empty(count)
+    for block in blocks:
+        modes, rows, N = block.modes, block.rows, block.modes.a.shape[-1]
+        unit[rows], modes_of[rows] = block.unit, N
+        tau = 1.0 / modes.a[:, -1] if N else 1.0
+        columns = modes.alpha, block.T_mean, tau, *_weights(modes), block.squares
+        numbers[rows] = np.stack(np.broadcast_arrays(*columns), axis=1)
+        if N:
+            bins[rows] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
+        for array, values in zip(arrays, _series_of(modes), strict=True):
+            array[(rows, *(slice(size) for size in values.shape[1:]))] = values
+    room = Room._make(np.empty((most, most)[: 2 if name == "matrix" else 1]) for name in Room._fields)
+    own = np.ascontiguousarray(of, dtype=np.int64)
+    return Each(own, numbers, bins, modes_of, arrays, empty_table(), np.full(1, -1), room), unit[own]
+
+@lru_cache(maxsize=_KEPT)
+def _series_table(prony: Prony) -> Any:
+    """The table of several modes."""
+    from .kernels.law.tabulated import Tabulated
+
+    modes = prony.modes
+    ends = _ends(modes, 1.0, sum(prony.second_moments))
+    return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), _filled(series(prony), prony), ends)
+
+
+@lru_cache(maxsize=_KEPT)
+def _pair_tables(bodies: Bodies) -> Any:
+    """The tables of two bodies that deform unlike each other."""
+    from .kernels.law.pair import Body, Pair
+    from .kernels.law.series import Parts
+
+    whole, modes, weights = bodies.total, bodies.total.modes, bodies.half_space_weights
+    # m_j = J_j T_j - c_j/z as z -> infinity
+    rises = modes.J * ((modes.E / modes.gap) @ (1.0 / modes.a + (modes.E / (modes.a[:, None] + modes.a)).sum(axis=1)))
+    half_space, cylinder = (
+        Body(math.fsum(share * modes.J / modes.b), _ends(modes, share, 2.0 * math.fsum(share * rises)))
+        for share in (weights, 1.0 - weights)
+    )
+    parts = _filled(Parts(**series(whole)._asdict(), weights=weights), whole)
+    return Pair(**_series_table(whole)._asdict(), parts=parts, half_space=half_space, cylinder=cylinder)
+
+
+def _found(kept: OrderedDict[Any, Any], given: float | Prony | Bodies, make: Callable[[Any], Any]) -> Any:
+    """What is kept of this material, or was made now; the last used is the last to go."""
+    if given in kept:
+        kept.move_to_end(given)
+        return kept[given]
+    kept[given] = made = make(given)
+    if len(kept) > _KEPT:
+        kept.popitem(last=False)
+    return made
