@@ -109,6 +109,13 @@ class Scene:
         return series.in_own_time() if series.E.size else (1.0, 1.0)
 
     @property
+    def kernel_material(self) -> Any:
+        """What the kernels count the parts of M by: bodies that differ, else as :meth:`in_own_time`."""
+        if isinstance(self.material, Bodies) and not self.like_bodies:
+            return self.material.in_own_time()[0]
+        return self.in_own_time()[0]
+
+    @property
     def like_bodies(self) -> bool:
         """Whether cylinder and half-space deform alike, each taking half of M."""
         return not isinstance(self.material, Bodies) or self.material.like

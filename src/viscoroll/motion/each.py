@@ -13,7 +13,9 @@ from ..prony_array import PronyArray
 from ..rolling_contact import flattened
 
 #: how often the unit of time divides a field
-_PER_TIME = {"V": 1, "omega": 1, "slip_loss": 2, "rolling_loss": 2}
+_PER_TIME = {"V": 1, "omega": 1} | dict.fromkeys(
+    ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"), 2
+)
 
 
 def to_unit(out: NDArray, fields: tuple[str, ...], unit: float) -> None:
@@ -24,10 +26,11 @@ def to_unit(out: NDArray, fields: tuple[str, ...], unit: float) -> None:
 
 def roll_each(
     materials: PronyArray, which: NDArray[np.int64], inputs: list[NDArray], times: NDArray,
-    limits: tuple[float, float, int], fields: tuple[str, ...], roll: Callable[[tuple, tuple, NDArray, NDArray], Any],
+    limits: tuple[float, float, int], fields: tuple[str, ...], roll: Callable[[tuple, tuple, NDArray, NDArray, tuple], Any],
 ) -> tuple[NDArray, NDArray]:  # fmt: skip
     """(outputs, information) of motions by the kernel ``roll``, each in the own time of its material.
 
+    The last that ``roll`` takes: which of the motions these are, and what their times are counted in.
     ``inputs`` : kappa, mu, gamma, j, V0, omega0, vectors of one value or one a motion.
     """
     from ..kernels.motion.loop import INFO
@@ -41,7 +44,7 @@ def roll_each(
         scaled = (kappa, mu, gamma * (one * one), j, V0 * one, omega0 * one)
         given = record._replace(of=record.of[some]), *(flattened(array, array.shape) for array in scaled)
         part, told = np.empty((len(fields), some.size, times.size)), np.empty((some.size, len(INFO)))
-        roll((given, times / one), (rtol, rest * one, most), part, told)
+        roll((given, times / one), (rtol, rest * one, most), part, told, (some, one))
         to_unit(part, fields, one)
         told[:, 3:] *= one
         out[:, some], info[some] = part, told

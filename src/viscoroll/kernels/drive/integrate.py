@@ -19,9 +19,9 @@ from .phase import phase
 from .rates import rates_at
 from .records import (
     EDGE,
-    FREED,
     HELD,
     KINK,
+    NEITHER,
     NO_EVENT,
     REST,
     REVERSED,
@@ -36,11 +36,13 @@ from .records import (
     State,
     Work,
 )  # fmt: skip
-from .solve import PATHS, ROWS
+from .solve import PATHS, ROWS, S
 
 DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 #: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
+#: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
+_CLOSED = 1e-7
 #: 1/zeta over T_mean below which V decays exponentially to rounding
 _SLOWEST = 1e-17
 
@@ -103,6 +105,8 @@ def switch(event, state, frame, clock, case):
     """(State, frame, whether V = omega = 0) behind an event that changes the regime."""
     slips, direction, sigma, spin, locked = frame
     if event == EDGE and slips:
+        if state.s <= _CLOSED * case.work.nodes[S, 0]:  # the stick band closes at V = 0: omega is 0 too
+            return state, frame, True
         return State(state.s, sigma), Frame(False, direction, sigma, spin, locked), False
     if event == EDGE:
         omega = rates_at(state.s, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene).omega
@@ -125,7 +129,8 @@ def switch(event, state, frame, clock, case):
 def _still_regime(clock, case):
     """The regime of V = omega = 0."""
     still = Frame(False, 1.0, 1.0, 0.0, False)
-    return HELD if load_at(clock.tau, clock.piece, still, case).brake > 0.0 else REST
+    braked = load_at(clock.tau, clock.piece, still, case).brake > 0.0
+    return HELD if braked or case.drive.prescribed != NEITHER else REST
 
 
 @kernel
@@ -181,7 +186,7 @@ def follow(moving, state, frame, clock, case):
         if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
             clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps)
             frame = at_new_piece(state, frame, clock, case) if moving else frame
-        event, direction = NO_EVENT, frame.direction
+        event, direction, before = NO_EVENT, frame.direction, clock
         if moving and clock.tau >= end:
             clock = put_to_end(state, frame, clock, case)
         elif not moving:
@@ -206,7 +211,7 @@ def follow(moving, state, frame, clock, case):
         now = regime_of(frame) if moving else _still_regime(clock, case)
         if now != regime and (moving or event == NO_EVENT):
             if regime >= 0:
-                turns, noted = turns + 1, note(now, noted, clock, case)
+                turns, noted = turns + 1, note(now, noted, clock if moving else before, case)
             onset_time = clock.tau / case.gamma if fresh and np.isnan(onset_time) else onset_time
             regime = now
     return DONE, clock, turns, onset_time, np.nan
