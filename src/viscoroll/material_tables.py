@@ -140,6 +140,7 @@ def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArr
     own = np.ascontiguousarray(of, dtype=np.int64)
     return Each(own, numbers, bins, modes_of, arrays, empty_table(), np.full(1, -1), room), unit[own]
 
+
 @lru_cache(maxsize=_KEPT)
 def _series_table(prony: Prony) -> Any:
     """The table of several modes."""

@@ -165,7 +165,7 @@ def contact(
 
 
 def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
-    """What serves all states: a series or many; bodies that differ, where parts of M are asked for; or, None, alphas."""
+    """What serves all states: a series or many; bodies that differ, for parts of M; or, None, alphas."""
     if not isinstance(material, Prony | PronyArray):
         return None
     if scene.like_bodies or not _HALVES.keys() & set(names):

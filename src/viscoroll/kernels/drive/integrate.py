@@ -14,7 +14,7 @@ from ..law.stick import stick_length
 from ..motion.collocation import N
 from .load import acting, load_at, piece_end, undriven
 from .origin import STAYS, STICKS, depart, leaving_time
-from .output import coast, put_still, put_to_end, regime_of
+from .output import INTERPOLANTS, coast, put_still, put_to_end, regime_of
 from .phase import phase
 from .rates import rates_at
 from .records import (
@@ -227,7 +227,8 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     tau = np.empty(t.size)
     for i in range(tau.size):
         tau[i] = t[i] * gamma
-    work = Work(np.empty((ROWS, N + 1)), np.empty((10, N + 2)), np.empty((2 * N, 2 * N)), np.empty(2 * N), np.zeros(PATHS))
+    matrix, right = np.empty((2 * N, 2 * N)), np.empty(2 * N)
+    work = Work(np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), matrix, right, np.zeros(PATHS))
     case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0)
     state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False
