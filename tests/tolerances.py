@@ -348,6 +348,17 @@ SHARES_OF_MODES = 1e-13
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
 
+# --- kernels/law/unsteady.py (test_unsteady.py) ---
+#: N against derivatives of H and H m in 50 digits, relative, and in its zeros over the part of the largest |N| below.
+UNSTEADY = 2e-11
+UNSTEADY_ZERO = 1e-2
+#: One mode as a series and as an alpha; -S_E.
+UNSTEADY_SERIES = 1e-12
+#: The first terms of its limits: kappa V T = 1e-4, and 1e4 times the speed of the fastest mode.
+UNSTEADY_SLOW, UNSTEADY_FAST = 1e-2, 1e-3
+#: Another unit of time: the times round, and N has a zero.
+UNSTEADY_UNIT = 1e-9
+
 # --- DMA to Prony (test_dma.py) ---
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
 DMA_EXACT = 1e-6
