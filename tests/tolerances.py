@@ -348,6 +348,8 @@ SHARES_OF_MODES = 1e-13
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
 
+#: The largest |N| on a grid of eighths of octaves: its humps bend on the scale of an octave.
+VALIDITY_N = 5e-3
 # --- kernels/law/unsteady.py (test_unsteady.py) ---
 #: N against derivatives of H and H m in 50 digits, relative, and in its zeros over the part of the largest |N| below.
 UNSTEADY = 2e-11
