@@ -190,7 +190,7 @@ def test_creep_against_extended_precision():
                 zeta = mp.findroot(lambda z: F_H(z)[1] * (2 * mp.mpf(KAPPA) * mp.mpf(0.3)) ** 2 - 1, 0.5)
                 rest = 1 - mp.mpf(s.Q[0]) / mp.mpf(mu)
                 F, H = F_H(zeta)
-                eta = mp.findroot(lambda z: F_H(z)[1] / (rest * H) - 1, zeta * mp.sqrt(rest))
+                eta = mp.findroot(lambda z, H=rest * H: F_H(z)[1] / H - 1, zeta * mp.sqrt(rest))
                 delta = mp.mpf(mu) * mp.mpf(0.3) * (F - F_H(eta)[0])
                 assert abs(mp.mpf(s.delta[0]) / delta - 1) < tol.STEADY / s.grip[0], part
                 assert abs(mp.mpf(s.beta[0]) * zeta / eta - 1) < tol.STEADY / s.grip[0], part
@@ -457,6 +457,17 @@ def test_opposite_gains_on_omega():
         assert (np.abs(off) <= tol.STEADY_SCAN).all()
     elastic = vr.steady(vr.Scene(1.0, KAPPA, MU), torque=vr.Feedback(0.3, omega=-1.0))
     assert elastic.V == pytest.approx([0.3])
+
+
+def test_spinning_on_the_spot():
+    """Held by a force of mu, a motor spins at the speed at which its torque is mu."""
+    s = vr.steady(SCENE, force=-MU, torque=vr.Feedback(0.5, omega=-1.0))
+    assert (s.V.tolist(), s.Q.tolist(), s.grip.tolist()) == ([0.0], [MU], [0.0])
+    assert s.omega[0] == pytest.approx(0.3)
+    assert s.stable.tolist() == [True]
+    # the motor's gain over j, and -M_half_space'
+    assert s.eigenvalues[0].real == pytest.approx([-1.0 / SCENE.j, -0.5 * (10.0 / 11.0)], rel=tol.STEADY)
+    assert s.loss.slip[0] == pytest.approx(0.06)
 
 
 # --- existence ---

@@ -96,7 +96,7 @@ class Branches:
         return Curve(self.zeta, self.rise, self.flat, self.gain)
 
     def crossed(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which loads meet this branch; an extremum belongs to the branch that ends in it, and so do loads next to it."""
+        """Which loads meet this branch; an extremum, and loads next to it, belong to the branch that ends in it."""
         from ..kernels.law.steady_loop import SNAP
 
         first, last = self.rise[self.first[branch]], self.rise[self.last[branch]]
