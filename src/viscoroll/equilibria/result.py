@@ -183,22 +183,14 @@ def packed(loads: Loads, states: States, count: NDArray, reasons: Reasons) -> St
         out[at] = values
         return out.reshape(shape + values.shape[1:])
 
-    V, omega, Q, delta = states.V, states.omega, states.Q, states.delta
+    V, omega, Q = states.V, states.omega, states.Q
     M = states.M_half_space + states.M_cylinder
-    force, torque = _acting(loads, states, omega)
-    moving = V != 0.0
-    slip = np.where(moving, V, omega) * np.where(moving, delta, 1.0) * Q
-    half_space, cylinder = V * states.M_half_space, omega * states.M_cylinder
-    taken = np.minimum(force * V, 0.0) + np.minimum(torque * omega, 0.0)
-    put_in = np.maximum(force * V, 0.0) + np.maximum(torque * omega, 0.0)
-    speed = np.where(moving, np.abs(V), 1.0)
-    coefficient = np.where(moving, (slip + half_space + cylinder) / speed, np.abs(Q * delta))
-    efficiency = np.divide(0.0 - taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
-    loss = Loss(*map(spread, (slip, half_space, cylinder, coefficient, efficiency)))
+    force, torque = _acting(loads, states)
+    loss = Loss(*map(spread, _losses(states, force * V, torque * omega)))
     stable = np.all(states.eigenvalues.real < 0.0, axis=-1)
     grip = 1.0 - np.abs(Q) / loads.mu[number]
     return Steady(
-        V=spread(V), omega=spread(omega), delta=spread(delta), Q=spread(Q), M=spread(M),
+        V=spread(V), omega=spread(omega), delta=spread(states.delta), Q=spread(Q), M=spread(M),
         M_half_space=spread(states.M_half_space), M_cylinder=spread(states.M_cylinder), beta=spread(states.beta),
         grip=spread(grip), stable=spread(stable, False), eigenvalues=spread(states.eigenvalues), force=spread(force),
         torque=spread(torque), loss=loss, count=count.reshape(loads.shape) if loads.shape else int(count[0]),
@@ -206,9 +198,23 @@ def packed(loads: Loads, states: States, count: NDArray, reasons: Reasons) -> St
     )  # fmt: skip
 
 
-def _acting(loads: Loads, states: States, omega: NDArray) -> tuple[NDArray, NDArray]:
+def _losses(states: States, by_force: NDArray, by_torque: NDArray) -> tuple[NDArray, ...]:
+    """What :class:`Loss` holds, from the powers put in by force and torque."""
+    V, omega, Q, delta = states.V, states.omega, states.Q, states.delta
+    moving = V != 0.0
+    slip = np.where(moving, V, omega) * np.where(moving, delta, 1.0) * Q
+    half_space, cylinder = V * states.M_half_space, omega * states.M_cylinder
+    speed = np.where(moving, np.abs(V), 1.0)
+    coefficient = np.where(moving, (slip + half_space + cylinder) / speed, np.abs(Q * delta))
+    taken = np.maximum(-by_force, 0.0) + np.maximum(-by_torque, 0.0)
+    put_in = np.maximum(by_force, 0.0) + np.maximum(by_torque, 0.0)
+    efficiency = np.divide(taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
+    return slip, half_space, cylinder, coefficient, efficiency
+
+
+def _acting(loads: Loads, states: States) -> tuple[NDArray, NDArray]:
     """Force and torque of each state."""
-    gains, V = loads.gains, states.V
+    gains, V, omega = loads.gains, states.V, states.omega
     force = loads.force[states.load] + gains.force_V * V + gains.force_omega * omega
     torque = loads.torque[states.load] + gains.torque_V * V + gains.torque_omega * omega
     if loads.given == "torque":
