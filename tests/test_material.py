@@ -9,9 +9,13 @@ from functools import partial
 import numpy as np
 import pytest
 import tolerances as tol
+import xarray as xr
 from refusals import refused
 
 import viscoroll as vr
+from viscoroll.files import seal, write_dataset
+from viscoroll.material_file import as_toml, read_materials
+from viscoroll.material_store import as_dataset
 
 RUBBER = vr.Material(
     E=2.3e5,
@@ -280,3 +284,70 @@ def test_plot(tmp_path):
     assert vr.Material.elastic(2e11, 0.3).plot().get_suptitle() == "Material"
     refused(vr.Material.rigid().plot, "material = rigid")
     refused(partial(RUBBER.plot, tmp_path / "a.xyz"), "names no format", error=vr.OutputError)
+
+
+# --- as netCDF ---
+
+STORED = (
+    vr.Material(1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one', 1100.0 / 3.0),
+    vr.Material.sls(2.3e5, 0.49, 10.7, 0.97),
+    vr.Material(3e6, 0.5, vr.Prony.creep([0.3, 0.69], [3.0, 1e-5], alpha=100.00000000000001)),
+    vr.Material.elastic(2e11, 0.3),
+    vr.Material.rigid(name="ideal"),
+)
+
+
+def test_a_material_stored_is_read_to_the_bit(tmp_path):
+    for n, material in enumerate(STORED):
+        path = tmp_path / f"{n}.nc"
+        material.to_netcdf(path)
+        assert vr.Material.from_netcdf(path) == material
+        assert read_materials(path) == {"material": material}
+        (tmp_path / "scene.toml").write_text(f'[material]\nfile = "{n}.nc"\n')
+        assert read_materials(tmp_path / "scene.toml") == {"material": material}
+        (tmp_path / "scene.toml").write_text(as_toml(material))
+        assert read_materials(tmp_path / "scene.toml") == {"material": material}
+
+
+def test_what_other_programs_read(tmp_path):
+    """Both forms of the series, units, and the law in words."""
+    rubber = STORED[0]
+    rubber.to_netcdf(tmp_path / "rubber.nc")
+    with xr.open_dataset(tmp_path / "rubber.nc", engine="h5netcdf") as found:
+        assert (found.E_long.item(), found.E_long.units) == (rubber.E, "Pa")
+        for name in ("E", "tau", "J", "T"):
+            assert np.array_equal(found[name], getattr(rubber.prony, name))
+        assert (found.attrs["name"], found.attrs["given"]) == (rubber.name, "relaxation")
+
+
+def test_a_temperature_beside_a_stored_material(tmp_path):
+    STORED[0].to_netcdf(tmp_path / "rubber.nc")
+    (tmp_path / "warm.toml").write_text('[material]\nfile = "rubber.nc"\nwlf = { T0 = 20.0 }\ntemperature = 30.0\n')
+    warm = STORED[0].at(30.0, vr.WLF(T0=20.0))
+    assert read_materials(tmp_path / "warm.toml") == {"material": warm}
+    assert read_materials(tmp_path / "warm.toml", 40.0) == {"material": STORED[0].at(40.0, vr.WLF(T0=20.0))}
+
+
+def test_damaged_materials(tmp_path):
+    """One flipped bit anywhere, a cut file, another file: refused in one line; an edited file too."""
+    path = tmp_path / "rubber.nc"
+    STORED[0].to_netcdf(path)
+    whole = path.read_bytes()
+    for at in range(0, len(whole), 97):
+        path.write_bytes(whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1 :])
+        refused(lambda: vr.Material.from_netcdf(path), "rubber.nc", error=vr.TableError)
+    for content in (b"", whole[:-1], whole[: len(whole) // 2], b"[material]\nE = 1.0", seal(b"[material]")):
+        path.write_bytes(content)
+        refused(lambda: vr.Material.from_netcdf(path), "rubber.nc", "no material", error=vr.TableError)
+    refused(lambda: vr.Material.from_netcdf(tmp_path / "none.nc"), "cannot be read", error=vr.TableError)
+    refused(partial(read_materials, path, 30.0), "temperature = 30", "wlf", error=vr.ConfigError)
+    (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\n')
+    refused(partial(read_materials, tmp_path / "a.toml"), "line 2", "none.nc", error=vr.ConfigError)
+    (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\nE = 1.0\n')
+    refused(partial(read_materials, tmp_path / "a.toml"), "line 3", "unknown key 'E'", error=vr.ConfigError)
+    data = as_dataset(STORED[0])
+    for changed in (data.assign(E=-data.E), data.drop_vars("tau"), data.assign_attrs(given="both", schema="other")):
+        write_dataset(changed, path, sealed=True)
+        refused(lambda: vr.Material.from_netcdf(path), "no material", error=vr.TableError)
+    write_dataset(vr.ensemble(vr.PAPER_SECTION_5, 1.0, 0.0, 1e-3).to_xarray(), path, sealed=True)
+    refused(lambda: vr.Material.from_netcdf(path), "no material", "schema is None", error=vr.TableError)

@@ -298,6 +298,61 @@ def test_two_elastic_bodies_take_nothing():
     assert shares(scene(vr.Bodies(stiff, stiff, 0.3)), np.array([0.1])) == (0.0, 0.0, 0.0)
 
 
+UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3)
+PARTS = ("M_half_space", "M_cylinder")
+
+
+def test_many_states_of_two_bodies():
+    """By the tables over kappa |V| as state by state, for both signs of V, at V = 0 and beyond the tables' speeds."""
+    V = np.resize([*SPEEDS, *-SPEEDS, 0.0, 1e-140, 1e140], MANY)
+    many = vr.contact(scene(UNLIKE), V, delta=1e-4)
+    for n in range(2 * SPEEDS.size + 3):
+        alone = vr.contact(scene(UNLIKE), V[n], delta=1e-4)
+        for name in (*PARTS, "Q", "M", "lam"):
+            assert getattr(many, name)[n] == pytest.approx(getattr(alone, name), rel=tol.BODIES), (name, V[n])
+        assert alone.M_half_space + alone.M_cylinder == pytest.approx(alone.M, rel=tol.BODIES)
+    only = vr.contact(scene(UNLIKE), V, delta=1e-4, fields="M_cylinder")
+    assert np.array_equal(only.M_cylinder, many.M_cylinder)
+
+
+def test_slopes_of_the_parts_of_M():
+    """Against differences, and both together against dM/dV; at V = 0 the slow limit, half of M for like bodies."""
+    V = np.geomspace(1e-5, 1e7, 40)
+    slopes = vr.contact(scene(UNLIKE), V, delta=0.0, slopes=True)
+    step = 1e-4 * V
+    above, below = (vr.contact(scene(UNLIKE), at, delta=0.0, fields=(*PARTS, "M")) for at in (V + step, V - step))
+    for name in (*PARTS, "M"):
+        size = abs(getattr(slopes, name)) / V
+        difference = (getattr(above, name) - getattr(below, name)) / (2.0 * step)
+        assert (abs(getattr(slopes, f"d{name}_dV") - difference) <= tol.BODIES_DIFFERENCE * size).all()
+    whole = slopes.dM_half_space_dV + slopes.dM_cylinder_dV
+    assert (abs(whole - slopes.dM_dV) <= tol.BODIES * slopes.M / V).all()
+    rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
+    half_space, cylinder = 0.7 * UNLIKE.half_space.T_mean, 0.3 * UNLIKE.cylinder.T_mean
+    assert (rest.dM_half_space_dV, rest.dM_cylinder_dV) == pytest.approx((half_space, cylinder), rel=tol.BODIES)
+    like = vr.contact(scene(WIDE), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV"))
+    assert like.dM_cylinder_dV == 0.5 * like.dM_dV
+    with pytest.raises(AttributeError, match="not computed"):
+        vr.contact(scene(WIDE), 0.3, delta=0.0, slopes=True).dM_cylinder_dV  # noqa: B018
+
+
+@pytest.mark.parametrize("V", [1e130, 1e150, 1e200, 1e290])
+def test_the_fastest_rolling(V):
+    """Where z^2 underflows: epsilon, M and its parts go on as the logarithm says."""
+    for law in (WIDE, UNLIKE):
+        series_of = law.total if isinstance(law, vr.Bodies) else law
+        state = vr.contact(scene(law), V, delta=0.0)
+        z = np.sqrt(1.0 / series_of.alpha) / (20.0 * V)
+        terms = series_of.J / series_of.T * (np.log(2.0 * series_of.T) - np.log(z) - np.euler_gamma)
+        rise = 0.5 * series_of.alpha * z
+        assert state.epsilon == pytest.approx(rise * terms.sum(), rel=tol.BODIES)
+        m_over_z = rise * (terms.sum() + 0.25 * (series_of.J / series_of.T).sum())
+        assert state.M == pytest.approx(V * z * m_over_z, rel=tol.BODIES)
+        assert (
+            state.M_half_space + state.M_cylinder == pytest.approx(state.M, rel=tol.BODIES) if law is UNLIKE else True
+        )
+
+
 def test_bodies_refused():
     p = vr.Prony([2.0], [1.0])
     for call, words in (

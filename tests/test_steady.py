@@ -590,6 +590,7 @@ def test_refusals():
     refused(refuse(V=0.1), "V given", "one of force, torque, slope")
     refused(refuse(V=0.1, force=0.0, torque=0.0), "V, force, torque given", "two of them")
     refused(refuse(V=0.1, torque=vr.Feedback(0.0, V=1.0)), "torque = a feedback")
+    refused(refuse(torque=vr.Feedback(math.sin, V=-1.0)), "torque = a feedback on a schedule", "constant in time")
     refused(refuse(V=math.inf, torque=0.0), "V = inf")
     refused(refuse(V=1e200, torque=0.0), "kappa |V| = 2.91e+200")
     refused(refuse(force=[0.1, 0.2], torque=[0.1, 0.2, 0.3]), "force (2,)", "torque (3,)")

@@ -280,6 +280,8 @@ MOMENT = 1e-12
 SI_UNITS = 1e-13
 #: the same of a series, at rtol 1e-10, another unit of time; measured 4.6e-15.
 SI_SERIES = 3e-14
+#: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
+SI_SERIES_RTOL = 1e-7
 
 # --- motions in extended precision (test_reference_motions.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
@@ -341,6 +343,8 @@ SERIES_MOTION = 1e-10
 SERIES_MAP = 3e-9
 #: Moments of two bodies: sums over modes of positive terms, and one table.
 BODIES = 1e-12
+#: Central differences of M and its parts with a step of 1e-4 V, over M/V: their truncation and rounding.
+BODIES_DIFFERENCE = 1e-7
 #: Their parts of m together, by a table, against m; measured 3e-15.
 SHARES = 1e-14
 #: Each against the sum over its modes, over m; measured 2.1e-15, and 4e-14 between two ways of adding up.

@@ -47,6 +47,14 @@ def scene_of_pair(R: Any, m: Any, pair: Pair, mu: Any, j: Any, g: Any, load: Any
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=pair.law)
 
 
+def scene_of_series(
+    R: Any, m: Any, E: Any, nu: Any, T_ref: float, series: Any, mu: Any, j: Any, g: Any, plane: str, load: Any = None
+) -> Scene:
+    """As :func:`scene_from_si`, of a series, or of one each, with the long-time modulus E; times over T_ref."""
+    kappa, mu, gamma = _scaled(R, m, g, load, effective_modulus(E, nu, plane), np.float64(T_ref), mu)
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=series)
+
+
 def _scaled(R: Any, m: Any, g: Any, load: Any, E_prime: Any, T: Any, mu: Any) -> tuple[Any, Any, Any]:
     """(kappa, mu, gamma) of Sect. 3.1 and Eq. (4)."""
     R, m = (np.asarray(value, np.float64)[()] for value in (R, m))

@@ -14,7 +14,8 @@ class Feedback:
 
     Parameters
     ----------
-    value : what acts at rest, a number or an array; over P for a force, over P R for a torque.
+    value : what acts at rest, over P for a force, over P R for a torque: a number or an array; for motions also
+        (times, values) or a callable of t, see :func:`roll`.
     V, omega : gains, numbers; < 0 brakes what is too fast, as an engine's torque falls with its speed.
 
     Raises
@@ -28,10 +29,11 @@ class Feedback:
     omega: float = 0.0
 
     def __post_init__(self) -> None:
-        value = checked("value", self.value)
-        if value.ndim:
-            value = value.copy()
-            value.flags.writeable = False
-        object.__setattr__(self, "value", value if value.ndim else float(value))
+        if not (callable(self.value) or isinstance(self.value, tuple)):  # those are checked with their motion
+            value = checked("value", self.value)
+            if value.ndim:
+                value = value.copy()
+                value.flags.writeable = False
+            object.__setattr__(self, "value", value if value.ndim else float(value))
         for name in ("V", "omega"):
             object.__setattr__(self, name, number(name, getattr(self, name)))

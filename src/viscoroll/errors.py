@@ -5,7 +5,7 @@ Which error when:
 - :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be,
   an unknown name, inputs that do not fit together.  Also a ``ValueError``.
 - :class:`OutOfTableError`: a point outside a table's grid.
-- :class:`TableError`: a file that is missing, damaged, of another schema, or not a table.
+- :class:`TableError`: a file that is missing, damaged, of another schema, or not a table (or not a material).
 - :class:`OutputError`: a result that cannot be written.
 - :class:`ConfigError`: a TOML file with a misspelt key or a value of the wrong type.
 - :class:`MissingDependencyError`: a package of an extra is not installed.

@@ -192,6 +192,39 @@ class Material(FromPrograms):
             save(figure, path)
         return figure
 
+    def to_netcdf(self, path: str | PathLike[str]) -> None:
+        """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed by a SHA-256.
+
+        Parameters
+        ----------
+        path : file to write; a file of that name is replaced.
+
+        Raises
+        ------
+        OutputError
+            If it cannot be written there; a file of that name is left as it was.
+        """
+        from .material_store import save
+
+        save(self, path)
+
+    @classmethod
+    def from_netcdf(cls, path: str | PathLike[str]) -> Material:
+        """The material of a file of :meth:`to_netcdf`, equal to it bit for bit (``tests/test_material.py``).
+
+        Parameters
+        ----------
+        path : file; its SHA-256 is compared before anything is parsed.
+
+        Raises
+        ------
+        TableError
+            A file that is missing, damaged in any byte, or no material.
+        """
+        from .material_store import load
+
+        return load(path)
+
     def _storage(self, omega: ArrayLike) -> NDArray[np.float64]:
         product = self._products(omega)
         ratio = np.where(product > 1.0, 1.0 / np.maximum(product, 1.0), product)

@@ -1,16 +1,18 @@
-"""Materials in TOML files: sections [material] and [base] -> :class:`Material`."""
+"""Materials in files: sections [material] and [base] of TOML, or a netCDF file -> :class:`Material`."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from .errors import ParameterError
+from .errors import ConfigError, ParameterError, TableError
 from .material import Material
+from .material_store import SUFFIX
 from .prony import Prony
 from .sections import as_struct, fault, read
 from .shift import WLF, Arrhenius
@@ -30,6 +32,15 @@ class MaterialSection(msgspec.Struct):
     T_ref: float | None = None
     name: str = ""
     density: float | None = None
+    wlf: dict[str, Any] | None = None
+    arrhenius: dict[str, Any] | None = None
+    temperature: float | None = None
+
+
+class FileSection(msgspec.Struct):
+    """[material] or [base] of a netCDF file, and a temperature."""
+
+    file: str
     wlf: dict[str, Any] | None = None
     arrhenius: dict[str, Any] | None = None
     temperature: float | None = None
@@ -66,11 +77,12 @@ class ArrheniusSection(msgspec.Struct):
 
 
 def read_materials(path: str | PathLike[str], temperature: float | None = None) -> dict[str, Material]:
-    """The materials of a TOML file by section, "material" and "base"; other sections are not looked at.
+    """The materials of a TOML file by section, "material" and "base"; of a netCDF file its one, "material".
 
     Parameters
     ----------
-    path : a file with [material], [base] or both: a scene file, a run file, or one of its own.
+    path : a file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are not
+        looked at.  Or one that :meth:`Material.to_netcdf` wrote.
     temperature : degrees Celsius, in place of those in the file, of the sections that have a shift.
 
     Raises
@@ -78,7 +90,13 @@ def read_materials(path: str | PathLike[str], temperature: float | None = None) 
     ConfigError
         A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key, a value of
         the wrong type or out of its range, a temperature without a shift.
+    TableError
+        A netCDF file that is missing, damaged, or no material.
     """
+    if Path(path).suffix == SUFFIX:
+        if temperature is not None:
+            raise ConfigError(path, f"temperature = {temperature:g}: needs a TOML file with wlf or arrhenius")
+        return {"material": Material.from_netcdf(path)}
     content = read(path)
     found = materials_of(path, content, temperature)
     if not found:
@@ -95,9 +113,13 @@ def materials_of(path: Any, content: Mapping[str, Any], temperature: float | Non
 
 def as_toml(material: Material, section: str = "material") -> str:
     """The section of a TOML file that reads back as this material, to the bit."""
-    series = f"{{ E = {material.prony.E.tolist()}, tau = {material.prony.tau.tolist()} }}"
+    one = material.prony
+    series = f"E = {one.E.tolist()}, tau = {one.tau.tolist()}"
+    if one.by_creep:
+        series = f"J = {one.J.tolist()}, T = {one.T.tolist()}, alpha = {one.alpha!r}"
     values: dict[str, Any] = {
-        "name": json.dumps(material.name), "E": material.E, "nu": material.nu, "prony": series, "T_ref": material.T_ref,
+        "name": json.dumps(material.name), "E": material.E, "nu": material.nu,
+        "creep" if one.by_creep else "prony": f"{{ {series} }}", "T_ref": material.T_ref,
     }  # fmt: skip
     if material.density is not None:
         values["density"] = material.density
@@ -105,10 +127,11 @@ def as_toml(material: Material, section: str = "material") -> str:
 
 
 def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
-    given = as_struct(path, name, content, MaterialSection)
+    stored = isinstance(content, dict) and "file" in content
+    given: Any = as_struct(path, name, content, FileSection if stored else MaterialSection)
     try:
         shift = _shift(path, name, given)
-        found = _unshifted(path, name, given)
+        found = _stored(path, name, given) if stored else _unshifted(path, name, given)
         at = given.temperature if temperature is None or shift is None else temperature
         if at is None:
             return found
@@ -117,6 +140,14 @@ def _material(path: Any, name: str, content: Any, temperature: float | None) -> 
         return found.at(at, shift)
     except ParameterError as error:
         raise fault(path, name, error.name, str(error)) from error
+
+
+def _stored(path: Any, name: str, given: FileSection) -> Material:
+    """The material of a netCDF file beside ``path``."""
+    try:
+        return Material.from_netcdf(Path(path).parent / given.file)
+    except TableError as error:
+        raise fault(path, name, "file", str(error)) from error
 
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
@@ -146,7 +177,7 @@ def series_of(path: Any, name: str, prony: Any, creep: Any) -> Prony | None:
     return None
 
 
-def _shift(path: Any, name: str, given: MaterialSection) -> WLF | Arrhenius | None:
+def _shift(path: Any, name: str, given: MaterialSection | FileSection) -> WLF | Arrhenius | None:
     if given.wlf is not None and given.arrhenius is not None:
         raise fault(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
     if given.wlf is not None:

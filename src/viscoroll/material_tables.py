@@ -10,9 +10,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .bodies import Bodies
 from .prony import Modes, Prony
+from .prony_array import PronyArray
 
 #: materials that a thread keeps, of each kind
 _KEPT = 8
@@ -25,7 +27,7 @@ class _Kept(threading.local):
 
     def __init__(self) -> None:
         self.materials: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
-        self.inverses: OrderedDict[float | Prony, Any] = OrderedDict()
+        self.inverses: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
 
 
 _kept = _Kept()
@@ -41,13 +43,13 @@ def record(given: float | Prony | Bodies) -> Any:
     return _found(_kept.materials, given, _tabulated)
 
 
-def inverses(given: float | Prony) -> Any:
-    """The record of one material and of the inverses of its law, for this thread alone."""
+def inverses(given: float | Prony | Bodies) -> Any:
+    """The record of one material, or of two bodies unlike each other, and of the inverses of its law, likewise."""
     from .kernels.law.inverses import inverses_of
     from .kernels.law.standard import standard
 
-    def made(given: float | Prony) -> Any:
-        return inverses_of(_tabulated(given) if isinstance(given, Prony) else standard(given))
+    def made(given: float | Prony | Bodies) -> Any:
+        return inverses_of(_tabulated(given) if isinstance(given, Prony | Bodies) else standard(given))
 
     return _found(_kept.inverses, given, made)
 
@@ -55,31 +57,31 @@ def inverses(given: float | Prony) -> Any:
 def _tabulated(given: float | Prony | Bodies) -> Any:
     from .kernels.law.tabulated import tabulated
 
-    if isinstance(given, Bodies):
-        whole = _pair_tables(given)
-        return whole._replace(table=whole.table.copy())
-    if not isinstance(given, Prony):
+    if not isinstance(given, Prony | Bodies):
         return tabulated(given)
-    whole = _series_table(given)
-    return whole._replace(table=whole.table.copy())
+    whole = _pair_tables(given) if isinstance(given, Bodies) else _series_table(given)
+    return whole._replace(table=whole.table.copy())  # parts are read only
 
 
 def series(prony: Prony) -> Any:
     """The record of a series by its modes."""
+    return _series_of(prony.modes)
+
+
+def _series_of(modes: Modes) -> Any:
     from .kernels.law.series import Series
 
-    modes = prony.modes
-    root = np.sqrt(np.outer(modes.J * modes.b, modes.E * modes.a))
-    return Series(modes.a, modes.b, np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b), root / modes.gap)
+    strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
+    e, t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
+    return Series(modes.a, modes.b, e, t, np.sqrt(strengths) / modes.gap)
 
 
-def _bins(prony: Prony) -> tuple[int, int]:
-    """The first bin of z of the table of a series, and the one behind the last."""
+def _bins(fastest: float, slowest: float) -> tuple[int, int]:
+    """First bin of a table, and that behind its last, from the highest rate of relaxation and the least of creep."""
     from .kernels.numerics.bins import bin_number
     from .kernels.numerics.quartet import BITS
 
-    modes = prony.modes
-    octaves = math.floor(-math.log2(modes.a[-1])) - _MARGIN, math.ceil(-math.log2(modes.b[0])) + _MARGIN
+    octaves = math.floor(-math.log2(fastest)) - _MARGIN, math.ceil(-math.log2(slowest)) + _MARGIN
     first, stop = (int(bin_number(2.0**octave, BITS)) for octave in octaves)
     return first, stop
 
@@ -89,20 +91,54 @@ def _filled(known: Any, prony: Prony) -> Any:
     from .kernels.law.series import fill
     from .kernels.numerics.quartet import empty_table
 
-    first, stop = _bins(prony)
+    first, stop = _bins(prony.modes.a[-1], prony.modes.b[0])
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
     fill(known, first, stop, table)
     return table
+
+
+def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any]:
+    """``weight`` and ``log_weight`` of the ends of a table, for this share of every creep mode."""
+    weights = share * modes.J * modes.b
+    logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
+    return weights.sum(axis=-1), (weights * logs).sum(axis=-1)
 
 
 def _ends(modes: Modes, share: Any, squares: float) -> Any:
     """The numbers of the ends of a table, for this share of every creep mode."""
     from .kernels.law.tabulated import Ends
 
-    weights = share * modes.J * modes.b
-    logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
-    return Ends(True, float(weights.sum()), float((weights * logs).sum()), squares)
+    weight, log_weight = map(float, _weights(modes, share))
+    return Ends(True, weight, log_weight, squares)
 
+
+def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArray[np.float64]]:
+    """(The record of states or motions that have the materials ``which``, what times of each material are counted in).
+
+    For one thread and one call: it holds the table of one of them at a time.
+    """
+    from .kernels.law.each import Each, Room, Series
+    from .kernels.numerics.quartet import empty_table
+
+    some, of = np.unique(which, return_inverse=True)
+    blocks = list(materials.blocks(some))
+    count, most = some.size, max((block.modes.a.shape[-1] for block in blocks), default=0)
+    numbers, bins, modes_of = np.empty((count, 6)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
+    arrays = Series._make(np.zeros((count, most, most)[: 3 if name == "Q" else 2]) for name in Series._fields)
+    unit = np.empty(count)
+    for block in blocks:
+        modes, rows, N = block.modes, block.rows, block.modes.a.shape[-1]
+        unit[rows], modes_of[rows] = block.unit, N
+        tau = 1.0 / modes.a[:, -1] if N else 1.0
+        columns = modes.alpha, block.T_mean, tau, *_weights(modes), block.squares
+        numbers[rows] = np.stack(np.broadcast_arrays(*columns), axis=1)
+        if N:
+            bins[rows] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
+        for array, values in zip(arrays, _series_of(modes), strict=True):
+            array[(rows, *(slice(size) for size in values.shape[1:]))] = values
+    room = Room._make(np.empty((most, most)[: 2 if name == "matrix" else 1]) for name in Room._fields)
+    own = np.ascontiguousarray(of, dtype=np.int64)
+    return Each(own, numbers, bins, modes_of, arrays, empty_table(), np.full(1, -1), room), unit[own]
 
 @lru_cache(maxsize=_KEPT)
 def _series_table(prony: Prony) -> Any:

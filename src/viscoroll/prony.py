@@ -35,12 +35,12 @@ _CLOSEST = 1e-300
 
 @dataclass(frozen=True)
 class Modes:
-    """Both forms of one material, times descending, and the gaps between their rates.
+    """Both forms of one material, or of many behind leading axes, times descending, and the gaps between their rates.
 
-    a, b : rates of relaxation and creep, ascending; E, J : strengths; gap[j, i] = a_i - b_j.
+    a, b : rates of relaxation and creep, ascending; E, J : strengths; gap[..., j, i] = a_i - b_j.
     """
 
-    alpha: float
+    alpha: Any
     a: NDArray[np.float64]
     b: NDArray[np.float64]
     E: NDArray[np.float64]
@@ -55,6 +55,7 @@ class Prony:
     ----------
     E : strengths of the modes over the long-time modulus, >= 0; zeros are dropped.
     tau : their relaxation times over T_ref, > 0; strengths of equal times are added.
+        Of arrays (n, N), one of which may be (N,), it makes n materials: a :class:`PronyArray`.
 
     Raises
     ------
@@ -67,6 +68,10 @@ class Prony:
     Immutable, hashable, equal where modes and ``alpha`` are.  Nothing that is given is rescaled.
     """
 
+    def __new__(cls, E: ArrayLike = (), tau: ArrayLike = ()) -> Any:
+        many = _array_of(E, tau, creep=False)
+        return super().__new__(cls) if many is None else many
+
     def __init__(self, E: ArrayLike, tau: ArrayLike) -> None:
         self._relaxation: tuple[tuple[float, ...], tuple[float, ...]] | None = _series("E", E, "tau", tau)
         self._creep: tuple[tuple[float, ...], tuple[float, ...]] | None = None
@@ -75,7 +80,7 @@ class Prony:
             raise ParameterError("E", f"{self._relaxation[0]}", f"of a sum up to {HIGHEST_ALPHA:g}")
 
     @classmethod
-    def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: float | None = None) -> Prony:
+    def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: Any = None) -> Any:
         """The material by its creep compliance.
 
         Parameters
@@ -84,12 +89,21 @@ class Prony:
         T : retardation times over T_ref, > 0.
         alpha : instantaneous over long-time modulus, 1/(1 - sum J).  Where the sum is near 1 that difference
             has lost digits; what is given here takes its place, and must agree with it to rounding of J.
+            Of arrays (n, N) a number or (n,).
+
+        Returns
+        -------
+        Prony
+            Or, of arrays (n, N), a :class:`PronyArray`.
 
         Raises
         ------
         ParameterError
             As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
         """
+        many = _array_of(J, T, alpha, creep=True)
+        if many is not None:
+            return many
         J, T = _series("J", J, "T", T)
         rest = 1.0 - math.fsum(J)
         if not rest > 0.0:
@@ -113,19 +127,15 @@ class Prony:
         """Both forms, and the gaps between their rates."""
         if self._relaxation is not None:
             E, tau = (np.array(values) for values in self._relaxation)
-            a = 1.0 / tau
-            # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
-            spread = np.zeros((tau.size + 1, tau.size + 1))
-            spread[1:, 1:], spread[1:, 0], spread[0, 1:] = _between(tau), a, -a
-            gaps = zeros_from_poles(spread, np.concatenate([[1.0], E]), 0.0)
-            b, gap = gaps[0], -gaps[1:].T
-            return Modes(self._alpha, a, b, E, _strengths(gap, self._alpha)[0] / b, gap)
+            return of_relaxation(E, tau, self._alpha)
         assert self._creep is not None
         J, T = (np.array(values) for values in self._creep)
-        b = 1.0 / T
-        gap = zeros_from_poles(_between(T), J * b, 1.0 / self._alpha)
-        a = b + np.diagonal(gap)
-        return Modes(self._alpha, a, b, _strengths(gap, self._alpha)[1] / a, J, gap)
+        return of_creep(J, T, self._alpha)
+
+    @property
+    def by_creep(self) -> bool:
+        """Whether it was given by its creep compliance."""
+        return self._creep is not None
 
     @property
     def alpha(self) -> float:
@@ -177,7 +187,7 @@ class Prony:
 
     def in_own_time(self) -> tuple[Prony, float]:
         """(The material with its slow time near 1, the time that this is counted in), a power of two: exact."""
-        unit = 2.0 ** round(math.log2(self.slow_time))
+        unit = 2.0 ** round(math.log2(self.slow_time))  # of no modes it is 1
         return (self, 1.0) if unit == 1.0 else (self.slower(1.0 / unit), unit)
 
     def _key(self) -> tuple[Any, ...]:
@@ -196,6 +206,18 @@ class Prony:
         assert self._creep is not None
         J, T = map(list, self._creep)
         return f"Prony.creep(J={J}, T={T}, alpha={self._alpha!r})"
+
+
+def _array_of(strengths: ArrayLike, times: ArrayLike, alpha: Any = None, *, creep: bool) -> Any:
+    """Materials, one each, of arrays (n, N); None of others."""
+    try:
+        if max(np.ndim(strengths), np.ndim(times)) < 2:
+            return None
+    except ValueError:  # ragged: refused where it is checked
+        return None
+    from .prony_array import PronyArray
+
+    return PronyArray(strengths, times, alpha, creep=creep)
 
 
 def _series(
@@ -222,66 +244,91 @@ def _read_only(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return values
 
 
+def of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
+    """Both forms from strengths and times of relaxation (..., modes), times descending."""
+    a, modes = 1.0 / tau, tau.shape[-1]
+    # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
+    spread = np.zeros((*tau.shape[:-1], modes + 1, modes + 1))
+    spread[..., 1:, 1:], spread[..., 1:, 0], spread[..., 0, 1:] = _between(tau), a, -a
+    gaps = zeros_from_poles(spread, np.concatenate([np.ones((*E.shape[:-1], 1)), E], axis=-1), np.zeros(()))
+    b, gap = gaps[..., 0, :].copy(), np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
+    return Modes(alpha, a, b, E, _strengths(gap, alpha)[0] / b, gap)
+
+
+def of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
+    """Both forms from strengths and times of creep (..., modes), times descending."""
+    b = 1.0 / T
+    gap = zeros_from_poles(_between(T), J * b, np.asarray(1.0 / alpha))
+    a = b + np.diagonal(gap, axis1=-2, axis2=-1)
+    return Modes(alpha, a, b, _strengths(gap, alpha)[1] / a, J, gap)
+
+
 def _between(times: NDArray) -> NDArray[np.float64]:
     """rate[j] - rate[l] of the rates 1/times: of close times the difference is exact, of their rates it is not."""
-    return (times[None, :] - times[:, None]) / (times[:, None] * times[None, :])
+    row, column = times[..., None, :], times[..., :, None]
+    return (row - column) / (column * row)
 
 
-def zeros_from_poles(spread: NDArray, weight: NDArray, constant: float) -> NDArray[np.float64]:
-    """gap[j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum weight_j/(pole_j - s).
+def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> NDArray[np.float64]:
+    """gap[..., j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum weight_j/(pole_j - s).
 
-    spread[j, l] = pole_j - pole_l.  Poles ascend and weights are positive, so that the sum rises from pole to pole: one
-    zero between two neighbours, and one right of the last if ``constant`` > 0.
+    spread[..., j, l] = pole_j - pole_l.  Poles ascend and weights are positive, so that the sum rises from pole to
+    pole: one zero between two neighbours, and one right of the last if ``constant`` > 0.
     """
-    poles = weight.size
-    half = 0.5 * np.diagonal(spread, -1)
-    if constant > 0.0 and poles:  # right of all poles every term is at least -weight over the distance from the last
-        half = np.concatenate([half, [2.0 * weight.sum() / constant]])
-    left = np.arange(half.size)
-    in_left = np.ones(half.size, dtype=bool)
-    middle = _sum_at(half, left, 1.0, spread, weight, constant)
-    in_left[: poles - 1] = middle[: poles - 1] >= 0.0
+    poles, constant = weight.shape[-1], constant[..., None]
+    half = 0.5 * np.diagonal(spread, -1, -2, -1)
+    if poles and (constant > 0.0).all():  # right of all poles every term is at least -weight over the distance
+        half = np.concatenate([half, 2.0 * weight.sum(axis=-1, keepdims=True) / constant], axis=-1)
+    left = np.broadcast_to(np.arange(half.shape[-1]), half.shape)
+    in_left = np.ones(half.shape, dtype=bool)
+    middle = _sum_at(half, _seen_from(left, spread), weight, constant)
+    in_left[..., : poles - 1] = middle[..., : poles - 1] >= 0.0
     origin, side = np.where(in_left, left, left + 1), np.where(in_left, 1.0, -1.0)
-    low, high = np.log(half * _CLOSEST), np.log(half)
+    seen, low, high = _seen_from(origin, spread), np.log(half * _CLOSEST), np.log(half)
     for _ in range(_HALVINGS):
         mid = 0.5 * (low + high)
-        beyond = side * _sum_at(np.exp(mid), origin, side, spread, weight, constant) > 0.0
+        beyond = side * _sum_at(side * np.exp(mid), seen, weight, constant) > 0.0
         low, high = np.where(beyond, low, mid), np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
     for _ in range(_POLISH):
-        distance = _polished(distance, origin, side, spread, weight, constant)
-    return (side * distance)[None, :] - spread[:, origin]
+        distance = _polished(distance, origin, side, seen, weight, constant)
+    return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
 
 
-def _sum_at(
-    distance: NDArray, origin: NDArray, side: Any, spread: NDArray, weight: NDArray, constant: float
-) -> NDArray[np.float64]:
-    """The sum at s = pole[origin] + side distance."""
-    return constant + (weight[:, None] / (spread[:, origin] - side * distance)).sum(axis=0)
+def _seen_from(origin: NDArray, spread: NDArray) -> NDArray[np.float64]:
+    """[..., i, j] = pole_j - pole of the origin of zero i."""
+    return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
+
+
+def _sum_at(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> NDArray[np.float64]:
+    """The sum at s = pole[origin] + step."""
+    return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
 
 def _polished(
-    distance: NDArray, origin: NDArray, side: NDArray, spread: NDArray, weight: NDArray, constant: float
+    distance: NDArray, origin: NDArray, side: NDArray, seen: NDArray, weight: NDArray, constant: NDArray
 ) -> NDArray[np.float64]:
     """One step of Newton's iteration for weight[origin] = distance side (the rest of the sum)."""
-    away = spread[:, origin] - side * distance
-    per, own = 1.0 / away, np.arange(weight.size)[:, None] == origin[None, :]
-    rest = constant + np.where(own, 0.0, weight[:, None] * per).sum(axis=0)
-    slope = np.where(own, 0.0, weight[:, None] * per * per).sum(axis=0)
-    value = weight[origin] - distance * side * rest
+    per, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
+    each = np.where(own, 0.0, weight[..., None, :] * per)
+    # poles first: then numpy adds one after another, as it has done since the first of these series
+    rest, slope = (np.ascontiguousarray(np.moveaxis(terms, -1, 0)).sum(axis=0) for terms in (each, each * per))
+    rest = constant + rest
+    value = np.take_along_axis(weight, origin, axis=-1) - distance * side * rest
     new = distance + value / (side * rest + distance * slope)
     return np.where((new > 0.5 * distance) & (new < 2.0 * distance), new, distance)
 
 
-def _strengths(gap: NDArray, alpha: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _strengths(gap: NDArray, alpha: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(J, E) times their rates: products of gaps over products of the differences of their own rates.
 
     The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.  Factors are
     paired so that nothing overflows.
     """
-    size, own = np.abs(gap), np.eye(gap.shape[0], dtype=bool)
-    nearest = np.diagonal(size)
+    size, own = np.abs(gap), np.eye(gap.shape[-1], dtype=bool)
+    nearest, alpha = np.diagonal(size, 0, -2, -1), np.asarray(alpha)[..., None]
     # b_j - b_l = (a_l - b_l) + (b_j - a_l) and a_i - a_l = (a_i - b_i) + (b_i - a_l), j, i > l
-    apart_b, apart_a = (np.tril(each, -1) for each in (nearest[None, :] + size, nearest[:, None] + size))
-    per_b, per_a = (np.where(own, 1.0, size / np.where(own, 1.0, each + each.T)) for each in (apart_b, apart_a))
-    return nearest / alpha * per_b.prod(axis=1), nearest * alpha * per_a.prod(axis=0)
+    sums = nearest[..., None, :] + size, nearest[..., :, None] + size
+    apart = (np.where(own, 1.0, low + np.swapaxes(low, -1, -2)) for low in (np.tril(each, -1) for each in sums))
+    per_b, per_a = (np.where(own, 1.0, size / each) for each in apart)
+    return nearest / alpha * per_b.prod(axis=-1), nearest * alpha * per_a.prod(axis=-2)

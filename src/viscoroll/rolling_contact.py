@@ -7,6 +7,7 @@ the fields that were named.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -16,18 +17,24 @@ from .blocks import elements, run_blocks
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .material_tables import inverses, record, series
+from .material_tables import inverses, record, records, series
 from .prony import Prony
+from .prony_array import PronyArray
 from .scene import Scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
+#: of bodies that are alike, half of each
+_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
 #: slopes over a speed, which follows the unit of time
-_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV"}
+_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
+#: where each has a material of its own, which costs tens of microseconds and some kilobytes
+_BLOCK_EACH = 1 << 8
 #: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
 WORTHWHILE = 4096
 _FASTEST = 1e300
@@ -83,13 +90,13 @@ def contact(
     delta, omega : exactly one: creep ratio (omega - V)/V, or angular velocity; any sign.
         At V = 0 a given ``delta`` means the limit V -> 0+.
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
-        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV``), and ``M_half_space M_cylinder``, the
-        parts of M in either body; only these are computed.  Default: the first nine, of bodies that
-        differ the two parts too.
+        for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
+        ``M_half_space M_cylinder``, the parts of M in either body; only these are computed.  Default:
+        the first nine, of bodies that differ the two parts too.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
-        ``dQ_domega`` is infinite.
+        ``dQ_domega`` is infinite.  Of bodies that differ, ``dM_half_space_dV`` and ``dM_cylinder_dV`` too.
     method : "table" (the explicit law on tabulated Bessel ratios) or "direct" (the paper's
         equations as printed, solved by Brent-Dekker; no slopes).
 
@@ -125,8 +132,7 @@ def contact(
     if (delta is None) == (omega is None):
         both = "both" if delta is not None else "neither"
         raise ParameterError("delta, omega given", both, "exactly one of the two")
-    default = FIELDS if scene.like_bodies else FIELDS + OF_BODIES
-    names = _field_names(fields, default, slopes, method)
+    names = _field_names(fields, scene.like_bodies, slopes, method)
     creep_name = "omega" if delta is None else "delta"
     inputs = {
         "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
@@ -144,33 +150,28 @@ def contact(
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
-    moments = ("M", "zeta") if set(names) & set(OF_BODIES) else ()
-    solved = tuple(dict.fromkeys([*(name for name in names if name not in OF_BODIES), *moments]))
-    one = material if isinstance(material, Prony) else None
+    one = _one_material(scene, material, names)
+    if isinstance(one, PronyArray):
+        arrays["alpha"] = np.arange(len(one), dtype=np.float64)
+    # what the kernels are asked for, and what is half of it
+    halved = {} if isinstance(one, Bodies) else {name: _HALVES[name] for name in names if name in _HALVES}
+    solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
     found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
     rows = dict(zip(solved, found, strict=True))
-    if moments:
-        rows |= _moments_of_bodies(scene, rows)
+    rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
     for name in _PER_SPEED & rows.keys():
         rows[name] *= unit
     return Values({name: _shaped(name, rows[name], shape) for name in names})
 
 
-def _moments_of_bodies(scene: Scene, rows: dict[str, NDArray]) -> dict[str, NDArray]:
-    """What M takes of the half-space and of the cylinder, from M and zeta in the material's own time."""
-    M, zeta = rows["M"], rows["zeta"]
-    material, _ = scene.in_own_time()
-    if scene.like_bodies or not isinstance(material, Prony):  # two elastic bodies: M = 0
-        return {"M_half_space": 0.5 * M, "M_cylinder": 0.5 * M}
-    from .kernels.law.pair import parts_loop
-
+def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
+    """What serves all states: a series or many; bodies that differ, where parts of M are asked for; or, None, alphas."""
+    if not isinstance(material, Prony | PronyArray):
+        return None
+    if scene.like_bodies or not _HALVES.keys() & set(names):
+        return material
     assert isinstance(scene.material, Bodies)
-    own, _ = scene.material.in_own_time()
-    found = np.empty((2, M.size))
-    parts_loop(record(own), zeta, found[0], found[1])
-    # each by its own positive terms; M, which has passed through a table, is shared in their proportion
-    share = found[0] / (found[0] + found[1])
-    return {"M_half_space": share * M, "M_cylinder": (1.0 - share) * M}
+    return scene.material.in_own_time()[0]
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
@@ -181,16 +182,18 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
-def _field_names(fields: Iterable[str] | None, default: tuple[str, ...], slopes: bool, method: str) -> tuple[str, ...]:
+def _field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: str) -> tuple[str, ...]:
     if method not in ("table", "direct"):
         raise ParameterError("method", repr(method), "'table' or 'direct'")
+    default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
     names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    known = FIELDS + OF_BODIES + SLOPES + SLOPES_OF_BODIES
     for name in names:
-        if name not in FIELDS + OF_BODIES + SLOPES:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS + OF_BODIES + SLOPES))
+        if name not in known:
+            raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
     if slopes:
-        names += tuple(name for name in SLOPES if name not in names)
-    if method == "direct" and set(names) & set(SLOPES):
+        names += tuple(name for name in default_slopes if name not in names)
+    if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
         raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
     return names
 
@@ -216,14 +219,15 @@ def _compute(
 ) -> NDArray:
     """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
 
-    ``material``: a series in place of the alphas, or None.
+    ``material``: a series or bodies in place of the alphas, or None; or many series, with their numbers in place of
+    the alphas.
     """
     from .kernels.law.state import ROWS, Need, States
 
     wanted = set(names)
     need = Need(
         bool(wanted & _NEEDS_SHIFT), bool(wanted & _NEEDS_STICK), "beta" in wanted,
-        bool(wanted & {"M", "dM_dV"}), bool(wanted & set(SLOPES)),
+        bool(wanted & {"M", "dM_dV", *_HALVES}), bool(wanted & set(SLOPES + SLOPES_OF_BODIES)),
     )  # fmt: skip
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
@@ -240,7 +244,7 @@ def _compute(
             failures.append(start)
         out[:, start:stop] = found
 
-    run_blocks(work, count, _BLOCK)
+    run_blocks(work, count, _BLOCK_EACH if isinstance(material, PronyArray) else _BLOCK)
     if failures:
         raise ConvergenceError(f"contact: an iteration hit its cap near element {min(failures)} (method {method!r})")
     return out
@@ -252,6 +256,8 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
     from .kernels.law.lockstep import TOGETHER
     from .kernels.law.material import Own
 
+    if isinstance(material, PronyArray):
+        return lambda numbers, *rest: _loop_each(records(material, numbers.astype(np.int64)), *rest)
     if method == "direct":
         from .kernels.printed.loop import direct_loop
 
@@ -265,6 +271,26 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
         return lambda alphas, *rest: state_loop(record(material), *rest)
     loop = state_loop if count < TOGETHER else contact_loop
     return lambda alphas, *rest: loop(Own(alphas), *rest)
+
+
+def _loop_each(given: tuple, states: Any, need: Any, rows: NDArray, out: NDArray, start: int, stop: int) -> Any:
+    """``state_loop`` of states with a material each, each in its own time."""
+    from .kernels.law.contact_loop import state_loop
+    from .kernels.law.state import ROWS
+
+    record, unit = given
+    states = states._replace(V=_times(states.V, unit))
+    if states.creep_is_omega:
+        states = states._replace(creep=_times(states.creep, unit))
+    status = state_loop(record, states, need, rows, out, start, stop)
+    for n, row in enumerate(rows):
+        if ROWS[row] in _PER_SPEED:
+            out[n] *= unit
+    return status
+
+
+def _times(values: NDArray, unit: NDArray) -> NDArray:
+    return flattened(values * unit, np.broadcast_shapes(values.shape, unit.shape))
 
 
 def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
@@ -313,15 +339,18 @@ def stress(
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
+    many = isinstance(scene.material, PronyArray)
     material, unit = scene.in_own_time()
     given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
     given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta")}
-    given |= {"zeta": np.asarray(state.zeta) / unit, "alpha": scene.alpha}
+    given |= {"zeta": np.asarray(state.zeta) / unit}
+    given |= {"alpha": np.arange(len(material), dtype=np.float64) if many else scene.alpha}
     given |= {"mirror": mirror, "sign": np.sign(state.delta) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
     x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
     modes = series(material) if isinstance(material, Prony) else None
+    loop = _stress_each(material) if many else lambda alphas, *rest: stress_loop(modes or Own(alphas), *rest)
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 
@@ -329,8 +358,24 @@ def stress(
         mirrored = mirror_of(start, stop) * x_of(start, stop)
         mirrored.flags.writeable = False  # as all that a kernel reads, see elements
         points = Points(mirrored, *(part(start, stop) for part in others))
-        stress_loop(modes or Own(alpha_of(start, stop)), points, p[start:stop], tau[start:stop], 0, stop - start)
+        loop(alpha_of(start, stop), points, p[start:stop], tau[start:stop], 0, stop - start)
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
     return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)})
+
+
+def _stress_each(materials: PronyArray) -> Callable:
+    """``stress_loop`` over points with a material each, which lie together where they share one."""
+    from .kernels.law.material import Own
+    from .kernels.law.stress_loop import stress_loop
+
+    def loop(numbers: NDArray, points: Any, p: NDArray, tau: NDArray, start: int, stop: int) -> None:
+        for first, last in pairwise([start, *(1 + np.flatnonzero(np.diff(numbers))), stop]):
+            own, unit = materials[int(numbers[min(first, numbers.size - 1)])].in_own_time()
+            some = points._make(part[first:last] if part.size > 1 else part for part in points)
+            some = some._replace(zeta=flattened(some.zeta / unit, some.zeta.shape))
+            given = series(own) if own.E.size else Own(flattened(np.ones(1), (1,)))
+            stress_loop(given, some, p[first:last], tau[first:last], 0, last - first)
+
+    return loop

@@ -12,6 +12,7 @@ from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError
 from .prony import HIGHEST_ALPHA, Prony
+from .prony_array import PronyArray
 from .validity import Assumption, Validity, contact_reach, coupling, inertia, judge, steadiness, unsteadiness
 
 
@@ -42,8 +43,9 @@ class Scene:
     mu : coefficient of friction, > 0.
     gamma : P T_epsilon^2/(m R), > 0; only scales time.  Not used by contact or stress.
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
-    material : a :class:`Prony` series, or two (:class:`Bodies`), in place of ``alpha``, which is then
-        that of the material; the unit of time is T_ref, in which a series counts its times.
+    material : a :class:`Prony` series, or two (:class:`Bodies`), or n series, an array parameter
+        (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
+        counts its times.
 
     Raises
     ------
@@ -57,13 +59,13 @@ class Scene:
     mu: Any = None
     gamma: Any = 1.0
     j: Any = 0.5
-    material: Prony | Bodies | None = None
+    material: Prony | PronyArray | Bodies | None = None
 
     def __post_init__(self) -> None:
         if self.material is not None:
             if self.alpha is not None:
                 raise ParameterError("alpha, material given", "both", "one of the two")
-            if not isinstance(self.material, Prony | Bodies):
+            if not isinstance(self.material, Prony | PronyArray | Bodies):
                 raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
             object.__setattr__(self, "alpha", self.material.alpha)
         arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
@@ -82,7 +84,7 @@ class Scene:
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape that the parameters broadcast to; () for one scene."""
-        return np.broadcast_shapes(*(np.shape(getattr(self, f.name)) for f in fields(self)))
+        return np.broadcast_shapes(*(np.shape(getattr(self, f.name)) for f in fields(self) if f.name != "material"))
 
     def replace(self, **changes: Any) -> Scene:
         """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
@@ -95,11 +97,23 @@ class Scene:
         return replace(self, **changes)
 
     def in_own_time(self) -> tuple[Any, float]:
-        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
+        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
+
+        Of a material each as they are: a block finds the own time of each (:func:`.material_tables.records`).
+        """
         if self.material is None:
             return self.alpha, 1.0
+        if isinstance(self.material, PronyArray):
+            return self.material, 1.0
         series = self.material.total if isinstance(self.material, Bodies) else self.material
         return series.in_own_time() if series.E.size else (1.0, 1.0)
+
+    @property
+    def kernel_material(self) -> Any:
+        """What the kernels count the parts of M by: bodies that differ, else as :meth:`in_own_time`."""
+        if isinstance(self.material, Bodies) and not self.like_bodies:
+            return self.material.in_own_time()[0]
+        return self.in_own_time()[0]
 
     @property
     def like_bodies(self) -> bool:
@@ -117,7 +131,7 @@ class Scene:
         Raises
         ------
         ParameterError
-            NaN or infinite V, shapes that do not broadcast.
+            NaN or infinite V, shapes that do not broadcast, a material each.
         """
         plane = "the cylinder is long or held between walls (plane strain), or a thin disc"
         return self._validity(V, inertia(None), coupling(), plane)
@@ -125,6 +139,8 @@ class Scene:
     def _validity(self, V: ArrayLike, slow: Assumption, bodies: Assumption, plane: str) -> Validity:
         speed = checked("V", V)
         broadcast_shape(alpha=np.asarray(self.alpha), kappa=np.asarray(self.kappa), V=speed)
+        if isinstance(self.material, PronyArray):
+            raise ParameterError("material", repr(self.material), "one material, as material[i]")
         material, unit = self.in_own_time()
         nu = np.asarray(self.gamma * self._unsteadiness() / (1.0 + np.asarray(self.j)))
         return judge(*contact_reach(material, self.kappa, speed * unit), slow, steadiness(nu), bodies, plane)
@@ -134,13 +150,16 @@ class Scene:
         if self.material is None:
             alpha = np.asarray(self.alpha)
             return unsteadiness((alpha - 1.0) / alpha**2, (alpha - 1.0) / alpha)
+        assert not isinstance(self.material, PronyArray)
         series = self.material.total if isinstance(self.material, Bodies) else self.material
         return unsteadiness(*series.second_moments)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
             return NotImplemented
-        return all(np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        names = [f.name for f in fields(self) if f.name != "material"]
+        same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+        return same and self.material == other.material
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -46,7 +46,8 @@ def _add_fit(group: Any) -> None:
         "fit",
         help="a material from the master curve of a DMA",
         description="Fit a Prony series to columns of frequency, storage and loss modulus, with units in their\n"
-        "heading; print what the data say of it and what they do not, and with -o write it as a section [material].",
+        "heading; print what the data say of it and what they do not, and with -o write it as a section [material]\n"
+        "of a TOML file, or as netCDF.",
         epilog="example:\n  viscoroll material fit docs/examples/dma.csv --nu 0.49 -o rubber.toml",
     )
     parser.add_argument("data", metavar="DATA", help="a text file of columns")
@@ -56,12 +57,14 @@ def _add_fit(group: Any) -> None:
     )
     parser.add_argument("--nu", type=number, default=0.49, help="Poisson's ratio, constant in time (default 0.49)")
     parser.add_argument("--name", default="", help="of the material")
-    add_output_option(parser, ".toml")
+    add_output_option(parser, ".toml", ".nc")
     parser.set_defaults(run=_fit)
 
 
 def _add_file(parser: ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE.toml", help="a file with [material], [base] or both")
+    parser.add_argument(
+        "file", metavar="FILE", help="TOML with [material], [base] or both, or the netCDF of a material"
+    )
     parser.add_argument(
         "--temperature", type=number, metavar="T", help="degrees Celsius, by the wlf or arrhenius of the file"
     )
@@ -89,11 +92,13 @@ def _plot(arguments: Namespace) -> int:
 def _fit(arguments: Namespace) -> int:
     from ..dma import fit_prony, read_dma
     from ..files import write_text
-    from ..material_file import as_toml
+    from ..material_file import SUFFIX, as_toml
 
     found = fit_prony(*read_dma(arguments.data), arguments.modes, misfit=arguments.misfit)
     material = found.material(arguments.nu, name=arguments.name)
-    if arguments.output is not None:
+    if arguments.output is not None and arguments.output.suffix == SUFFIX:
+        material.to_netcdf(arguments.output)
+    elif arguments.output is not None:
         write_text(arguments.output, as_toml(material))
     print(found)
     return 0

@@ -60,9 +60,7 @@ class Law:
     def of(cls, scene: Scene) -> Law:
         """That of a scene."""
         material, unit = scene.in_own_time()
-        if isinstance(scene.material, Bodies) and not scene.like_bodies and isinstance(material, Prony):
-            return cls(material, scene.material.in_own_time()[0], unit)
-        return cls(material, material, unit)
+        return cls(material, scene.kernel_material, unit)
 
     @property
     def elastic(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -13,16 +13,19 @@ from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
+from ..prony_array import PronyArray
 from ..rolling_contact import flattened
 from ..scene import Scene
-from .checks import SPEED_RANGE, controls, like_bodies, output_times, start_speeds
+from .checks import SPEED_RANGE, controls, output_times, start_speeds
+from .driven import ACTING, ROWS, Drive, Prepared, prepared, refuse_rest
+from .each import roll_each, to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 
 if TYPE_CHECKING:
     import xarray as xr
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
-FIELDS = STATES + LOSSES
+FIELDS = STATES + LOSSES + ACTING
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 #: motions a block: where all are integrated, and where most come from a map
 _BLOCK, _MAPPED_BLOCK = 64, 1 << 14
@@ -42,6 +45,7 @@ class Ensemble:
     slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2: the integrals of
         gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
         (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
+    force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
     status : (n,), a :class:`MotionStatus` each; outputs a motion did not reach are NaN.
@@ -51,6 +55,7 @@ class Ensemble:
         ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
         relative to the energy at the start if larger; NaN without a map.
     flow_problem : why a map that was tried could not be used, or "".
+    drive_error : as of a :class:`Motion`.
     """
 
     scene: Scene
@@ -65,6 +70,11 @@ class Ensemble:
     regime: NDArray[np.float64] | None
     slip_loss: NDArray[np.float64] | None
     rolling_loss: NDArray[np.float64] | None
+    force: NDArray[np.float64] | None
+    torque: NDArray[np.float64] | None
+    work_force: NDArray[np.float64] | None
+    work_torque: NDArray[np.float64] | None
+    brake_loss: NDArray[np.float64] | None
     onset_time: NDArray[np.float64]
     rest_time: NDArray[np.float64]
     status: NDArray[np.int8]
@@ -73,6 +83,7 @@ class Ensemble:
     flow: NDArray[np.bool_]
     flow_error: float
     flow_problem: str
+    drive_error: float
 
     def __len__(self) -> int:
         return self.status.size
@@ -114,10 +125,16 @@ class Ensemble:
 
 def ensemble(
     scene: Scene,
-    V0: ArrayLike,
-    omega0: ArrayLike,
+    V0: ArrayLike | None,
+    omega0: ArrayLike | None,
     t: ArrayLike,
     *,
+    force: Any = 0.0,
+    torque: Any = 0.0,
+    slope: ArrayLike | None = None,
+    brake: Any = None,
+    omega: Any = None,
+    V: Any = None,
     method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,
@@ -134,15 +151,18 @@ def ensemble(
     scene : its fields may be arrays of n too: every motion can have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,).
     t : output times, ascending, common to all; one number: the final state only.
+    force, torque, slope, brake, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays of n,
+        values of (times, values) of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map stands in only
         where its stated error is at most ``rtol``, and only for the motions that it holds;
-        all others are integrated.  The result says which, and the map's error.
+        all others are integrated.  The result says which, and the map's error.  Driven motions, and
+        those of bodies that differ, are integrated: "flow" is refused.
     rtol, rest, max_steps : as for :func:`roll`.
-    fields : out of ``V omega x angle delta regime slip_loss rolling_loss``; only these are kept in
-        memory.  A loss takes an integrated motion a second pass, to some rtol of the energy.
+    fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
+        work_torque brake_loss``; only these are kept in memory.  Without a drive a loss takes an integrated motion a second pass, to some rtol of the energy.
     speed : highest speed that the flow map is made for; default the largest of the starts.
         Where a large ensemble is rolled in several calls, one number for all makes the
         bits independent of how it is cut.
@@ -171,7 +191,6 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_hostile.py``).
     """
-    like_bodies(scene)
     times = output_times(t)
     names = (fields,) if isinstance(fields, str) else tuple(fields)
     for name in names:
@@ -179,21 +198,32 @@ def ensemble(
             raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS))
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
-    if method == "flow" and scene.shape:
-        raise ParameterError("method", "'flow'", "'auto' or 'integrate' where motions have scenes of their own")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
+    drive, ready = Drive(force, torque, slope, brake, omega, V), None
+    if drive.acts or not scene.like_bodies:
+        ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
+        refuse_rest(threshold, ready)
+        scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
+    if method == "flow" and (scene.shape or ready):
+        what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
+        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in _PARAMETERS}
     arrays |= dict(zip(("V0", "omega0"), start_speeds(V0, omega0), strict=True))
+    if ready and ready.pieces.shape[0] > 1:
+        arrays["drive"] = np.zeros(ready.pieces.shape[0])
     shape = broadcast_shape(**arrays)
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
+    arrays.pop("drive", None)
     count = shape[0] if shape else 1
     material, unit = scene.in_own_time()
     own_time = {"gamma": unit * unit, "V0": unit, "omega0": unit}
     flat = [flattened(array * own_time.get(name, 1.0), (count,)) for name, array in arrays.items()]
-    rows = tuple(FIELDS.index(name) for name in names)
+    # without a drive nothing acts
+    found = names if ready else tuple(name for name in names if name not in ACTING)
+    rows = tuple((ROWS if ready else FIELDS).index(name) for name in found)
     bar = "motions" if progress else None
-    use_map = method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS)
+    use_map = not ready and (method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS))
     chosen = _map_of(scene, flat[5], flat[6], speed and speed * unit, threads) if use_map else None
     error = (
         np.nan if chosen is None else chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
@@ -204,16 +234,19 @@ def ensemble(
     else:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    shared = None if np.ndim(scene.alpha) else material
+    shared = None if scene.material is None and np.ndim(scene.alpha) else scene.kernel_material if ready else material
     limits = rtol, threshold * unit, max_steps
-    steps = _integrate_others(answer, flat, shared, times / unit, limits, rows, bool(flow.any()), threads, bar)
+    steps = _integrate_others(answer, flat, (shared, unit, ready), times / unit, limits, found, threads, bar)
     if unit != 1.0:
-        answer = _in_units(answer, rows, unit)
-    kept: dict[str, Any] = dict.fromkeys(FIELDS) | dict(zip(names, answer.out, strict=True))
+        to_unit(answer.out, found, unit)
+        answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
+    kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
+    kept |= dict(zip(found, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
         onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
+        drive_error=ready.error if ready else 0.0,
     )  # fmt: skip
 
 
@@ -226,21 +259,16 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
-def _in_units(answer: Answer, rows: tuple[int, ...], unit: float) -> Answer:
-    """An answer with time in units of ``unit`` counted in T_ref."""
-    for n, row in enumerate(rows):
-        answer.out[n] /= {"V": unit, "omega": unit}.get(FIELDS[row], unit * unit if FIELDS[row] in LOSSES else 1.0)
-    return answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
-
-
 def _integrate_others(
-    answer: Answer, flat: list[NDArray], material: Any, times: NDArray, limits: tuple[float, float, int],
-    rows: tuple[int, ...], mapped: bool, threads: int | None, bar: str | None,
+    answer: Answer, flat: list[NDArray], by: tuple[Any, float, Prepared | None], times: NDArray,
+    limits: tuple[float, float, int], names: tuple[str, ...], threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
-    """Integrate the motions without an answer, few where a map has ``mapped`` them; returns the steps of each.
+    """Integrate the motions without an answer; returns the steps of each.
 
-    ``material`` : the one that they share, or None where each has an alpha of its own.
+    ``by`` : the material that they share, those that they have each, or None where each has an alpha of its own; what
+    times are counted in; what drives them.
     """
+    material, unit, ready = by
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -251,13 +279,21 @@ def _integrate_others(
         if not left.size:
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
-        one = Own(alpha) if material is None else record(material)
-        out, info = np.empty((len(rows), left.size, times.size)), np.empty((left.size, len(INFO)))
-        given = (one, *inputs), times, limits, np.array(rows, np.int64), out, info
-        _roll_all(given, _among(tuple(FIELDS[row] for row in rows), *LOSSES), left.size)
+        kernel = _kernel(names, ready)
+        if isinstance(material, PronyArray):
+            which = np.minimum(left, len(material) - 1)
+            out, info = roll_each(
+                material, which, inputs, times, limits, names,
+                lambda given, limits, out, info, own: kernel(*given, limits, out, info, left[own[0]], own[1]),
+            )  # fmt: skip
+        else:
+            one = Own(alpha) if material is None else record(material)
+            out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
+            kernel((one, *inputs), times, limits, out, info, left, unit)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
+    mapped = bool((answer.status >= 0).any())
     run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
     return steps
 
@@ -266,13 +302,24 @@ def _among(names: tuple[str, ...], *some: str) -> bool:
     return not set(names).isdisjoint(some)
 
 
-def _roll_all(given: tuple, losses: bool, count: int) -> None:
-    """Call the kernel that integrates motions, or that which finds their losses too."""
-    if losses:
-        from ..kernels.motion.losses import loss_loop
+def _kernel(names: tuple[str, ...], ready: Prepared | None) -> Callable[..., None]:
+    """What integrates motions: (batch, times, limits, out, info, their numbers, what times are counted in) -> None."""
+    rows = np.array([(ROWS if ready else FIELDS).index(name) for name in names], np.int64)
 
-        loss_loop(*given, 0, count)
-    else:
+    def driven(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, which: Any, unit: float) -> None:
+        from ..kernels.drive.loop import drive_loop
+
+        drives, unnoted = ready.in_unit(unit, which), (np.empty((0, 2)), np.empty(0))
+        drive_loop(given, drives, times, limits, rows, out, info, unnoted)
+
+    def free(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, which: Any, unit: float) -> None:
         from ..kernels.motion.loop import NOTHING_NOTED, motion_loop
 
-        motion_loop(*given, tuple(NOTHING_NOTED), 0, count)
+        motion_loop(given, times, limits, rows, out, info, tuple(NOTHING_NOTED), 0, len(info))
+
+    def with_losses(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, *_: Any) -> None:
+        from ..kernels.motion.losses import loss_loop
+
+        loss_loop(given, times, limits, rows, out, info, 0, len(info))
+
+    return driven if ready else with_losses if _among(names, *LOSSES) else free

@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import broadcast_shape, checked, extent
 from ..errors import ParameterError
-from ..scene import Scene
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)
@@ -31,12 +30,6 @@ def output_times(t: ArrayLike) -> NDArray[np.float64]:
         at = backward[0]
         raise ParameterError("t", f"..., {times[at]:.6g}, {times[at + 1]:.6g}, ...", "in ascending order")
     return times
-
-
-def like_bodies(scene: Scene) -> None:
-    """Raise ParameterError where the bodies differ: Eq. (22) as it is integrated here gives each half of M."""
-    if not scene.like_bodies:
-        raise ParameterError("material", "two bodies that differ", "one material, or like bodies, for a motion")
 
 
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:

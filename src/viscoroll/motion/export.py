@@ -10,6 +10,7 @@ import xarray as xr
 from .. import __version__
 from ..bodies import Bodies
 from ..errors import MOTION_STATUS, ParameterError
+from ..prony_array import PronyArray
 from ..symbols import SYMBOLS
 
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
@@ -57,10 +58,20 @@ def _globals(title: str) -> dict[str, str]:
 
 def _material(scene: Any) -> dict[str, Any]:
     """The series that a scene counts time by; nothing where it has an alpha."""
-    if scene.material is None:
+    if scene.material is None or isinstance(scene.material, PronyArray):
         return {}
     series = scene.material.total if isinstance(scene.material, Bodies) else scene.material
     return {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+
+
+def _series(materials: PronyArray) -> dict[str, tuple[Any, dict[str, str]]]:
+    """Strengths and times of a material each as they were given."""
+    form, over = ("creep", "compliance") if materials.by_creep else ("relaxation", "modulus")
+    strengths, times = materials.given
+    return {
+        f"{form}_strengths": (strengths, {"long_name": f"strengths of {form} over the long-time {over}", "units": "1"}),
+        f"{form}_times": (times, {"long_name": f"times of {form} over T_ref", "units": "1"}),
+    }
 
 
 def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
@@ -101,6 +112,10 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     for name in _PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
         data[name] = _variable(("motion",) if value.ndim else (), name, value)
+    if isinstance(result.scene.material, PronyArray):
+        for name, (values, described) in _series(result.scene.material).items():
+            shape = (len(result), values.shape[1])
+            data[name] = xr.Variable(("motion", "mode"), np.broadcast_to(values, shape), described)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))

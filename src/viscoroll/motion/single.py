@@ -3,28 +3,50 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..rolling_contact import Values, contact
 from ..scene import Scene
-from .checks import controls, like_bodies, output_times, start_speeds
+from .checks import controls, output_times, start_speeds
+from .driven import ROWS, Drive, prepared, refuse_rest
+from .each import to_unit
 
 if TYPE_CHECKING:
     import xarray as xr
 
-REGIMES = ("full slip", "partial slip", "rest")
-_QUANTITIES = ("V", "omega", "x", "angle", "delta")
+REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
+LOSSES = ("slip_loss", "rolling_loss")
 _SWITCHES_KEPT = 1000
 #: room for the ends of steps at first
 _STEPS = 1000
 _NO_SWITCHES = np.empty((0, 2))
+
+
+#: a function of time
+Schedule = float | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
+Acting = Schedule | Feedback
+
+
+class Inputs(NamedTuple):
+    """What a motion was rolled from."""
+
+    scene: Scene
+    V0: Any
+    omega0: Any
+    end: float
+    rtol: float
+    rest: float
+    max_steps: int
+    drive: Drive
 
 
 class Switch(NamedTuple):
@@ -43,8 +65,15 @@ class Motion:
     t, V, omega : output times and speeds.
     x, angle : distance travelled over R, and angle turned in radians, both 0 at t = 0.
     delta : creep ratio (infinite where V = 0 while sliding).
-    regime : 0 full slip, 1 partial slip, 2 rest (see ``REGIMES``).
-    switches : every change of regime, located to rounding.
+    regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by a brake, or by a
+        prescribed speed of 0 (both 0); see ``REGIMES``.
+    switches : every change of regime, located to rounding; under a drive to a small part of ``rtol``.
+    reversals : times at which V changes its sign under a drive.
+    force, torque : over P and P R: what acted, or what a prescribed speed needed; without the brake.
+    work_force, work_torque : work of either since t = 0, over m (R/T_epsilon)^2.
+    brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling, likewise.  The works
+        are the change of (V^2 + j omega^2)/2 plus the three losses.
+    drive_error : the largest difference seen between a callable and the polynomials it was fitted by.
     onset_time : first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
     status, message : how the motion ended; outputs it did not reach are NaN.
@@ -64,7 +93,39 @@ class Motion:
     rest_time: float
     status: MotionStatus
     steps: int
-    _inputs: tuple = field(repr=False)
+    reversals: NDArray[np.float64]
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    work_force: NDArray[np.float64]
+    work_torque: NDArray[np.float64]
+    brake_loss: NDArray[np.float64]
+    drive_error: float
+    _inputs: Inputs = field(repr=False)
+    _losses: NDArray[np.float64] | None = field(repr=False)
+
+    @property
+    def slip_loss(self) -> NDArray[np.float64]:
+        """Energy lost in slip since t = 0, over m (R/T_epsilon)^2."""
+        return self._lost[0]
+
+    @property
+    def rolling_loss(self) -> NDArray[np.float64]:
+        """Energy lost in rolling since t = 0, over m (R/T_epsilon)^2."""
+        return self._lost[1]
+
+    @cached_property
+    def _lost(self) -> NDArray[np.float64]:
+        """Losses in slip and in rolling; those of a free motion are found when they are asked for."""
+        if self._losses is not None:
+            return self._losses
+        from .batch import LOSSES, ensemble
+
+        given = self._inputs
+        found = ensemble(
+            given.scene, given.V0, given.omega0, self.t, method="integrate", rtol=given.rtol, rest=given.rest or None,
+            max_steps=given.max_steps, fields=LOSSES,
+        )  # fmt: skip
+        return np.stack([getattr(found, name)[0] for name in LOSSES])
 
     @property
     def message(self) -> str:
@@ -116,10 +177,10 @@ class Motion:
             Times that are not ascending or lie beyond the end of the motion.
         """
         times = output_times(t)
-        V0, omega0, end, rtol, rest, max_steps = self._inputs
+        end = self._inputs.end
         if times[-1] > end:
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
-        return _integrate(self.scene, V0, omega0, times, end, rtol, rest, max_steps)
+        return _integrate(self._inputs, times)
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
@@ -137,11 +198,17 @@ def _with_gaps(values: NDArray, reached: NDArray[np.bool_]) -> NDArray:
 
 def roll(
     scene: Scene,
-    V0: float,
-    omega0: float,
+    V0: float | None,
+    omega0: float | None,
     t: ArrayLike,
     rtol: float = 1e-8,
     *,
+    force: Acting = 0.0,
+    torque: Acting = 0.0,
+    slope: float | None = None,
+    brake: Schedule | None = None,
+    omega: Schedule | None = None,
+    V: Schedule | None = None,
     rest: float | None = None,
     max_steps: int = 100_000,
 ) -> Motion:
@@ -156,7 +223,19 @@ def roll(
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
         speed magnifies any earlier error: mostly below rtol, at most 30 rtol on the scenes
         of ``tests/motion/test_motion.py``; rare motions elsewhere may exceed that a little.
-    rest : end the motion where max(|V|, |omega|) falls below this.  Nothing stops in
+    force, torque : over P along V, and over P R along omega, what pushes the axis and turns the cylinder:
+
+        - a number;
+        - (times, values): linear between, constant outside, a time given twice is a jump;
+        - a callable of t, smooth, fitted by polynomials to a tenth of ``rtol`` (``drive_error`` says how well);
+        - ``vr.Feedback(value, V=gain, omega=gain)``: any of these and more with the speeds.
+    slope : angle in radians, > 0 pushes along +V: tan(slope) is added to ``force``.  The load is P cos(slope) then,
+        over which force, torque, Q and M are; ``scene`` of the result has kappa and gamma of that load.
+    brake : the most torque over P R that a brake takes, >= 0, as for ``force``.  It acts against omega, and holds
+        omega = 0 while |Q + M_cylinder - torque| is no more.
+    omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or what it starts at.
+    V : prescribed speed of the axis, in place of ``force``; ``V0`` likewise.  A prescribed speed must not jump.
+    rest : end the motion where max(|V|, |omega|) falls below this; not while something drives to the end.  Nothing stops in
         finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
         there on V = omega = 0 and x, angle stay; the distance so left out is close to
@@ -170,83 +249,125 @@ def roll(
     Raises
     ------
     ParameterError
-        NaN, infinite or oversized input, unsorted times, an array where one number belongs.
+        NaN, infinite or oversized input, unsorted times, an array where one number belongs; both speeds prescribed,
+        a prescribed speed that jumps or does not match its start, a callable that jumps.
+
+    Notes
+    -----
+    Under a drive, and with bodies that differ, V and omega are off by at most 30 ``rtol`` of the largest speed so far,
+    mostly below 3 (``tests/motion/test_drive.py``), near a saddle (``vr.steady``) times what neighbours part by.
+
+    Examples
+    --------
+    Push, drive and brake: a slope of 2 degrees, a torque that rises for a second and ends, a brake.
+
+    >>> import numpy as np, viscoroll as vr
+    >>> scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+    >>> down = vr.roll(scene, 0.0, 0.0, 60.0, slope=np.radians(2.0))
+    >>> start = vr.roll(scene, 0.0, 0.0, 4.0, torque=([0.0, 1.0, 1.0], [0.0, 0.2, 0.0]))
+    >>> stop = vr.roll(scene, 0.5, 0.5, 10.0, brake=0.1)
 
     Warns
     -----
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    like_bodies(scene)
     times = output_times(t)
-    inputs = start_speeds(V0, omega0)
-    for name, value in (("scene", scene), ("V0", inputs[0]), ("omega0", inputs[1])):
+    drive = Drive(force, torque, slope, brake, omega, V)
+    given = [0.0 if value is None else value for value in (V0, omega0)] if drive.prescribes else [V0, omega0]
+    speeds = start_speeds(*given)
+    for name, value in (("scene", scene), ("V0", speeds[0]), ("omega0", speeds[1]), ("slope", np.asarray(slope or 0.0))):
         if value.shape != ():
             raise ParameterError(name, f"array of shape {value.shape}", "one motion's; for many use ensemble")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    start = (scene, float(inputs[0]), float(inputs[1]))
+    start = [None if value is None else float(value) for value in (V0, omega0)]
+    inputs = Inputs(scene, *start, float(times[-1]), rtol, threshold, max_steps, drive)
     if np.ndim(t) == 0:
-        times = _step_times(*start, times, rtol, threshold, max_steps)
-    motion = _integrate(*start, times, times[-1], rtol, threshold, max_steps)
+        times = _step_times(inputs)
+    motion = _integrate(inputs, times)
     if motion.status > MotionStatus.RESTED:
         warnings.warn(f"roll: {motion.message}; outputs not reached are NaN", RuntimeWarning, stacklevel=2)
     return motion
 
 
-def _step_times(
-    scene: Scene, V0: float, omega0: float, end: NDArray, rtol: float, rest: float, max_steps: int
-) -> NDArray:
-    """0, the ends of the steps and the nodes between them, and the end time."""
-    ends = np.empty(0)
-    while ends.size < max_steps and not np.isnan(ends).any():  # full: there may be more
-        ends = np.full(min(max(4 * ends.size, _STEPS), max_steps), np.nan)
-        rolled(scene, V0, omega0, end, (rtol, rest, max_steps), (_NO_SWITCHES, ends))
-    return np.unique(np.concatenate(([0.0], ends[ends < end], end)))
+def _step_times(inputs: Inputs) -> NDArray:
+    """0, the ends of the steps and places between them, and the end time."""
+    ends, end = np.empty(0), inputs.end
+    while ends.size < inputs.max_steps and not np.isnan(ends).any():  # full: there may be more
+        ends = np.full(min(max(4 * ends.size, _STEPS), inputs.max_steps), np.nan)
+        rolled(inputs, np.array([end]), (_NO_SWITCHES, ends))
+    return np.unique(np.concatenate(([0.0], ends[ends < end], [end])))
 
 
-def _integrate(
-    scene: Scene, V0: float, omega0: float, times: NDArray, end: float, rtol: float, rest: float, max_steps: int
-) -> Motion:
-    asked = times if times[-1] == end else np.append(times, end)
-    switches = np.empty((_SWITCHES_KEPT, 2))
-    out, (status, steps, turns, onset_time, rest_time) = rolled(
-        scene, V0, omega0, asked, (rtol, rest, max_steps), (switches, np.empty(0))
-    )
-    rows = dict(zip(_QUANTITIES, out[:, : times.size], strict=False))
-    regime = np.where(np.isnan(out[5]), -1, out[5]).astype(np.int8)[: times.size]
-    kept = switches[: min(int(turns), _SWITCHES_KEPT)]
-    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in kept)
-    inputs = (V0, omega0, end, rtol, rest, max_steps)
+def _integrate(inputs: Inputs, times: NDArray) -> Motion:
+    asked = times if times[-1] == inputs.end else np.append(times, inputs.end)
+    switches = np.full((_SWITCHES_KEPT, 2), np.nan)
+    scene, error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
+    rows = dict(zip(ROWS, out[:, : times.size], strict=True))
+    losses = np.stack([rows.pop(name) for name in LOSSES])
+    whole = rows.pop("regime")
+    regime = np.where(np.isnan(whole), -1, whole).astype(np.int8)
+    noted = switches[~np.isnan(switches[:, 1])]
+    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in noted if what >= 0.0)
     return Motion(
         scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
-        status=MotionStatus(int(status)), steps=int(steps), _inputs=inputs,
+        status=MotionStatus(int(status)), steps=int(steps), reversals=noted[noted[:, 1] < 0.0, 0],
+        drive_error=error, _inputs=inputs, _losses=None if np.isnan(losses).all() else losses,
     )  # fmt: skip
 
 
-def rolled(
-    scene: Scene, V0: float, omega0: float, times: NDArray, limits: tuple, notes: tuple
-) -> tuple[NDArray, list[float]]:
-    """Outputs of one motion, and its status, steps, switches, onset time, rest time: by the kernel for many motions.
+def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, NDArray, list[float]]:
+    """(Scene, error of the drive, rows of ``ROWS``, (status, steps, switches, onset time, rest time)) of one motion.
 
-    ``limits`` and ``notes`` are those of ``kernels.motion.records``, which the switches and the ends of steps are put
-    into.  The kernel counts time in the material's own unit.
+    ``notes``: room for the switches and for the ends of steps.  Without a drive, and of like bodies, by the kernel of
+    free motions, which leaves the losses NaN.  Kernels count time in the material's own unit.
     """
-    rtol, rest, max_steps = limits
+    scene, drive = inputs.scene, inputs.drive
+    driven = drive.acts or not scene.like_bodies
+    ready, V0, omega0 = None, inputs.V0, inputs.omega0
+    if driven:
+        ready = prepared(drive, scene, V0, omega0, inputs.end, inputs.rtol)
+        refuse_rest(inputs.rest, ready)
+        scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
+    material, unit = scene.in_own_time()
+    one = np.array((scene.kappa, scene.mu, scene.gamma * unit * unit, scene.j, V0 * unit, omega0 * unit)).reshape(-1, 1)
+    one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
+    limits = inputs.rtol, inputs.rest * unit, inputs.max_steps
+    if ready is None:
+        out, info = _free((record(material), *one), times / unit, limits, notes)
+    else:
+        out, info = _driven((record(scene.kernel_material), *one), ready.in_unit(unit), times / unit, limits, notes)
+    if unit != 1.0:
+        switches, ends = notes
+        to_unit(out, ROWS, unit)
+        info[3:] *= unit
+        switches[:, 0] *= unit
+        ends *= unit
+    return scene, 0.0 if ready is None else ready.error, out, info.tolist()
+
+
+def _free(given: tuple, times: NDArray, limits: tuple, notes: tuple) -> tuple[NDArray, NDArray]:
+    """A motion without a drive: nothing acts, and what is lost is not known."""
     from ..kernels.motion.loop import INFO, motion_loop
     from ..kernels.motion.output import OUTPUTS
 
-    material, unit = scene.in_own_time()
-    gamma = scene.gamma * unit * unit
-    one = np.array((scene.kappa, scene.mu, gamma, scene.j, V0 * unit, omega0 * unit)).reshape(-1, 1)
-    one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
-    out, info = np.empty((OUTPUTS, 1, times.size)), np.empty((1, len(INFO)))
-    given, own = (record(material), *one), (rtol, rest * unit, max_steps)
-    motion_loop(given, times / unit, own, np.arange(OUTPUTS), out, info, notes, 0, 1)
-    out, info = out[:, 0], info[0]
-    if unit != 1.0:
-        switches, ends = notes
-        out[:2] /= unit
-        info[3:] *= unit
-        switches[: int(info[2]), 0] *= unit
-        ends *= unit
-    return out, info.tolist()
+    out, info = np.zeros((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
+    motion_loop(given, times, limits, np.arange(OUTPUTS), out[:OUTPUTS], info, notes, 0, 1)
+    out[OUTPUTS:] = np.where(np.isnan(out[0]), np.nan, 0.0)
+    out[-len(LOSSES) :] = np.nan
+    return out[:, 0], info[0]
+
+
+def _driven(given: tuple, drives: tuple, times: NDArray, limits: tuple, notes: tuple) -> tuple[NDArray, NDArray]:
+    """A motion under a drive, or of bodies that differ."""
+    from ..kernels.drive.loop import drive_loop
+    from ..kernels.motion.loop import INFO
+
+    switches, ends = notes
+    noted = np.zeros(ends.size + 1 if ends.size else 0)
+    out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
+    drive_loop(given, drives, times, limits, np.arange(len(ROWS)), out, info, (switches, noted))
+    if ends.size:
+        count = min(int(noted[0]), ends.size)
+        ends[:count] = noted[1 : count + 1]
+    return out[:, 0], info[0]

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cylinder import scene_from_si, scene_of_pair
+from ..cylinder import scene_from_si, scene_of_pair, scene_of_series
 from ..motion import ensemble
 from ..motion.batch import Ensemble
 from ..scene import Scene
 from . import draws
+from .ranges import CYLINDER, SCENE, START
 from .runfile import Run
-from .sources import CYLINDER, SCENE, START
+from .solids import Modes
 from .units import are_si, dimensionless, unit_of_time
 
 
@@ -35,8 +36,17 @@ def scene_of(values: Mapping[str, Any]) -> Scene:
         if "pair" in values:
             del given["plane"]
             return scene_of_pair(**given, pair=values["pair"])
+        if "series" in values:
+            return scene_of_series(**given, T_ref=values["T_ref"], series=_series(values))
         return scene_from_si(**given)
-    return Scene(**{name: values[name] for name in SCENE})
+    series = _series(values) if "series" in values else None
+    return Scene(**{name: values[name] for name in SCENE if name in values}, material=series)
+
+
+def _series(values: Mapping[str, Any]) -> Any:
+    """The series of a block, or one for each motion."""
+    series = values["series"]
+    return series.of(values) if isinstance(series, Modes) else series
 
 
 def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) -> Ensemble:

@@ -30,14 +30,15 @@ from numpy.typing import NDArray
 from ..config import preset
 from ..errors import ParameterError
 from ..material_file import SECTIONS as MATERIALS
-from ..material_file import materials_of
+from ..material_file import as_toml, materials_of
 from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
 from .inputs import Inputs
 from .quantities import QUANTITIES
-from .sources import CYLINDER, SCENE, START, read_inputs
+from .ranges import CYLINDER, SCENE, START
+from .sources import read_inputs
 from .units import dimensionless
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
@@ -170,9 +171,11 @@ def read_run(path: str | PathLike[str]) -> Run:
     settings = as_struct(path, "run", content["run"], RunSection)
     sections, base = _parameters(path, content)
     correlation = content.get("correlation", {})
-    inputs = read_inputs(Path(path), sections, base, correlation, materials_of(path, content))
+    materials = {name: content[name] for name in MATERIALS if name in content}
+    inputs = read_inputs(Path(path), sections, base, correlation, materials)
     times = _checked(path, settings, inputs)
-    described = sections | {name: content[name] for name in MATERIALS if name in content}
+    stored = materials_of(path, {name: given for name, given in materials.items() if "file" in given})
+    described = sections | materials | {f"{name} stored": as_toml(found) for name, found in stored.items()}
     digest = _digest(settings, times, described, base, correlation, inputs)
     return Run(Path(path).read_text(encoding="utf-8"), settings, inputs, times, digest)
 

@@ -21,8 +21,8 @@ from ..extras import imported
 from .evaluate import roll_inputs
 from .inputs import LARGEST, SMALLEST, Inputs
 from .quantities import QUANTITIES, valued
+from .ranges import START
 from .runfile import Run
-from .sources import START
 from .units import attributes, scales
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,60 +12,17 @@ from numpy.typing import NDArray
 from ..errors import ConfigError, ParameterError
 from ..extras import imported
 from ..material import Material
+from ..material_file import materials_of
 from ..pair import Pair, Plane
-from ..scene import HIGHEST_ALPHA
 from ..sections import fault, hint, refuse_unknown
 from .inputs import Distribution, Inputs, Joint
+from .ranges import CYLINDER, OPTIONAL, SCENE, SOLID, START, START_SI, Range
+from .solids import SERIES, is_uncertain, read_material, read_series
 
-
-class Range(NamedTuple):
-    """What an input may be: [low, high], without ``low`` itself where ``strict``; None: no default."""
-
-    low: float = -math.inf
-    strict: bool = False
-    high: float = math.inf
-    unit: str = "1"
-    default: float | None = None
-
-    def holds(self, value: float) -> bool:
-        """Whether a number is inside; NaN and infinity never are."""
-        return math.isfinite(value) and (self.low < value if self.strict else self.low <= value) and value <= self.high
-
-    def __str__(self) -> str:
-        return f"{'>' if self.strict else '>='} {self.low:g}" + ("" if self.high == math.inf else f", <= {self.high:g}")
-
-
-def _positive(unit: str = "1", default: float | None = None) -> Range:
-    return Range(0.0, True, unit=unit, default=default)
-
-
-SCENE = {
-    "alpha": Range(1.0, high=HIGHEST_ALPHA),
-    "kappa": _positive(),
-    "mu": _positive(),
-    "gamma": _positive(default=1.0),
-    "j": _positive(default=0.5),
-}
-CYLINDER = {
-    "R": _positive("m"),
-    "m": _positive("kg/m"),
-    "E": _positive("Pa"),
-    "nu": Range(-1.0, True, 0.5),
-    "T_epsilon": _positive("s"),
-    "T_sigma": _positive("s"),
-    "mu": _positive(),
-    "j": _positive(default=0.5),
-    "g": _positive("m/s^2", default=9.81),
-    "load": _positive("N/m"),
-}
-#: what a section [material] says in their place, and what a cylinder may go without
-SOLID, OPTIONAL = ("E", "nu", "T_epsilon", "T_sigma"), ("load",)
-START = {"V0": Range(-1e100, high=1e100), "omega0": Range(-1e100, high=1e100)}
-START_SI = {"V0": START["V0"]._replace(unit="m/s"), "omega0": START["omega0"]._replace(unit="rad/s")}
 _PLANES = ("strain", "stress")
 
 
-class _Reader:
+class Reader:
     """Sorts the values of sections into the parts of :class:`Inputs`."""
 
     def __init__(self, path: Path) -> None:
@@ -76,12 +33,15 @@ class _Reader:
         #: file -> how it was first written: 'rows.csv' and './rows.csv' share their rows
         self.files: dict[Path, str] = {}
         self.section = ""
+        #: key of the line of an input, where that is not its name
+        self.line = ""
 
     def fault(self, key: str, problem: str) -> ConfigError:
-        return fault(self.path, self.section, key, problem)
+        return fault(self.path, self.section, self.line or key, problem)
 
-    def put(self, name: str, value: Any, allowed: Range) -> None:
+    def put(self, name: str, value: Any, allowed: Range, line: str = "") -> None:
         """File ``value`` of input ``name`` under numbers, distributions or columns."""
+        self.line = line
         if isinstance(value, str):
             raise self.fault(name, f"{name} = {value!r}: must be a plain number{_in(allowed.unit)}")
         if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -167,7 +127,7 @@ def _in(unit: str) -> str:
     return ", dimensionless" if unit == "1" else f", in {unit}"
 
 
-def refuse_unknown_of(reader: _Reader, name: str, given: dict[str, Any], allowed: tuple[str, ...]) -> None:
+def refuse_unknown_of(reader: Reader, name: str, given: dict[str, Any], allowed: tuple[str, ...]) -> None:
     """As ``refuse_unknown``, for the keys of one input, at the line of that input."""
     for key in given:
         if key not in allowed:
@@ -201,30 +161,37 @@ def read_inputs(
     sections: dict[str, dict[str, Any]],
     base: dict[str, Any],
     correlation: dict[str, Any],
-    materials: dict[str, Material],
+    materials: dict[str, Any],
 ) -> Inputs:
-    """Inputs of the sections; ``base`` fills in what they leave out.  Raises ConfigError."""
-    reader = _Reader(path)
+    """Inputs of the sections and of the materials; ``base`` fills in what sections leave out.  Raises ConfigError."""
+    reader = Reader(path)
     cylinder = {name: allowed for name, allowed in CYLINDER.items() if not (materials and name in SOLID)}
     ranges = {"cylinder": cylinder, "start": START_SI} if "cylinder" in sections else {"scene": SCENE, "start": START}
     for section, given in sections.items():
         reader.section = section
-        others = ("plane",) if section == "cylinder" else ()
+        others = {"cylinder": ("plane",), "scene": tuple(SERIES)}.get(section, ())
         refuse_unknown(path, section, given, (*ranges[section], *others))
+        series = _series(reader, section, given) if section == "scene" else None
         for name, allowed in ranges[section].items():
             value = given.get(name, base.get(name, allowed.default))
+            if name == "alpha" and series is not None:
+                continue
             if value is not None:
                 reader.put(name, value, allowed)
             elif name not in OPTIONAL:
-                raise fault(path, "", section, f"[{section}] needs {name}")
+                needed = "alpha, prony or creep" if name == "alpha" else name
+                raise fault(path, "", section, f"[{section}] needs {needed}")
     if "cylinder" in sections:
         reader.section = "cylinder"
         plane = sections["cylinder"].get("plane", "strain")
         if plane not in _PLANES:
             raise reader.fault("plane", f"plane = {plane!r}: must be 'strain' or 'stress'")
         reader.fixed["plane"] = plane
-        if materials:
-            pair = _pair(path, materials, plane)
+        if is_uncertain(materials.get("material")):
+            _refuse_base(path, materials)
+            read_material(reader, materials["material"])
+        elif materials:
+            pair = _pair(path, materials_of(path, materials), plane)
             reader.fixed |= {"pair": pair, "T_ref": pair.T_ref}
     joint = {file: Joint(columns) for file, columns in reader.joint.items()}
     correlated, mixing = _copula(path, correlation, reader.random)
@@ -232,6 +199,22 @@ def read_inputs(
     if "cylinder" in sections and not materials:
         _refuse_short_retardation(reader, inputs)
     return inputs
+
+
+def _series(reader: Reader, section: str, given: dict[str, Any]) -> Any:
+    """File the series that stands in place of alpha, if there is one."""
+    series, _ = read_series(reader, section, given)
+    reader.section = section
+    if series is not None:
+        if "alpha" in given:
+            raise fault(reader.path, section, "alpha", "alpha and a series: must be one of the two")
+        reader.fixed["series"] = series
+    return series
+
+
+def _refuse_base(path: Path, materials: dict[str, Any]) -> None:
+    if "base" in materials:
+        raise fault(path, "", "base", "[base] goes with a [material] of numbers: an uncertain one rolls on its like")
 
 
 def _pair(path: Path, materials: dict[str, Material], plane: Plane) -> Pair:
@@ -270,7 +253,7 @@ def _copula(path: Path, given: dict[str, Any], random: dict[str, Distribution]) 
         raise fault(path, "", "correlation", "[correlation] no joint distribution has these correlations") from None
 
 
-def _refuse_short_retardation(reader: _Reader, inputs: Inputs) -> None:
+def _refuse_short_retardation(reader: Reader, inputs: Inputs) -> None:
     """T_epsilon must not fall below T_sigma in any draw."""
     for sample in inputs.joint.values():
         if {"T_epsilon", "T_sigma"} <= sample.columns.keys():

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..motion import export
 from ..symbols import SYMBOLS
-from .sources import CYLINDER
+from .ranges import CYLINDER
 
 
 class Unit(NamedTuple):
@@ -68,10 +68,19 @@ def dimensionless(values: Mapping[str, Any], name: str) -> Any:
     return values[name] * (unit_of_time(values) if name == "omega0" else unit_of_time(values) / values["R"])
 
 
+_MODES = {
+    "E": "strength {} of relaxation over the long-time modulus", "tau": "relaxation time {} over T_ref",
+    "J": "strength {} of creep over the long-time compliance", "T": "retardation time {} over T_ref",
+}  # fmt: skip
+
+
 def attributes(name: str, si: bool) -> dict[str, Any]:
     """long_name, units and more of a column, as JSON takes them."""
     if si and name in SI:
         return SI[name]._asdict()
+    kind, _, number = name.partition("_")
+    if kind in _MODES and number.isdecimal():
+        return {"long_name": _MODES[kind].format(number), "units": "1"}
     if name in CYLINDER and name not in SYMBOLS:
         return {"long_name": f"{name} of the cylinder", "units": CYLINDER[name].unit}
     found = export.column_attributes(name)

@@ -11,14 +11,17 @@ from .jit import kernel
 
 
 def by_record(at: int, *versions: tuple[type, Callable]) -> Callable:
-    """The version for the record that argument number ``at`` is: pairs of a record's class and a kernel."""
-    known = dict(versions)
+    """The version for the record that argument number ``at`` is: pairs of a record's class and a kernel.
+
+    The first serves records that are not among them too.
+    """
+    known, first = dict(versions), versions[0][1]
     if numba.config.DISABLE_JIT:
-        return lambda *given: known[type(given[at])](*given)
-    stand_in = kernel(versions[0][1].py_func)
+        return lambda *given: known.get(type(given[at]), first)(*given)
+    stand_in = kernel(first.py_func)
 
     def version(given: Any) -> Any:
-        return known[given[at].instance_class]
+        return known.get(given[at].instance_class, first)
 
     def get_call_template(given: tuple, named: dict[str, Any]) -> Any:
         return version(given).get_call_template(given, named)

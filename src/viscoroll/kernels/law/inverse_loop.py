@@ -13,8 +13,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.choice import by_record
 from ..compile.jit import kernel
-from .inverses import at_speed, at_stick, slight_traction
+from .inverses import (
+    SLIGHTEST,
+    Inverses,
+    InversesOfPair,
+    at_speed,
+    at_stick,
+    moments_at_speed,
+    slight_traction,
+    slightest_traction,
+)
 from .length import OK
 from .state import (
     BETA,
@@ -23,6 +33,8 @@ from .state import (
     EPSILON,
     FULL_SLIP,
     LAM,
+    M_CYLINDER,
+    M_HALF_SPACE,
     ROWS,
     ZETA,
     M,
@@ -57,7 +69,10 @@ def _traction(inverses, u, lam, L, D, need, far):
         if need.beta:
             beta = min(share * w / lam, 1.0)
     if not far:
-        part, slight_status = slight_traction(u, L, D, inverses)
+        if D <= SLIGHTEST * L:
+            part, slight_status = slightest_traction(u, L, D, inverses)
+        else:
+            part, slight_status = slight_traction(u, L, D, inverses)
         status = max(status, slight_status)
     return beta, min(part, 1.0), status
 
@@ -93,7 +108,25 @@ def _from_tables(inverses, state, per, need, at, out, n):
     _put(at, DELTA, delta, out, n)
     _put(at, FULL_SLIP, 1.0 if full_slip else 0.0, out, n)
     _put(at, M, state.V * m, out, n)
-    return status, True
+    return max(status, _put_parts(u, state.V, inverses, at, out, n)), True
+
+
+@kernel(inline=True)
+def _no_parts(u, V, inverses, at, out, n):
+    """Bodies that are alike take half of M each."""
+    return OK
+
+
+@kernel(inline=True)
+def _parts_of_pair(u, V, inverses, at, out, n):
+    """What either body has in M; returns a status."""
+    half_space, cylinder, status = moments_at_speed(u, inverses)
+    _put(at, M_HALF_SPACE, V * half_space, out, n)
+    _put(at, M_CYLINDER, V * cylinder, out, n)
+    return status
+
+
+_put_parts = by_record(2, (Inverses, _no_parts), (InversesOfPair, _parts_of_pair))
 
 
 @kernel(allocates=True, seconds=4)

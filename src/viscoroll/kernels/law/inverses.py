@@ -19,22 +19,44 @@ from typing import Any, NamedTuple
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
+from ..numerics.bins import offset_slope
+from ..numerics.nodes import gauss
 from .length import OK, contact_length
 from .material import generator_slopes, generators, moment_of
+from .pair import Pair, parts
 from .standard import GAUSS_W, GAUSS_X, Standard
 from .stick import root_of_F
+from .tabulated import Tabulated
+
+#: up to this D/L the integral of the slope of Q takes four points of the polynomial of one bin, which it may leave by
+#: 0.15 of half a bin: to 2e-15, measured
+SLIGHTEST = 0.01
+#: distances of four points from the middle of an interval of length 1, and their weights
+_OUTER, _INNER = (float(x) for x in 0.5 - gauss(4)[0][:2])
+_OUTER_W, _INNER_W = (float(x) for x in gauss(4)[1][:2])
 
 
 class Inverses(NamedTuple):
     """A material, and tables (:mod:`quartet`) over kappa |V| and over F(eta)."""
 
-    material: Standard
+    material: Standard | Tabulated
     speed: Any
     stick: Any
 
 
-def inverses_of(material: Standard) -> Inverses:
+class InversesOfPair(NamedTuple):
+    """Likewise of two bodies, and a third table over kappa |V|: the parts of M/V."""
+
+    material: Pair
+    speed: Any
+    stick: Any
+    moments: Any
+
+
+def inverses_of(material: Standard | Tabulated | Pair) -> Inverses | InversesOfPair:
     """With nothing in its tables."""
+    if isinstance(material, Pair):
+        return InversesOfPair(material, quartet.empty_table(), quartet.empty_table(), quartet.empty_table())
     return Inverses(material, quartet.empty_table(), quartet.empty_table())
 
 
@@ -52,6 +74,21 @@ def _make_speed(row, u, inverses):
         worst = max(worst, status)
     if worst == OK:
         quartet.finish(inverses.speed, row, u)
+    return worst
+
+
+@kernel
+def _make_moments(row, u, inverses):
+    """Make the bin of u in the table of the parts of M/V; returns a status."""
+    worst = OK
+    for n in range(quartet.TERMS):
+        kappa_V = quartet.node(u, n)
+        lam, status = contact_length(kappa_V, inverses.material)
+        half_space, cylinder, _, _ = parts(0.5 * lam / kappa_V, inverses.material)
+        quartet.put(inverses.moments, row, n, half_space, cylinder, 0.0, 0.0)
+        worst = max(worst, status)
+    if worst == OK:
+        quartet.finish(inverses.moments, row, u)
     return worst
 
 
@@ -85,12 +122,30 @@ def at_speed(u, inverses):
 
 
 @kernel(inline=True)
-def at_stick(y, inverses):
-    """(eta/y, H(eta)/y^2, A, status) at y = F(eta)."""
+def moments_at_speed(u, inverses):
+    """(parts of M/V in the half-space and in the cylinder, status) at u = kappa |V|."""
+    row, there = quartet.row_of(u, inverses.moments)
+    status = OK
+    if rarely(not there):
+        status = _make_moments(row, u, inverses)
+    half_space, cylinder, _, _ = quartet.values(inverses.moments, row, quartet.offset(u))
+    return half_space, cylinder, status
+
+
+@kernel(inline=True)
+def _stick_row(y, inverses):
+    """(row of the bin of y, status)."""
     row, there = quartet.row_of(y, inverses.stick)
     status = OK
     if rarely(not there):
         status = _make_stick(row, y, inverses)
+    return row, status
+
+
+@kernel(inline=True)
+def at_stick(y, inverses):
+    """(eta/y, H(eta)/y^2, A, status) at y = F(eta)."""
+    row, status = _stick_row(y, inverses)
     share, press, rise, _ = quartet.values(inverses.stick, row, quartet.offset(y))
     return share, press, rise, status
 
@@ -105,3 +160,16 @@ def slight_traction(u, L, D, inverses):
         total += GAUSS_W[n] * w * rise
         worst = max(worst, status)
     return 2.0 * D * total, worst
+
+
+@kernel(inline=True)
+def slightest_traction(u, L, D, inverses):
+    """``slight_traction`` up to :data:`SLIGHTEST`: four points from the bin of the middle one."""
+    per, middle = 0.5 / u, L - 0.5 * D
+    y = per * middle
+    row, status = _stick_row(y, inverses)
+    t, step = quartet.offset(y), per * D * offset_slope(y)
+    inner, outer = step * _INNER, step * _OUTER
+    a, b, c, d = quartet.third_at_four(inverses.stick, row, t - outer, t - inner, t + inner, t + outer)
+    mean = middle * (_OUTER_W * (a + d) + _INNER_W * (b + c))
+    return 2.0 * D * (mean + D * (_OUTER_W * _OUTER * (d - a) + _INNER_W * _INNER * (c - b))), status

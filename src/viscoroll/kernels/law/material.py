@@ -4,9 +4,10 @@
 
 The last is that of the slow manifold: D = zeta - eta is proportional to it in slow rolling.
 
-All that the law and the motion know of a material they read here, from one of three kinds of record:
-:class:`Standard`, an alpha, whose functions are Bessel ratios; :class:`Tabulated`, polynomials in a table; and
-:class:`Pair`, two of these tables, of bodies that deform unlike each other.
+All that the law and the motion know of a material they read here, from one of these records:
+:class:`Standard`, an alpha, whose functions are Bessel ratios; :class:`Tabulated`, polynomials in a table;
+:class:`Pair`, two of these tables, of bodies that deform unlike each other; and :class:`Filled`, a table where each
+motion has its own series.
 Which one a call has is settled when it is compiled.  Where many states or motions each have an alpha of their own
 the ratios serve, and where one material serves all, the table.
 """
@@ -20,6 +21,7 @@ from ..compile.jit import kernel
 from . import pair
 from . import standard as ratios
 from . import tabulated as table
+from .each import Each, Filled, of_each
 from .pair import Pair
 from .standard import Standard, standard
 from .tabulated import Tabulated
@@ -32,8 +34,8 @@ class Own(NamedTuple):
 
 
 def _either(name: str, at: int) -> Callable:
-    of_table = getattr(table, name)
-    return by_record(at, (Standard, getattr(ratios, name)), (Tabulated, of_table), (Pair, of_table))
+    tables = [(kind, getattr(table, name)) for kind in (Tabulated, Pair, Filled)]
+    return by_record(at, (Standard, getattr(ratios, name)), *tables)
 
 
 #: (g, h) at z; 0 for z <= 0 (no stick zone)
@@ -46,8 +48,13 @@ second_slopes = _either("second_slopes", 1)
 at_contact = _either("at_contact", 1)
 #: (g, h, h', m) at z > 0
 at_slide = _either("at_slide", 1)
+#: (g/z, m/z) from z and h there, where z is so small that its square may underflow
+fast_limit = _either("fast_limit", 2)
 #: (g, h, g', h', m of the half-space, m of the cylinder) at z > 0: halves of m where bodies are alike
-at_rolling = by_record(1, (Standard, ratios.at_rolling), (Tabulated, table.at_rolling), (Pair, pair.at_rolling))
+at_rolling = by_record(
+    1, (Standard, ratios.at_rolling), (Tabulated, table.at_rolling), (Pair, pair.at_rolling),
+    (Filled, table.at_rolling),
+)
 #: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D
 mean_slopes = _either("mean_slopes", 2)
 #: m at zeta, from zeta, lam, g and h
@@ -65,7 +72,7 @@ def _own(material, i):
 
 
 #: the material of state or motion i, from what is given for all
-material_of = by_record(0, (Tabulated, _shared), (Pair, _shared), (Own, _own))
+material_of = by_record(0, (Tabulated, _shared), (Pair, _shared), (Own, _own), (Each, of_each))
 
 
 @kernel

@@ -12,7 +12,7 @@ from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
 from ..numerics.bins import offset_slope
-from .tabulated import Ends, at_an_end, moment_at_an_end
+from .tabulated import Ends, at_an_end, moment_at_an_end, moment_over_z
 
 
 class Body(NamedTuple):
@@ -36,11 +36,29 @@ class Pair(NamedTuple):
 
 
 @kernel(inline=True)
+def parts(z, material):
+    """(m of the half-space, m of the cylinder, their slopes) at z > 0."""
+    row, there = quartet.row_of(z, material.parts)
+    if rarely(not there):
+        return _parts_at_an_end(z, material)
+    half_space, cylinder, _, _, d_half_space, d_cylinder, _, _ = quartet.slopes(material.parts, row, quartet.offset(z))
+    per = offset_slope(z)
+    return half_space, cylinder, d_half_space * per, d_cylinder * per
+
+
+@kernel(inline=True)
 def _parts_at_an_end(z, material):
-    """(m of the half-space, m of the cylinder) where the table ends."""
+    """``parts`` where the table ends."""
     one, other = material.half_space, material.cylinder
-    half_space = moment_at_an_end(z, one.T_mean, one.ends, material)
-    return half_space, moment_at_an_end(z, other.T_mean, other.ends, material)
+    half_space, d_half_space = moment_at_an_end(z, one.T_mean, one.ends, material)
+    cylinder, d_cylinder = moment_at_an_end(z, other.T_mean, other.ends, material)
+    return half_space, cylinder, d_half_space, d_cylinder
+
+
+@kernel(inline=True)
+def fast_parts(z, material):
+    """Parts of m/z at a z that is so small that its square may underflow."""
+    return moment_over_z(z, material.half_space.ends, material), moment_over_z(z, material.cylinder.ends, material)
 
 
 @kernel(inline=True)
@@ -49,26 +67,9 @@ def at_rolling(z, material):
     row, there = quartet.row_of(z, material.table)
     if rarely(not there):
         g, h, dg, dh = at_an_end(z, material)
-        half_space, cylinder = _parts_at_an_end(z, material)
+        half_space, cylinder, _, _ = _parts_at_an_end(z, material)
         return g, h, dg, dh, half_space, cylinder
     at, per = quartet.offset(z), offset_slope(z)
     g, h, _, _, dg, dh, _, _ = quartet.slopes(material.table, row, at)
     half_space, cylinder, _, _ = quartet.values(material.parts, row, at)
     return g, h, dg * per, dh * per, half_space, cylinder
-
-
-@kernel(inline=True)
-def parts(z, material):
-    """(m of the half-space, m of the cylinder) at z > 0."""
-    row, there = quartet.row_of(z, material.parts)
-    if rarely(not there):
-        return _parts_at_an_end(z, material)
-    half_space, cylinder, _, _ = quartet.values(material.parts, row, quartet.offset(z))
-    return half_space, cylinder
-
-
-@kernel(seconds=2)
-def parts_loop(material, z, half_space, cylinder):
-    """``parts`` over an array."""
-    for n in range(z.size):
-        half_space[n], cylinder[n] = parts(z[n], material)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
+from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes, small_k_over_z
 from ..compile.jit import kernel
 from ..numerics.nodes import gauss
 
@@ -104,6 +104,13 @@ def moment_of(zeta, lam, g, h, material):
         return 0.0
     rest = c - g  # c/(1 + p) >= c/2
     return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g
+
+
+@kernel(inline=True)
+def fast_limit(z, h, material):
+    """(g/z, m/z) at a z that is so small that its square may underflow: lam^2 = 1/alpha, i2 = (alpha z)^2/8."""
+    g = h * small_k_over_z(z)
+    return g, 0.125 * material.T_mean * material.alpha * z + g
 
 
 @kernel(inline=True)

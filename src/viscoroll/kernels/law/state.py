@@ -6,19 +6,26 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..bessel.ratios import small_k_over_z
+from ..compile.choice import by_record
 from ..compile.jit import kernel
 from .length import OK, contact_solution, near_length
-from .material import at_contact, generator_slopes, moment_of
+from .material import at_contact, fast_limit, generator_slopes, moment_of
+from .pair import Pair, fast_parts, parts
 from .slopes import slope_ratio, slope_ratio_rise
+from .standard import Standard
 from .stick import CLOSE, stick_from_root, stick_solution
+from .tabulated import Tabulated
 
-#: Order of the rows of the kernel's output.
+#: Order of the rows of the kernel's output; the last four, of a :class:`Pair` alone.
 ROWS = (
     "lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M",
     "dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV",
+    "M_half_space", "M_cylinder", "dM_half_space_dV", "dM_cylinder_dV",
 )  # fmt: skip
-LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, DQ_DOMEGA, DM_DV = range(len(ROWS))
+(
+    LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, DQ_DOMEGA, DM_DV,
+    M_HALF_SPACE, M_CYLINDER, DM_HALF_SPACE_DV, DM_CYLINDER_DV,
+) = range(len(ROWS))  # fmt: skip
 
 #: above this zeta, g <= 1/2 is below rounding beside zeta and the law is Carter's
 FAR = 1e17
@@ -151,7 +158,7 @@ def contact_state_at(solved, root, material, state, need, out):
         _moment(V, kappa, solved, material, need.slopes, out)
     if not need.shift:
         return status
-    epsilon = g / zeta if zeta >= NEAR else h * small_k_over_z(zeta)
+    epsilon = g / zeta if zeta >= NEAR else fast_limit(zeta, h, material)[0]
     delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa
     slip, sign, direction = signed_slip(state)
     delta = creep_ratio(state, slip)
@@ -182,19 +189,52 @@ def contact_state_at(solved, root, material, state, need, out):
 
 @kernel(inline=True)
 def _moment(V, kappa, solved, material, need_slopes, out):
-    """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18)."""
+    """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18), and the parts of two bodies in them."""
     lam, zeta, g, h, _, _ = solved
-    alpha, c = material.alpha, material.T_mean
     if zeta > FAR:
-        out[M], out[DM_DV] = c * V, c
-        return
-    if zeta < NEAR:  # V zeta = lam/(2 kappa), lam^2 = 1/alpha, i2 = (alpha zeta)^2/8
-        out[M] = np.copysign(0.5 * lam / kappa, V) * (0.125 * c * alpha * zeta + h * small_k_over_z(zeta))
-        out[DM_DV] = 0.0
+        out[M], out[DM_DV] = material.T_mean * V, material.T_mean
+    elif zeta < NEAR:
+        out[M], out[DM_DV] = _over_zeta(V, kappa, lam) * fast_limit(zeta, h, material)[1], 0.0
     elif not need_slopes:
         out[M] = V * moment_of(zeta, lam, g, h, material)
     else:
         _, h, _, dh, m, dm, _, _ = at_contact(zeta, material)
-        out[M] = V * m
-        half_slope = 1.0 + (h + zeta * dh) / zeta
-        out[DM_DV] = m - zeta * dm / (lam * lam * half_slope)
+        out[M], out[DM_DV] = V * m, m - zeta * dm / _steepness(lam, zeta, h, dh)
+    _put_parts(V, kappa, solved, material, need_slopes, out)
+
+
+@kernel(inline=True)
+def _over_zeta(V, kappa, lam):
+    """V zeta."""
+    return np.copysign(0.5 * lam / kappa, V)
+
+
+@kernel(inline=True)
+def _steepness(lam, zeta, h, dh):
+    """zeta H'/(2 H) = -zeta/(V dzeta/dV)."""
+    return lam * lam * (1.0 + (h + zeta * dh) / zeta)
+
+
+@kernel(inline=True)
+def _no_parts(V, kappa, solved, material, need_slopes, out):
+    """Bodies that are alike take half of M each."""
+
+
+@kernel(inline=True)
+def _parts_of_pair(V, kappa, solved, material, need_slopes, out):
+    """What either body has in M and in dM/dV."""
+    lam, zeta, _, _, _, _ = solved
+    if zeta < NEAR:
+        half_space, cylinder = fast_parts(zeta, material)
+        half_space, cylinder = _over_zeta(V, kappa, lam) * half_space, _over_zeta(V, kappa, lam) * cylinder
+        out[M_HALF_SPACE], out[M_CYLINDER], out[DM_HALF_SPACE_DV], out[DM_CYLINDER_DV] = half_space, cylinder, 0.0, 0.0
+        return
+    half_space, cylinder, d_half_space, d_cylinder = parts(zeta, material)
+    out[M_HALF_SPACE], out[M_CYLINDER] = V * half_space, V * cylinder
+    if need_slopes:
+        _, h, _, dh = generator_slopes(zeta, material)
+        per = zeta / _steepness(lam, zeta, h, dh) if zeta <= FAR else 0.0
+        out[DM_HALF_SPACE_DV], out[DM_CYLINDER_DV] = half_space - per * d_half_space, cylinder - per * d_cylinder
+
+
+_put_parts = by_record(3, (Standard, _no_parts), (Tabulated, _no_parts), (Pair, _parts_of_pair))

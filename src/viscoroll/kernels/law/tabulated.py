@@ -1,6 +1,7 @@
 """A material by polynomials of z, whatever its functions cost.
 
-The bins of one relaxation time are made where they are met; those of several are there (:mod:`series`)."""
+The bins of one relaxation time are made where they are met; those of several are there (:mod:`series`), or, where each
+motion has a material of its own, made where they are met too (:mod:`each`)."""
 
 from __future__ import annotations
 
@@ -8,25 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
 from ..numerics.bins import offset_slope
 from . import standard
+from .each import Ends, Filled, made
 from .standard import GAUSS_W, GAUSS_X, Standard
-
-
-class Ends(NamedTuple):
-    """Several modes: the table is full but for its ends, where g, h and m are known by these numbers.
-
-    weight, log_weight : sum J_j b_j, and sum J_j b_j (ln(2/b_j) - gamma), gamma that of Euler
-    squares : sum E_i tau_i^2 + sum J_j T_j^2
-    """
-
-    known: bool
-    weight: float
-    log_weight: float
-    squares: float
 
 
 class Tabulated(NamedTuple):
@@ -46,12 +36,29 @@ def tabulated(alpha: float) -> Tabulated:
 
 @kernel(inline=True)
 def moment_at_an_end(z, T_mean, ends, material):
-    """What a table of m ends in, of the whole material or of one body."""
+    """(m, m') where the table of several modes ends, of the whole material or of one body."""
     if z < material.tau:
         half = 0.5 * material.alpha * z * z
         bracket = ends.log_weight - ends.weight * np.log(z)
-        return half * (bracket + 0.25 * ends.weight)
-    return T_mean - 4.0 * ends.squares * (0.125 / z)
+        return half * (bracket + 0.25 * ends.weight), material.alpha * z * (bracket - 0.25 * ends.weight)
+    fall = 4.0 * ends.squares * (0.125 / z)
+    return T_mean - fall, fall / z
+
+
+@kernel(inline=True)
+def moment_over_z(z, ends, material):
+    """m/z of the whole material, or of one body, at z < tau so small that its square may underflow."""
+    return 0.5 * material.alpha * z * (ends.log_weight - ends.weight * np.log(z) + 0.25 * ends.weight)
+
+
+@kernel(inline=True)
+def fast_limit(z, h, material):
+    """(g/z, m/z) at a z that is so small that its square may underflow."""
+    ends = material.ends
+    if not ends.known:
+        return standard.fast_limit(z, h, material)
+    g = 0.5 * material.alpha * z * (ends.log_weight - ends.weight * np.log(z))
+    return g, moment_over_z(z, ends, material)
 
 
 @kernel
@@ -71,14 +78,14 @@ def _values(z, material):
     """(g, h, m, b) at z."""
     if material.ends.known:
         g, h, _, dh = at_an_end(z, material)
-        m = moment_at_an_end(z, material.T_mean, material.ends, material)
+        m, _ = moment_at_an_end(z, material.T_mean, material.ends, material)
         return g, h, m, m * np.sqrt(1.0 + 2.0 * h / z) / (1.0 + h / z + dh)
     g, h, _, _, m, _, b, _ = standard.at_contact(z, Standard(material.alpha, material.T_mean, material.tau))
     return g, h, m, b
 
 
 @kernel
-def _make(row, z, material):
+def _make_own(row, z, material):
     """Make the bin of z; returns its row."""
     if material.ends.known:  # the rows are those of the bins between the ends
         row = quartet.spare_row(material.table)
@@ -87,6 +94,15 @@ def _make(row, z, material):
         quartet.put(material.table, row, n, g, h, m, b)
     quartet.finish(material.table, row, z)
     return row
+
+
+@kernel
+def _make_met(row, z, material):
+    """As the last, of a material that is one of many."""
+    return row if made(row, z, material) else _make_own(row, z, material)
+
+
+_make = by_record(2, (Tabulated, _make_own), (Filled, _make_met))
 
 
 @kernel(inline=True)
@@ -150,8 +166,8 @@ def at_rolling(z, material):
     if rarely(not there):
         if material.ends.known:
             g, h, dg, dh = at_an_end(z, material)
-            half = 0.5 * moment_at_an_end(z, material.T_mean, material.ends, material)
-            return g, h, dg, dh, half, half
+            m, _ = moment_at_an_end(z, material.T_mean, material.ends, material)
+            return g, h, dg, dh, 0.5 * m, 0.5 * m
         row = _make(row, z, material)
     g, h, m, _, dg, dh, _, _ = quartet.slopes(material.table, row, quartet.offset(z))
     per = offset_slope(z)

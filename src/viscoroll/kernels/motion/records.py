@@ -125,7 +125,7 @@ class Case(NamedTuple):
 class Batch(NamedTuple):
     """Parameters and starts of many motions: arrays of one value, or of one a motion.
 
-    material : one for all (``Tabulated``), or an alpha each (``Own``)
+    material : one for all (``Tabulated``), an alpha each (``Own``), or a series each (``Each``)
     """
 
     material: Any

@@ -148,6 +148,17 @@ class _Row:
     def fma(self, a: Any, b: Any, c: Any) -> Any:
         return self.builder.call(self._fma, [a, b, c])
 
+    def vector(self, parts: tuple) -> Any:
+        whole = ir.Constant(_FOUR, ir.Undefined)
+        for n, part in enumerate(parts):
+            whole = self.builder.insert_element(whole, part, _INT(n))
+        return whole
+
+    def one_function(self, f: int) -> list:
+        """Coefficients of one of the functions, each four times."""
+        same = ir.Constant(ir.VectorType(ir.IntType(32), 4), [f] * 4)
+        return [self.builder.shuffle_vector(term, term, same) for term in self.terms]
+
     def four_times(self, x: Any) -> Any:
         one = self.builder.insert_element(ir.Constant(_FOUR, ir.Undefined), x, _INT(0))
         return self.builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(ir.IntType(32), 4), [0] * 4))
@@ -201,6 +212,18 @@ def _secants() -> Callable:
     return _intrinsic(instructions, interpreted, 2, 4)
 
 
+def _at_four(f: int) -> Callable:
+    """(table, row, four offsets) -> one of the functions at four places of a bin."""
+
+    def instructions(row: _Row, *offsets: Any) -> list:
+        return [row.sum(row.one_function(f), row.vector(offsets))]
+
+    def interpreted(terms: NDArray, *offsets: float) -> list:
+        return [np.array([sum(term[f] * t**k for k, term in enumerate(terms)) for t in offsets])]
+
+    return _intrinsic(instructions, interpreted, 4, 4)
+
+
 def _intrinsic(instructions: Callable, interpreted: Callable, arguments: int, results: int) -> Callable:
     """What kernels call with (table, row, offsets); where numba is switched off, the same in Python."""
 
@@ -221,7 +244,11 @@ def _intrinsic(instructions: Callable, interpreted: Callable, arguments: int, re
     def two(typing_context, table, row, t, s):
         return returned(table, types.int64, types.float64, types.float64), lower
 
-    return plain if numba.config.DISABLE_JIT else intrinsic(one if arguments == 1 else two)
+    def four(typing_context, table, row, t, s, u, v):
+        return returned(table, types.int64, *[types.float64] * 4), lower
+
+    return plain if numba.config.DISABLE_JIT else intrinsic({1: one, 2: two, 4: four}[arguments])
 
 
 values, slopes, second_slopes, secants = _derivatives(1), _derivatives(2), _derivatives(3), _secants()
+third_at_four = _at_four(2)

@@ -1,0 +1,242 @@
+"""A driven motion from start to end: one regime after the other, one piece of the drive after the other.
+
+A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..law.length import OK, contact_length
+from ..law.material import generators
+from ..law.stick import stick_length
+from ..motion.collocation import N
+from .load import acting, load_at, piece_end, undriven
+from .origin import STAYS, STICKS, depart, leaving_time
+from .output import coast, put_still, put_to_end, regime_of
+from .phase import phase
+from .rates import rates_at
+from .records import (
+    EDGE,
+    HELD,
+    KINK,
+    NEITHER,
+    NO_EVENT,
+    REST,
+    REVERSED,
+    SLOW,
+    STOP,
+    STUCK,
+    TURN,
+    Case,
+    Clock,
+    Frame,
+    Notes,
+    State,
+    Work,
+)  # fmt: skip
+from .solve import PATHS, ROWS, S
+
+DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
+#: speed over the larger one below which V counts as 0 at the start
+_TINY = 1e-150
+#: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
+_CLOSED = 1e-7
+#: 1/zeta over T_mean below which V decays exponentially to rounding
+_SLOWEST = 1e-17
+
+
+@kernel
+def _spin(omega, piece, tau, frame, case):
+    """Sign of omega where a brake acts on it, else 0."""
+    return np.sign(omega) if load_at(tau, piece, frame, case).brake > 0.0 else 0.0
+
+
+@kernel
+def enter(V, omega, clock, case):
+    """The regime of a start with V or omega not 0: (state, frame, status)."""
+    scene = case.scene
+    material, kappa, mu, _ = scene
+    direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
+    V, omega = direction * V, direction * omega
+    slip, s, limit = omega - V, 0.0, 0.0
+    sigma = 1.0 if slip >= 0.0 else -1.0
+    if V > 0.0:
+        lam, _ = contact_length(kappa * V, material)
+        s = 2.0 * kappa * V / lam
+        g, _ = generators(1.0 / s, material)
+        limit = 0.5 * mu * lam * (1.0 + g * s) / kappa * V
+    frame = Frame(True, direction, sigma, 0.0, False)
+    if V == 0.0 or abs(slip) >= limit:
+        # at V = 0 the frame is that which V turns to
+        pace = rates_at(s, omega, load_at(clock.tau, clock.piece, frame, case), frame, scene).s_rate
+        if V == 0.0 and pace < 0.0:
+            direction, omega, sigma = -direction, -omega, -sigma
+        spin = _spin(omega, clock.piece, clock.tau, frame, case)
+        return State(s, omega), Frame(True, direction, sigma, spin, False), OK
+    zeta = 1.0 / s
+    _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
+    spin = _spin(omega, clock.piece, clock.tau, frame, case)
+    return State(s, sigma * (D * s)), Frame(False, direction, sigma, spin, False), status
+
+
+@kernel
+def locks(state, frame, clock, case):
+    """Whether the brake holds omega, which has just become 0."""
+    load = load_at(clock.tau, clock.piece, frame, case)
+    rates = rates_at(state.s, state.second, load, frame, case.scene)
+    _, torque, _ = acting(rates.V, 0.0, load, frame)
+    return abs(rates.Q + rates.M_cylinder - torque) <= load.brake
+
+
+@kernel
+def released(state, frame, clock, case):
+    """The frame once a brake that held omega lets go, or the sign of omega changes under it."""
+    load = load_at(clock.tau, clock.piece, frame, case)
+    rates = rates_at(state.s, state.second, load, frame, case.scene)
+    _, torque, _ = acting(rates.V, 0.0, load, frame)
+    spin = np.sign(torque - rates.Q - rates.M_cylinder) if load.brake > 0.0 else 0.0
+    return Frame(frame.slips, frame.direction, frame.sigma, spin, False)
+
+
+@kernel
+def switch(event, state, frame, clock, case):
+    """(State, frame, whether V = omega = 0) behind an event that changes the regime."""
+    slips, direction, sigma, spin, locked = frame
+    if event == EDGE and slips:
+        if state.s <= _CLOSED * case.work.nodes[S, 0]:  # the stick band closes at V = 0: omega is 0 too
+            return state, frame, True
+        return State(state.s, sigma), Frame(False, direction, sigma, spin, locked), False
+    if event == EDGE:
+        omega = rates_at(state.s, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene).omega
+        return State(state.s, omega), Frame(True, direction, sigma, spin, locked), False
+    if event == KINK:
+        return State(state.s, 0.0), Frame(False, direction, -sigma, spin, locked), False
+    if event == TURN:
+        if not slips or state.second == 0.0:
+            return state, frame, True
+        return State(0.0, -state.second), Frame(True, -direction, -sigma, -spin, locked), False
+    if event == STOP:
+        still = State(state.s, 0.0) if slips else state
+        if locks(still, frame, clock, case):
+            return still, Frame(slips, direction, sigma, spin, True), False
+        return still, released(still, frame, clock, case), False
+    return state, released(state, frame, clock, case), False
+
+
+@kernel
+def _still_regime(clock, case):
+    """The regime of V = omega = 0."""
+    still = Frame(False, 1.0, 1.0, 0.0, False)
+    braked = load_at(clock.tau, clock.piece, still, case).brake > 0.0
+    return HELD if braked or case.drive.prescribed != NEITHER else REST
+
+
+@kernel
+def stay(clock, case):
+    """At V = omega = 0: (state, frame, clock) once the cylinder departs, or the piece of the drive ends."""
+    state = State(0.0, 0.0)
+    kind, frame, b = depart(clock.tau, clock.piece, case)
+    if kind == STAYS:
+        until = leaving_time(clock.tau, clock.piece, case)
+        closed = until == case.tau[case.tau.size - 1]
+        clock = put_still(until, closed, _still_regime(clock, case), clock, case)
+        return False, state, frame, clock
+    return True, State(0.0, b if kind == STICKS else 0.0), frame, clock
+
+
+@kernel
+def note(what, noted, clock, case):
+    """Note a change of regime or of the sign of V; how many there were."""
+    switches = case.notes.switches
+    if noted < switches.shape[0]:
+        switches[noted, 0], switches[noted, 1] = clock.tau / case.gamma, what
+    return noted + 1
+
+
+@kernel
+def at_new_piece(state, frame, clock, case):
+    """The frame where a piece of the drive begins: brakes take hold or let go."""
+    slips, direction, sigma, spin, locked = frame
+    load = load_at(clock.tau, clock.piece, frame, case)
+    omega = rates_at(state.s, state.second, load, frame, case.scene).omega
+    if locked or omega == 0.0:
+        if load.brake > 0.0 and locks(state, frame, clock, case):
+            return Frame(slips, direction, sigma, spin, True)
+        return released(state, frame, clock, case)
+    return Frame(slips, direction, sigma, _spin(omega, clock.piece, clock.tau, frame, case), False)
+
+
+@kernel
+def coasts(state, frame, clock, case):
+    """Whether nothing drives any more, and V decays exponentially to rounding."""
+    T_mean = case.scene.material.T_mean
+    return not frame.slips and 0.0 < state.s * T_mean < _SLOWEST and undriven(clock.piece, case.drive)
+
+
+@kernel
+def follow(moving, state, frame, clock, case):
+    """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
+    onset_time, turns, noted, fresh = np.nan, 0, 0, False
+    regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
+    while clock.at < case.tau.size:
+        if clock.steps >= case.limits.max_steps:
+            return STEP_LIMIT, clock, turns, onset_time, np.nan
+        if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
+            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps)
+            frame = at_new_piece(state, frame, clock, case) if moving else frame
+        event, direction, before = NO_EVENT, frame.direction, clock
+        if moving and clock.tau >= end:
+            clock = put_to_end(state, frame, clock, case)
+        elif not moving:
+            moving, state, frame, clock = stay(clock, case)
+        elif coasts(state, frame, clock, case):
+            clock, rest_time = coast(state, frame, clock, case)
+            return DONE if np.isnan(rest_time) else RESTED, clock, turns, onset_time, rest_time
+        else:
+            event, state, frame, clock = phase(fresh, state, frame, clock, case)
+        fresh = event == EDGE and frame.slips
+        if event == STUCK:
+            return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
+        if event == SLOW:
+            note(REST, noted, clock, case)
+            rest_time = clock.tau / case.gamma
+            return RESTED, put_still(end, True, REST, clock, case), turns + 1, onset_time, rest_time
+        if event != NO_EVENT:
+            state, frame, still = switch(event, state, frame, clock, case)
+            moving = not still
+        if moving and regime >= 0 and frame.direction != direction:
+            noted = note(REVERSED, noted, clock, case)
+        now = regime_of(frame) if moving else _still_regime(clock, case)
+        if now != regime and (moving or event == NO_EVENT):
+            if regime >= 0:
+                turns, noted = turns + 1, note(now, noted, clock if moving else before, case)
+            onset_time = clock.tau / case.gamma if fresh and np.isnan(onset_time) else onset_time
+            regime = now
+    return DONE, clock, turns, onset_time, np.nan
+
+
+@kernel(allocates=True)
+def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
+    """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
+
+    ``sink`` : room for the outputs, (OUTPUTS, n), for the changes of regime, and for the ends of panels (Notes).
+    """
+    out, switches, ends = sink
+    tau = np.empty(t.size)
+    for i in range(tau.size):
+        tau[i] = t[i] * gamma
+    work = Work(np.empty((ROWS, N + 1)), np.empty((10, N + 2)), np.empty((2 * N, 2 * N)), np.empty(2 * N), np.zeros(PATHS))
+    case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
+    clock = Clock(0.0, 0, 0, 0)
+    state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False
+    if V0 != 0.0 or omega0 != 0.0:
+        moving = True
+        state, frame, status = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
+    if status != OK:
+        return NOT_CONVERGED, 0, 0, np.nan, np.nan
+    if moving:
+        frame = at_new_piece(state, frame, clock, case)
+    status, clock, turns, onset_time, rest_time = follow(moving, state, frame, clock, case)
+    return status, clock.steps, turns, onset_time, rest_time

@@ -1,0 +1,90 @@
+"""The drive at a time.  A piece of it is a row of numbers: when it begins, the scale of its time, and the coefficients
+of four polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the piece; tau = gamma t."""
+
+from __future__ import annotations
+
+from ..compile.jit import kernel
+from .records import OMEGA, SPEED, Load
+
+#: columns: start, scale, and from here on as many coefficients for each function as there are terms
+START, SCALE, FIRST = 0, 1, 2
+#: the functions: force and torque; the slope over tau of the speed that is prescribed; most that the brake can take
+FORCE, TORQUE, RATE, BRAKE, FUNCTIONS = range(5)
+
+
+@kernel(inline=True)
+def terms_of(row):
+    """Number of coefficients of each function."""
+    return (row.size - FIRST) // FUNCTIONS
+
+
+@kernel(inline=True)
+def value(row, function, x):
+    """One of the functions of a piece."""
+    terms = terms_of(row)
+    first, total = FIRST + function * terms, 0.0
+    for n in range(terms - 1, -1, -1):
+        total = row[first + n] + x * total
+    return total
+
+
+@kernel(inline=True)
+def load_at(tau, piece, frame, case):
+    """The drive at tau in the frame of the motion, without feedback."""
+    drive, j = case.drive, case.scene.j
+    row = drive.pieces[piece]
+    x, direction = (tau - row[START]) * row[SCALE] - 1.0, frame.direction
+    by_omega, by_V = drive.prescribed == OMEGA, drive.prescribed == SPEED
+    rate = direction * value(row, RATE, x) if by_omega or by_V else 0.0
+    return Load(
+        direction * value(row, FORCE, x),
+        direction * value(row, TORQUE, x),
+        rate if by_V else 0.0,
+        rate if by_omega else 0.0,
+        max(value(row, BRAKE, x), 0.0),
+        0.0 if by_V else 1.0,
+        0.0 if by_omega or frame.locked else 1.0 / j,
+        drive.gains,
+    )
+
+
+@kernel
+def piece_end(piece, case):
+    """When a piece of the drive, or the motion, ends."""
+    end = case.tau[case.tau.size - 1]
+    return min(case.drive.pieces[piece + 1, START], end) if piece + 1 < case.drive.pieces.shape[0] else end
+
+
+@kernel
+def undriven(piece, drive):
+    """Whether nothing drives from this piece on, which is the last."""
+    gains = drive.gains
+    if piece + 1 < drive.pieces.shape[0] or drive.prescribed != 0:
+        return False
+    acting = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)
+    for column in range(FIRST, drive.pieces.shape[1]):
+        acting += abs(drive.pieces[piece, column])
+    return acting == 0.0
+
+
+@kernel(inline=True)
+def acting(V, omega, load, frame):
+    """(Force, torque of the motor, torque with the brake's) where both are given, in the frame of the motion."""
+    gains = load.gains
+    force = load.force + gains.force_V * V + gains.force_omega * omega
+    torque = load.torque + gains.torque_V * V + gains.torque_omega * omega
+    return force, torque, torque - load.brake * frame.spin
+
+
+@kernel(inline=True)
+def needed(rates, load, frame, j):
+    """(Force, torque of the motor, torque of the brake) that act: what is given, or what a prescribed speed asks for."""
+    force, torque, _ = acting(rates.V, rates.omega, load, frame)
+    brake = -load.brake * frame.spin
+    if frame.locked:
+        brake = rates.Q + rates.M_cylinder - torque
+    elif load.per_omega == 0.0:
+        torque = j * load.omega_rate + rates.Q + rates.M_cylinder - brake
+    if load.per_V == 0.0:
+        force = load.V_rate - rates.Q + rates.M_half_space
+    return force, torque, brake

@@ -1,0 +1,58 @@
+"""Driven motions, each with its own start and, where given, its own scene and drive: what Python calls."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..motion.loop import keep, motion_of
+from ..motion.records import Batch, Limits
+from ..numerics.arrays import copy, fill
+from .integrate import integrate
+from .load import FIRST, RATE, SCALE, START, terms_of
+from .output import OUTPUTS
+from .records import Drive, Gains
+
+
+class Drives(NamedTuple):
+    """Pieces, (m, k, columns) over t with m one for all or one a motion; gains, (4, 1) or (4, n)."""
+
+    pieces: Any
+    gains: Any
+    prescribed: int
+
+
+@kernel
+def _drive_of(drives, gamma, i, pieces):
+    """The gains of motion i, and its drive over tau = gamma t in ``pieces``; slopes of prescribed speeds are over t."""
+    source = drives.pieces[min(i, drives.pieces.shape[0] - 1)]
+    for k in range(pieces.shape[0]):
+        copy(source[k], pieces[k])
+        pieces[k, START] *= gamma
+        pieces[k, SCALE] /= gamma
+        terms = terms_of(pieces[k])
+        for n in range(RATE * terms, (RATE + 1) * terms):
+            pieces[k, FIRST + n] /= gamma
+    n = min(i, drives.gains.shape[1] - 1)
+    return Gains(drives.gains[0, n], drives.gains[1, n], drives.gains[2, n], drives.gains[3, n])
+
+
+@kernel(allocates=True, seconds=15)
+def drive_loop(batch, drives, t, limits, rows, out, info, notes):
+    """All motions of a batch; ``rows`` picks output quantities into out[quantity, motion, time].
+
+    Records come as plain tuples: it takes numba microseconds to tell the type of a record.
+    """
+    switches, ends = notes
+    motions, drives, limits = Batch(*batch), Drives(*drives), Limits(*limits)
+    one, pieces = np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
+    for i in range(out.shape[1]):
+        for row in one:
+            fill(np.nan, row)
+        scene, gamma, V0, omega0 = motion_of(motions, i)
+        gains = _drive_of(drives, gamma, i, pieces)
+        drive = Drive(pieces, gains, drives.prescribed)
+        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, switches, ends))
+        keep(i, rows, one, result, out, info)

@@ -1,0 +1,155 @@
+"""What follows V = omega = 0: the cylinder stays, rolls off sticking, or slides off.
+
+Rolling off in the direction where V' > 0, b is that at which the right side of the equation of b vanishes
+(:mod:`rates`) in the limit zeta -> infinity, where F = z, H = z^2:
+
+    (omega' - V')/(mu l) = b V'      Q = mu sign(b) (2 |b| - b^2)      l = 1/(2 kappa)
+
+Its left side less its right one falls with b, and for |b| < 1 there is a root or slip is full from the start.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from .load import FIRST, FUNCTIONS, load_at, piece_end, terms_of
+from .records import Frame, Load
+
+STAYS, STICKS, SLIDES = range(3)
+_HALVINGS = 200
+#: share of a piece of the drive behind which it is looked at where it begins with what moves nothing
+_SOON = 1e-6
+#: parts of a piece in each of which what holds the cylinder is looked at
+_PARTS = 64
+
+
+@kernel
+def _pull(b, load, scene):
+    """(Left less right side of the equation of b, V') at V = 0."""
+    Q = scene.mu * b * (2.0 - abs(b))
+    V_rate = load.per_V * (Q + load.force) + load.V_rate
+    omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
+    return (omega_rate - V_rate) * (2.0 * scene.kappa / scene.mu) - b * V_rate, V_rate
+
+
+@kernel
+def departing(load, scene):
+    """(Whether the cylinder may roll off sticking with V > 0, b then)."""
+    low, high = -1.0, 1.0
+    if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
+        return False, 0.0
+    for _ in range(_HALVINGS):
+        b = 0.5 * (low + high)
+        if not low < b < high:
+            break
+        if _pull(b, load, scene)[0] > 0.0:
+            low = b
+        else:
+            high = b
+    b = 0.5 * (low + high)
+    return _pull(b, load, scene)[1] > 0.0, b
+
+
+@kernel
+def holding(load, braked, mu):
+    """How much more it would take to move the cylinder from V = omega = 0; negative where it moves.
+
+    A traction within +-mu must leave V as it is, and omega too, which a brake may help with.
+    """
+    if load.per_V == 0.0 or (load.per_omega == 0.0 and not braked):
+        still = load.V_rate == 0.0 and load.omega_rate == 0.0
+        needs = -load.force if load.per_V > 0.0 else load.torque
+        return mu - abs(needs) if still else -1.0
+    rest = load.brake if braked else 0.0
+    return min(mu - abs(load.force), rest - abs(load.force + load.torque))
+
+
+@kernel
+def _moves_at(tau, piece, frame, case):
+    """``holding`` at a time."""
+    load = load_at(tau, piece, frame, case)
+    return holding(load, load.brake > 0.0, case.scene.mu)
+
+
+@kernel
+def leaving_time(tau, piece, case):
+    """When the drive first moves a cylinder at rest, up to the end of the piece."""
+    frame, end = Frame(False, 1.0, 1.0, 0.0, False), piece_end(piece, case)
+    if constant(piece, case.drive.pieces):
+        return end if _moves_at(tau, piece, frame, case) >= 0.0 else tau
+    low = tau
+    for n in range(1, _PARTS + 1):
+        high = tau + (end - tau) * n / _PARTS
+        if _moves_at(high, piece, frame, case) < 0.0:
+            while True:
+                middle = 0.5 * (low + high)
+                if not low < middle < high:
+                    return high
+                if _moves_at(middle, piece, frame, case) < 0.0:
+                    high = middle
+                else:
+                    low = middle
+        low = high
+    return end
+
+
+@kernel
+def constant(piece, pieces):
+    """Whether the drive stays as it is within a piece."""
+    row, change = pieces[piece], 0.0
+    terms = terms_of(row)
+    for function in range(FUNCTIONS):
+        for n in range(1, terms):
+            change += abs(row[FIRST + function * terms + n])
+    return change == 0.0
+
+
+@kernel
+def depart(tau, piece, case):
+    """(STAYS, STICKS or SLIDES; frame; b) from V = omega = 0 on."""
+    scene = case.scene
+    still = Frame(False, 1.0, 1.0, 0.0, False)
+    when = tau
+    load = load_at(tau, piece, still, case)
+    if holding(load, load.brake > 0.0, scene.mu) >= 0.0 and not constant(piece, case.drive.pieces):
+        # what begins to move the cylinder shows a little later
+        when = tau + _SOON * (piece_end(piece, case) - tau)
+        load = load_at(when, piece, still, case)
+    braked = load.brake > 0.0
+    if holding(load, braked, scene.mu) >= 0.0:
+        return STAYS, still, 0.0
+    for direction in (1.0, -1.0):
+        frame = Frame(False, direction, 1.0, 0.0, False)
+        spin = 1.0 if braked else 0.0
+        sticks, b = departing(_braked(load_at(when, piece, frame, case), spin), scene)
+        if sticks:
+            # b is that of now: the limit that the motion leaves from
+            _, now = departing(_braked(load_at(tau, piece, frame, case), spin), scene)
+            return STICKS, Frame(False, direction, 1.0 if b >= 0.0 else -1.0, spin, False), now
+    return _slide_off(when, piece, braked, case)
+
+
+@kernel
+def _braked(load, spin):
+    """The load with the torque of the brake at this sign of omega."""
+    force, torque, V_rate, omega_rate, brake, per_V, per_omega, gains = load
+    return Load(force, torque - spin * brake, V_rate, omega_rate, brake, per_V, per_omega, gains)
+
+
+@kernel
+def _slide_off(when, piece, braked, case):
+    """Full slip out of rest, of the sign that lasts."""
+    scene = case.scene
+    load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
+    for sigma in (1.0, -1.0):
+        Q = sigma * scene.mu
+        V_rate = load.per_V * (Q + load.force) + load.V_rate
+        free = load.torque - Q
+        spin = np.sign(free) if braked and abs(free) > load.brake else 0.0
+        locked = braked and spin == 0.0
+        omega_rate = 0.0 if locked else load.per_omega * (free - spin * load.brake) + load.omega_rate
+        if sigma * (omega_rate - V_rate) > 0.0:
+            direction = 1.0 if V_rate >= 0.0 else -1.0
+            return SLIDES, Frame(True, direction, direction * sigma, direction * spin, locked), 0.0
+    return STAYS, Frame(False, 1.0, 1.0, 0.0, False), 0.0

@@ -1,0 +1,148 @@
+"""Outputs of a driven motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..motion.collocation import integral_terms, rise_at, rise_terms
+from .load import load_at, needed
+from .rates import rates_at
+from .records import FULL, LOCKED, PARTIAL, REST, Clock, Frame
+from .solve import PATH, PATHS, SECOND, S, risen
+
+#: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
+OUTPUTS = 13
+FORCE, WORK = 6, 8
+#: row of the interpolant of s, in front of those of the path
+_OF_S, _OF_SECOND, _OF_PATH = 0, 1, 2
+
+
+@kernel
+def regime_of(frame):
+    """The regime that outputs give."""
+    return LOCKED if frame.locked else FULL if frame.slips else PARTIAL
+
+
+@kernel
+def _put_path(column, n, value, case):
+    """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
+    if n < 2:
+        case.out[2 + n, column] = value / case.gamma
+    else:
+        case.out[WORK + n - 2, column] = value
+
+
+@kernel
+def put_still(until, closed, regime, clock, case):
+    """Outputs before ``until``, or on it too, of a cylinder that does not move; the clock then."""
+    at, out, still = clock.at, case.out, Frame(False, 1.0, 1.0, 0.0, False)
+    while at < case.tau.size and (case.tau[at] < until or (closed and case.tau[at] == until)):
+        load = load_at(case.tau[at], clock.piece, still, case)
+        out[0, at], out[1, at], out[4, at], out[5, at] = 0.0, 0.0, 0.0, regime
+        out[FORCE, at], out[FORCE + 1, at] = load.force, load.torque
+        for n in range(PATHS):
+            _put_path(at, n, case.work.totals[n], case)
+        at += 1
+    return Clock(until, at, clock.piece, clock.steps + 1)
+
+
+@kernel
+def _put_state(column, s, second, piece, frame, case):
+    """One column but for what adds up."""
+    out, direction = case.out, frame.direction
+    load = load_at(case.tau[column], piece, frame, case)
+    rates = rates_at(s, second, load, frame, case.scene)
+    force, torque, _ = needed(rates, load, frame, case.scene.j)
+    out[0, column], out[1, column] = direction * rates.V, direction * rates.omega
+    out[4, column], out[5, column] = rates.delta, regime_of(frame)
+    out[FORCE, column], out[FORCE + 1, column] = direction * force, direction * torque
+
+
+@kernel
+def put_to_end(state, frame, clock, case):
+    """All outputs that are left, of a motion that is where it ends; the clock then."""
+    for column in range(clock.at, case.tau.size):
+        _put_state(column, state.s, state.second, clock.piece, frame, case)
+        for n in range(PATHS):
+            _put_path(column, n, case.work.totals[n], case)
+    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps)
+
+
+@kernel
+def _put(column, v, panel, frame, case):
+    """One column from the interpolants of a panel."""
+    nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
+    s = nodes[S, 0] + rise_at(v, powers, _OF_S)
+    second = nodes[SECOND, 0] + rise_at(v, powers, _OF_SECOND)
+    _put_state(column, s, second, panel.piece, frame, case)
+    for n in range(PATHS):
+        way = rise_at(v, powers, _OF_PATH + n)
+        _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
+
+
+@kernel
+def _terms(panel, nodes, powers):
+    """Interpolants of a panel."""
+    rise_terms(nodes[S], powers, _OF_S)
+    rise_terms(nodes[SECOND], powers, _OF_SECOND)
+    for n in range(PATHS):
+        integral_terms(nodes[PATH + n], 0.5 * panel.length, powers, _OF_PATH + n)
+
+
+@kernel
+def _note_end(end, case):
+    """Note where a panel ends."""
+    ends = case.notes.ends
+    if ends.size > 0:
+        ends[0] += 1.0
+        if ends[0] < ends.size:
+            ends[int(ends[0])] = end / case.gamma
+
+
+@kernel
+def pass_panel(end, panel, frame, clock, case):
+    """Outputs before the ``end`` of a panel, and what adds up over it; the clock behind.
+
+    At its end, where the drive may jump, what follows tells; but the last of the outputs is there.
+    """
+    tau, at = case.tau, clock.at
+    closed = end == tau[tau.size - 1]
+    if at < tau.size and (tau[at] < end or closed):
+        _terms(panel, case.work.nodes, case.work.powers)
+        while at < tau.size and (tau[at] < end or closed):
+            share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
+            _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
+            at += 1
+    _note_end(end, case)
+    for n in range(PATHS):
+        way = risen(PATH + n, panel, case.work.nodes)
+        case.work.totals[n] += frame.direction * way if n < 2 else way
+    return Clock(end, at, clock.piece, clock.steps)
+
+
+@kernel
+def coast(state, frame, clock, case):
+    """Outputs of the last decay, V' = -T_mean V/(1 + j) with delta/V constant: (clock, time of rest or NaN)."""
+    scene, out, direction, totals = case.scene, case.out, frame.direction, case.work.totals
+    rate = scene.material.T_mean / (1.0 + scene.j)
+    rates = rates_at(state.s, state.second, load_at(clock.tau, clock.piece, frame, case), frame, scene)
+    fastest, rest, end = max(rates.V, abs(rates.omega)), case.limits.rest, np.inf
+    if rest > 0.0:
+        end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
+    start = clock.tau
+    for at in range(clock.at, case.tau.size):
+        moves = case.tau[at] <= end
+        since = min(case.tau[at], end) - start
+        decay = np.exp(-rate * since)
+        way = -rates.V * np.expm1(-rate * since) / rate
+        V = rates.V * decay if moves else 0.0
+        delta = rates.delta * decay if moves else 0.0
+        out[0, at], out[1, at] = direction * V, direction * (V * (1.0 + delta))
+        out[4, at], out[5, at] = delta, PARTIAL if moves else REST
+        out[FORCE, at], out[FORCE + 1, at] = 0.0, 0.0
+        for n in range(PATHS):
+            _put_path(at, n, totals[n] + (direction * way if n < 2 else 0.0), case)
+    last = case.tau[case.tau.size - 1]
+    clock = Clock(last, case.tau.size, clock.piece, clock.steps)
+    return clock, end / case.gamma if end <= last else np.nan

@@ -1,0 +1,110 @@
+"""A material as netCDF that carries its series: :meth:`Material.to_netcdf` and :meth:`Material.from_netcdf`."""
+
+from __future__ import annotations
+
+import io
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import __version__
+from .errors import ParameterError, TableError
+from .files import seal_holds, write_dataset
+from .prony import Prony
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from .material import Material
+
+SUFFIX = ".nc"
+#: what a file says of itself; another number where one of this version could not be read any more
+_SCHEMA = "viscoroll material 1"
+#: a material takes some kilobytes
+_MOST_BYTES = 1 << 22
+_FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
+_MEANING = {
+    "E": ("strengths of relaxation over E_long", "1"),
+    "tau": ("relaxation times over T_ref", "1"),
+    "J": ("strengths of creep over the long-time compliance", "1"),
+    "T": ("retardation times over T_ref", "1"),
+    "E_long": ("long-time Young's modulus; infinite of a rigid body", "Pa"),
+    "nu": ("Poisson's ratio, constant in time", "1"),
+    "T_ref": ("what the times are counted in", "s"),
+    "alpha": ("instantaneous over long-time modulus", "1"),
+    "density": ("density", "kg m-3"),
+}
+
+
+def as_dataset(material: Material) -> xr.Dataset:
+    """Both forms of the series over "mode", slowest first, and the constants; ``given`` names the form to trust."""
+    import xarray as xr
+
+    series = material.prony
+    constants = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
+    constants |= {} if material.density is None else {"density": material.density}
+    data: dict[str, tuple[Any, Any]] = {name: ((), value) for name, value in constants.items()}
+    data |= {name: ("mode", getattr(series, name)) for names in _FORMS.values() for name in names}
+    described = {
+        name: (*variable, dict(zip(("long_name", "units"), _MEANING[name], strict=True)))
+        for name, variable in data.items()
+    }
+    return xr.Dataset(
+        described,
+        attrs={
+            "Conventions": "CF-1.11", "schema": _SCHEMA, "title": material.name or "linear viscoelastic material",
+            "name": material.name, "given": "creep" if series.by_creep else "relaxation",
+            "law": "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T T_ref)))/E_long",
+            "source": f"viscoroll {__version__}",
+        },
+    )  # fmt: skip
+
+
+def save(material: Material, path: str | PathLike[str]) -> None:
+    """Write a material, sealed; raises OutputError."""
+    write_dataset(as_dataset(material), path, sealed=True)
+
+
+def load(path: str | PathLike[str]) -> Material:
+    """The material of a file that :func:`save` wrote; raises TableError."""
+    import xarray as xr
+
+    content = _whole(Path(path))
+    try:
+        found = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False)
+        if found.attrs.get("schema") != _SCHEMA:
+            raise TableError(path, f"is no material: its schema is {found.attrs.get('schema')!r}, not {_SCHEMA!r}")
+        return _made(found)
+    except (ParameterError, KeyError, ValueError, OSError) as error:
+        raise TableError(path, f"is no material ({' '.join(str(error).split()):.200})") from error
+
+
+def _made(found: xr.Dataset) -> Material:
+    from .material import Material
+
+    constants: dict[str, Any] = {name: float(found[name]) for name in ("nu", "T_ref")}
+    if "density" in found:
+        constants["density"] = float(found.density)
+    strengths, times = (found[name].values.astype(np.float64) for name in _FORMS[found.attrs["given"]])
+    creep = found.attrs["given"] == "creep"
+    series = Prony.creep(strengths, times, alpha=float(found.alpha)) if creep else Prony(strengths, times)
+    return Material(float(found.E_long), prony=series, name=found.attrs["name"], **constants)
+
+
+def _whole(path: Path) -> bytes:
+    """The bytes of a file, compared with the SHA-256 at their end before anything parses them."""
+    try:
+        if path.stat().st_size > _MOST_BYTES:
+            raise TableError(path, f"is no material: larger than {_MOST_BYTES} bytes")
+        content = path.read_bytes()
+    except OSError as error:
+        raise TableError(path, f"cannot be read ({error.strerror or error})") from error
+    sealed = seal_holds(content)
+    if not sealed:
+        problem = (
+            "its bytes differ from the SHA-256 at their end" if sealed is False else "there is no SHA-256 at its end"
+        )
+        raise TableError(path, f"is damaged, or no material of this package: {problem}")
+    return content

@@ -1,0 +1,154 @@
+"""What drives a motion, made ready for the kernels: :class:`Drive`, :func:`prepared`."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import checked
+from ..drive import Feedback
+from ..errors import ParameterError
+from ..scene import Scene
+from .schedule import Curve, curve, pieces_of, slope_of, start_value
+
+#: rows of the kernel's output behind those of a free motion
+ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
+ROWS = ("V", "omega", "x", "angle", "delta", "regime", *ACTING, "slip_loss", "rolling_loss")
+#: a prescribed start may be off by this share of the largest prescribed speed
+_START = 1e-9
+
+
+class Drive(NamedTuple):
+    """What a caller gave to drive a motion or many."""
+
+    force: Any = 0.0
+    torque: Any = 0.0
+    slope: Any = None
+    brake: Any = None
+    omega: Any = None
+    V: Any = None
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is anything but force and torque 0."""
+        zero = all(isinstance(given, float | int) and given == 0.0 for given in self[:2])
+        return not zero or any(given is not None for given in self[2:])
+
+    @property
+    def prescribes(self) -> bool:
+        """Whether a speed is prescribed."""
+        return self.V is not None or self.omega is not None
+
+
+class Prepared(NamedTuple):
+    """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, 1), which speed is prescribed; the scene on
+    its slope, start speeds, and the largest difference between a callable and its fit."""
+
+    pieces: NDArray[np.float64]
+    gains: NDArray[np.float64]
+    prescribed: int
+    scene: Scene
+    V0: Any
+    omega0: Any
+    error: float
+
+    def in_unit(self, unit: float, chosen: Any = slice(None)) -> tuple[NDArray, NDArray, int]:
+        """Pieces, of the ``chosen`` motions where each has its own, and gains, with time counted in ``unit``."""
+        pieces = self.pieces[chosen] if self.pieces.shape[0] > 1 else self.pieces
+        if unit != 1.0:
+            pieces = pieces.copy()
+            terms = (pieces.shape[-1] - 2) // 4
+            pieces[..., 0] /= unit
+            pieces[..., 1] *= unit
+            pieces[..., 2 + 2 * terms : 2 + 3 * terms] *= unit * unit
+        return np.ascontiguousarray(pieces), self.gains / unit, self.prescribed
+
+
+def tilted(scene: Scene, slope: Any) -> tuple[Scene, Any]:
+    """(The scene under the load P cos(slope), tan(slope)): force, torque, Q and M are over P cos(slope) then.
+
+    Raises
+    ------
+    ParameterError
+        A slope that is not within (-pi/2, pi/2).
+    """
+    if slope is None:
+        return scene, 0.0
+    angle = checked("slope", slope)
+    if not (np.abs(angle) < 0.5 * np.pi).all():
+        raise ParameterError("slope", float(np.max(np.abs(angle))), "an angle below pi/2 in size, radians")
+    cosine = np.cos(angle)
+    return scene.replace(kappa=scene.kappa / np.sqrt(cosine), gamma=scene.gamma * cosine), np.tan(angle)
+
+
+def _added(one: Curve, more: Any) -> Curve:
+    """A curve with a number, or one a motion, added."""
+    more = np.asarray(more, float).reshape(-1, 1)
+    count = max(one.terms.shape[0], more.shape[0])
+    terms = np.repeat(one.terms, count, axis=0) if one.terms.shape[0] < count else one.terms.copy()
+    terms[..., 0] += more
+    return one._replace(terms=terms)
+
+
+def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol: float) -> Prepared:
+    """A drive up to the time ``end``.
+
+    Raises
+    ------
+    ParameterError
+        What is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what is then found given as well;
+        a start that is not the prescribed one.
+    """
+    scene, tangent = tilted(scene, drive.slope)
+    if drive.V is not None and drive.omega is not None:
+        raise ParameterError("V, omega given", "both", "one prescribed speed")
+    for name, found, own in (("omega", "torque", drive.omega), ("V", "force", drive.V)):
+        given = getattr(drive, found)
+        if own is not None and (callable(given) or np.ndim(given) or given != 0.0):
+            raise ParameterError(found, f"given with {name}=", f"left out: it is what the prescribed {name} needs")
+    if drive.brake is not None and drive.omega is not None:
+        raise ParameterError("brake", "given with omega=", "left out: omega is prescribed")
+    force = _added(curve("force", drive.force, end, rtol), tangent)
+    torque = curve("torque", drive.torque, end, rtol)
+    brake = curve("brake", 0.0 if drive.brake is None else drive.brake, end, rtol, low=0.0)
+    rate, prescribed, error = Curve(np.zeros(1), np.array([np.inf]), np.zeros((1, 1, 1))), 0, 0.0
+    for code, name in ((1, "omega"), (2, "V")):
+        given = getattr(drive, name)
+        if given is not None:
+            speed = curve(name, given, end, rtol)
+            rate, prescribed, error = slope_of(name, speed), code, speed.error
+            start = _prescribed_start(f"{name}0" if code == 1 else "V0", V0 if code == 2 else omega0, speed)
+            V0, omega0 = (start, omega0) if code == 2 else (V0, start)
+    for name, value, by in (("V0", V0, "V"), ("omega0", omega0, "omega")):
+        if value is None:
+            raise ParameterError(name, None, f"a number, unless {by}= prescribes it")
+    pieces = pieces_of((force, torque, rate, brake), end)
+    error = max(error, force.error, torque.error, brake.error)
+    return Prepared(pieces, _gains(drive), prescribed, scene, V0, omega0, error)
+
+
+def _prescribed_start(name: str, given: Any, speed: Curve) -> Any:
+    """The start that a schedule prescribes."""
+    start = start_value(speed)
+    scale = float(np.abs(speed.terms).sum(axis=-1).max(initial=0.0))
+    if given is not None and not (np.abs(checked(name, given) - start) <= _START * scale).all():
+        raise ParameterError(name, given, f"None, or {float(start[0]):.12g} as prescribed")
+    return float(start[0]) if start.size == 1 else start
+
+
+def _gains(drive: Drive) -> NDArray[np.float64]:
+    """Of force over V, force over omega, torque over V, torque over omega."""
+    pairs = [(each.V, each.omega) if isinstance(each, Feedback) else (0.0, 0.0) for each in (drive.force, drive.torque)]
+    return np.array(pairs, float).reshape(4, 1)
+
+
+def refuse_rest(rest: float, drives: Prepared) -> None:
+    """Raise ParameterError where a motion is to end at rest while something drives it to the end.
+
+    Where nothing does, speeds below the threshold stay there.
+    """
+    acting = drives.prescribed or drives.gains.any() or drives.pieces[:, -1, 2:].any()
+    if rest > 0.0 and acting:
+        raise ParameterError("rest", rest, "None while something drives the motion to its end")

@@ -1,0 +1,173 @@
+"""What acts over time, as pieces that are polynomials: numbers, (times, values), callables, feedback.
+
+A piece runs from ``starts`` to ``ends``; in it x = -1 ... 1 and the value is sum terms[n] x^n.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from ..checks import checked
+from ..drive import Feedback
+from ..errors import ParameterError
+
+#: a callable is fitted by polynomials of this many terms; a piece is halved as often as this before it is a jump
+TERMS, _HALVINGS = 14, 40
+#: share of the tolerance of the motion that a fit may be off, of the largest value so far
+_SHARE = 0.1
+#: where a callable is compared with its fit, between the nodes
+_NODES = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)[::-1]
+_BETWEEN = np.cos(np.pi * np.arange(TERMS + 1) / TERMS)[::-1]
+_TO_TERMS = np.stack([np.pad(chebyshev.cheb2poly(row), (0, TERMS - n - 1)) for n, row in enumerate(np.eye(TERMS))])  # fmt: skip
+_FIT = _TO_TERMS.T @ np.linalg.inv(chebyshev.chebvander(_NODES, TERMS - 1))
+
+
+class Curve(NamedTuple):
+    """A function of time for one motion or m of them: starts and ends (k,), the last end infinite; terms (m, k, terms).
+
+    error : the largest difference seen between a callable and its fit.
+    """
+
+    starts: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    terms: NDArray[np.float64]
+    error: float = 0.0
+
+
+def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf) -> Curve:
+    """The function of time that is ``given``, up to ``end``.
+
+    Raises
+    ------
+    ParameterError
+        What is neither a number, (times, values) nor a callable; values that are not finite or below ``low``, times
+        that fall or that come more than twice, arrays that do not fit, a callable with a jump.
+    """
+    if isinstance(given, Feedback):
+        given = given.value
+    if callable(given):
+        return _fitted(name, given, end, rtol, low)
+    if isinstance(given, tuple) and len(given) == 2:
+        return _linear(name, *given, low)
+    values = checked(name, given, low=low)
+    if values.ndim > 1:
+        raise ParameterError(name, f"array of shape {values.shape}", "a number, one a motion, or (times, values)")
+    return Curve(np.zeros(1), np.array([np.inf]), values.reshape(-1, 1, 1))
+
+
+def _linear(name: str, times: Any, values: Any, low: float) -> Curve:
+    """Linear between times, constant outside; a time given twice is a jump."""
+    times, values = checked(f"times of {name}", times, low=0.0), checked(f"values of {name}", values, low=low)
+    if times.ndim != 1 or times.size == 0 or values.ndim not in (1, 2) or values.shape[-1] != times.size:
+        shapes = f"times {times.shape}, values {values.shape}"
+        raise ParameterError(name, shapes, "times (k,) and values (k,), or (n, k) for n motions")
+    if (np.diff(times) < 0.0).any():
+        raise ParameterError(f"times of {name}", times[:-1][np.diff(times) < 0.0][0], "in ascending order")
+    if (times[2:] == times[:-2]).any():
+        raise ParameterError(f"times of {name}", times[:-2][times[2:] == times[:-2]][0], "there once, or twice for a jump")
+    values = np.atleast_2d(values)
+    rises = np.flatnonzero(np.diff(times) > 0.0)
+    starts, ends = times[rises], times[rises + 1]
+    first, second = values[:, rises], values[:, rises + 1]
+    terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
+    if times[0] > 0.0:
+        starts, ends = np.r_[0.0, starts], np.r_[times[0], ends]
+        terms = np.concatenate([_flat(values[:, :1]), terms], axis=1)
+    starts, ends = np.r_[starts, times[-1]], np.r_[ends, np.inf]
+    return Curve(starts, ends, np.concatenate([terms, _flat(values[:, -1:])], axis=1))
+
+
+def _flat(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Terms of pieces with these values."""
+    return np.stack([values, np.zeros_like(values)], axis=-1)
+
+
+def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float, low: float) -> Curve:
+    """A callable by polynomials, halving pieces until each is within the tolerance between its nodes."""
+
+    def sample(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        values = np.array([function(t) for t in at.tolist()])
+        return checked(f"{name}(t)", values.reshape(at.shape) if values.size == at.size else values, low=low)
+
+    open_pieces, done, largest, worst = [(0.0, end, 0)], [], 0.0, 0.0
+    while open_pieces:
+        start, stop, depth = open_pieces.pop()
+        middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
+        values, between = sample(middle + half * _NODES), sample(middle + half * _BETWEEN)
+        largest = max(largest, float(np.abs(values).max()), float(np.abs(between).max()))
+        terms = _FIT @ values
+        off = float(np.abs(np.polynomial.polynomial.polyval(_BETWEEN, terms) - between).max())
+        if off <= _SHARE * rtol * largest or half == 0.0:
+            done.append((start, stop, terms))
+            worst = max(worst, off)
+        elif depth == _HALVINGS:
+            raise ParameterError(name, f"a callable that jumps near t = {middle:.6g}", "smooth; give jumps as (times, values)")
+        else:
+            open_pieces += [(middle, stop, depth + 1), (start, middle, depth + 1)]
+    last = np.zeros(TERMS)
+    last[0] = done[-1][2].sum()
+    starts, ends = np.array([piece[0] for piece in done] + [end]), np.array([piece[1] for piece in done] + [np.inf])
+    return Curve(starts, ends, np.array([piece[2] for piece in done] + [last])[None], worst)
+
+
+def slope_of(name: str, speed: Curve) -> Curve:
+    """The slope over t of a prescribed speed, which must not jump."""
+    ends = speed.ends - speed.starts
+    right, left = speed.terms[:, :-1].sum(axis=-1), _at_start(speed.terms[:, 1:])
+    scale = max(float(np.abs(speed.terms).max(initial=0.0)), 1e-300)
+    jumps = np.flatnonzero((np.abs(right - left) > 1e-12 * scale + 4.0 * speed.error).any(axis=0))
+    if jumps.size:
+        raise ParameterError(name, f"a jump at t = {speed.starts[jumps[0] + 1]:.6g}", "a speed that does not jump")
+    order = np.arange(1, speed.terms.shape[-1])
+    terms = speed.terms[..., 1:] * order * (2.0 / ends)[:, None]
+    return speed._replace(terms=terms if order.size else np.zeros_like(speed.terms))
+
+
+def _at_start(terms: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values at x = -1."""
+    return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
+
+
+def start_value(speed: Curve) -> NDArray[np.float64]:
+    """Value of a curve at t = 0."""
+    return _at_start(speed.terms[:, 0])
+
+
+def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
+    """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms)."""
+    starts = np.unique(np.concatenate([each.starts for each in curves]))
+    starts = starts[starts < end] if end > 0.0 else starts[:1]
+    ends = np.append(starts[1:], np.inf)
+    for each in curves:
+        ends[-1] = min(ends[-1], each.ends[each.starts <= starts[-1]][-1])
+    count = max(each.terms.shape[0] for each in curves)
+    terms = max(each.terms.shape[-1] for each in curves)
+    rows = np.zeros((count, starts.size, 2 + len(curves) * terms))
+    rows[..., 0], rows[..., 1] = starts, 2.0 / (ends - starts)
+    for n, each in enumerate(curves):
+        part = _restricted(each, starts, ends)
+        rows[..., 2 + n * terms : 2 + n * terms + part.shape[-1]] = part
+    return rows
+
+
+def _restricted(each: Curve, starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Terms of a curve over other pieces, each within one of its own."""
+    own = np.searchsorted(each.starts, starts, side="right") - 1
+    terms, first, last = each.terms[:, own], each.starts[own], each.ends[own]
+    if (first == starts).all() and (last == ends).all():
+        return terms
+    whole = np.where(np.isinf(last), 1.0, last - first)
+    scale = np.where(np.isinf(last), 0.0, (ends - starts) / whole)
+    shift = np.where(np.isinf(last), 0.0, (starts - first) / whole * 2.0 - 1.0 + scale)
+    moved = np.zeros_like(terms)
+    for n in range(terms.shape[-1] - 1, -1, -1):  # Horner's scheme with x -> shift + scale x
+        raised = np.zeros_like(moved)
+        raised[..., 1:] = moved[..., :-1] * scale[:, None]
+        moved = moved * shift[:, None] + raised
+        moved[..., 0] += terms[..., n]
+    return moved

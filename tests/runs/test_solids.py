@@ -1,0 +1,160 @@
+"""Materials of a run of which strengths, times and moduli are uncertain."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from places import ROOT
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.runs import export_netcdf, read_run, run_ensemble, verify
+from viscoroll.runs.evaluate import roll_block, scene_of
+from viscoroll.runs.sensitivity import sobol_indices
+from viscoroll.runs.store import columns_of
+
+EXAMPLE = (ROOT / "docs/examples/rubber-sensitivity.toml").read_text(encoding="utf-8").replace("20_000", "60")
+SCENE = """
+[scene]
+prony = { E = [0.5, { distribution = "uniform", loc = 1.0, scale = 2.0 }], tau = [1.0, 1e-2] }
+kappa = 10.0
+mu = 0.3
+gamma = 4.0
+[start]
+V0 = 1.0
+omega0 = { distribution = "uniform", loc = 0.0, scale = 0.5 }
+[correlation]
+E_2.omega0 = 0.5
+[run]
+n = 50
+t = [0.5, 2.0]
+keep = "all"
+block = 20
+"""
+CREEP = SCENE.replace("[0.5, { ", "[0.2, { ").replace("E = [", "J = [").replace("tau =", "T =").replace(
+    "prony", "creep"
+).replace("loc = 1.0, scale = 2.0", "loc = 0.3, scale = 0.2").replace("E_2", "J_2")  # fmt: skip
+
+
+@pytest.fixture
+def read(tmp_path):
+    def from_text(text: str) -> object:
+        path = tmp_path / "run.toml"
+        path.write_text(text, encoding="utf-8")
+        return read_run(path)
+
+    return from_text
+
+
+def test_a_cylinder_of_uncertain_rubber(read):
+    """Every motion is that of the cylinder with its own modulus and series, over seconds."""
+    run = read(EXAMPLE.replace("rtol =", 'keep = "all"\nrtol ='))
+    assert run.inputs.uncertain == ("mu", "V0", "E_1", "E_2", "tau_1", "E")
+    values, motions = roll_block(run, 0)
+    columns = columns_of(run, values, motions)
+    for i in (0, 31, 59):
+        prony = vr.Prony([values["E_1"][i], values["E_2"][i], 1.5], [values["tau_1"][i], 1e-3, 1e-5])
+        material = vr.Material(values["E"][i], 0.5, prony)
+        cylinder = vr.Cylinder(R=0.1, m=35.5, mu=values["mu"][i], material=material)
+        one = vr.roll(cylinder.scene(), cylinder.V_from_si(values["V0"][i]), 0.0, run.t, run.settings.rtol)
+        for name, value in (("V", cylinder.V_to_si(one.V)), ("x", cylinder.x_to_si(one.x))):
+            np.testing.assert_allclose(columns[name][i], value, rtol=tol.SI_SERIES_RTOL)
+
+
+@pytest.mark.parametrize("text", [SCENE, CREEP])
+def test_a_scene_of_uncertain_strengths(read, text):
+    run = read(text)
+    values, motions = roll_block(run, 0)
+    scene = scene_of(values)
+    assert scene.shape == (20,)
+    for i in (0, 7, 19):
+        strengths, times = scene.material.given[0][i], [1.0, 1e-2]
+        made = vr.Prony.creep(strengths, times) if "creep" in text else vr.Prony(strengths, times)
+        one = vr.roll(vr.Scene(material=made, kappa=10.0, mu=0.3, gamma=4.0), 1.0, values["omega0"][i], run.t)
+        assert np.array_equal(motions.V[i], one.V)
+
+
+def test_a_certain_series_has_one_scene(read):
+    """And its ensemble is that of the scene, by its flow map where there are many."""
+    text = SCENE.replace('{ distribution = "uniform", loc = 1.0, scale = 2.0 }', "2.0")
+    run = read(
+        text.replace("[correlation]\nE_2.omega0 = 0.5\n", "").replace("n = 50", "n = 5000").replace("block = 20", "")
+    )
+    assert (run.one_scene, run.method) == (True, "flow")
+    assert scene_of(run.inputs.fixed).material == vr.Prony([0.5, 2.0], [1.0, 1e-2])
+    preset = read(text.replace("[scene]", 'preset = "paper-section-5"\n[scene]').replace("E_2.omega0 = 0.5", ""))
+    assert scene_of(preset.inputs.fixed).material == vr.Prony([0.5, 2.0], [1.0, 1e-2])
+
+
+def test_the_digest_follows_the_material(read):
+    digest = read(SCENE).digest
+    assert read("# told\n" + SCENE).digest == digest
+    for old, new in (("0.5, {", "0.6, {"), ("1e-2", "2e-2"), ("scale = 2.0", "scale = 2.1")):
+        assert read(SCENE.replace(old, new)).digest != digest
+    assert read(EXAMPLE).digest != read(EXAMPLE.replace("1.5,", "1.6,")).digest
+
+
+def test_a_material_of_a_file(read, tmp_path):
+    """The run is another one where the file is."""
+    text = EXAMPLE[: EXAMPLE.index("E = {")] + 'file = "rubber.nc"\n\n' + EXAMPLE[EXAMPLE.index("[start]") :]
+    digests = set()
+    for E in (3e6, 4e6):
+        rubber = vr.Material(E, 0.5, vr.Prony([0.3, 1.5], [2e-2, 1e-5]))
+        rubber.to_netcdf(tmp_path / "rubber.nc")
+        run = read(text)
+        digests.add(run.digest)
+        assert run.inputs.fixed["pair"].cylinder == rubber
+    assert len(digests) == 2
+
+
+def test_store_and_export(read, tmp_path):
+    """The same files for any number of threads; strengths are kept with each motion."""
+    run, store = read(SCENE), tmp_path / "results.zarr"
+    run_ensemble(run, store, threads=2)
+    run_ensemble(run, tmp_path / "one.zarr", threads=1)
+    for path in Path(store).rglob("*"):
+        if path.is_file() and path.name != ".lock":
+            assert path.read_bytes() == (tmp_path / "one.zarr" / path.relative_to(store)).read_bytes()
+    assert verify(store).ok
+    export_netcdf(store, tmp_path / "all.nc")
+    with xr.open_dataset(tmp_path / "all.nc", group="motions", engine="h5netcdf") as motions:
+        assert motions.E_2.dims == ("motion",)
+        assert motions.E_2.attrs["long_name"] == "strength 2 of relaxation over the long-time modulus"
+        assert 1.0 < motions.E_2.values.min() < motions.E_2.values.max() < 3.0
+
+
+def test_sobol_indices_of_a_material(read):
+    """Rolling resistance spreads by the strengths of the modes that it is made of, not by friction."""
+    found = sobol_indices(read(EXAMPLE), n=64)
+    total = found.rolling_loss_ST.isel(t=-1)
+    assert total.sel(input="E_2") > 0.3 > total.sel(input="mu")
+    assert total.sel(input="tau_1") > total.sel(input="V0")
+
+
+def test_refused(read):
+    spread = '{ distribution = "lognorm", s = 0.2, scale = 0.3 }'
+    for text, words in (
+        (EXAMPLE.replace(spread, "-0.3"), ["line 12", "E_1 = -0.3", ">= 0"]),
+        (EXAMPLE.replace(spread, spread.replace("}", ", loc = -1.0 }")), ["line 12", "E_1: reaches from -1"]),
+        (EXAMPLE.replace(spread, "'0.3 GPa'"), ["line 12", "E_1", "plain number"]),
+        (EXAMPLE.replace(spread, spread.replace("lognorm", "lognorn")), ["line 12", "did you mean 'lognorm'?"]),
+        (EXAMPLE.replace("1e-3, 1e-5]", "1e-3]"), ["tau", "one time for each E"]),
+        (EXAMPLE.replace("1e-3, 1e-5]", "1e-3, 0.0]"), ["tau_3 = 0.0", "> 0"]),
+        (EXAMPLE.replace("nu = 0.5", "nu = 0.6"), ["line 9", "nu = 0.6"]),
+        (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nEE = 2"), ["line 10", "unknown key 'EE'"]),
+        (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nT_sigma = 0.1"), ["T_epsilon and T_sigma"]),
+        (EXAMPLE + "[base]\nE = 2e11\nnu = 0.3\n", ["[base] goes with a [material] of numbers"]),
+        (SCENE.replace("mu =", "alpha = 3.0\nmu ="), ["line 5", "alpha and a series"]),
+        (SCENE.replace("prony", "pony"), ["line 3", "did you mean 'prony'?"]),
+        (SCENE.replace("prony =", "# prony ="), ["needs alpha, prony or creep"]),
+        (SCENE.replace("E_2.omega0", "E_1.omega0"), ["'E_1' has no distribution"]),
+        (SCENE.replace("[run]", '[run]\nmethod = "flow"'), ["method = 'flow'"]),
+        (CREEP.replace("scale = 0.2", "scale = 0.6"), ["line 3", "J may sum to 1.1"]),
+        (CREEP.replace("T = [", "alpha = 3.0, T = ["), ["alpha: must be left out"]),
+    ):
+        refused(partial(read, text), *words, error=vr.ConfigError)
