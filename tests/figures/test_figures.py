@@ -26,6 +26,7 @@ from viscoroll.figures import (
     figure_6,
     figure_7,
     phase_portrait,
+    rolling_equilibria,
     rolling_resistance,
     run_distributions,
     save,
@@ -36,7 +37,7 @@ from viscoroll.runs import open_summaries, read_run, run_ensemble
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {
     "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble",
-    "rolling-resistance",
+    "rolling-resistance", "rolling-equilibria",
 }  # fmt: skip
 
 
@@ -155,6 +156,17 @@ def test_rolling_resistance_shifts_with_temperature():
     (V, warm), (_, cold) = line(right, "warm"), line(right, "cold")
     decade = int(np.argmin(np.abs(V - 10.0 * V[0])))
     assert np.allclose(cold[:-decade], warm[decade:], rtol=tol.FIGURE)
+
+
+def test_equilibria_of_a_slope_alternate_along_the_curve():
+    """Stable on rising branches, saddles on falling ones, all on the curve of M."""
+    for axes in rolling_equilibria(pulls=(0.6,)).axes:
+        V, M = line(axes, "$M$")
+        (stable, load), (saddle, _) = line(axes, "stable"), line(axes, "saddle")
+        assert stable.size == saddle.size
+        assert (stable < saddle).all()
+        assert np.allclose(np.interp(stable, V, M), load, rtol=tol.FIGURE_CURVE)
+    assert stable.size > 1
 
 
 def test_a_start_that_rolls_and_a_scene_that_never_stops():
