@@ -81,8 +81,8 @@ def _series_table(prony: Prony) -> Any:
     first, stop = _bins(modes.a[-1], modes.b[0])
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
     fill(series(prony), first, stop, table)
-    weight, log_weight = map(float, _weights(modes))
-    ends = Ends(True, weight, log_weight, sum(prony.second_moments))
+    rise, weight, log_weight = map(float, _weights(modes))
+    ends = Ends(True, rise, weight, log_weight, sum(prony.second_moments))
     return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), table, ends)
 
 
@@ -96,11 +96,11 @@ def _bins(fastest: float, slowest: float) -> tuple[int, int]:
     return first, stop
 
 
-def _weights(modes: Modes) -> tuple[Any, Any]:
-    """``weight`` and ``log_weight`` of the ends of a table."""
+def _weights(modes: Modes) -> tuple[Any, Any, Any]:
+    """``rise``, ``weight`` and ``log_weight`` of the ends of a table."""
     weights = modes.J * modes.b
     logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
-    return weights.sum(axis=-1), (weights * logs).sum(axis=-1)
+    return modes.E.sum(axis=-1), weights.sum(axis=-1), (weights * logs).sum(axis=-1)
 
 
 def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArray[np.float64]]:
@@ -114,7 +114,7 @@ def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArr
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
     count, most = some.size, max((block.modes.a.shape[-1] for block in blocks), default=0)
-    numbers, bins, modes_of = np.empty((count, 6)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
+    numbers, bins, modes_of = np.empty((count, 7)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
     arrays = Series._make(np.zeros((count, most, most)[: 3 if name == "Q" else 2]) for name in Series._fields)
     unit = np.empty(count)
     for block in blocks:

@@ -31,7 +31,7 @@ class Tabulated(NamedTuple):
 
 def tabulated(alpha: float) -> Tabulated:
     """The material of this alpha, with nothing in its table."""
-    return Tabulated(*standard.standard(alpha), quartet.empty_table(), Ends(False, 0.0, 0.0, 0.0))
+    return Tabulated(*standard.standard(alpha), quartet.empty_table(), Ends(False, 0.0, 0.0, 0.0, 0.0))
 
 
 @kernel
@@ -41,7 +41,7 @@ def _at_an_end(z, material):
     if z < material.tau:
         half = 0.5 * material.alpha * z * z
         bracket = ends.log_weight - ends.weight * np.log(z)
-        g, m, dh = half * bracket, half * (bracket + 0.25 * ends.weight), 0.5 * (material.alpha - 1.0)
+        g, m, dh = half * bracket, half * (bracket + 0.25 * ends.weight), 0.5 * ends.rise
         h = dh * z
     else:
         per = 0.125 / z
