@@ -209,7 +209,8 @@ def ensemble(
         what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in _PARAMETERS}
-    arrays |= dict(zip(("V0", "omega0"), start_speeds(V0, omega0), strict=True))
+    starts: Any = V0, omega0
+    arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
     if ready and ready.pieces.shape[0] > 1:
         arrays["drive"] = np.zeros(ready.pieces.shape[0])
     shape = broadcast_shape(**arrays)
@@ -310,6 +311,7 @@ def _kernel(names: tuple[str, ...], ready: Prepared | None) -> Callable[..., Non
     def driven(given: tuple, times: NDArray, limits: tuple, out: Any, info: NDArray, which: Any, unit: float) -> None:
         from ..kernels.drive.loop import drive_loop
 
+        assert ready
         drives, unnoted = ready.in_unit(unit, which), (np.empty((0, 2)), np.empty(0))
         drive_loop(given, drives, times, limits, rows, out, info, unnoted)
 

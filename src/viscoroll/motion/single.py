@@ -282,8 +282,8 @@ def roll(
         if value.shape != ():
             raise ParameterError(name, f"array of shape {value.shape}", "one motion's; for many use ensemble")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    start = [None if value is None else float(value) for value in (V0, omega0)]
-    inputs = Inputs(scene, *start, float(times[-1]), rtol, threshold, max_steps, drive)
+    V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
+    inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive)
     if np.ndim(t) == 0:
         times = _step_times(inputs)
     motion = _integrate(inputs, times)
