@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .bodies import Bodies
 from .prony import Modes, Prony
@@ -68,6 +69,22 @@ def series(prony: Prony) -> Any:
     modes = prony.modes
     root = np.sqrt(np.outer(modes.J * modes.b, modes.E * modes.a))
     return Series(modes.a, modes.b, np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b), root / modes.gap)
+
+
+def unsteadiness(given: Any, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
+    """N of M = M(V) + N V' at every zeta; ``given``: a series, or alphas, one or one each."""
+    from .kernels.law.series import Series
+    from .kernels.law.unsteady import unsteady_loop
+
+    found, zeta, alpha = np.empty(zeta.size), zeta.view(), np.empty(0)
+    if isinstance(given, Prony):
+        known = series(given)
+    else:
+        alpha = np.atleast_1d(given).view()
+        known = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.ones((1, 1)))
+    zeta.flags.writeable = alpha.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
+    unsteady_loop(known, alpha, zeta, found, 0, found.size)
+    return found
 
 
 def _bins(prony: Prony) -> tuple[int, int]:

@@ -16,7 +16,7 @@ from .blocks import elements, run_blocks
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .material_tables import inverses, record, series
+from .material_tables import inverses, record, series, unsteadiness
 from .prony import Prony
 from .scene import Scene
 
@@ -166,19 +166,11 @@ def contact(
 
 def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ...]) -> NDArray:
     """N at every zeta, in the material's own time."""
-    from .kernels.law.material import Own
-    from .kernels.law.unsteady import unsteady_loop
-
-    modes, alphas, found = (
-        series(material) if isinstance(material, Prony) else None,
-        elements(alpha, shape),
-        zeta.copy(),
-    )
+    found, alphas = np.empty(zeta.size), elements(alpha, shape)
 
     def work(start: int, stop: int) -> None:
-        each = zeta[start:stop]
-        each.flags.writeable = False  # as all that a kernel reads, see elements
-        unsteady_loop(modes or Own(alphas(start, stop)), each, found[start:stop], 0, stop - start)
+        given = material if isinstance(material, Prony) else alphas(start, stop)
+        found[start:stop] = unsteadiness(given, zeta[start:stop])
 
     run_blocks(work, zeta.size, _BLOCK)
     return found

@@ -22,6 +22,13 @@ vr.ensemble(scene, 1.5, [0.5, 0.6], [1e-4], fields=("V", "slip_loss", "rolling_l
 vr.ensemble(scene.replace(kappa=7.1), np.linspace(0.1, 0.5, 20), 0.0, [1e-4], method="flow", rest=1e-4)
 vr.tables.build(vr.tables.LiteralGrid(2.91, 0.2, V[-3:], V[-3:], [1.0, 11.0]))
 scene.validity(V[:3])
+two = vr.Bodies(vr.Prony([3.0], [2.0]), vr.Prony([1.0, 4.0, 2.0], [1.0, 0.1, 1e-3]), 0.2)
+for law in (two, two.total):
+    each = vr.Scene(material=law, kappa=9.0, mu=0.2)
+    vr.contact(each, V[:9], omega=0.1, slopes=True)
+    vr.contact(each, V, omega=0.1, fields=("M_half_space", "Q", "N"))
+    each.validity(V[:3])
+vr.contact(scene, V, delta=0.0, fields="N")
 """
 CODE = f"""
 import importlib
