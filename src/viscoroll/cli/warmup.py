@@ -63,6 +63,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "two bodies, many states", lambda: contact(pair, many, delta=0.01)
     yield "unsteady rolling of a series", lambda: contact(series, 0.5, delta=0.01, fields="N")
     yield "validity", lambda: scene.validity(0.5)
+    yield "validity of a series", lambda: series.validity(0.5)
     yield "stress", lambda: stress(scene, 0.5, 0.5, delta=0.01)
     yield "roll", lambda: roll(scene, 1.0, 0.0, 1e-3)
     yield "ensemble", lambda: ensemble(scene, **start, method="integrate")
