@@ -124,7 +124,8 @@ class Scene:
 
     def _validity(self, V: ArrayLike, slow: Assumption, bodies: Assumption, plane: str) -> Validity:
         speed = checked("V", V)
-        broadcast_shape(V=speed, **{f.name: np.asarray(getattr(self, f.name)) for f in fields(self)[:-1]})
+        given = {name: np.asarray(getattr(self, name)) for name in ("alpha", "kappa", "gamma", "j")}
+        broadcast_shape(V=speed, **given)
         material, unit = self.in_own_time()
         found = strained(material, self.kappa, speed * unit)
         nu = np.asarray(self.gamma * (unit**2 * found.unsteady) / (1.0 + np.asarray(self.j)))
