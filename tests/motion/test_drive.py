@@ -162,7 +162,9 @@ def test_how_a_schedule_is_written():
     assert off(called, ramp) <= 30e-9
     twice = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
     first = vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=0.01)
-    assert off(first, vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=([0.0, 2.0, 2.0], [0.01, 0.01, 0.03]))) <= 1e-9
+    assert (
+        off(first, vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=([0.0, 2.0, 2.0], [0.01, 0.01, 0.03]))) <= 1e-9
+    )
     assert twice.torque[T == 2.0] == 0.03  # the later side
 
 
