@@ -395,6 +395,19 @@ STEADY_GRIP = 1e-14
 #: What goes in and what is lost, where force and torque nearly cancel; measured 2e-13.
 STEADY_POWER = 1e-11
 
+#: The largest |N| on a grid of eighths of octaves: its humps bend on the scale of an octave.
+VALIDITY_N = 5e-3
+# --- kernels/law/unsteady.py (test_unsteady.py) ---
+#: N against derivatives of H and H m in 50 digits, relative, and in its zeros over the part of the largest |N| below.
+UNSTEADY = 2e-11
+UNSTEADY_ZERO = 1e-2
+#: One mode as a series and as an alpha; -S_E.
+UNSTEADY_SERIES = 1e-12
+#: The first terms of its limits: kappa V T = 1e-4, and 1e4 times the speed of the fastest mode.
+UNSTEADY_SLOW, UNSTEADY_FAST = 1e-2, 1e-3
+#: Another unit of time: the times round, and N has a zero.
+UNSTEADY_UNIT = 1e-9
+
 # --- DMA to Prony (test_dma.py) ---
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
 DMA_EXACT = 1e-6
