@@ -432,3 +432,19 @@ DMA_PYVISCO = (1.55, 1.75)
 #: points with 0.5 % noise (that of the overlaps, added up over four neighbours; measured 6e-3).
 DMA_SHIFT = 5e-4
 DMA_SHIFT_NOISY = 0.02
+
+# --- driven motions (motion/test_drive.py) ---
+#: SciPy's Radau at rtol 1e-7, atol 1e-9, over corners of the law that it steps across.
+DRIVE_PEER = 2e-5
+#: Works against energies at rtol 1e-10 and 1e-11, over the largest of them.
+DRIVE_BALANCE = 1e-8
+#: The general method against that of free motions, both at 1e-10; their losses, which have a rule of their own there.
+DRIVE_FREE, DRIVE_LOSS = 3e-9, 1e-7
+#: A sine from a table of 10^3 points a period: h^2/8 of the second derivative.
+DRIVE_TABLE = 2e-4
+#: Terminal speeds after 60 relaxation times.
+DRIVE_STEADY = 1e-8
+#: Q next to V = 0, a share of 1e-9 of the time away from it.
+DRIVE_TURN = 1e-6
+#: Inertia 1e9 in place of an infinite one.
+DRIVE_HEAVY = 1e-7

@@ -71,6 +71,10 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "validity", lambda: scene.validity(0.5)
     yield "stress", lambda: stress(scene, 0.5, 0.5, delta=0.01)
     yield "roll", lambda: roll(scene, 1.0, 0.0, 1e-3)
+    yield "driven motion", lambda: roll(scene, 0.0, 0.0, 1e-3, force=0.01)
+    yield "driven motions of an alpha each", lambda: ensemble(Scene([3.0, 4.0], 2.91, 0.2), **start, force=0.01)
+    yield "driven motions of a series each", lambda: ensemble(each, **start, force=0.01)
+    yield "motion of two bodies", lambda: roll(pair, 1.0, 0.0, 1e-3)
     yield "ensemble", lambda: ensemble(scene, **start, method="integrate")
     yield "energy lost", lambda: ensemble(scene, **start, method="integrate", fields=("slip_loss",))
     # not ``ensemble`` alone: it might find this map on disk
