@@ -378,6 +378,10 @@ STEADY_BETA = 1e-9
 STEADY_DIFFERENCES = 1e-3
 #: Their product against b M'/j of the contact law; measured 4.2e-14.
 STEADY_DETERMINANT = 1e-11
+#: Where motions from rest end at rtol 1e-10: measured 6e-14.
+STEADY_SETTLED = 1e-9
+#: Growth beside a saddle in a linearisation, 1e-6 aside.
+STEADY_REPELLED = 1e-4
 #: Slow rolling at a load of 1e-6, and a slope of 1e-6, from their limits: the next term, of kappa V.
 STEADY_SLOW_RATE = STEADY_FAINT = 1e-4
 #: V on a curve tilted so that it meets the load at a small angle, 1 % of M'.
