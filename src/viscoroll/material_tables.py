@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .prony import Modes, Prony
+from .prony import Prony
 from .prony_array import PronyArray
+from .prony_forms import Modes
 
 #: materials that a thread keeps, of each kind
 _KEPT = 8
