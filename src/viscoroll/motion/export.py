@@ -12,13 +12,17 @@ from ..bodies import Bodies
 from ..errors import MOTION_STATUS, ParameterError
 from ..prony_array import PronyArray
 from ..symbols import SYMBOLS
+from .driven import ACTING
+from .export_drive import drive_variables
 
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+_LOSSES = ("slip_loss", "rolling_loss")
 _REGIME = {
     "long_name": "regime of motion",
-    "flag_values": np.array([-1, 0, 1, 2], dtype=np.int8),
-    "flag_meanings": "not_reached full_slip partial_slip rest",
+    "flag_values": np.array([-1, 0, 1, 2, 3, 4], dtype=np.int8),
+    "flag_meanings": "not_reached full_slip partial_slip rest locked held",
 }
+_REVERSALS = {"long_name": "times at which V changes its sign", "units": "1"}
 _OWN: dict[str, dict[str, Any]] = {
     "regime": _REGIME,
     "rest_time": {"long_name": "time at which the rest threshold was crossed", "units": "1"},
@@ -79,15 +83,24 @@ def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
 
 
 def motion_dataset(motion: Any) -> xr.Dataset:
-    """One motion over t."""
-    data = {name: _variable(("t",), name, getattr(motion, name)) for name in ("V", "omega", "x", "angle", "delta")}
+    """One motion over t; under a drive with what acted, works and losses."""
+    drive = motion._inputs.drive
+    names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if drive.acts else ()))
+    data = {name: _variable(("t",), name, getattr(motion, name)) for name in names}
     data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
+    driven: dict[str, Any] = {}
+    if drive.acts:
+        given, driven = drive_variables(drive)
+        data |= given
+        data["reversals"] = xr.Variable(("reversal",), motion.reversals, _REVERSALS)
+        driven["drive_error"] = motion.drive_error
     return xr.Dataset(
         data,
         coords={"t": _variable(("t",), "t", motion.t)},
         attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
         | {name: getattr(motion.scene, name) for name in _PARAMETERS}
         | _material(motion.scene)
+        | driven
         | {
             "onset_time": motion.onset_time,
             "rest_time": motion.rest_time,
@@ -103,7 +116,7 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     dims = ("motion", "t")
     data = {
         name: _variable(dims, name, getattr(result, name))
-        for name in ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
+        for name in ("V", "omega", "x", "angle", "delta", *_LOSSES, *ACTING)
         if getattr(result, name) is not None
     }
     if result.regime is not None:
@@ -119,9 +132,13 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
+    given, texts = drive_variables(result.drive)
+    data |= given
     attrs = (
         _globals("Ensemble of motions")
         | _material(result.scene)
+        | texts
+        | {"drive_error": result.drive_error}
         | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     )
     return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
@@ -132,7 +149,7 @@ def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
     if not len(result):
         raise ParameterError("motions", 0, "at least one: a summary is over motions")
     data: dict[str, xr.Variable] = {}
-    for name in ("V", "omega", "x", "angle", "slip_loss", "rolling_loss"):
+    for name in ("V", "omega", "x", "angle", *_LOSSES, *ACTING):
         values = getattr(result, name)
         if values is None:
             continue
