@@ -5,7 +5,7 @@ RUN := $(BIN)/python
 CONFIG ?= pipeline/config/production.toml
 SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
 STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
-TABLES := data/tables/atlas.nc data/tables/paper.nc
+TABLES := $(addprefix data/tables/,atlas.nc paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools
@@ -23,7 +23,7 @@ setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 demo: out/index.html ## tables, validation, motions, an ensemble of 10^6, figures and a summary page
 	@$(RUN) -m pipeline.demo.summary --config $(CONFIG) --show
 
-tables: $(TABLES) ## build data/tables/atlas.nc and paper.nc
+tables: $(TABLES) ## build data/tables/*.nc: universal, the paper's, a rubber of a DMA, and that on steel
 $(TABLES) &: pipeline/demo/tabulate.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.tabulate --config $(CONFIG)
 
@@ -55,6 +55,7 @@ numbers: setup $(TABLES) ## measure again what README and docs state, and put it
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	$(RUN) -m pipeline.document
 	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
+	$(BIN)/viscoroll plot rolling-equilibria -o docs/figures/rolling-equilibria.png
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)

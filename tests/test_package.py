@@ -34,6 +34,7 @@ def test_documented_names():
     """The spellings that the documentation promises."""
     assert parameters(vr.contact)[:4] == ["scene", "V", "delta", "omega"]
     assert {"fields", "slopes", "method"} <= set(parameters(vr.contact))
+    assert parameters(vr.steady) == ["scene", "force", "torque", "slope", "V"]
     assert parameters(vr.stress)[:4] == ["scene", "x", "V", "delta"]
     assert parameters(vr.roll)[:5] == ["scene", "V0", "omega0", "t", "rtol"]
     assert {"rest", "max_steps"} <= set(parameters(vr.roll))

@@ -190,7 +190,7 @@ def test_creep_against_extended_precision():
                 zeta = mp.findroot(lambda z: F_H(z)[1] * (2 * mp.mpf(KAPPA) * mp.mpf(0.3)) ** 2 - 1, 0.5)
                 rest = 1 - mp.mpf(s.Q[0]) / mp.mpf(mu)
                 F, H = F_H(zeta)
-                eta = mp.findroot(lambda z: F_H(z)[1] / (rest * H) - 1, zeta * mp.sqrt(rest))
+                eta = mp.findroot(lambda z, H=rest * H: F_H(z)[1] / H - 1, zeta * mp.sqrt(rest))
                 delta = mp.mpf(mu) * mp.mpf(0.3) * (F - F_H(eta)[0])
                 assert abs(mp.mpf(s.delta[0]) / delta - 1) < tol.STEADY / s.grip[0], part
                 assert abs(mp.mpf(s.beta[0]) * zeta / eta - 1) < tol.STEADY / s.grip[0], part
@@ -459,6 +459,17 @@ def test_opposite_gains_on_omega():
     assert elastic.V == pytest.approx([0.3])
 
 
+def test_spinning_on_the_spot():
+    """Held by a force of mu, a motor spins at the speed at which its torque is mu."""
+    s = vr.steady(SCENE, force=-MU, torque=vr.Feedback(0.5, omega=-1.0))
+    assert (s.V.tolist(), s.Q.tolist(), s.grip.tolist()) == ([0.0], [MU], [0.0])
+    assert s.omega[0] == pytest.approx(0.3)
+    assert s.stable.tolist() == [True]
+    # the motor's gain over j, and -M_half_space'
+    assert s.eigenvalues[0].real == pytest.approx([-1.0 / SCENE.j, -0.5 * (10.0 / 11.0)], rel=tol.STEADY)
+    assert s.loss.slip[0] == pytest.approx(0.06)
+
+
 # --- existence ---
 
 
@@ -579,6 +590,7 @@ def test_refusals():
     refused(refuse(V=0.1), "V given", "one of force, torque, slope")
     refused(refuse(V=0.1, force=0.0, torque=0.0), "V, force, torque given", "two of them")
     refused(refuse(V=0.1, torque=vr.Feedback(0.0, V=1.0)), "torque = a feedback")
+    refused(refuse(torque=vr.Feedback(math.sin, V=-1.0)), "torque = a feedback on a schedule", "constant in time")
     refused(refuse(V=math.inf, torque=0.0), "V = inf")
     refused(refuse(V=1e200, torque=0.0), "kappa |V| = 2.91e+200")
     refused(refuse(force=[0.1, 0.2], torque=[0.1, 0.2, 0.3]), "force (2,)", "torque (3,)")

@@ -98,6 +98,27 @@ def test_whether_steady_rolling_may_drive_a_motion():
     assert vr.PAPER_SECTION_5.validity(0.1).steady.value == pytest.approx(600.0, rel=0.05)  # the paper's own example
 
 
+@pytest.mark.parametrize("material", [11.0, 30.0, vr.Prony([2.0, 6.0], [1.0, 1e-3]), vr.Prony([4.0], [1e4])])
+def test_the_largest_N_from_rest_to_V(material):
+    """By N over a fine grid of speeds: -S_E at rest, and a hump behind, higher from alpha = 13 on."""
+    law = {"alpha": material} if isinstance(material, float) else {"material": material}
+    scene = vr.Scene(kappa=10.0, mu=0.2, gamma=np.array([[0.5], [3.0]]), j=0.25, **law)
+    fastest = 100.0 if isinstance(material, float) else 100.0 / material.tau[-1]
+    V = np.concatenate([[0.0], fastest * np.geomspace(1e-9, 1.0, 5000)])
+    N = abs(vr.contact(scene.replace(gamma=1.0), V, delta=0.0, fields="N").N)
+    some = slice(None, None, 97)
+    found = scene.validity(-V[some]).steady
+    exact = scene.gamma / 1.25 * np.maximum.accumulate(N)[some]
+    np.testing.assert_allclose(found.value, exact, rtol=tol.VALIDITY_N)
+    assert found.holds.shape == exact.shape
+
+
+def test_no_N_without_relaxation():
+    assert vr.Scene([1.0, 2.0], 29.1, 0.2, 1e9).validity(0.1).steady.holds.tolist() == [True, False]
+    pair = vr.Bodies(vr.Prony.elastic(), vr.Prony.elastic(), 0.2)
+    assert vr.Scene(material=pair, kappa=29.1, mu=0.2, gamma=1e9).validity(0.1).steady.value == 0.0
+
+
 # --- pairs ---
 
 RUBBER = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0)

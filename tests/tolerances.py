@@ -187,6 +187,8 @@ VALIDATION_WRONG = 1e-4
 # --- figures (test_figures.py) ---
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
+#: Equilibria of a slope beside the curve of M on level ground: kappa of the slope, and linear interpolation.
+FIGURE_CURVE = 5e-3
 
 # --- the benchmark at smoke sizes (test_bench.py) ---
 #: Motions of this package at rtol 1e-6: MOTION_RTOL times that; measured 1.4e-6.
@@ -353,29 +355,54 @@ BODIES_LIMIT = 1e-2
 # --- steady rolling (test_steady.py) ---
 #: The tops of M(V), kappa V and kappa M, as printed by another program.
 STEADY_TABLE_V, STEADY_TABLE_M = 1e-6, 1e-8
-#: Speeds of humps known to two or three digits.
+#: Speeds and moments of humps known to two or three digits.
 STEADY_HUMPS = 4e-2
+#: Speeds of humps against extended precision: where a slope from a table is 0; measured 2.8e-14.  The documentation
+#: states 1e-11.
 STEADY_HUMP_V = 1e-11
-#: Speeds, times the root of what is missing to the top; moments and other identities.
+#: Speeds against extended precision, times the root of what is missing to the top, and creep, times the grip; the
+#: documentation states 1e-12; measured 5.6e-16 and 2.5e-14.  Identities likewise.
 STEADY = 1e-12
 #: V M'(V) over M where it should be 0.
 STEADY_FLAT = 1e-10
-#: Zeros of a parabola 1e-5 apart: each is rounding of the values over its slope.
+#: Zeros of a parabola 1e-5 apart: rounding of the values over the slope.
 STEADY_PAIR = 1e-11
-#: The next term of a small load, over (kappa V)^2.
+#: The next term of a small load, over (kappa V)^2: a number of order 10.
 STEADY_SECOND_ORDER = 20.0
-#: What is left of an equation of motion at an equilibrium, over the grip: b of some hundred times rounding of omega.
+#: What an equation of motion leaves at an equilibrium by the contact law, over the grip: omega is rounded, and
+#: dQ/domega some hundreds; measured 2.4e-14.
 STEADY_RESIDUAL = 1e-12
+#: beta and grip there, whose slopes grow as the grip goes; measured 5.1e-13.
 STEADY_BETA = 1e-9
+#: Eigenvalues by central differences: the truncation.
 STEADY_DIFFERENCES = 1e-3
-STEADY_DETERMINANT = 1e-8
-STEADY_SLOW_RATE = 1e-4
-STEADY_FAINT = 1e-4
+#: Their product against b M'/j of the contact law; measured 4.2e-14.
+STEADY_DETERMINANT = 1e-11
+#: Slow rolling at a load of 1e-6, and a slope of 1e-6, from their limits: the next term, of kappa V.
+STEADY_SLOW_RATE = STEADY_FAINT = 1e-4
+#: V on a curve tilted so that it meets the load at a small angle, 1 % of M'.
 STEADY_CONTROLLED = 1e-9
+#: Residuals of equilibria with feedback on omega, by the contact law at a rounded omega; measured below 1e-12.
 STEADY_SCAN = 1e-10
+#: A gain of 1e-9 changes a load by that of 0.05.
 STEADY_SMALL_GAIN = 1e-6
+#: grip = 1 - |Q|/mu: rounding of Q/mu.
 STEADY_GRIP = 1e-14
+#: What goes in and what is lost, where force and torque nearly cancel; measured 2e-13.
 STEADY_POWER = 1e-11
+
+#: The largest |N| on a grid of eighths of octaves: its humps bend on the scale of an octave.
+VALIDITY_N = 5e-3
+# --- kernels/law/unsteady.py (test_unsteady.py) ---
+#: N against derivatives of H and H m in 50 digits, relative, and in its zeros over the part of the largest |N| below.
+UNSTEADY = 2e-11
+UNSTEADY_ZERO = 1e-2
+#: One mode as a series and as an alpha; -S_E.
+UNSTEADY_SERIES = 1e-12
+#: The first terms of its limits: kappa V T = 1e-4, and 1e4 times the speed of the fastest mode.
+UNSTEADY_SLOW, UNSTEADY_FAST = 1e-2, 1e-3
+#: Another unit of time: the times round, and N has a zero.
+UNSTEADY_UNIT = 1e-9
 
 # --- DMA to Prony (test_dma.py) ---
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.

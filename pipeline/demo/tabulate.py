@@ -1,4 +1,4 @@
-"""Stage 1: build the tables -> data/tables/atlas.nc, data/tables/paper.nc.
+"""Stage 1: build the tables -> data/tables/atlas.nc, paper.nc, rubber.nc, rubber-on-steel.nc.
 
 python -m pipeline.demo.tabulate [--config FILE] [--tables FOLDER] [-o FOLDER]
 

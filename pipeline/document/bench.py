@@ -159,6 +159,22 @@ def skips(results: Results) -> str:
     return listed({"left out": "{name}", "times faster": "{ratio:.3g}"}, rows)
 
 
+def series(results: Results) -> str:
+    """Contact, motions and tables by the number of modes."""
+    rows = [
+        {
+            "material": row["material"],
+            "contact": cell(_NANOSECONDS, row["contact"]) if "contact" in row else "",
+            "motion": f"{1e-3 * row['motion']['ns']:.3g} (least {1e-3 * row['motion']['least_ns']:.3g})"
+            if "motion" in row else "",
+            "table": "" if row["table_ms"] is None else f"{row['table_ms']:.2g} ms",
+        }
+        for row in results["bench-series"]["measured"]
+    ]  # fmt: skip
+    columns = {"material": "{material}", "a state": "{contact}", "a motion, µs": "{motion}", "its table": "{table}"}
+    return listed(columns, rows)
+
+
 def cold_start(results: Results) -> str:
     """Whole processes."""
     rows = (

@@ -6,19 +6,20 @@ Misspelt keys and wrong types are refused by :mod:`sections`, ranges by what a s
 from __future__ import annotations
 
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
 from .cylinder import Cylinder
-from .errors import ConfigError, ParameterError
-from .material_file import SECTIONS, materials_of, series_of
+from .errors import ConfigError, ParameterError, TableError
+from .material_file import SECTIONS, SUFFIX, materials_of, read_materials, series_of
 from .presets import PRESETS
 from .scene import Scene
 from .sections import as_struct, fault, hint, read, refuse_unknown
 
 if TYPE_CHECKING:
-    from .tables import AtlasGrid, LiteralGrid
+    from .tables import AtlasGrid, LiteralGrid, MaterialGrid
 
 _SCENES = ("preset", "scene", "cylinder")
 
@@ -71,6 +72,24 @@ class PaperSection(msgspec.Struct):
     V: Axis
     delta: Axis
     alpha: Axis
+
+
+class MaterialTable(msgspec.Struct):
+    """Any other section of [tables]: :class:`viscoroll.tables.MaterialGrid`.
+
+    material : a TOML file with [material] and perhaps [base], a netCDF file of a material, or the columns of a DMA,
+        which are fitted; seen from this file.  base : that of the half-space, a file or {E, nu}.
+    nu : Poisson's ratio of what is fitted.
+    """
+
+    material: str
+    kappa: float
+    mu: float
+    V: Axis
+    delta: Axis
+    base: str | dict[str, Any] | None = None
+    nu: float = 0.49
+    name: str | None = None
 
 
 #: The paper's Sect. 5.  delta_star is at most 0.0344 there, so |delta| = 0.04 is full slip at
@@ -135,33 +154,69 @@ def _scene(path: Any, given: SceneSection) -> Scene:
     return Scene(**parameters, material=series_of(path, "scene", given.prony, given.creep))
 
 
-def read_grids(path: str | PathLike[str] | None = None) -> dict[str, AtlasGrid | LiteralGrid]:
+def read_grids(path: str | PathLike[str] | None = None) -> dict[str, AtlasGrid | LiteralGrid | MaterialGrid]:
     """Grids "atlas" and "paper" from the sections of [tables]; what is left out has its default.
 
-    Other sections of the file are not looked at.  Without a file: the grids of production.
+    Any other section with a key ``material`` is a table of that name.  Outside [tables] nothing is looked at.
+    Without a file: the two.
 
     Raises
     ------
     ConfigError
         A file that cannot be read, is not TOML, without [tables], a misspelt key, a value of
-        the wrong type or out of its range.
+        the wrong type or out of its range, a material that cannot be read or fitted.
     """
-    from .tables import AtlasGrid, LiteralGrid, spread
+    from .tables import AtlasGrid, LiteralGrid
 
     content = {"tables": {}} if path is None else read(path)
     if "tables" not in content:
         raise ConfigError(path, "section [tables] is missing" + hint("tables", content))
     sections = content["tables"]
-    refuse_unknown(path, "tables", sections, ("atlas", "paper"))
+    named = sections if isinstance(sections, dict) else {}
+    others = [name for name, given in named.items() if isinstance(given, dict) and "material" in given]
+    refuse_unknown(path, "tables", sections, ("atlas", "paper", *others))
     atlas = as_struct(path, "tables.atlas", sections.get("atlas", {}), AtlasGrid)
     given = sections.get("paper", {})
     refuse_unknown(path, "tables.paper", given, _PAPER_DEFAULT)
-    paper = msgspec.structs.asdict(as_struct(path, "tables.paper", _PAPER_DEFAULT | given, PaperSection))
+    paper = as_struct(path, "tables.paper", _PAPER_DEFAULT | given, PaperSection)
+    made: dict[str, Any] = {"atlas": atlas, "paper": _grid(path, "paper", paper, LiteralGrid, PaperSection)}
+    return made | {name: _material_grid(path, name, sections[name]) for name in others}
+
+
+def _grid(path: Any, name: str, given: Any, kind: Any, section: Any, **materials: Any) -> Any:
+    """A grid of [tables.NAME], its axes spread out."""
+    from .tables import spread
+
+    values = {key: getattr(given, key) for key in section.__struct_fields__ if key in kind.__dataclass_fields__}
     try:
-        for name, value in paper.items():
-            if isinstance(value, dict):
-                axis = as_struct(path, f"tables.paper.{name}", value, Spread)
-                paper[name] = spread(**msgspec.structs.asdict(axis))
-        return {"atlas": atlas, "paper": LiteralGrid(**paper)}
+        for key in ("V", "delta", "alpha"):
+            if isinstance(values.get(key), dict):
+                axis = as_struct(path, f"tables.{name}.{key}", values[key], Spread)
+                values[key] = spread(**msgspec.structs.asdict(axis))
+        return kind(**values | materials)
     except ParameterError as error:
-        raise ConfigError(path, f"[tables.paper] {error}") from error
+        raise ConfigError(path, f"[tables.{name}] {error}") from error
+
+
+def _material_grid(path: Any, name: str, content: dict[str, Any]) -> Any:
+    from .tables import MaterialGrid
+
+    given, folder = as_struct(path, f"tables.{name}", content, MaterialTable), Path(path).parent
+    try:
+        if isinstance(given.base, dict):
+            materials = materials_of(path, {"base": given.base})
+        else:
+            materials = {} if given.base is None else {"base": read_materials(folder / given.base)["material"]}
+        materials = _materials(folder / given.material, given) | materials
+    except (ParameterError, TableError) as error:
+        raise fault(path, f"tables.{name}", "material", str(error)) from error
+    return _grid(path, name, given, MaterialGrid, MaterialTable, **materials)
+
+
+def _materials(path: Path, given: MaterialTable) -> dict[str, Any]:
+    """Those of a TOML or netCDF file, or the fit of a master curve."""
+    if path.suffix in (".toml", SUFFIX):
+        return read_materials(path)
+    from .dma import fit_prony, read_dma
+
+    return {"material": fit_prony(*read_dma(path)).material(given.nu, name=given.name or path.stem)}

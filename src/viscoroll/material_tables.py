@@ -97,19 +97,19 @@ def _filled(known: Any, prony: Prony) -> Any:
     return table
 
 
-def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any]:
-    """``weight`` and ``log_weight`` of the ends of a table, for this share of every creep mode."""
+def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any, Any]:
+    """``rise``, ``weight`` and ``log_weight`` of the ends of a table; the last two for a share of every creep mode."""
     weights = share * modes.J * modes.b
     logs = math.log(2.0) - np.log(modes.b) - np.euler_gamma
-    return weights.sum(axis=-1), (weights * logs).sum(axis=-1)
+    return modes.E.sum(axis=-1), weights.sum(axis=-1), (weights * logs).sum(axis=-1)
 
 
 def _ends(modes: Modes, share: Any, squares: float) -> Any:
     """The numbers of the ends of a table, for this share of every creep mode."""
     from .kernels.law.tabulated import Ends
 
-    weight, log_weight = map(float, _weights(modes, share))
-    return Ends(True, weight, log_weight, squares)
+    rise, weight, log_weight = map(float, _weights(modes, share))
+    return Ends(True, rise, weight, log_weight, squares)
 
 
 def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArray[np.float64]]:
@@ -123,7 +123,7 @@ def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArr
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
     count, most = some.size, max((block.modes.a.shape[-1] for block in blocks), default=0)
-    numbers, bins, modes_of = np.empty((count, 6)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
+    numbers, bins, modes_of = np.empty((count, 7)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
     arrays = Series._make(np.zeros((count, most, most)[: 3 if name == "Q" else 2]) for name in Series._fields)
     unit = np.empty(count)
     for block in blocks:
@@ -139,6 +139,7 @@ def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArr
     room = Room._make(np.empty((most, most)[: 2 if name == "matrix" else 1]) for name in Room._fields)
     own = np.ascontiguousarray(of, dtype=np.int64)
     return Each(own, numbers, bins, modes_of, arrays, empty_table(), np.full(1, -1), room), unit[own]
+
 
 @lru_cache(maxsize=_KEPT)
 def _series_table(prony: Prony) -> Any:

@@ -30,6 +30,8 @@ SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
+#: on request alone
+UNSTEADY = "N"
 #: slopes over a speed, which follows the unit of time
 _PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
@@ -91,8 +93,9 @@ def contact(
         At V = 0 a given ``delta`` means the limit V -> 0+.
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
         for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
-        ``M_half_space M_cylinder``, the parts of M in either body; only these are computed.  Default:
-        the first nine, of bodies that differ the two parts too.
+        ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
+        changes slowly, in units of T_ref^2; only these are computed.  Default: the first nine, of bodies
+        that differ the two parts too.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
@@ -155,17 +158,42 @@ def contact(
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
     halved = {} if isinstance(one, Bodies) else {name: _HALVES[name] for name in names if name in _HALVES}
-    solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
+    asked = ("zeta" if name == UNSTEADY else halved.get(name, name) for name in names)
+    solved = tuple(dict.fromkeys(asked))
     found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
     rows = dict(zip(solved, found, strict=True))
     rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
+    if UNSTEADY in names:
+        if isinstance(one, PronyArray):
+            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
+        rows[UNSTEADY] = _unsteady(material, arrays["alpha"], rows["zeta"], shape) * unit**2
     for name in _PER_SPEED & rows.keys():
         rows[name] *= unit
     return Values({name: _shaped(name, rows[name], shape) for name in names})
 
 
+def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ...]) -> NDArray:
+    """N at every zeta, in the material's own time."""
+    from .kernels.law.material import Own
+    from .kernels.law.unsteady import unsteady_loop
+
+    modes, alphas, found = (
+        series(material) if isinstance(material, Prony) else None,
+        elements(alpha, shape),
+        zeta.copy(),
+    )
+
+    def work(start: int, stop: int) -> None:
+        each = zeta[start:stop]
+        each.flags.writeable = False  # as all that a kernel reads, see elements
+        unsteady_loop(modes or Own(alphas(start, stop)), each, found[start:stop], 0, stop - start)
+
+    run_blocks(work, zeta.size, _BLOCK)
+    return found
+
+
 def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
-    """What serves all states: a series or many; bodies that differ, where parts of M are asked for; or, None, alphas."""
+    """What serves all states: a series or many; bodies that differ, for parts of M; or, None, alphas."""
     if not isinstance(material, Prony | PronyArray):
         return None
     if scene.like_bodies or not _HALVES.keys() & set(names):
@@ -187,7 +215,7 @@ def _field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method:
         raise ParameterError("method", repr(method), "'table' or 'direct'")
     default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
     names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-    known = FIELDS + OF_BODIES + SLOPES + SLOPES_OF_BODIES
+    known = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
     for name in names:
         if name not in known:
             raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
@@ -195,6 +223,8 @@ def _field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method:
         names += tuple(name for name in default_slopes if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
         raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
+    if method == "direct" and UNSTEADY in names:
+        raise ParameterError("fields", repr(UNSTEADY), "computed by method='table' alone: it is not in the paper")
     return names
 
 

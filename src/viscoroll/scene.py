@@ -13,7 +13,7 @@ from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError
 from .prony import HIGHEST_ALPHA, Prony
 from .prony_array import PronyArray
-from .validity import Assumption, Validity, contact_reach, coupling, inertia, judge, steadiness, unsteadiness
+from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained
 
 
 def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -138,21 +138,13 @@ class Scene:
 
     def _validity(self, V: ArrayLike, slow: Assumption, bodies: Assumption, plane: str) -> Validity:
         speed = checked("V", V)
-        broadcast_shape(alpha=np.asarray(self.alpha), kappa=np.asarray(self.kappa), V=speed)
+        broadcast_shape(V=speed, **{f.name: np.asarray(getattr(self, f.name)) for f in fields(self)[:-1]})
         if isinstance(self.material, PronyArray):
             raise ParameterError("material", repr(self.material), "one material, as material[i]")
         material, unit = self.in_own_time()
-        nu = np.asarray(self.gamma * self._unsteadiness() / (1.0 + np.asarray(self.j)))
-        return judge(*contact_reach(material, self.kappa, speed * unit), slow, steadiness(nu), bodies, plane)
-
-    def _unsteadiness(self) -> Any:
-        """The most that |N| may be, over the unit of time squared."""
-        if self.material is None:
-            alpha = np.asarray(self.alpha)
-            return unsteadiness((alpha - 1.0) / alpha**2, (alpha - 1.0) / alpha)
-        assert not isinstance(self.material, PronyArray)
-        series = self.material.total if isinstance(self.material, Bodies) else self.material
-        return unsteadiness(*series.second_moments)
+        found = strained(material, self.kappa, speed * unit)
+        nu = np.asarray(self.gamma * (unit**2 * found.unsteady) / (1.0 + np.asarray(self.j)))
+        return judge(found, slow, steadiness(nu), bodies, plane)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):

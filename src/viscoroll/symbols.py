@@ -72,8 +72,15 @@ SYMBOLS = {
     "rate_slow": Symbol(
         r"\lambda_2", "rate of the slower small disturbance over gamma", "finite", "Eq. (22)", "equilibria/result.py"
     ),
-    "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/law/series.py"),
-    "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/law/series.py"),
+    "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/law/pair.py"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/law/pair.py"),
+    "N": Symbol(
+        "N",
+        "moment over P R for each unit of V', M = M(V) + N V' in slow changes",
+        "finite",
+        "",
+        "kernels/law/unsteady.py",
+    ),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
     "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/law/stick.py"),

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .material_tables import record
+from .material_tables import record, series
 from .prony import Prony
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
@@ -18,8 +20,9 @@ WAVE_LIMIT = 0.2
 #: nu up to which a motion is within 10 % of its first speed, and beyond which it is another motion altogether: measured
 #: with a transient solver at alpha 3 and 11, kappa V from 0.29 to 4.4 (gamma 7 and 30 at alpha 11)
 STEADY_LIMIT, NOT_THIS_MOTION = 0.4, 1.6
-#: the highest N over the sum of J_j T_j^2
-_HIGHEST_N = 0.084
+#: zeta in steps of an eighth of an octave, from 2^-8 of the shortest time to 2^12 of the longest: N bends on the scale
+#: of an octave, and beyond is as good as in its limits
+_STEPS, _FAST_OCTAVES, _SLOW_OCTAVES = 8, 8, 12
 #: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
 DUNDURS_LIMIT = 0.05
 
@@ -45,9 +48,9 @@ class Validity(NamedTuple):
     under_axis : value: epsilon; where it exceeds 1 the contact lies wholly ahead of the
         axis, which is no fault of the model but worth knowing.
     quasistatic : value: speed over that of shear waves; needs a density.
-    steady : value: nu = gamma max|N|/(1 + j), M = M(V) + N V' for slow changes; an upper bound of it, from the
-        strengths of the material.  It rules whether the law of steady rolling may drive a motion; contact states and
-        rolling at constant speed are not concerned.
+    steady : value: nu = gamma max|N|/(1 + j), M = M(V) + N V' for slow changes, over all speeds from 0 to V, to 0.5 %.
+        It rules whether the law of steady rolling may drive a motion; contact states and rolling at constant speed are
+        not concerned.
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
     plane : not to be seen from V.
     """
@@ -63,29 +66,61 @@ class Validity(NamedTuple):
         return "\n".join(f"{name}: {assumption.sentence}" for name, assumption in self._asdict().items())
 
 
-def contact_reach(material: Any, kappa: Any, V: NDArray[np.float64]) -> tuple[Any, Any]:
-    """(lam (1 + epsilon)/(2 kappa), epsilon), broadcast over the arguments; ``material``: alphas, or a series."""
+class Strained(NamedTuple):
+    """What the contact at a speed strains: lam (1 + epsilon)/(2 kappa), epsilon, and max|N| from rest to that speed."""
+
+    reach: Any
+    epsilon: Any
+    unsteady: Any
+
+
+def strained(material: Any, kappa: Any, V: NDArray[np.float64]) -> Strained:
+    """Broadcast over the arguments; ``material``: alphas, or a series."""
     from .kernels.law.length import contact_length
     from .kernels.law.material import generators, standard
 
-    def state(given: Any, kappa: float, V: float) -> tuple[float, float]:
+    def state(given: Any, kappa: float, V: float) -> Strained:
         material, u = record(given) if isinstance(given, Prony) else standard(given), kappa * abs(V)
-        lam, epsilon = 1.0, 0.0
+        lam, epsilon, zeta = 1.0, 0.0, np.inf
         if u > 0.0:
             lam, _ = contact_length(u, material)
             zeta = 0.5 * lam / u
             # it underflows beyond all speeds, where the contact is that of the instantaneous modulus
             epsilon = generators(zeta, material)[0] / zeta if zeta > 0.0 else 0.0
-        return lam * (1.0 + epsilon) / (2.0 * kappa), epsilon
+        return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, _largest_N(given, zeta))
 
     points = np.broadcast(material, kappa, V)
-    values = np.array([state(given, float(kappa), float(V)) for given, kappa, V in points]).reshape(*points.shape, 2)
-    return values[..., 0], values[..., 1]
+    values = [state(given, float(kappa), float(V)) for given, kappa, V in points]
+    return Strained(*np.array(values).reshape(*points.shape, 3).transpose(-1, *range(points.ndim)))
 
 
-def unsteadiness(relaxation: Any, creep: Any) -> Any:
-    """The largest |N| of a material with these sums of E_i tau_i^2 and J_j T_j^2, found on 35 series, not proven."""
-    return np.maximum(relaxation, _HIGHEST_N * np.asarray(creep))
+def _largest_N(material: float | Prony, zeta: float) -> float:
+    """The largest |N| from rest to the speed of this zeta."""
+    if material == 1.0:
+        return 0.0
+    places, N, largest = _unsteadiness(material)
+    n = int(np.searchsorted(places, zeta))
+    if n == 0 or n == places.size:
+        return float(largest[min(n, places.size - 1)])
+    return float(max(largest[n], abs(np.interp(zeta, places[n - 1 : n + 1], N[n - 1 : n + 1]))))
+
+
+@lru_cache(maxsize=64)
+def _unsteadiness(material: float | Prony) -> tuple[NDArray[np.float64], ...]:
+    """zeta, upward; N there; and the largest |N| from there on."""
+    from .kernels.law.material import Own
+    from .kernels.law.unsteady import unsteady_loop
+
+    known: Any
+    if isinstance(material, Prony):
+        known, shortest, longest = series(material), material.tau[-1], material.T[0]
+    else:
+        known, shortest, longest = Own(np.array([material])), 1.0 / material, 1.0
+    count = math.ceil(_STEPS * (math.log2(longest / shortest) + _FAST_OCTAVES + _SLOW_OCTAVES))
+    places = np.append(shortest * 2.0 ** (np.arange(count) / _STEPS - _FAST_OCTAVES), 1e18 * longest)  # at last -S_E
+    N = np.empty(places.size)
+    unsteady_loop(known, places, N, 0, places.size)
+    return places, N, np.maximum.accumulate(abs(N)[::-1])[::-1]
 
 
 def steadiness(nu: Any) -> Assumption:
@@ -134,8 +169,9 @@ def coupling(long: float | None = None, instant: float | None = None, *, like: b
     )  # fmt: skip
 
 
-def judge(reach: Any, epsilon: Any, slow: Assumption, steady: Assumption, bodies: Assumption, plane: str) -> Validity:
+def judge(found: Strained, slow: Assumption, steady: Assumption, bodies: Assumption, plane: str) -> Validity:
     """Numbers put into words."""
+    reach, epsilon, _ = found
     far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
     small = Assumption(
         reach <= REACH_LIMIT, reach,

@@ -30,7 +30,7 @@ DRAWN = [*PRESET, "-n", "8", "--V0", "uniform:-2:2", "--omega0", "normal:0:1"]
 EXPORT = ["tables", "export", "--kappa", "2.91", "--mu", "0.2", "--V", "0.1:1:5:log", "--delta", "-0.04:0.04:9"]
 TABLE_COMMANDS = ["tables build", "tables export", "tables info", "tables validate"]
 MATERIAL_COMMANDS = ["material show", "material plot", "material fit"]
-COMMANDS = ["contact", "stress", "roll", "ensemble", *TABLE_COMMANDS, *MATERIAL_COMMANDS, "plot"]
+COMMANDS = ["contact", "stress", "roll", "steady", "ensemble", *TABLE_COMMANDS, *MATERIAL_COMMANDS, "plot"]
 POINT = [sys.executable, "-m", "viscoroll", "contact", *PRESET, "--V", "1", "--delta", "0"]
 SMALL = {
     "atlas": AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2)),

@@ -22,6 +22,11 @@ vr.ensemble(scene, 1.5, [0.5, 0.6], [1e-4], fields=("V", "slip_loss", "rolling_l
 vr.ensemble(scene.replace(kappa=7.1), np.linspace(0.1, 0.5, 20), 0.0, [1e-4], method="flow", rest=1e-4)
 vr.tables.build(vr.tables.LiteralGrid(2.91, 0.2, V[-3:], V[-3:], [1.0, 11.0]))
 scene.validity(V[:3])
+vr.steady(scene, slope=V[:9] / 9.0)
+vr.steady(scene.replace(mu=np.array([0.1, 0.2])), force=0.01, torque=vr.Feedback(0.0, V=-0.1, omega=-0.2))
+pair = vr.Bodies(vr.Prony([1.0], [1.0]), vr.Prony([2.0], [0.1]), 0.4)
+vr.steady(vr.Scene(material=pair, kappa=3.0, mu=0.1), V=V[:3], force=0.0)
+vr.humps(scene)
 """
 CODE = f"""
 import importlib

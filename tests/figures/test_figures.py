@@ -20,12 +20,16 @@ from pipeline import stage as shared
 from viscoroll.errors import OutputError
 from viscoroll.figures import (
     FIGURES,
+    broad_stresses,
     figure_2,
     figure_3,
     figure_5,
     figure_6,
     figure_7,
+    law_of_materials,
+    law_of_pairs,
     phase_portrait,
+    rolling_equilibria,
     rolling_resistance,
     run_distributions,
     save,
@@ -36,7 +40,7 @@ from viscoroll.runs import open_summaries, read_run, run_ensemble
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {
     "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble",
-    "rolling-resistance",
+    "rolling-resistance", "rolling-equilibria", "law-of-modes", "law-of-pairs", "broad-stresses",
 }  # fmt: skip
 
 
@@ -155,6 +159,46 @@ def test_rolling_resistance_shifts_with_temperature():
     (V, warm), (_, cold) = line(right, "warm"), line(right, "cold")
     decade = int(np.argmin(np.abs(V - 10.0 * V[0])))
     assert np.allclose(cold[:-decade], warm[decade:], rtol=tol.FIGURE)
+
+
+def test_equilibria_of_a_slope_alternate_along_the_curve():
+    """Stable on rising branches, saddles on falling ones, all on the curve of M."""
+    for axes in rolling_equilibria(pulls=(0.6,)).axes:
+        V, M = line(axes, "$M$")
+        (stable, load), (saddle, _) = line(axes, "stable"), line(axes, "saddle")
+        assert stable.size == saddle.size
+        assert (stable < saddle).all()
+        assert np.allclose(np.interp(stable, V, M), load, rtol=tol.FIGURE_CURVE)
+    assert stable.size > 1
+
+
+def test_law_of_modes_has_the_limits():
+    """lam from 1 to alpha^(-1/2), delta_star with it, whatever the spectrum; one mode is that of its alpha."""
+    lam, epsilon, star, _ = law_of_materials().axes
+    for name in ("1 mode", "2 modes, 5 decades", "5 modes, 5 decades"):
+        V, values = line(lam, name)
+        assert values[[0, -1]] == pytest.approx([1.0, 11.0**-0.5], abs=0.02)
+        assert line(star, name)[1][0] == pytest.approx(0.5, abs=0.02)
+    paper = vr.contact(vr.Scene(11.0, 1.0, 1.0), 11.0 * V, delta=0.0)  # T_epsilon is 11 T_sigma
+    assert np.allclose(line(epsilon, "1 mode")[1], paper.epsilon, rtol=tol.FIGURE)
+
+
+def test_law_of_pairs_splits_the_moment():
+    """Half in like bodies, nothing in a rigid or an elastic base."""
+    lines = law_of_pairs().axes[3].get_lines()
+    for whole, half, share in zip(lines[::2], lines[1::2], (0.5, 0.0, 0.0), strict=False):
+        assert np.allclose(half.get_ydata(), share * whole.get_ydata(), rtol=tol.FIGURE)
+    assert (lines[7].get_ydata() < lines[6].get_ydata()).all()
+
+
+def test_broad_stresses_carry_the_load():
+    """The areas below all pressures are one, those below the shear are Q/mu of them."""
+    pressure, shear = broad_stresses().axes
+    for above, below in zip(pressure.get_lines()[:4], shear.get_lines()[:4], strict=True):
+        x, p = map(np.asarray, above.get_data())
+        area = 0.5 * ((p[1:] + p[:-1]) * np.diff(x)).sum()
+        assert area == pytest.approx(0.25 * np.pi, rel=1e-3)  # of an ellipse of length and height 1
+        assert (below.get_ydata() <= p * (1.0 + tol.FIGURE)).all()
 
 
 def test_a_start_that_rolls_and_a_scene_that_never_stops():

@@ -269,7 +269,7 @@ def test_bad_grids_are_refused() -> None:
         {"delta": []}, {"alpha": [0.9]}, {"mu": 1e-200, "kappa": 1e200}, {"kappa": 1e308, "mu": 1e200},
     ):  # fmt: skip
         refused(partial(vr.tables.LiteralGrid, **good | changes), next(iter(changes)))
-    refused(partial(vr.tables.build, {"kappa": 2.91}), "AtlasGrid or a LiteralGrid")
+    refused(partial(vr.tables.build, {"kappa": 2.91}), "AtlasGrid, a LiteralGrid or a MaterialGrid")
 
 
 # --- what a file says ---
@@ -328,7 +328,7 @@ def _umask() -> int:
 
 def test_info_tells_what_it_holds(saved: Path) -> None:
     text = vr.tables.info(saved)
-    for part in ("literal table", "schema 1.0", "kappa    = 2.91", "3 nodes in [1, 11]", "Q ", "numpy", "pytest"):
+    for part in ("literal table", "schema 1.1", "kappa    = 2.91", "3 nodes in [1, 11]", "Q ", "numpy", "pytest"):
         assert part in text, part
 
 

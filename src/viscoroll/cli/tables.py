@@ -27,12 +27,14 @@ def _add_build(group: Any) -> None:
     parser = group.add_parser(
         "build",
         help="atlas.nc (universal) and paper.nc (the paper's Sect. 5)",
-        description="Build atlas.nc, the universal table in similarity variables, and paper.nc, the table at the\n"
-        "paper's kappa and mu.",
+        description="Build atlas.nc, the universal table in similarity variables, paper.nc, the table at the paper's\n"
+        "kappa and mu, and NAME.nc for every section [tables.NAME] of a material.",
         epilog="example:\n  viscoroll tables build -o data/tables",
     )
     parser.add_argument(
-        "--config", metavar="FILE", help="TOML with [tables.atlas] and [tables.paper]; default: built in"
+        "--config",
+        metavar="FILE",
+        help="TOML with [tables.atlas], [tables.paper] and others of a material; default: built in",
     )
     parser.add_argument("-o", dest="folder", metavar="FOLDER", type=Path, default=Path(), help="default: this folder")
     parser.set_defaults(run=_build)

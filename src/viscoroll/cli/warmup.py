@@ -50,6 +50,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)
     modes = Prony([1.0, 2.0], [1.0, 0.1])
     series = Scene(material=modes, kappa=2.91, mu=0.2)
+    each = series.replace(material=Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
     start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
@@ -59,6 +60,9 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "contact of a series", lambda: contact(series, 0.5, delta=0.01)
     yield "contact of a series, many states", lambda: contact(series, many, delta=0.01)
     yield "stress of a series", lambda: stress(series, 0.5, 0.5, delta=0.01)
+    yield "contact of a series each", lambda: contact(each, 0.5, delta=0.01)
+    yield "motions of a series each", lambda: ensemble(each, **start)
+    yield "their energy lost", lambda: ensemble(each, **start, fields=("slip_loss",))
     yield "moments of two bodies", lambda: contact(pair, 0.5, delta=0.01)
     yield "steady rolling", lambda: steady(scene, force=0.01)
     yield "steady rolling of two bodies", lambda: steady(pair, force=0.01)

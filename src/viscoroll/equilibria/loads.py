@@ -112,7 +112,11 @@ def _refuse_overflow(kappa: NDArray, V: NDArray) -> None:
 
 def _feedback(name: str, value: ArrayLike | Feedback | None) -> Feedback:
     """Any load as one with gains."""
-    return value if isinstance(value, Feedback) else Feedback(checked(name, 0.0 if value is None else value))
+    if not isinstance(value, Feedback):
+        return Feedback(checked(name, 0.0 if value is None else value))
+    if not isinstance(value.value, float | np.ndarray):
+        raise ParameterError(name, "a feedback on a schedule", "constant in time")
+    return value
 
 
 def _given(force: ArrayLike | Feedback | None, torque: ArrayLike | Feedback | None, slope: ArrayLike | None) -> str:

@@ -60,9 +60,7 @@ class Law:
     def of(cls, scene: Scene) -> Law:
         """That of a scene."""
         material, unit = scene.in_own_time()
-        if isinstance(scene.material, Bodies) and not scene.like_bodies and isinstance(material, Prony):
-            return cls(material, scene.material.in_own_time()[0], unit)
-        return cls(material, material, unit)
+        return cls(material, scene.kernel_material, unit)
 
     @property
     def elastic(self) -> bool:
@@ -96,7 +94,7 @@ class Branches:
         return Curve(self.zeta, self.rise, self.flat, self.gain)
 
     def crossed(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which loads meet this branch; an extremum belongs to the branch that ends in it, and so do loads next to it."""
+        """Which loads meet this branch; an extremum, and loads next to it, belong to the branch that ends in it."""
         from ..kernels.law.steady_loop import SNAP
 
         first, last = self.rise[self.first[branch]], self.rise[self.last[branch]]

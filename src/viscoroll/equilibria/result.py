@@ -40,7 +40,7 @@ class Steady:
 
     Attributes
     ----------
-    V, omega, delta : speeds and creep ratio (omega - V)/V.
+    V, omega, delta : speeds and creep ratio (omega - V)/V, infinite where the cylinder spins on the spot.
     Q, M : traction and rolling moment, over P and P R; M_half_space, M_cylinder : the parts of M.
     beta : stick zone over contact length.  grip : 1 - |Q|/mu, 0 in full slip.
     stable : whether (V, omega) returns after any small disturbance; False too where an eigenvalue is 0.
@@ -77,11 +77,12 @@ class Steady:
 class States:
     """Steady states one after another: which load each belongs to, and what was found; speeds in R/T_ref.
 
-    Where friction does not suffice, delta is NaN.
+    Where friction does not suffice, delta and omega are NaN.
     """
 
     load: NDArray[np.int64]
     V: NDArray[np.float64]
+    omega: NDArray[np.float64]
     delta: NDArray[np.float64]
     Q: NDArray[np.float64]
     M_half_space: NDArray[np.float64]
@@ -95,8 +96,9 @@ class States:
         from ..kernels.law import steady_loop as row
 
         slopes = unit * rows[[row.DQ_DV, row.DQ_DOMEGA, row.DM_HALF_SPACE, row.DM_CYLINDER]]
+        V, delta = sign * rows[row.V] / unit, rows[row.DELTA]
         return cls(
-            load, sign * rows[row.V] / unit, rows[row.DELTA], sign * rows[row.Q], sign * rows[row.M_HALF_SPACE],
+            load, V, V * (1.0 + delta), delta, sign * rows[row.Q], sign * rows[row.M_HALF_SPACE],
             sign * rows[row.M_CYLINDER], rows[row.BETA], _eigenvalues(slopes, loads, loads.j[load]),
         )  # fmt: skip
 
@@ -115,13 +117,15 @@ class States:
             slow = np.maximum(slow, -rate / (1.0 + j * (1.0 + creep)))
         zero = np.zeros(load.size)
         eigenvalues = np.stack([np.full(load.size, -np.inf), slow], axis=-1).astype(np.complex128)
-        return cls(load, zero, np.sign(Q) * delta, Q, zero, zero, beta, eigenvalues)
+        return cls(load, zero, 0.0 * beta, np.sign(Q) * delta, Q, zero, zero, beta, eigenvalues)
 
     @classmethod
     def none(cls) -> States:
         """No state."""
         empty = np.empty(0)
-        return cls(np.empty(0, np.int64), empty, empty, empty, empty, empty, empty, np.empty((0, 2), np.complex128))
+        return cls(
+            np.empty(0, np.int64), empty, empty, empty, empty, empty, empty, empty, np.empty((0, 2), np.complex128)
+        )
 
     @classmethod
     def joined(cls, *parts: States) -> States:
@@ -130,13 +134,14 @@ class States:
 
     def held(self) -> States:
         """Those that friction holds, by load and rising |V|."""
-        held = np.flatnonzero(np.isfinite(self.delta))
+        held = np.flatnonzero(np.isfinite(self.omega))
         held = held[np.lexsort((np.abs(self.V[held]), self.load[held]))]
         return States(*(values[held] for values in self._values()))
 
     def _values(self) -> tuple[NDArray, ...]:
         return (
-            self.load, self.V, self.delta, self.Q, self.M_half_space, self.M_cylinder, self.beta, self.eigenvalues,
+            self.load, self.V, self.omega, self.delta, self.Q, self.M_half_space, self.M_cylinder, self.beta,
+            self.eigenvalues,
         )  # fmt: skip
 
 
@@ -178,21 +183,14 @@ def packed(loads: Loads, states: States, count: NDArray, reasons: Reasons) -> St
         out[at] = values
         return out.reshape(shape + values.shape[1:])
 
-    V, Q, delta = states.V, states.Q, states.delta
-    omega, M = V * (1.0 + delta), states.M_half_space + states.M_cylinder
-    force, torque = _acting(loads, states, omega)
-    slip, half_space, cylinder = V * delta * Q, V * states.M_half_space, omega * states.M_cylinder
-    moving = V != 0.0
-    taken = np.minimum(force * V, 0.0) + np.minimum(torque * omega, 0.0)
-    put_in = np.maximum(force * V, 0.0) + np.maximum(torque * omega, 0.0)
-    speed = np.where(moving, np.abs(V), 1.0)
-    coefficient = np.where(moving, (slip + half_space + cylinder) / speed, np.abs(Q * delta))
-    efficiency = np.divide(0.0 - taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
-    loss = Loss(*map(spread, (slip, half_space, cylinder, coefficient, efficiency)))
+    V, omega, Q = states.V, states.omega, states.Q
+    M = states.M_half_space + states.M_cylinder
+    force, torque = _acting(loads, states)
+    loss = Loss(*map(spread, _losses(states, force * V, torque * omega)))
     stable = np.all(states.eigenvalues.real < 0.0, axis=-1)
     grip = 1.0 - np.abs(Q) / loads.mu[number]
     return Steady(
-        V=spread(V), omega=spread(omega), delta=spread(delta), Q=spread(Q), M=spread(M),
+        V=spread(V), omega=spread(omega), delta=spread(states.delta), Q=spread(Q), M=spread(M),
         M_half_space=spread(states.M_half_space), M_cylinder=spread(states.M_cylinder), beta=spread(states.beta),
         grip=spread(grip), stable=spread(stable, False), eigenvalues=spread(states.eigenvalues), force=spread(force),
         torque=spread(torque), loss=loss, count=count.reshape(loads.shape) if loads.shape else int(count[0]),
@@ -200,9 +198,23 @@ def packed(loads: Loads, states: States, count: NDArray, reasons: Reasons) -> St
     )  # fmt: skip
 
 
-def _acting(loads: Loads, states: States, omega: NDArray) -> tuple[NDArray, NDArray]:
+def _losses(states: States, by_force: NDArray, by_torque: NDArray) -> tuple[NDArray, ...]:
+    """What :class:`Loss` holds, from the powers put in by force and torque."""
+    V, omega, Q, delta = states.V, states.omega, states.Q, states.delta
+    moving = V != 0.0
+    slip = np.where(moving, V, omega) * np.where(moving, delta, 1.0) * Q
+    half_space, cylinder = V * states.M_half_space, omega * states.M_cylinder
+    speed = np.where(moving, np.abs(V), 1.0)
+    coefficient = np.where(moving, (slip + half_space + cylinder) / speed, np.abs(Q * delta))
+    taken = np.maximum(-by_force, 0.0) + np.maximum(-by_torque, 0.0)
+    put_in = np.maximum(by_force, 0.0) + np.maximum(by_torque, 0.0)
+    efficiency = np.divide(taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
+    return slip, half_space, cylinder, coefficient, efficiency
+
+
+def _acting(loads: Loads, states: States) -> tuple[NDArray, NDArray]:
     """Force and torque of each state."""
-    gains, V = loads.gains, states.V
+    gains, V, omega = loads.gains, states.V, states.omega
     force = loads.force[states.load] + gains.force_V * V + gains.force_omega * omega
     torque = loads.torque[states.load] + gains.torque_V * V + gains.torque_omega * omega
     if loads.given == "torque":

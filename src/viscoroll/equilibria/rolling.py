@@ -123,4 +123,5 @@ def _at_speed(law: Law, loads: Loads) -> States:
     load = np.flatnonzero(loads.V)
     speed = loads.V[load]
     zeta = lengths(law, loads.kappa[load] * np.abs(speed) * law.unit)
-    return replace(states_at(law, loads, load, np.sign(speed), zeta), V=speed)
+    states = states_at(law, loads, load, np.sign(speed), zeta)
+    return replace(states, V=speed, omega=speed * (1.0 + states.delta))

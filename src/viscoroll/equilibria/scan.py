@@ -11,6 +11,8 @@ the sum fixes V, and R is an equation in omega.  All here is in the own time of 
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +30,8 @@ _FINE, _SLIPS = 16, 129
 #: steps of Newton's iteration in V and slip; what is left of an equation over mu that is no state; states of the same V
 #: and slip, relative, are one
 _POLISH, _LEFT, _SAME = 4, 1e-6, 1e-10
+#: of R over the sum of its terms: as V -> 0 it may vanish altogether
+_ROUNDING = 2e-15
 
 
 class _Case(NamedTuple):
@@ -92,7 +96,25 @@ def scanned(law: Law, loads: Loads) -> States:
             rows = _polished(case, np.exp2(x), slip)
             count = rows.shape[1]
             parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows, unit))
+        parts += _on_the_spot(law, loads, n)
     return States.joined(*parts)
+
+
+def _on_the_spot(law: Law, loads: Loads, n: int) -> list[States]:
+    """V = 0 and omega not, where friction and force balance to the bit."""
+    gains, total = loads.gains, loads.force[n] + loads.torque[n]
+    gain = gains.force_omega + gains.torque_omega
+    if not (gain and total):
+        return []
+    omega = -total / gain
+    side = math.copysign(1.0, omega)
+    if side * loads.mu[n] + loads.force[n] + gains.force_omega * omega != 0.0:
+        return []
+    case = _Case(law, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, loads.kappa[n], loads.mu[n])
+    slowest = case.rows(np.exp2(grid(law.material)[-1:]), np.ones(1))
+    spinning = States.of(loads, np.array([n]), np.array([side]), slowest, law.unit)
+    zero, speed, creep = np.zeros(1), np.array([omega]), np.array([math.inf])
+    return [replace(spinning, V=zero, omega=speed, delta=creep, M_half_space=zero, M_cylinder=zero)]
 
 
 def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
@@ -117,7 +139,10 @@ def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = nodes[within, None] + np.linspace(0.0, 1.0, _FINE)[1:-1] * np.diff(nodes)[within, None]
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
-    found = zeros(excess, nodes)
+    V, M, M_half_space, _ = case.at(nodes)
+    omega = V + case.slip(V, M)
+    terms = case.mu + M_half_space + abs(case.f) + np.abs(case.fV) * V + np.abs(case.fw * omega)
+    found = zeros(excess, nodes, _ROUNDING * terms)
     V, M, _, _ = case.at(found)
     return found, case.slip(V, M)
 

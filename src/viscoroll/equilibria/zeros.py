@@ -14,12 +14,15 @@ _ZOOMS, _ZOOMED = 4, 33
 Function = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
-def zeros(function: Function, nodes: NDArray[np.float64], values: NDArray[np.float64] | None = None) -> NDArray:
+def zeros(function: Function, nodes: NDArray[np.float64], noise: NDArray[np.float64] | float = 0.0) -> NDArray:
     """Zeros of a vectorised ``function`` between ascending ``nodes``, pairs closer than the nodes among them.
 
-    A pair is found where |function| has a minimum at a node.  Zeros are bisected to rounding of the nodes.
+    A pair is found where |function| has a minimum at a node.  Nodes where it is not above ``noise`` have no sign.
+    Zeros are bisected to rounding of the nodes.
     """
-    values = function(nodes) if values is None else values
+    values = function(nodes)
+    known = np.abs(values) > noise
+    nodes, values = nodes[known], values[known]
     parts = [(nodes, values), *_zoomed(function, nodes, values)]
     brackets = [_changes(*part) for part in parts]
     low, high, rising = (np.concatenate(each) for each in zip(*brackets, strict=True))
@@ -27,8 +30,7 @@ def zeros(function: Function, nodes: NDArray[np.float64], values: NDArray[np.flo
         middle = 0.5 * (low + high)
         before = (function(middle) > 0.0) != rising
         low, high = np.where(before, middle, low), np.where(before, high, middle)
-    exact = nodes[values == 0.0]
-    return np.sort(np.concatenate([0.5 * (low + high), exact]))
+    return np.sort(0.5 * (low + high))
 
 
 def _changes(x: NDArray, y: NDArray) -> tuple[NDArray, NDArray, NDArray]:
@@ -42,7 +44,7 @@ def _zoomed(function: Function, x: NDArray, y: NDArray) -> list[tuple[NDArray, N
     size, sign = np.abs(y), np.sign(y)
     near = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:]) & (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
     # a parabola through three nodes reaches 0 between them where it is bent by more than that; rounding is not
-    near &= (sign[1:-1] != 0.0) & (size[1:-1] < size[:-2] - 2.0 * size[1:-1] + size[2:])
+    near &= size[1:-1] < size[:-2] - 2.0 * size[1:-1] + size[2:]
     found = []
     for n in np.flatnonzero(near) + 1:
         low, high = x[n - 1], x[n + 1]

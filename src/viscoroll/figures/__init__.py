@@ -19,13 +19,16 @@ from .material import rolling_resistance
 from .portrait import phase_portrait
 from .run_distributions import run_distributions
 from .sensitivity import sobol_bars
+from .series import broad_stresses, law_of_materials, law_of_pairs
+from .steady import rolling_equilibria
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
-    "FIGURES", "atlas_errors", "ensemble_distribution", "figure_2", "figure_3", "figure_5", "figure_6", "figure_7",
-    "phase_portrait", "rolling_resistance", "run_distributions", "save", "sobol_bars",
+    "FIGURES", "atlas_errors", "broad_stresses", "ensemble_distribution", "figure_2", "figure_3", "figure_5",
+    "figure_6", "figure_7", "law_of_materials", "law_of_pairs", "phase_portrait", "rolling_equilibria",
+    "rolling_resistance",    "run_distributions", "save", "sobol_bars",
 ]  # fmt: skip
 
 FIGURES: dict[str, Callable[..., Figure]] = {
@@ -38,4 +41,8 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "atlas-errors": atlas_errors,
     "ensemble": ensemble_distribution,
     "rolling-resistance": rolling_resistance,
+    "rolling-equilibria": rolling_equilibria,
+    "law-of-modes": law_of_materials,
+    "law-of-pairs": law_of_pairs,
+    "broad-stresses": broad_stresses,
 }

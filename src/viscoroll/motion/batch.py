@@ -164,7 +164,8 @@ def ensemble(
         those of bodies that differ, are integrated: "flow" is refused.
     rtol, rest, max_steps : as for :func:`roll`.
     fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
-        work_torque brake_loss``; only these are kept in memory.  Without a drive a loss takes an integrated motion a second pass, to some rtol of the energy.
+        work_torque brake_loss``; only these are kept in memory.  Without a drive a loss takes an
+        integrated motion a second pass, to some rtol of the energy.
     speed : highest speed that the flow map is made for; default the largest of the starts.
         Where a large ensemble is rolled in several calls, one number for all makes the
         bits independent of how it is cut.
@@ -210,7 +211,8 @@ def ensemble(
         what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in _PARAMETERS}
-    arrays |= dict(zip(("V0", "omega0"), start_speeds(V0, omega0), strict=True))
+    starts: Any = V0, omega0
+    arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
     if ready and ready.pieces.shape[0] > 1:
         arrays["drive"] = np.zeros(ready.pieces.shape[0])
     shape = broadcast_shape(**arrays)
@@ -308,13 +310,14 @@ def _kernel(names: tuple[str, ...], ready: Prepared | None) -> Callable[..., Non
     """What integrates motions: (batch, times, limits, out, info, their numbers, what times are counted in) -> None."""
     rows = np.array([(ROWS if ready else FIELDS).index(name) for name in names], np.int64)
 
-    def driven(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, which: Any, unit: float) -> None:
+    def driven(given: tuple, times: NDArray, limits: tuple, out: Any, info: NDArray, which: Any, unit: float) -> None:
         from ..kernels.drive.loop import drive_loop
 
+        assert ready
         drives, unnoted = ready.in_unit(unit, which), (np.empty((0, 2)), np.empty(0))
         drive_loop(given, drives, times, limits, rows, out, info, unnoted)
 
-    def free(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, which: Any, unit: float) -> None:
+    def free(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, *_: Any) -> None:
         from ..kernels.motion.loop import NOTHING_NOTED, motion_loop
 
         motion_loop(given, times, limits, rows, out, info, tuple(NOTHING_NOTED), 0, len(info))

@@ -26,7 +26,8 @@ def to_unit(out: NDArray, fields: tuple[str, ...], unit: float) -> None:
 
 def roll_each(
     materials: PronyArray, which: NDArray[np.int64], inputs: list[NDArray], times: NDArray,
-    limits: tuple[float, float, int], fields: tuple[str, ...], roll: Callable[[tuple, tuple, NDArray, NDArray, tuple], Any],
+    limits: tuple[float, float, int], fields: tuple[str, ...],
+    roll: Callable[[tuple, tuple, NDArray, NDArray, tuple], Any],
 ) -> tuple[NDArray, NDArray]:  # fmt: skip
     """(outputs, information) of motions by the kernel ``roll``, each in the own time of its material.
 

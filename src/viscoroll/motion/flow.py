@@ -20,8 +20,9 @@ from ..blocks import run_blocks
 from ..prony import Prony
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
+from .driven import Drive
 from .flow_store import FlowMap, load, path_of, save
-from .single import rolled
+from .single import Inputs, rolled
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows
@@ -183,14 +184,15 @@ def _rolled(
 
     material, kappa, mu, j = parameters
     given = {"material": material} if isinstance(material, Prony) else {"alpha": material}
-    start = Scene(**given, kappa=kappa, mu=mu, gamma=1.0, j=j), V0, omega0
-    limits, switches = (_SAMPLE_RTOL, 0.0, _SAMPLE_STEPS), np.empty((0, 2))
+    scene, switches = Scene(**given, kappa=kappa, mu=mu, gamma=1.0, j=j), np.empty((0, 2))
+    inputs = Inputs(scene, V0, omega0, float(times[-1]), _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, Drive())
     out, ends = np.full((ROWS, times.size), np.nan), np.zeros(_SAMPLE_ENDS)
-    out[:OUTPUTS], info = rolled(*start, times, limits, (switches, ends))
+    _, _, found, info = rolled(inputs, times, (switches, ends))
+    out[:OUTPUTS] = found[:OUTPUTS]
     if losses:
         edges, points_at = loss_points(ends, times)
-        points, _ = rolled(*start, points_at, limits, (switches, np.empty(0)))
-        add_losses(kernel_scene(*parameters), 1.0, V0, omega0, times, edges, points, out)
+        _, _, points, _ = rolled(inputs, points_at, (switches, np.empty(0)))
+        add_losses(kernel_scene(*parameters), 1.0, V0, omega0, times, edges, points[:OUTPUTS], out)
     return out, info[3]
 
 

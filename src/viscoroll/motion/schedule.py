@@ -23,7 +23,9 @@ _SHARE = 0.1
 #: where a callable is compared with its fit, between the nodes
 _NODES = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)[::-1]
 _BETWEEN = np.cos(np.pi * np.arange(TERMS + 1) / TERMS)[::-1]
-_TO_TERMS = np.stack([np.pad(chebyshev.cheb2poly(row), (0, TERMS - n - 1)) for n, row in enumerate(np.eye(TERMS))])  # fmt: skip
+_TO_TERMS = np.zeros((TERMS, TERMS))
+for _n in range(TERMS):
+    _TO_TERMS[_n, : _n + 1] = chebyshev.cheb2poly(np.eye(TERMS)[_n, : _n + 1])
 _FIT = _TO_TERMS.T @ np.linalg.inv(chebyshev.chebvander(_NODES, TERMS - 1))
 
 
@@ -69,7 +71,8 @@ def _linear(name: str, times: Any, values: Any, low: float) -> Curve:
     if (np.diff(times) < 0.0).any():
         raise ParameterError(f"times of {name}", times[:-1][np.diff(times) < 0.0][0], "in ascending order")
     if (times[2:] == times[:-2]).any():
-        raise ParameterError(f"times of {name}", times[:-2][times[2:] == times[:-2]][0], "there once, or twice for a jump")
+        thrice = times[:-2][times[2:] == times[:-2]][0]
+        raise ParameterError(f"times of {name}", thrice, "there once, or twice for a jump")
     values = np.atleast_2d(values)
     rises = np.flatnonzero(np.diff(times) > 0.0)
     starts, ends = times[rises], times[rises + 1]
@@ -106,7 +109,8 @@ def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float
             done.append((start, stop, terms))
             worst = max(worst, off)
         elif depth == _HALVINGS:
-            raise ParameterError(name, f"a callable that jumps near t = {middle:.6g}", "smooth; give jumps as (times, values)")
+            where = f"a callable that jumps near t = {middle:.6g}"
+            raise ParameterError(name, where, "smooth; give jumps as (times, values)")
         else:
             open_pieces += [(middle, stop, depth + 1), (start, middle, depth + 1)]
     last = np.zeros(TERMS)

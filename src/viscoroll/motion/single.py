@@ -235,7 +235,8 @@ def roll(
         omega = 0 while |Q + M_cylinder - torque| is no more.
     omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or what it starts at.
     V : prescribed speed of the axis, in place of ``force``; ``V0`` likewise.  A prescribed speed must not jump.
-    rest : end the motion where max(|V|, |omega|) falls below this; not while something drives to the end.  Nothing stops in
+    rest : end the motion where max(|V|, |omega|) falls below this; not while something drives to the end.
+        Nothing stops in
         finite time: at small V the speed decays like exp(-gamma c t/(1 + j)) with
         c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.  From
         there on V = omega = 0 and x, angle stay; the distance so left out is close to
@@ -276,12 +277,13 @@ def roll(
     drive = Drive(force, torque, slope, brake, omega, V)
     given = [0.0 if value is None else value for value in (V0, omega0)] if drive.prescribes else [V0, omega0]
     speeds = start_speeds(*given)
-    for name, value in (("scene", scene), ("V0", speeds[0]), ("omega0", speeds[1]), ("slope", np.asarray(slope or 0.0))):
+    tilt = np.asarray(0.0 if slope is None else slope)
+    for name, value in (("scene", scene), ("V0", speeds[0]), ("omega0", speeds[1]), ("slope", tilt)):
         if value.shape != ():
             raise ParameterError(name, f"array of shape {value.shape}", "one motion's; for many use ensemble")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    start = [None if value is None else float(value) for value in (V0, omega0)]
-    inputs = Inputs(scene, *start, float(times[-1]), rtol, threshold, max_steps, drive)
+    V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
+    inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive)
     if np.ndim(t) == 0:
         times = _step_times(inputs)
     motion = _integrate(inputs, times)

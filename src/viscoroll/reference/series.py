@@ -39,6 +39,19 @@ def rates(mp: Any, E: list[float], tau: list[float]) -> Rates:
     return Rates(a, b, 1 + sum(strengths), T_mean)
 
 
+def rates_of_creep(mp: Any, J: list[float], T: list[float], alpha: float) -> Rates:
+    """Relaxation from creep: the zeros of 1/alpha + sum J_j b_j/(b_j - s), one right of each b_j."""
+    modes = sorted(zip(T, J, strict=True), reverse=True)
+    b, weights = [1 / mp.mpf(at) for at, _ in modes], [mp.mpf(value) / mp.mpf(at) for at, value in modes]
+
+    def rising(s: Any) -> Any:
+        return 1 / mp.mpf(alpha) + sum(value / (at - s) for value, at in zip(weights, b, strict=True))
+
+    highest = b[-1] + 2 * sum(weights) * mp.mpf(alpha)
+    a = [_zero(mp, rising, low, high) for low, high in zip(b, [*b[1:], highest], strict=True)]
+    return Rates(a, b, mp.mpf(alpha), sum(mp.mpf(value) * mp.mpf(at) for at, value in modes))
+
+
 def _zero(mp: Any, rising: Any, low: Any, high: Any) -> Any:
     half = (high - low) / 2
     from_low = rising(low + half) >= 0
@@ -76,3 +89,28 @@ def functions(mp: Any, known: Rates, z: Any) -> Functions:
         amplitude * mp.besseli(2, at * z) / mp.besseli(0, at * z) for amplitude, at in zip(X, known.a, strict=True)
     )
     return Functions(g, h, g + pressed / (1 + 2 * h / z), X)
+
+
+def shares(mp: Any, known: Rates, z: Any, found: Functions) -> list[Any]:
+    """Shares of the creep modes in m, slowest first: what their memory does to the pressure, from the amplitudes.
+
+    m_j = J_j sum_i X_i a_i/(a_i - b_j) (r_i k_j + (z^2/H) u_i)
+    u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
+    """
+    z, a, X = mp.mpf(z), known.a, found.X
+    r, i2 = [ratio_r(mp, at * z) for at in a], [mp.besseli(2, at * z) / mp.besseli(0, at * z) for at in a]
+    u = [at + sum(X[n] * a[i] * a[n] / (a[i] + a[n]) * (at - i2[n]) for n in range(len(a))) for i, at in enumerate(i2)]
+    lam2 = 1 / (1 + 2 * found.h / z)
+    return [
+        strength * sum(X[i] * a[i] / (a[i] - b) * (r[i] * ratio_k(mp, b * z) + lam2 * u[i]) for i in range(len(a)))
+        for strength, b in zip(_creep_strengths(mp, known), known.b, strict=True)
+    ]
+
+
+def _creep_strengths(mp: Any, known: Rates) -> list[Any]:
+    """J_j = prod_i (a_i - b_j)/prod_{i != j} (b_i - b_j)/(alpha b_j), signs dropped."""
+    strengths = []
+    for j, b in enumerate(known.b):
+        top = mp.fprod(abs(at - b) for at in known.a)
+        strengths.append(top / mp.fprod(abs(at - b) for i, at in enumerate(known.b) if i != j) / known.alpha / b)
+    return strengths

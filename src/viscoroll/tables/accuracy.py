@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..rolling_contact import contact
 from ..scene import Scene
 from . import schema
+from .of_material import state_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +28,8 @@ def exact_fields(
     if kind == "literal":
         scene = Scene(points["alpha"], table["kappa"].item(), table["mu"].item())
         return contact(scene, points["V"], delta=points["delta"], fields=schema.FIELDS[kind], method=method).as_dict()
+    if kind == "material":
+        return state_of(table, points, method)
     # mu = kappa = 1 turns V into kappa V, Q into Q/mu, M into kappa M, delta_star into kappa delta_star/mu
     scene, V = Scene(points["alpha"], 1.0, 1.0), points["kappa_V"]
     plane = contact(scene, V, delta=0.0, fields=("lam", "epsilon", "M", "delta_star"), method=method)

@@ -2,38 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import run_blocks
-from ..errors import ConvergenceError, ParameterError
+from ..errors import ParameterError
 from . import schema
 from .grid import ATLAS_MAPS, AtlasGrid, LiteralGrid, u_of_s
 from .interpolate import spline_coefficients, spline_on_grid
+from .literal import literal, of_material
+from .of_material import MaterialGrid
+from .solving import SEED, off_nodes, run, tolerances
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Pairs of the two outer axes that a thread solves at a time.
-_BLOCK = 128
-#: Seed of the random half of the off-node sample: an error map can be had again.
-_SEED = 20260101
 #: Distances from u = 1, in steps, of the extra sample in the last cell, where the law is least smooth.
 _NEAR_FULL_SLIP = (0.3, 0.1, 0.03, 0.01)
-#: A literal table is sampled at about so many points along an axis, or else at the middle of every cell.
-_ALONG = 128
 _SAMPLE = (
     "tensor product, over the axes, of the middle and a random point of every cell, and points close to s = 1; "
-    f"generator seed {_SEED}; a single point may exceed its block's entry by up to 1.5 times"
+    f"generator seed {SEED}; a single point may exceed its block's entry by up to 1.5 times"
 )
-_NODE_ERROR = "nodes are root solves, error below 1e-12 of the largest value of each field"
 
 
 def build(
-    grid: AtlasGrid | LiteralGrid,
+    grid: AtlasGrid | LiteralGrid | MaterialGrid,
     *,
     threads: int | None = None,
     progress: bool = False,
@@ -46,7 +40,8 @@ def build(
     grid : :class:`AtlasGrid` -> beta and Q/mu over (alpha, kappa_V, s), lam, epsilon,
         kappa M and kappa delta_star/mu over (alpha, kappa_V), error maps over blocks of cells;
         :class:`LiteralGrid` -> beta and Q over (V, delta, alpha), lam, epsilon, M and
-        delta_star over (V, alpha).
+        delta_star over (V, alpha); :class:`MaterialGrid` -> the same without alpha, and the parts of M in
+        either body.
     threads : default ``$VISCOROLL_THREADS``, else all cores; the result does not depend on it.
     progress : draw a progress bar after the first second.
     command : recorded in ``history``; default: the command line of this process.
@@ -71,21 +66,10 @@ def build(
     if isinstance(grid, AtlasGrid):
         return _atlas(grid, threads, progress, command)
     if isinstance(grid, LiteralGrid):
-        return _literal(grid, threads, progress, command)
-    raise ParameterError("grid", f"a {type(grid).__name__}", "an AtlasGrid or a LiteralGrid")
-
-
-def _run(solve: Callable[[int, int], int], count: int, threads: int | None, label: str | None) -> None:
-    """Run ``solve(start, stop) -> status`` over all blocks."""
-    failures: list[int] = []
-
-    def work(start: int, stop: int) -> None:
-        if solve(start, stop):
-            failures.append(start)
-
-    run_blocks(work, count, _BLOCK, threads=threads, progress=label)
-    if failures:
-        raise ConvergenceError(f"tables: an iteration hit its cap near pair {min(failures)} of the two outer axes")
+        return literal(grid, threads, progress, command)
+    if isinstance(grid, MaterialGrid):
+        return of_material(grid, command)
+    raise ParameterError("grid", f"a {type(grid).__name__}", "an AtlasGrid, a LiteralGrid or a MaterialGrid")
 
 
 def solve_atlas(
@@ -104,20 +88,13 @@ def solve_atlas(
     pairs = alpha.size * kappa_V.size
     plane = np.empty((len(ATLAS_PLANE), pairs))
     volume = np.empty((len(ATLAS_VOLUME), pairs, s.size))
-    _run(lambda start, stop: atlas_loop(alpha, kappa_V, s, plane, volume, start, stop), pairs, threads, label)
+    run(lambda start, stop: atlas_loop(alpha, kappa_V, s, plane, volume, start, stop), pairs, threads, label)
     fields: dict[str, NDArray] = {
         name: row.reshape(alpha.size, kappa_V.size) for name, row in zip(ATLAS_PLANE, plane, strict=True)
     }
     for name, row in zip(ATLAS_VOLUME, volume, strict=True):
         fields[name] = row.reshape(alpha.size, kappa_V.size, s.size)
     return fields
-
-
-def _off_nodes(nodes: NDArray, random: np.random.Generator, count: int = 1) -> NDArray:
-    """Middle and ``count`` random points of every cell between ``nodes``, in order."""
-    low, width = nodes[:-1], np.diff(nodes)
-    offsets = np.sort(np.vstack([np.full(low.size, 0.5), random.uniform(0.02, 0.98, (count, low.size))]), axis=0)
-    return (low + width * offsets).T.reshape(-1)
 
 
 def atlas_errors(
@@ -128,9 +105,9 @@ def atlas_errors(
     The sample is the tensor product, over the axes, of the middle and a random point of each
     cell, plus points close to s = 1.
     """
-    random = np.random.default_rng(_SEED)
+    random = np.random.default_rng(SEED)
     mapped = {name: ATLAS_MAPS[name][0](nodes) for name, nodes in axes.items()}
-    sample = {name: _off_nodes(nodes, random) for name, nodes in mapped.items()}
+    sample = {name: off_nodes(nodes, random) for name, nodes in mapped.items()}
     close = 1.0 - np.array(_NEAR_FULL_SLIP) * (1.0 - mapped["s"][-2])
     sample["s"] = np.sort(np.concatenate([sample["s"], close]))
     points = {name: ATLAS_MAPS[name][1](values) for name, values in sample.items()}
@@ -178,7 +155,7 @@ def _atlas(grid: AtlasGrid, threads: int | None, progress: bool, command: str | 
         "Contact of a viscoelastic cylinder rolling with partial slip: universal table in similarity variables",
         "alpha and kappa_V in equal ratios; s = 1 - (1 - u)^2 with u uniform on [0, 1]; nodes "
         + " x ".join(f"{nodes.size} ({name})" for name, nodes in axes.items()),
-        _tolerances("of the tensor cubic spline", measured, allowed),
+        tolerances("of the tensor cubic spline", measured, allowed),
         command,
     )
     return xr.Dataset(variables, coordinates, attributes)
@@ -206,97 +183,3 @@ def _add_error_maps(
         variables[f"error_{name}"] = schema.variable(
             f"error_{name}", schema.VARIABLES["atlas"][f"error_{name}"], maxima, sample=_SAMPLE
         )
-
-
-def _tolerances(method: str, measured: dict[str, Any], allowed: dict[str, float]) -> str:
-    parts = [
-        f"{name} {error:.2g}" + (f" (allowed {allowed[name]:.2g})" if name in allowed else "")
-        for name, error in measured.items()
-    ]
-    return f"{_NODE_ERROR}; largest measured absolute error {method} off the nodes: " + ", ".join(parts)
-
-
-def solve_literal(
-    grid: LiteralGrid, axes: dict[str, NDArray], threads: int | None = None, label: str | None = None
-) -> dict[str, NDArray[np.float64]]:
-    """Fields of a literal table on the tensor product of ``axes`` (V, delta, alpha), by root solves.
-
-    Raises
-    ------
-    ConvergenceError
-        If a solve hits its iteration cap.
-    """
-    from ..kernels.law.table_loops import LITERAL_PLANE, LITERAL_VOLUME, literal_loop
-
-    V, delta, alpha = axes.values()
-    pairs = V.size * alpha.size
-    plane = np.empty((len(LITERAL_PLANE), pairs))
-    volume = np.empty((len(LITERAL_VOLUME), pairs, delta.size))
-
-    def solve(start: int, stop: int) -> int:
-        return literal_loop(V, delta, alpha, grid.kappa, grid.mu, plane, volume, start, stop)
-
-    _run(solve, pairs, threads, label)
-    fields: dict[str, NDArray] = {
-        name: row.reshape(V.size, alpha.size) for name, row in zip(LITERAL_PLANE, plane, strict=True)
-    }
-    for name, row in zip(LITERAL_VOLUME, volume, strict=True):
-        fields[name] = np.ascontiguousarray(row.reshape(V.size, alpha.size, delta.size).swapaxes(1, 2))
-    return fields
-
-
-def _literal_errors(
-    grid: LiteralGrid, fields: dict[str, NDArray], threads: int | None, label: str | None
-) -> dict[str, float]:
-    """Largest |linear - root solve| off the nodes of V and delta, at the alphas of the grid.
-
-    The sample is the tensor product of the middles of the cells and, along a coarse axis, random points of each:
-    there the largest error may be far from the middle, and one that is odd about it is 0 there.
-    """
-    random = np.random.default_rng(_SEED)
-    axes = grid.axes()
-    points = axes | {
-        dim: _off_nodes(axes[dim], random, _ALONG // (axes[dim].size - 1))
-        for dim in ("V", "delta")
-        if axes[dim].size > 1
-    }
-    exact = solve_literal(grid, points, threads, label)
-    errors = {}
-    for name, values in fields.items():
-        linear = values
-        for n, dim in enumerate(schema.VARIABLES["literal"][name]):
-            if points[dim] is not axes[dim]:
-                linear = _linear(axes[dim], linear, points[dim], n)
-        errors[name] = float(np.abs(linear - exact[name]).max())
-    return errors
-
-
-def _linear(nodes: NDArray, values: NDArray, points: NDArray, axis: int) -> NDArray:
-    """``values`` at ``nodes`` along an axis, linearly interpolated to ``points``."""
-    cell = np.searchsorted(nodes, points) - 1
-    shape = [-1 if n == axis else 1 for n in range(values.ndim)]
-    share = ((points - nodes[cell]) / (nodes[cell + 1] - nodes[cell])).reshape(shape)
-    return (1.0 - share) * np.take(values, cell, axis) + share * np.take(values, cell + 1, axis)
-
-
-def _literal(grid: LiteralGrid, threads: int | None, progress: bool, command: str | None) -> xr.Dataset:
-    import xarray as xr
-
-    axes = grid.axes()
-    fields = solve_literal(grid, axes, threads, "table: nodes" if progress else None)
-    errors = _literal_errors(grid, fields, threads, "table: errors" if progress else None)
-    coordinates = {name: schema.variable(name, (name,), nodes) for name, nodes in axes.items()}
-    coordinates |= {name: schema.variable(name, (), getattr(grid, name)) for name in ("kappa", "mu")}
-    variables = {
-        name: schema.variable(name, schema.VARIABLES["literal"][name], values, interpolation_error=errors[name])
-        for name, values in fields.items()
-    }
-    shape = ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())
-    attributes = schema.global_attributes(
-        "literal",
-        f"Contact of a viscoelastic cylinder rolling with partial slip at kappa = {grid.kappa:g}, mu = {grid.mu:g}",
-        f"kappa = {grid.kappa:g}, mu = {grid.mu:g}; {shape}",
-        _tolerances("of linear interpolation in V and delta, at the alphas of the table,", errors, {}),
-        command,
-    )
-    return xr.Dataset(variables, coordinates, attributes)

@@ -109,25 +109,30 @@ def _write_csv(table: xr.Dataset, path: Path) -> None:
 
 def _write_modelica(table: xr.Dataset, path: Path) -> None:
     """Q over (V, delta) for CombiTable2D blocks, M over V for CombiTable1D blocks and CombiTimeTable."""
-    if table.attrs[schema.KIND] != "literal":
+    if table.attrs[schema.KIND] == "atlas":
         raise ParameterError("table", "an atlas", "one over (V, delta, alpha): a Modelica table has two inputs")
-    alphas = table["alpha"].values
-    if alphas.size > 1:
-        raise ParameterError("alpha", _listed(alphas), "one of these alone: a Modelica table has two inputs")
+    of_one = table
+    if "alpha" in table.dims:
+        alphas = table["alpha"].values
+        if alphas.size > 1:
+            raise ParameterError("alpha", _listed(alphas), "one of these alone: a Modelica table has two inputs")
+        of_one = table.isel(alpha=0)
     V, delta = table["V"].values, table["delta"].values
-    two = np.block([[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], table["Q"].values[..., 0]]])
-    one = np.column_stack([V, table["M"].values[:, 0]])
-    head = _modelica_header(table, alphas.item(), V, delta)
+    two = np.block([[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], of_one["Q"].values]])
+    one = np.column_stack([V, of_one["M"].values])
+    head = _modelica_header(table, V, delta)
     write_text(path, "\n".join([*head, _matrix("Q", two), _matrix("M", one), ""]))
 
 
-def _modelica_header(table: xr.Dataset, alpha: float, V: NDArray, delta: NDArray) -> list[str]:
+def _modelica_header(table: xr.Dataset, V: NDArray, delta: NDArray) -> list[str]:
     errors = linear_errors(table)
+    of = f"alpha = {table['alpha'].item()!r}, " if "alpha" in table.dims else ""
     lines = [
         f"viscoroll {__version__}: contact of a viscoelastic cylinder rolling with partial slip",
         PAPER,
-        f"alpha = {alpha!r}, kappa = {table['kappa'].item()!r}, mu = {table['mu'].item()!r}",
-        f"V = {SYMBOLS['V'].long_name}, in [{V[0]:g}, {V[-1]:g}]",
+        f"{of}kappa = {table['kappa'].item()!r}, mu = {table['mu'].item()!r}",
+        *table.attrs.get("material", "").splitlines(),
+        f"V = {table['V'].attrs['long_name']}, in [{V[0]:g}, {V[-1]:g}]",
         f"delta = {SYMBOLS['delta'].long_name}, in [{delta[0]:g}, {delta[-1]:g}]",
         f"Q = {SYMBOLS['Q'].long_name}: CombiTable2D (CombiTable2Ds from Modelica 4.0 on), u1 = V, u2 = delta",
         f"M = {SYMBOLS['M'].long_name}: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
@@ -158,6 +163,8 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
         f"dimensions says which breakpoints a table is over. linear_error: absolute, of linear interpolation in all "
         f"breakpoints, {_SAMPLED}. {table.attrs['comment']}",
     }
+    if kind == "material":
+        content["material"] = table.attrs["material"]
     if kind == "literal" and table["alpha"].size > 1:
         content["linear_error_at_alpha"] = linear_errors(table, at_nodes=("alpha",))
         content["about"] += " linear_error_at_alpha: the same at the alphas of the table."

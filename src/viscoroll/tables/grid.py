@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -81,6 +82,20 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     if not isinstance(count, int) or not 2 <= count <= _MAX_NODES:
         raise ParameterError("count", count, f"an integer in [2, {_MAX_NODES}]")
     return (np.geomspace if spacing == "log" else np.linspace)(low, high, count)
+
+
+def increasing(name: str, nodes: Any, **bound: Any) -> NDArray[np.float64]:
+    """Nodes of an axis as a vector of its own; raises ParameterError where they are out of range or do not increase."""
+    axis = np.atleast_1d(checked(name, nodes, **bound)).copy()
+    if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
+        raise ParameterError(name, f"an array of shape {axis.shape}", "one-dimensional and strictly increasing")
+    return axis
+
+
+def refuse_large(**axes: NDArray) -> None:
+    """Raise ParameterError where a table would have too many nodes."""
+    if math.prod(nodes.size for nodes in axes.values()) > _MAX_NODES:
+        raise ParameterError(", ".join(axes), "their product", f"at most {_MAX_NODES} nodes in all")
 
 
 @dataclass(frozen=True)
@@ -168,14 +183,10 @@ class LiteralGrid:
             "alpha": {"low": 1.0, "high": HIGHEST_ALPHA},
         }
         for name, bound in bounds.items():
-            axis = np.atleast_1d(checked(name, getattr(self, name), **bound)).copy()
-            if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
-                raise ParameterError(name, f"an array of shape {axis.shape}", "one-dimensional and strictly increasing")
-            object.__setattr__(self, name, axis)
+            object.__setattr__(self, name, increasing(name, getattr(self, name), **bound))
         Scene(self.alpha, self.kappa, self.mu)
         refuse_overflow(np.asarray(self.kappa), self.V)
-        if self.V.size * self.delta.size * self.alpha.size > _MAX_NODES:
-            raise ParameterError("V, delta, alpha", "their product", f"at most {_MAX_NODES} nodes in all")
+        refuse_large(**self.axes())
 
     def axes(self) -> dict[str, NDArray[np.float64]]:
         """Nodes of V, delta and alpha."""

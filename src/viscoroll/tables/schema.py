@@ -15,17 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..errors import TableError
+from ..errors import ConfigError, TableError
 from ..symbols import PAPER, SYMBOLS, Symbol
 
 if TYPE_CHECKING:
     import xarray as xr
 
-SCHEMA_VERSION = "1.0"
-#: Global attribute that names the kind of table ("atlas" or "literal").
+SCHEMA_VERSION = "1.1"
+#: Global attribute that names the kind of table: "atlas", "literal" or, since 1.1, "material".
 KIND = "viscoroll_table"
 
-AXES = {"atlas": ("alpha", "kappa_V", "s"), "literal": ("V", "delta", "alpha")}
+AXES = {"atlas": ("alpha", "kappa_V", "s"), "literal": ("V", "delta", "alpha"), "material": ("V", "delta")}
 _PLANE, _BLOCKS = ("alpha", "kappa_V"), ("block_alpha", "block_kappa_V", "block_s")
 #: Kind -> variable -> dimensions.
 VARIABLES: dict[str, dict[str, tuple[str, ...]]] = {
@@ -45,11 +45,23 @@ VARIABLES: dict[str, dict[str, tuple[str, ...]]] = {
         "kappa": (),
         "mu": (),
     },
+    "material": {
+        "beta": AXES["material"],
+        "Q": AXES["material"],
+        **dict.fromkeys(("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star"), ("V",)),
+        "mode": ("mode",),
+        "relaxation_strength": ("mode",),
+        "relaxation_time": ("mode",),
+        "kappa": (),
+        "mu": (),
+        "T_ref": (),
+    },
 }
 #: Variables that can be interpolated.
 FIELDS = {
     "atlas": ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu"),
     "literal": ("beta", "Q", "lam", "epsilon", "M", "delta_star"),
+    "material": ("beta", "Q", "lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star"),
 }
 
 _ERROR_OF = "largest interpolation error of {} off the nodes, over a block of cells"
@@ -57,6 +69,12 @@ _TABLE_SYMBOLS = {
     "kappa_delta_star_over_mu": Symbol(
         r"\kappa\delta^*/\mu", "critical creep ratio times kappa over mu", "[alpha^(-1/2)/2, inf)", "Eq. (9)"
     ),
+    "mode": Symbol("i", "number of the mode, the slowest first", ">= 1"),
+    "relaxation_strength": Symbol(
+        "E_i", "strengths of relaxation of the law's series over its long-time modulus", "> 0"
+    ),
+    "relaxation_time": Symbol(r"\tau_i", "relaxation times of the law's series over T_ref", "> 0"),
+    "T_ref": Symbol(r"T_\mathrm{ref}", "unit of time", "> 0", units="s"),
     "error_beta": Symbol(r"\max|\Delta\beta|", _ERROR_OF.format("beta"), ">= 0", "Eq. (10)"),
     "error_Q_over_mu": Symbol(r"\max|\Delta(Q/\mu)|", _ERROR_OF.format("Q_over_mu"), ">= 0", "Eq. (15)"),
 }
@@ -79,6 +97,12 @@ COMMENTS = {
         "beyond which the contact slips fully: beta = 0, |Q| = mu. epsilon may exceed 1."
     ),
 }
+COMMENTS["material"] = (
+    COMMENTS["literal"].replace("delta_star(V, alpha)", "delta_star(V)").replace("M and Q", "M, its two parts and Q")
+    + " V is the speed of the axis times T_ref/R. The attribute material holds the bodies in SI units as sections "
+    "[material] and, of the half-space where it differs, [base] of a TOML file; the series in the variables is that of "
+    "their compliances together."
+)
 
 
 def symbol_of(name: str) -> Symbol:
@@ -134,6 +158,23 @@ def global_attributes(kind: str, title: str, grid: str, tolerances: str, command
     }
 
 
+def check_material(table: xr.Dataset, path: Any) -> None:
+    """Refuse a table of a material that does not name it.
+
+    Raises
+    ------
+    TableError
+        Naming ``path``.
+    """
+    from .of_material import scene_of
+
+    try:
+        scene_of(table)
+    except (AttributeError, KeyError, TypeError, ValueError, ConfigError) as error:
+        text = " ".join(str(error).split())
+        raise TableError(path, f"not a whole table: attribute material names none ({text:.200})") from error
+
+
 def check_version(schema_version: Any, path: Any) -> None:
     """Refuse a table of another major schema version.
 
@@ -172,6 +213,8 @@ def check(table: xr.Dataset, path: Any) -> str:
             raise TableError(path, f"variable {name!r} has dimensions {table[name].dims}, must be {dims}")
     for key, variable in table.variables.items():
         _check_values(str(key), variable.values, key in table.indexes, path)
+    if kind == "material":
+        check_material(table, path)
     return kind
 
 

@@ -120,6 +120,7 @@ def info(path: str | PathLike[str]) -> str:
         *(_field_line(table[name]) for name in schema.FIELDS[kind]),
         "",
     ]  # fmt: skip
+    lines += about["material"].splitlines() if kind == "material" else []
     lines += [
         f"{key}: {about[key]}" for key in ("grid", "tolerances", "comment", "source", "software", "history", HASH)
     ]

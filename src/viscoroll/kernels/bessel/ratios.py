@@ -48,7 +48,7 @@ def _r_power_series(terms: int) -> list[float]:
     return c
 
 
-def _asymptotic_series(sign: int, terms: int) -> list[Decimal]:
+def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     """a_n of r (sign = -1) or k (sign = +1) = sum a_n x^-n, from the Riccati equations."""
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -66,7 +66,7 @@ K_LEAST = 2.0**-30
 @in_many_digits
 def _tail(sign: int) -> np.ndarray:
     """x (1 - r) or z (1 - k) above 64 as a polynomial in the inverse: the asymptotic series at Chebyshev's nodes."""
-    series = [-a for a in _asymptotic_series(sign, 17)[1:]]
+    series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]
     return Interpolation(nodes).coefficients([horner(series, w) for w in nodes])
 

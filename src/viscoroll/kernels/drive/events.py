@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.collocation import NODES, N, polynomial, rise_at, rise_terms
+from ..motion.collocation import NODES, N, rise_at, rise_terms
 from .records import EDGE, EVENTS, NO_EVENT, SLOW, STOP
 from .solve import EVENT, SPEED, Panel, panel_error, slope_at, solve
 

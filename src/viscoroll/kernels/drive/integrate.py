@@ -14,7 +14,7 @@ from ..law.stick import stick_length
 from ..motion.collocation import N
 from .load import acting, load_at, piece_end, undriven
 from .origin import STAYS, STICKS, depart, leaving_time
-from .output import coast, put_still, put_to_end, regime_of
+from .output import INTERPOLANTS, coast, put_still, put_to_end, regime_of
 from .phase import phase
 from .rates import rates_at
 from .records import (
@@ -43,6 +43,8 @@ DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 _TINY = 1e-150
 #: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
 _CLOSED = 1e-7
+#: time of relaxation over the time so far that no panel can follow
+_ROUNDING = 1e-13
 #: 1/zeta over T_mean below which V decays exponentially to rounding
 _SLOWEST = 1e-17
 
@@ -176,6 +178,16 @@ def coasts(state, frame, clock, case):
 
 
 @kernel
+def unresolved(state, frame, clock, case):
+    """Whether V is so small that b relaxes within the rounding of time: then it may as well be 0."""
+    if frame.slips:
+        return False
+    load = load_at(clock.tau, clock.piece, frame, case)
+    rates = rates_at(state.s, state.second, load, frame, case.scene)
+    return rates.weight < _ROUNDING * clock.tau * abs(rates.rate_slope)
+
+
+@kernel
 def follow(moving, state, frame, clock, case):
     """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
     onset_time, turns, noted, fresh = np.nan, 0, 0, False
@@ -197,6 +209,9 @@ def follow(moving, state, frame, clock, case):
         else:
             event, state, frame, clock = phase(fresh, state, frame, clock, case)
         fresh = event == EDGE and frame.slips
+        if event == STUCK and unresolved(state, frame, clock, case):
+            moving = False
+            continue
         if event == STUCK:
             return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
         if event == SLOW:
@@ -227,7 +242,8 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     tau = np.empty(t.size)
     for i in range(tau.size):
         tau[i] = t[i] * gamma
-    work = Work(np.empty((ROWS, N + 1)), np.empty((10, N + 2)), np.empty((2 * N, 2 * N)), np.empty(2 * N), np.zeros(PATHS))
+    matrix, right = np.empty((2 * N, 2 * N)), np.empty(2 * N)
+    work = Work(np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), matrix, right, np.zeros(PATHS))
     case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0)
     state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False

@@ -77,14 +77,18 @@ def acting(V, omega, load, frame):
 
 
 @kernel(inline=True)
-def needed(rates, load, frame, j):
-    """(Force, torque of the motor, torque of the brake) that act: what is given, or what a prescribed speed asks for."""
-    force, torque, _ = acting(rates.V, rates.omega, load, frame)
+def needed(speeds, moments, load, frame, j):
+    """(Force, torque of the motor, torque of the brake): what is given, or what a prescribed speed asks for.
+
+    ``speeds`` : V and omega; ``moments`` : Q and the parts of M.
+    """
+    Q, M_half_space, M_cylinder = moments
+    force, torque, _ = acting(speeds[0], speeds[1], load, frame)
     brake = -load.brake * frame.spin
     if frame.locked:
-        brake = rates.Q + rates.M_cylinder - torque
+        brake = Q + M_cylinder - torque
     elif load.per_omega == 0.0:
-        torque = j * load.omega_rate + rates.Q + rates.M_cylinder - brake
+        torque = j * load.omega_rate + Q + M_cylinder - brake
     if load.per_V == 0.0:
-        force = load.V_rate - rates.Q + rates.M_half_space
+        force = load.V_rate - Q + M_half_space
     return force, torque, brake

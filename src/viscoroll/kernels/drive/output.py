@@ -16,6 +16,8 @@ OUTPUTS = 13
 FORCE, WORK = 6, 8
 #: row of the interpolant of s, in front of those of the path
 _OF_S, _OF_SECOND, _OF_PATH = 0, 1, 2
+#: their number, with that of an event behind
+INTERPOLANTS = _OF_PATH + PATHS + 1
 
 
 @kernel
@@ -53,7 +55,8 @@ def _put_state(column, s, second, piece, frame, case):
     out, direction = case.out, frame.direction
     load = load_at(case.tau[column], piece, frame, case)
     rates = rates_at(s, second, load, frame, case.scene)
-    force, torque, _ = needed(rates, load, frame, case.scene.j)
+    moments = rates.Q, rates.M_half_space, rates.M_cylinder
+    force, torque, _ = needed((rates.V, rates.omega), moments, load, frame, case.scene.j)
     out[0, column], out[1, column] = direction * rates.V, direction * rates.omega
     out[4, column], out[5, column] = rates.delta, regime_of(frame)
     out[FORCE, column], out[FORCE + 1, column] = direction * force, direction * torque

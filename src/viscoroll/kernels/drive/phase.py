@@ -41,8 +41,8 @@ def _first_length(fresh, slopes, state, frame, case):
     length = _RELAXED * weight / abs(slopes.rate)
     if fresh:
         # as far as b may go at the bend of the law near eta = 0
-        bend = _BEND * case.limits.rtol ** (1.0 / 3.0) * (1.0 - abs(nodes[SECOND, 0]) + scene.material.tau * nodes[S, 0])
-        return min(length, bend * weight / max(rate, 1e-300))
+        near = 1.0 - abs(nodes[SECOND, 0]) + scene.material.tau * nodes[S, 0]
+        return min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * weight / max(rate, 1e-300))
     return min(length, _FIRST * nodes[S, 0] / pace) if pace > 0.0 else length
 
 

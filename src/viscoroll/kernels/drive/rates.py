@@ -1,7 +1,7 @@
 """Rates of a driven motion, in unknowns in which the law is explicit and that pass V = 0.
 
-The unknowns are s = 1/zeta, with V = s lam/(2 kappa), and omega in full slip; in partial slip b = (zeta - eta)/zeta with
-the sign of delta, in a frame where V >= 0.  With l = lam/(2 kappa) = V zeta, phi = (F(zeta) - F(eta))/zeta and
+The unknowns are s = 1/zeta, with V = s lam/(2 kappa), and omega in full slip; in partial slip b = (zeta - eta)/zeta
+with the sign of delta, in a frame where V >= 0.  With l = lam/(2 kappa) = V zeta, phi = (F(zeta) - F(eta))/zeta and
 U = H'/(2 zeta) = 1 + h/zeta + h',
 
     s' = V'/(dV/ds)      dV/ds = l lam^2 U      delta = mu l phi sign(b)

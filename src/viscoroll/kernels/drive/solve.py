@@ -7,7 +7,7 @@ panel ends at V = 0.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,9 +21,10 @@ from .origin import departing
 from .rates import rates_at
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 
-#: rows of the values at the nodes: unknowns, their rates, speed scale; integrands of the path; functions of events
-S, SECOND, S_RATE, RATE, SPEED = range(5)
-PATH = 5
+#: rows of the values at the nodes: unknowns, their rates, speed scale; what the path is made of; its integrands;
+#: functions of events
+S, SECOND, S_RATE, RATE, SPEED, OF_V, OF_OMEGA, OF_DELTA, OF_Q, OF_HALF_SPACE, OF_CYLINDER = range(11)
+PATH = 11
 #: of the path: x, angle, work of force and of torque, losses in the brake, in slip and in rolling
 PATHS = 7
 EVENT = PATH + PATHS
@@ -64,29 +65,40 @@ class Slopes(NamedTuple):
 @kernel(inline=True)
 def put_node(i, tau, weight, piece, frame, case):
     """Fill node i from its unknowns, rates times ``weight``: their slopes, times that too."""
-    nodes, scene = case.work.nodes, case.scene
-    load = load_at(tau, piece, frame, case)
-    rates = rates_at(nodes[S, i], nodes[SECOND, i], load, frame, scene)
-    V, omega, Q = rates.V, rates.omega, rates.Q
+    nodes = case.work.nodes
+    rates = rates_at(nodes[S, i], nodes[SECOND, i], load_at(tau, piece, frame, case), frame, case.scene)
     nodes[S_RATE, i], nodes[RATE, i] = weight * rates.s_rate, weight * rates.rate
-    nodes[SPEED, i] = max(abs(V), abs(omega))
-    force, torque, brake = needed(rates, load, frame, scene.j)
-    nodes[PATH, i], nodes[PATH + 1, i] = weight * V, weight * omega
-    nodes[PATH + 2, i], nodes[PATH + 3, i] = weight * (force * V), weight * (torque * omega)
-    nodes[PATH + 4, i] = -weight * (brake * omega)
-    nodes[PATH + 5, i] = weight * ((V * rates.delta if not frame.slips else omega - V) * Q)
-    nodes[PATH + 6, i] = weight * (V * rates.M_half_space + omega * rates.M_cylinder)
+    nodes[SPEED, i] = max(abs(rates.V), abs(rates.omega))
+    nodes[OF_V, i], nodes[OF_OMEGA, i], nodes[OF_DELTA, i] = rates.V, rates.omega, rates.delta
+    nodes[OF_Q, i], nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i] = rates.Q, rates.M_half_space, rates.M_cylinder
     nodes[EVENT + EDGE, i] = rates.edge
-    nodes[EVENT + KINK, i] = 1.0 if frame.slips else frame.sigma * nodes[SECOND, i]
-    nodes[EVENT + TURN, i] = nodes[S, i]
-    nodes[EVENT + STOP, i] = frame.spin * omega if frame.spin != 0.0 and not frame.locked else 1.0
-    nodes[EVENT + SLOW, i] = nodes[SPEED, i] - case.limits.rest if case.limits.rest > 0.0 else 1.0
-    nodes[EVENT + FREED, i] = load.brake - abs(brake) if frame.locked else 1.0
     return Slopes(weight * rates.s_slope, weight * rates.rate_slope, rates.weight)
 
 
+@kernel
+def put_path(panel, frame, case):
+    """Fill the integrands of the path and the functions of events at all nodes of a panel that is solved."""
+    nodes, rest = case.work.nodes, case.limits.rest
+    for i in range(N + 1):
+        tau, weight = time_at(panel, i)
+        V, omega, Q = nodes[OF_V, i], nodes[OF_OMEGA, i], nodes[OF_Q, i]
+        M_half_space, M_cylinder = nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i]
+        load = load_at(tau, panel.piece, frame, case)
+        force, torque, brake = needed((V, omega), (Q, M_half_space, M_cylinder), load, frame, case.scene.j)
+        slip = omega - V if frame.slips else V * nodes[OF_DELTA, i]
+        nodes[PATH, i], nodes[PATH + 1, i] = weight * V, weight * omega
+        nodes[PATH + 2, i], nodes[PATH + 3, i] = weight * (force * V), weight * (torque * omega)
+        nodes[PATH + 4, i], nodes[PATH + 5, i] = -weight * (brake * omega), weight * (slip * Q)
+        nodes[PATH + 6, i] = weight * (V * M_half_space + omega * M_cylinder)
+        nodes[EVENT + KINK, i] = 1.0 if frame.slips else frame.sigma * nodes[SECOND, i]
+        nodes[EVENT + TURN, i] = nodes[S, i]
+        nodes[EVENT + STOP, i] = frame.spin * omega if frame.spin != 0.0 and not frame.locked else 1.0
+        nodes[EVENT + SLOW, i] = nodes[SPEED, i] - rest if rest > 0.0 else 1.0
+        nodes[EVENT + FREED, i] = load.brake - abs(brake) if frame.locked else 1.0
+
+
 @kernel(inline=True)
-def _time(panel, i):
+def time_at(panel, i):
     """(tau, weight of the rates) at node i."""
     share = 0.5 * (1.0 + NODES[i])
     return panel.tau + panel.length * share**panel.power, grade(share, panel.power)
@@ -134,7 +146,7 @@ def slope_at(i, row, nodes):
 def _put_matrix(i, half, slopes, panel, frame, case):
     """Rows of Newton's matrix for node i; the slopes in s are differences."""
     nodes, matrix = case.work.nodes, case.work.matrix
-    tau, weight = _time(panel, i)
+    tau, weight = time_at(panel, i)
     s, step = nodes[S, i], _STEP * max(abs(nodes[S, i]), 0.01 * abs(nodes[S, 0]), abs(nodes[S_RATE, i]) * half)
     at = rates_at(s + step, nodes[SECOND, i], load_at(tau, panel.piece, frame, case), frame, case.scene)
     s_s = (weight * at.s_rate - nodes[S_RATE, i]) / step
@@ -164,7 +176,7 @@ def scales(frame, case):
 
 @kernel
 def solve(share, panel, slopes, frame, case):
-    """Collocate from node 0, where the rates have these ``slopes``, to a ``share`` of the tolerance.  Whether it did."""
+    """Collocate from node 0, where the rates have these ``slopes``, to a share of the tolerance.  Whether it did."""
     work, tolerance, half = case.work, SHARE * case.limits.rtol, 0.5 * panel.length
     left = max(share * tolerance, _LEAST)
     nodes, right = work.nodes, work.right
@@ -175,7 +187,7 @@ def solve(share, panel, slopes, frame, case):
     before, anew = np.inf, True
     for _ in range(_MOST_ITERATIONS):
         for i in range(1, N + 1):
-            tau, weight = _time(panel, i)
+            tau, weight = time_at(panel, i)
             here = put_node(i, tau, weight, panel.piece, frame, case)
             if anew:
                 _put_matrix(i, half, here, panel, frame, case)
@@ -196,6 +208,7 @@ def solve(share, panel, slopes, frame, case):
             return False
         # what is integrated stays as it was before this change
         if change <= max(tolerance, _LEAST) and change * gain <= left:
+            put_path(panel, frame, case)
             return True
         anew = gain > _SLOW and not first
         before = change

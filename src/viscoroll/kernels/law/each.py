@@ -18,11 +18,13 @@ from .series import Room, Series, values
 class Ends(NamedTuple):
     """Several modes: the table is full but for its ends, where g, h and m are known by these numbers.
 
+    rise : alpha - 1 = sum E_i
     weight, log_weight : sum J_j b_j, and sum J_j b_j (ln(2/b_j) - gamma), gamma that of Euler
     squares : sum E_i tau_i^2 + sum J_j T_j^2
     """
 
     known: bool
+    rise: float
     weight: float
     log_weight: float
     squares: float
@@ -46,7 +48,7 @@ class Each(NamedTuple):
     """The materials of a block.
 
     of : material of each state or motion, a row of all that follows
-    numbers : alpha, T_mean, tau, and weight, log_weight and squares of ``Ends``
+    numbers : alpha, T_mean, tau, and rise, weight, log_weight and squares of ``Ends``
     bins : first and stop of ``Filled``
     count : modes; the arrays of ``series`` have room for the most
     series : arrays of ``Series`` with a leading axis
@@ -83,7 +85,7 @@ def of_each(each, i):
         all_of.a[row][:n], all_of.b[row][:n], all_of.e[row][:n], all_of.t[row][:n], all_of.Q[row][:n],
     )  # fmt: skip
     return Filled(
-        numbers[0], numbers[1], numbers[2], each.table, Ends(True, numbers[3], numbers[4], numbers[5]),
+        numbers[0], numbers[1], numbers[2], each.table, Ends(True, numbers[3], numbers[4], numbers[5], numbers[6]),
         each.bins[row, 0], each.bins[row, 1], one, each.work,
     )  # fmt: skip
 

@@ -62,7 +62,9 @@ def length_step(lam, z, w, per_w, slopes, low, high):
     slope = lam + w * h + lam * dh
     bend = (1.0 + 2.0 * dh + z * ddh) * root - slope * slope * (1.0 - excess)
     new = lam - 2.0 * excess * slope * root / (2.0 * slope * slope - excess * bend)
-    new = new if low <= new <= high else 0.5 * (low + high)
+    if not low <= new <= high:
+        # halving takes small steps too, at the least lam, where rounding puts the root below it
+        new = low if low * (1.0 - _CUBED) <= new < low else 0.5 * (low + high)
     zeta = new * per_w
     dz = zeta - z
     return new, zeta, g + dz * (dg + 0.5 * dz * ddg), h + dz * (dh + 0.5 * dz * ddh), dg + dz * ddg, low, high

@@ -52,7 +52,10 @@ at_slide = _either("at_slide", 1)
 fast_limit = _either("fast_limit", 2)
 #: (g, h, g', h', m of the half-space, m of the cylinder) at z > 0: halves of m where bodies are alike
 at_rolling = by_record(
-    1, (Standard, ratios.at_rolling), (Tabulated, table.at_rolling), (Pair, pair.at_rolling),
+    1,
+    (Standard, ratios.at_rolling),
+    (Tabulated, table.at_rolling),
+    (Pair, pair.at_rolling),
     (Filled, table.at_rolling),
 )
 #: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D

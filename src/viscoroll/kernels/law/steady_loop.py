@@ -13,9 +13,6 @@ import numpy as np
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
-from ..compile.rarely import rarely
-from ..numerics import quartet
-from ..numerics.bins import offset_slope
 from .length import OK, contact_length, contact_solution, near_length
 from .material import at_contact, generator_slopes
 from .pair import Pair, parts
@@ -177,24 +174,10 @@ def _half(z, material):
 
 
 @kernel(inline=True)
-def _end_slope(z, m, body, material):
-    """z times the slope of one body's m where its table ends."""
-    return 2.0 * m - 0.5 * material.alpha * z * z * body.ends.weight if z < material.tau else body.T_mean - m
-
-
-@kernel
 def _share(z, material):
-    row, there = quartet.row_of(z, material.parts)
-    if rarely(not there):
-        one, other = parts(z, material)
-        rise = _end_slope(z, one, material.half_space, material)
-        other_rise = _end_slope(z, other, material.cylinder, material)
-    else:
-        one, other, _, _, rise, other_rise, _, _ = quartet.slopes(material.parts, row, quartet.offset(z))
-        per = z * offset_slope(z)
-        rise, other_rise = rise * per, other_rise * per
+    one, other, rise, other_rise = parts(z, material)
     total = one + other
-    return one / total, (rise * other - other_rise * one) / (total * total)
+    return one / total, z * (rise * other - other_rise * one) / (total * total)
 
 
 #: (the half-space's share of M, its slope over ln zeta)

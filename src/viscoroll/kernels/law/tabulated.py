@@ -31,7 +31,7 @@ class Tabulated(NamedTuple):
 
 def tabulated(alpha: float) -> Tabulated:
     """The material of this alpha, with nothing in its table."""
-    return Tabulated(*standard.standard(alpha), quartet.empty_table(), Ends(False, 0.0, 0.0, 0.0))
+    return Tabulated(*standard.standard(alpha), quartet.empty_table(), Ends(False, 0.0, 0.0, 0.0, 0.0))
 
 
 @kernel(inline=True)
@@ -67,7 +67,7 @@ def at_an_end(z, material):
     T, ends = material.T_mean, material.ends
     if z < material.tau:
         rise = material.alpha * z
-        bracket, dh = ends.log_weight - ends.weight * np.log(z), 0.5 * (material.alpha - 1.0)
+        bracket, dh = ends.log_weight - ends.weight * np.log(z), 0.5 * ends.rise
         return 0.5 * rise * z * bracket, dh * z, rise * (bracket - 0.5 * ends.weight), dh
     per = 0.125 / z
     return 0.5 * T - ends.squares * per, 0.5 * T + T * T * per, ends.squares * per / z, -T * T * per / z
