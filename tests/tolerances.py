@@ -428,3 +428,11 @@ DMA_PYVISCO = (1.55, 1.75)
 #: points with 0.5 % noise (that of the overlaps, added up over four neighbours; measured 6e-3).
 DMA_SHIFT = 5e-4
 DMA_SHIFT_NOISY = 0.02
+
+# --- motions in SI units (test_motion_si.py) ---
+#: A motion in SI units against the dimensionless one, over the largest value: factors round.
+SI_MOTION = 1e-12
+#: Work against kinetic energy and losses, over the largest work, at rtol 1e-8.
+SI_ENERGY = 1e-7
+#: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8.
+SI_TERMINAL = 3e-7

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,6 @@ _REGIME = {
     "flag_values": np.array([-1, 0, 1, 2, 3, 4], dtype=np.int8),
     "flag_meanings": "not_reached full_slip partial_slip rest locked held",
 }
-_REVERSALS = {"long_name": "times at which V changes its sign", "units": "1"}
 _OWN: dict[str, dict[str, Any]] = {
     "regime": _REGIME,
     "rest_time": {"long_name": "time at which the rest threshold was crossed", "units": "1"},
@@ -82,21 +82,21 @@ def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
     return xr.Variable(dims, values, attributes(name))
 
 
-def motion_dataset(motion: Any) -> xr.Dataset:
-    """One motion over t; under a drive with what acted, works and losses."""
-    drive = motion._inputs.drive
-    names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if drive.acts else ()))
-    data = {name: _variable(("t",), name, getattr(motion, name)) for name in names}
+def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
+    """One motion over t; under a drive with what acted, works and losses.  ``described``: attributes of a quantity."""
+    names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if motion.drive.acts else ()))
+    data = {name: xr.Variable(("t",), getattr(motion, name), described(name)) for name in names}
     data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
     driven: dict[str, Any] = {}
-    if drive.acts:
-        given, driven = drive_variables(drive)
+    if motion.drive.acts:
+        given, driven = drive_variables(motion.drive, described)
         data |= given
-        data["reversals"] = xr.Variable(("reversal",), motion.reversals, _REVERSALS)
+        when = {"long_name": "times at which V changes its sign", "units": described("t")["units"]}
+        data["reversals"] = xr.Variable(("reversal",), motion.reversals, when)
         driven["drive_error"] = motion.drive_error
     return xr.Dataset(
         data,
-        coords={"t": _variable(("t",), "t", motion.t)},
+        coords={"t": xr.Variable(("t",), motion.t, described("t"))},
         attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
         | {name: getattr(motion.scene, name) for name in _PARAMETERS}
         | _material(motion.scene)
@@ -132,7 +132,7 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
-    given, texts = drive_variables(result.drive)
+    given, texts = drive_variables(result.drive, attributes)
     data |= given
     attrs = (
         _globals("Ensemble of motions")

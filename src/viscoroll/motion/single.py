@@ -128,6 +128,11 @@ class Motion:
         return np.stack([getattr(found, name)[0] for name in LOSSES])
 
     @property
+    def drive(self) -> Drive:
+        """What was given to drive it."""
+        return self._inputs.drive
+
+    @property
     def message(self) -> str:
         """The status in words."""
         return MOTION_STATUS[self.status]

@@ -8,35 +8,14 @@ for every cylinder.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..motion import export
+from ..motion.si import SI
 from ..symbols import SYMBOLS
 from .ranges import CYLINDER
-
-
-class Unit(NamedTuple):
-    """What a column is in a run in SI units."""
-
-    long_name: str
-    units: str
-
-
-SI = {
-    "t": Unit("time", "s"),
-    "V0": Unit("initial velocity of the axis", "m s-1"),
-    "omega0": Unit("initial angular velocity", "rad s-1"),
-    "V": Unit("velocity of the axis", "m s-1"),
-    "omega": Unit("angular velocity", "rad s-1"),
-    "x": Unit("distance travelled", "m"),
-    "angle": Unit("angle turned", "rad"),
-    "slip_loss": Unit("energy lost in slip since t = 0, per length of the cylinder", "J m-1"),
-    "rolling_loss": Unit("energy lost in rolling since t = 0, per length of the cylinder", "J m-1"),
-    "onset_time": Unit("time of the first change from full to partial slip", "s"),
-    "rest_time": Unit("time at which the rest threshold was crossed", "s"),
-}
 
 
 def are_si(values: Mapping[str, Any]) -> bool:
