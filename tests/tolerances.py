@@ -436,3 +436,8 @@ SI_MOTION = 1e-12
 SI_ENERGY = 1e-7
 #: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8.
 SI_TERMINAL = 3e-7
+
+# --- driven runs in SI units (test_run_drives.py) ---
+#: A motion of a run, in seconds, against that of its roller, in T_epsilon, at rtol 1e-8, over the largest value: other
+#: units of time round otherwise, and may step otherwise; measured 1.4e-10.
+RUN_SI = 1e-8

@@ -56,10 +56,9 @@ def test_the_dimensionless_motion_in_other_units():
 def test_prescribed_speeds_in_other_units():
     m = ROLLER.roll(0.0, None, TIMES, omega=([0.0, 1.0], [0.0, 0.5]))
     agree(m, vr.roll(ROLLER.scene(), 0.0, None, TIMES / T, omega=([0.0, 1.0 / T], [0.0, 0.5 * T])), P)
-    m = ROLLER.roll(None, 0.0, TIMES, V=lambda t: 0.01 + 0.02 * np.sin(t), torque=0.5)
-    free = vr.roll(
-        ROLLER.scene(), None, 0.0, TIMES / T, V=lambda t: (0.01 + 0.02 * np.sin(t * T)) * T / R, torque=0.5 / (P * R)
-    )
+    corners, speeds = np.array([0.0, 1.0, 2.0]), np.array([0.01, 0.03, -0.01])
+    m = ROLLER.roll(None, 0.0, TIMES, V=(corners, speeds), torque=0.5)
+    free = vr.roll(ROLLER.scene(), None, 0.0, TIMES / T, V=(corners / T, speeds * T / R), torque=0.5 / (P * R))
     agree(m, free, P)
 
 

@@ -17,6 +17,8 @@ from ..motion.si import SI
 from ..symbols import SYMBOLS
 from .ranges import CYLINDER
 
+_ENERGIES = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
+
 
 def are_si(values: Mapping[str, Any]) -> bool:
     """Whether these inputs are those of a cylinder."""
@@ -28,15 +30,23 @@ def unit_of_time(values: Mapping[str, Any]) -> Any:
     return values["T_ref"] if "T_ref" in values else values["T_epsilon"]
 
 
+def load_of(values: Mapping[str, Any]) -> Any:
+    """Load of a cylinder, N/m; on a slope P cos(slope)."""
+    load = values["load"] if "load" in values else values["m"] * values["g"]
+    return load * np.cos(values["drive_slope"]) if "drive_slope" in values else load
+
+
 def scales(values: Mapping[str, Any]) -> dict[str, Any]:
     """Column -> what it is multiplied by to be in SI units; numbers or one a motion; nothing for a scene."""
     if not are_si(values):
         return {}
     speed, spin = values["R"] / unit_of_time(values), 1.0 / unit_of_time(values)
     energy = values["m"] * speed**2
+    load = load_of(values)
     # the integrals over time are over seconds already
     return {
-        "V": speed, "omega": spin, "x": speed, "angle": spin, "slip_loss": energy, "rolling_loss": energy,
+        "V": speed, "omega": spin, "x": speed, "angle": spin, "force": load, "torque": load * values["R"],
+        **dict.fromkeys(_ENERGIES, energy),
     }  # fmt: skip
 
 
@@ -55,6 +65,10 @@ _MODES = {
 
 def attributes(name: str, si: bool) -> dict[str, Any]:
     """long_name, units and more of a column, as JSON takes them."""
+    if name.startswith("drive_"):
+        what, _, corner = name.removeprefix("drive_").partition("_")
+        about = attributes(what, si)
+        return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
     if si and name in SI:
         return SI[name]._asdict()
     kind, _, number = name.partition("_")
