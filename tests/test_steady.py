@@ -331,6 +331,35 @@ def test_focus_where_friction_is_all_but_spent():
     assert s.stable.tolist() == [True, False]
 
 
+# --- against motions ---
+
+
+def test_motions_settle_at_equilibria():
+    """From rest up the first rising branch: on a slope, of unlike bodies, with a motor whose torque falls."""
+    unlike = series_scene(UNLIKE)
+    for scene, load in (
+        (SCENE, {"slope": 0.05}),
+        (unlike, {"force": 0.003, "torque": 0.002}),
+        (SCENE, {"torque": vr.Feedback(0.3, omega=-1.0)}),
+    ):
+        s = vr.steady(scene, **load)
+        end = 40.0 / -s.eigenvalues[0, 1].real / scene.gamma
+        m = vr.roll(scene, 0.0, 0.0, [0.0, end], rtol=1e-10, **load)
+        assert m.V[-1] == pytest.approx(s.V[0], rel=tol.STEADY_SETTLED)
+        assert m.omega[-1] == pytest.approx(s.omega[0], rel=tol.STEADY_SETTLED)
+
+
+def test_a_saddle_repels_at_its_rate():
+    s = vr.steady(SCENE, force=0.05)
+    rate, aside = s.eigenvalues[1, 1].real, 1e-6
+    t = np.array([0.0, 1.0, 2.0, 60.0]) / (rate * SCENE.gamma)
+    for side in (1.0 - aside, 1.0 + aside):
+        m = vr.roll(SCENE, side * s.V[1], side * s.omega[1], t, force=0.05, rtol=1e-10)
+        off = m.V / s.V[1] - 1.0
+        assert off[2] / off[1] == pytest.approx(math.e, rel=tol.STEADY_REPELLED)
+        assert m.V[-1] > 10.0 * s.V[1] if side > 1.0 else m.V[-1] == pytest.approx(s.V[0], rel=tol.STEADY_SETTLED)
+
+
 # --- slope ---
 
 

@@ -378,6 +378,10 @@ STEADY_BETA = 1e-9
 STEADY_DIFFERENCES = 1e-3
 #: Their product against b M'/j of the contact law; measured 4.2e-14.
 STEADY_DETERMINANT = 1e-11
+#: Where motions from rest end at rtol 1e-10: measured 6e-14.
+STEADY_SETTLED = 1e-9
+#: Growth beside a saddle in a linearisation, 1e-6 aside.
+STEADY_REPELLED = 1e-4
 #: Slow rolling at a load of 1e-6, and a slope of 1e-6, from their limits: the next term, of kappa V.
 STEADY_SLOW_RATE = STEADY_FAINT = 1e-4
 #: V on a curve tilted so that it meets the load at a small angle, 1 % of M'.
@@ -441,3 +445,19 @@ SI_TERMINAL = 3e-7
 #: A motion of a run, in seconds, against that of its roller, in T_epsilon, at rtol 1e-8, over the largest value: other
 #: units of time round otherwise, and may step otherwise; measured 1.4e-10.
 RUN_SI = 1e-8
+
+# --- driven motions (motion/test_drive.py) ---
+#: SciPy's Radau at rtol 1e-7, atol 1e-9, over corners of the law that it steps across.
+DRIVE_PEER = 2e-5
+#: Works against energies at rtol 1e-10 and 1e-11, over the largest of them.
+DRIVE_BALANCE = 1e-8
+#: The general method against that of free motions, both at 1e-10; their losses, which have a rule of their own there.
+DRIVE_FREE, DRIVE_LOSS = 3e-9, 1e-7
+#: A sine from a table of 10^3 points a period: h^2/8 of the second derivative.
+DRIVE_TABLE = 2e-4
+#: Terminal speeds after 60 relaxation times.
+DRIVE_STEADY = 1e-8
+#: Q next to V = 0, a share of 1e-9 of the time away from it.
+DRIVE_TURN = 1e-6
+#: Inertia 1e9 in place of an infinite one.
+DRIVE_HEAVY = 1e-7

@@ -3,7 +3,7 @@
     python -m pipeline.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
 Parts: work-precision, own-parameters, fixed-scene, agreement, law, tables, scaling, cold-start, first-calls, skips,
-series; default: all.  Sizes are in [bench] of the configuration, those of --quick in [bench.PART.quick].  Times are of
+series, driven; default: all.  Sizes are in [bench] of the configuration, those of --quick in [bench.PART.quick].  Times are of
 this machine at this moment, medians of alternating runs on one core: run it with nothing else running.  A
 peer that is not installed is skipped with a printed reason (pipeline/peers/README.md).
 """
@@ -36,6 +36,7 @@ PARTS = {
     "first-calls": ("cold_start", "first_calls"),
     "skips": ("skips", "skips"),
     "series": ("series", "series"),
+    "driven": ("driven", "driven"),
 }
 
 

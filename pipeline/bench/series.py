@@ -40,10 +40,9 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         )
     scenes |= {f"{n} modes, a material each": paper.replace(material=spread(random, n, start.shape[1])) for n in EACH}
     for name, scene in scenes.items():
-        if scene.like_bodies:
-            calls[name, "motion"] = lambda scene=scene: vr.ensemble(
-                scene, *start, t, rtol=sizes["rtol"], fields=("V", "omega", "x"), method="integrate", threads=1
-            )
+        calls[name, "motion"] = lambda scene=scene: vr.ensemble(
+            scene, *start, t, rtol=sizes["rtol"], fields=("V", "omega", "x"), method="integrate", threads=1
+        )
     for call in calls.values():
         call()
     found = rounds(calls, sizes["repeats"])

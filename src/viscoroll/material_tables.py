@@ -76,6 +76,22 @@ def _series_of(modes: Modes) -> Any:
     return Series(modes.a, modes.b, e, t, np.sqrt(strengths) / modes.gap)
 
 
+def unsteadiness(given: Any, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
+    """N of M = M(V) + N V' at every zeta; ``given``: a series, or alphas, one or one each."""
+    from .kernels.law.series import Series
+    from .kernels.law.unsteady import unsteady_loop
+
+    found, zeta, alpha = np.empty(zeta.size), zeta.view(), np.empty(0)
+    if isinstance(given, Prony):
+        known = series(given)
+    else:
+        alpha = np.atleast_1d(given).view()
+        known = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.ones((1, 1)))
+    zeta.flags.writeable = alpha.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
+    unsteady_loop(known, alpha, zeta, found, 0, found.size)
+    return found
+
+
 def _bins(fastest: float, slowest: float) -> tuple[int, int]:
     """First bin of a table, and that behind its last, from the highest rate of relaxation and the least of creep."""
     from .kernels.numerics.bins import bin_number

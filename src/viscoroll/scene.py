@@ -138,7 +138,8 @@ class Scene:
 
     def _validity(self, V: ArrayLike, slow: Assumption, bodies: Assumption, plane: str) -> Validity:
         speed = checked("V", V)
-        broadcast_shape(V=speed, **{f.name: np.asarray(getattr(self, f.name)) for f in fields(self)[:-1]})
+        given = {name: np.asarray(getattr(self, name)) for name in ("alpha", "kappa", "gamma", "j")}
+        broadcast_shape(V=speed, **given)
         if isinstance(self.material, PronyArray):
             raise ParameterError("material", repr(self.material), "one material, as material[i]")
         material, unit = self.in_own_time()

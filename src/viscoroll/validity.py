@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .material_tables import record, series
+from .material_tables import record, unsteadiness
 from .prony import Prony
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
@@ -98,7 +98,7 @@ def _largest_N(material: float | Prony, zeta: float) -> float:
     """The largest |N| from rest to the speed of this zeta."""
     if material == 1.0:
         return 0.0
-    places, N, largest = _unsteadiness(material)
+    places, N, largest = _over_speeds(material)
     n = int(np.searchsorted(places, zeta))
     if n == 0 or n == places.size:
         return float(largest[min(n, places.size - 1)])
@@ -106,20 +106,12 @@ def _largest_N(material: float | Prony, zeta: float) -> float:
 
 
 @lru_cache(maxsize=64)
-def _unsteadiness(material: float | Prony) -> tuple[NDArray[np.float64], ...]:
+def _over_speeds(material: float | Prony) -> tuple[NDArray[np.float64], ...]:
     """zeta, upward; N there; and the largest |N| from there on."""
-    from .kernels.law.material import Own
-    from .kernels.law.unsteady import unsteady_loop
-
-    known: Any
-    if isinstance(material, Prony):
-        known, shortest, longest = series(material), material.tau[-1], material.T[0]
-    else:
-        known, shortest, longest = Own(np.array([material])), 1.0 / material, 1.0
+    shortest, longest = (material.tau[-1], material.T[0]) if isinstance(material, Prony) else (1.0 / material, 1.0)
     count = math.ceil(_STEPS * (math.log2(longest / shortest) + _FAST_OCTAVES + _SLOW_OCTAVES))
     places = np.append(shortest * 2.0 ** (np.arange(count) / _STEPS - _FAST_OCTAVES), 1e18 * longest)  # at last -S_E
-    N = np.empty(places.size)
-    unsteady_loop(known, places, N, 0, places.size)
+    N = unsteadiness(material, places)
     return places, N, np.maximum.accumulate(abs(N)[::-1])[::-1]
 
 

@@ -27,6 +27,13 @@ vr.steady(scene.replace(mu=np.array([0.1, 0.2])), force=0.01, torque=vr.Feedback
 pair = vr.Bodies(vr.Prony([1.0], [1.0]), vr.Prony([2.0], [0.1]), 0.4)
 vr.steady(vr.Scene(material=pair, kappa=3.0, mu=0.1), V=V[:3], force=0.0)
 vr.humps(scene)
+two = vr.Bodies(vr.Prony([3.0], [2.0]), vr.Prony([1.0, 4.0, 2.0], [1.0, 0.1, 1e-3]), 0.2)
+for law in (two, two.total):
+    each = vr.Scene(material=law, kappa=9.0, mu=0.2)
+    vr.contact(each, V[:9], omega=0.1, slopes=True)
+    vr.contact(each, V, omega=0.1, fields=("M_half_space", "Q", "N"))
+    each.validity(V[:3])
+vr.contact(scene, V, delta=0.0, fields="N")
 """
 CODE = f"""
 import importlib

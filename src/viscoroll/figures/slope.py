@@ -77,8 +77,9 @@ def slope_portrait(scene: Scene = PAPER_SECTION_5, slope: float = np.radians(3.0
 
 
 def _arrow(axes: Any, motion: Motion, plane: tuple[float, float]) -> None:
-    """An arrowhead halfway along what the plane shows of a motion."""
+    """An arrowhead halfway along what the plane shows of a motion, or of its slip where it begins with that."""
     inside = (motion.V > plane[0]) & (motion.V < plane[1])
+    inside &= motion.regime == motion.regime[0]
     V, omega = motion.V[inside], motion.omega[inside]
     way = np.append(0.0, np.cumsum(np.hypot(np.diff(V), np.diff(omega))))
     ends = [[np.interp(share * way[-1], way, along) for along in (V, omega)] for share in (0.45, 0.5)]

@@ -52,7 +52,7 @@ class Rates(NamedTuple):
 def stick_rates(s, b, load, frame, scene):
     """Partial slip."""
     material, kappa, mu, _ = scene
-    sign = frame.sigma
+    sign, from_rest = frame.sigma, max(s, 0.0)
     s = max(s, TINY)
     zeta, size = 1.0 / s, sign * b
     g, h, dg, dh, m_half_space, m_cylinder = at_rolling(zeta, material)
@@ -61,7 +61,7 @@ def stick_rates(s, b, load, frame, scene):
     phi, square, slope_F = rise_F * s, 1.0 + 2.0 * h * s, 1.0 + dg_eta
     length = 0.5 / (kappa * np.sqrt(square))
     spread = square / (1.0 + h * s + dh)  # 1/(lam^2 U)
-    V, delta = s * length, mu * length * sign * phi
+    V, delta = from_rest * length, mu * length * sign * phi
     omega = V * (1.0 + delta)
     force, _, torque = acting(V, omega, load, frame)
     Q, M_half_space, M_cylinder = sign * mu * (rise_H * s) / square, V * m_half_space, V * m_cylinder

@@ -145,10 +145,10 @@ def _steady(z, material):
     p = r * k
     whole = 1.0 / (1.0 + p)
     share = c * whole
-    h, dr = share * r, alpha * s
+    h = share * r
     lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
     m = share * (lam2 * ratio_i2(x, r) + p)
-    return share * p, h, share * whole * (dr * k + r * dk), share * whole * (dr - r * r * dk), m
+    return share * p, h, share * whole * (alpha * s * k + r * dk), share * whole * (alpha * s - r * r * dk), m
 
 
 @kernel(inline=True)

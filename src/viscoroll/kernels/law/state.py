@@ -191,8 +191,9 @@ def contact_state_at(solved, root, material, state, need, out):
 def _moment(V, kappa, solved, material, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18), and the parts of two bodies in them."""
     lam, zeta, g, h, _, _ = solved
+    c = material.T_mean
     if zeta > FAR:
-        out[M], out[DM_DV] = material.T_mean * V, material.T_mean
+        out[M], out[DM_DV] = c * V, c
     elif zeta < NEAR:
         out[M], out[DM_DV] = _over_zeta(V, kappa, lam) * fast_limit(zeta, h, material)[1], 0.0
     elif not need_slopes:

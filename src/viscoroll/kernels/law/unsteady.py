@@ -23,11 +23,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..bessel.ratios import asymptotic_series, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
-from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics.linear import factorize, substitute
-from .material import Own
-from .series import Series
 
 #: from here on r and k by their asymptotic series, whose slopes keep their digits
 _FAR = 64.0
@@ -258,40 +255,18 @@ def unsteady(z, series, work):
     return _between(z, T_mean, series, work)
 
 
-@kernel(allocates=True)
-def _as_given(given):
-    return given
-
-
-@kernel(allocates=True)
-def _of_one_mode(given):
-    """Room for the series of an alpha."""
-    return Series(np.empty(1), np.ones(1), np.empty(1), np.empty(1), np.ones((1, 1)))
-
-
 @kernel(inline=True)
-def _stays(given, n, series):
-    """One series for all."""
-    return series.a.size > 0
-
-
-@kernel(inline=True)
-def _set_alpha(given, n, series):
-    """The series of alpha number n; whether it has a mode."""
-    alpha = given.alpha[min(n, given.alpha.size - 1)]
+def _set_alpha(alpha, series):
+    """Make a series of one mode that of an alpha."""
     series.a[0] = alpha
     series.e[0] = series.t[0] = np.sqrt((alpha - 1.0) / alpha)
-    return alpha > 1.0
-
-
-_series_of = by_record(0, (Series, _as_given), (Own, _of_one_mode))
-_set = by_record(0, (Series, _stays), (Own, _set_alpha))
 
 
 @kernel(allocates=True, seconds=2)
-def unsteady_loop(given, zeta, out, start, stop):
-    """N at an array of zeta; ``given``: an alpha each, or the modes of one material."""
-    series = _series_of(given)
+def unsteady_loop(series, alpha, zeta, out, start, stop):
+    """N at an array of zeta; ``alpha``: none, or one each, of which ``series`` is then the one mode."""
     work = room(series)
     for n in range(start, stop):
-        out[n] = unsteady(zeta[n], series, work) if _set(given, n, series) else 0.0
+        if alpha.size > 0:
+            _set_alpha(alpha[min(n, alpha.size - 1)], series)
+        out[n] = unsteady(zeta[n], series, work) if series.e[0] > 0.0 else 0.0

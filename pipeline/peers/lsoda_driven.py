@@ -1,0 +1,59 @@
+"""LSODA, compiled, on Eq. (22) with a force and a torque, in (V, omega) and with the law's own saturation: no events.
+
+What a user would do with the contact law and a good general integrator.  By numbalsoda (C++), called from compiled
+code; there is no such peer where that is not installed.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.util import find_spec
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from viscoroll.kernels.law.material import standard
+from viscoroll.kernels.law.state import ROWS, M, Need, Q, State, contact_state
+
+from ..bench.jit import compiled
+
+INSTALLED = bool(find_spec("numbalsoda"))
+#: share of rtol that the absolute tolerance is
+ATOL_SHARE = 1e-3
+_MOST_STEPS = 20_000_000
+_NEED = Need(True, True, False, True, False)
+
+
+@compiled
+def _rates(V, omega, t, par, out, du):
+    """Rates over tau at f = par[4] + par[5] t and q = par[6] + par[7] t; counts the call in par[8]."""
+    contact_state(standard(par[0]), State(par[1], par[2], V, omega, True), _NEED, out)
+    f, q = par[4] + par[5] * t, par[6] + par[7] * t
+    du[0] = out[Q] - 0.5 * out[M] + f
+    du[1] = (q - out[Q] - 0.5 * out[M]) / par[3]
+    par[8] += 1.0
+
+
+@cache
+def _compiled():
+    from numbalsoda import lsoda, lsoda_sig
+
+    @numba.cfunc(lsoda_sig, cache=True)
+    def rates(t, u, du, p):
+        y = numba.carray(u, 2)
+        _rates(y[0], y[1], t, numba.carray(p, 9), np.empty(len(ROWS)), numba.carray(du, 2))
+
+    @numba.njit(nogil=True)
+    def one(address, start, par, t, rtol, atol):
+        return lsoda(address, start, t, par, rtol, atol, _MOST_STEPS)
+
+    return rates.address, one
+
+
+def roll(par: NDArray, start: NDArray, t: NDArray, rtol: float) -> tuple[NDArray, int]:
+    """((V, omega) at ``t`` or NaN, evaluations) of one motion; ``par``: alpha, kappa, mu, j, f, f', q, q', gamma = 1."""
+    address, one = _compiled()
+    given = np.append(par, 0.0)
+    found, good = one(address, start.copy(), given, t, rtol, ATOL_SHARE * rtol)
+    return (found if good else np.full((t.size, 2), np.nan)), int(given[-1])

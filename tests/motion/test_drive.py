@@ -1,0 +1,353 @@
+"""Motions under force, torque, slope, brake and prescribed speeds; motions of bodies that differ."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import tolerances as tol
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import viscoroll as vr
+
+SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
+ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+T = np.linspace(0.0, 8.0, 33)
+BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
+PAIR = vr.Bodies(cylinder=BROAD, half_space=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
+#: starts and drives that meet every regime: wheel spin and grip again, lock-up, V = 0 in stick and in slip, runaway
+CASES = {
+    "wheel spin and grip again": (0.0, 0.0, {"torque": ([0.0, 3.0, 3.0, 4.5, 4.5], [0.0, 0.375, 0.375, 0.075, 0.0])}),
+    "up a slope and back": (0.3, 0.3, {"force": -0.05}),
+    "down a slope": (0.0, 0.0, {"force": 0.05}),
+    "turned in stick": (0.5, 0.5, {"torque": -0.2}),
+    "locked up and turned": (1.0, 1.0, {"torque": -0.6}),
+    "sliding under both": (1.0, -1.0, {"force": 0.1, "torque": ([0.0, 8.0], [0.05, 0.13])}),
+    "sliding from rest": (0.0, 1e-6, {"torque": ([0.0, 8.0], [0.5, -1.1])}),
+    "runaway": (2.0, 2.0, {"force": 0.2}),
+    "speed controller": (0.2, 0.2, {"torque": vr.Feedback(0.3, V=-0.5)}),
+}
+
+
+def kinetic(m, scene=None) -> np.ndarray:
+    j = (scene or m.scene).j
+    return 0.5 * (m.V**2 + j * m.omega**2)
+
+
+def fastest(m) -> np.ndarray:
+    return np.maximum.accumulate(np.maximum(np.abs(m.V), np.abs(m.omega)))
+
+
+def balance(m) -> float:
+    """What is missing in the balance of energy, over the largest of its terms."""
+    energy, work = kinetic(m), m.work_force + m.work_torque
+    lost = m.brake_loss + m.slip_loss + m.rolling_loss
+    scale = max(np.abs(part).max() for part in (energy, work, lost))
+    return float(np.abs(work - (energy - energy[0]) - lost).max() / scale)
+
+
+def off(one, other) -> float:
+    """Largest difference of V and omega, over the largest speed so far."""
+    scale = np.maximum(fastest(other), np.finfo(float).tiny)
+    return float(np.max(np.maximum(np.abs(one.V - other.V), np.abs(one.omega - other.omega)) / scale))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_against_a_general_method(name):
+    """Another way to the same motion: Radau of SciPy on (V, omega) and the contact law, with no events."""
+    V0, omega0, drive = CASES[name]
+    m = vr.roll(SCENE, V0, omega0, T, 1e-9, **drive)
+
+    def at(given, t, V, omega):
+        if isinstance(given, vr.Feedback):
+            return given.value + given.V * V + given.omega * omega
+        return np.interp(t, *given) if isinstance(given, tuple) else given
+
+    def rates(t, state):
+        V, omega = state
+        c = vr.contact(SCENE, V, omega=omega, fields=("Q", "M"))
+        f, q = (at(drive.get(name, 0.0), t, V, omega) for name in ("force", "torque"))
+        return c.Q - 0.5 * c.M + f, (q - c.Q - 0.5 * c.M) / SCENE.j
+
+    times = drive.get("torque") if isinstance(drive.get("torque"), tuple) else ([0.0, T[-1]], None)
+    found, start = [[V0, omega0]], [V0, omega0]
+    for first, last in zip(times[0], times[0][1:], strict=False):  # no step across a jump
+        inside = T[(first < T) & (T <= last)]
+        if last > first and inside.size:
+            solved = solve_ivp(rates, (first, last), start, "Radau", inside, rtol=1e-7, atol=1e-9)
+            found.extend(solved.y.T)
+            start = solved.y[:, -1] if inside[-1] == last else start
+    if len(found) < T.size:
+        solved = solve_ivp(rates, (times[0][-1], T[-1]), start, "Radau", T[len(found) :], rtol=1e-7, atol=1e-9)
+        found.extend(solved.y.T)
+    V, omega = np.array(found).T
+    assert np.allclose(m.V, V, rtol=0.0, atol=tol.DRIVE_PEER)
+    assert np.allclose(m.omega, omega, rtol=0.0, atol=tol.DRIVE_PEER)
+
+
+@pytest.mark.parametrize("rtol", (1e-4, 1e-6, 1e-8))
+def test_tolerance_and_energy(rtol):
+    """V and omega within 30 rtol of the largest speed so far; works are energy gained and lost."""
+    for name, (V0, omega0, drive) in CASES.items():
+        tight = vr.roll(SCENE, V0, omega0, T, 1e-11, **drive)
+        m = vr.roll(SCENE, V0, omega0, T, rtol, **drive)
+        assert off(m, tight) <= 30.0 * rtol, name
+        assert balance(m) <= 30.0 * rtol, name
+        assert balance(tight) <= tol.DRIVE_BALANCE, name
+        assert [s.regime for s in m.switches] == [s.regime for s in tight.switches], name
+        for one, other in zip(m.switches, tight.switches, strict=True):
+            assert one.t == pytest.approx(other.t, rel=30.0 * rtol, abs=30.0 * rtol), name
+
+
+def test_random_motions_keep_their_tolerance():
+    """Random scenes, starts and drives at 1e-6 against 1e-10."""
+    rng, worst = np.random.default_rng(5), []
+    for _ in range(200):
+        scene = vr.Scene(
+            1.0 + 10.0 ** rng.uniform(-1.0, 2.0), 10.0 ** rng.uniform(0.3, 2.0), 10.0 ** rng.uniform(-1.7, 0.0),
+            1.0, rng.uniform(0.2, 1.2),
+        )  # fmt: skip
+        V0, omega0 = rng.normal(size=2) * 10.0 ** rng.uniform(-2.0, 0.5) * (rng.random() < 0.7)
+        times, size = np.array([0.0, 0.4, 0.4, 1.0]) * 10.0 ** rng.uniform(0.0, 2.0), 2.0 * scene.mu
+        force, torque = rng.normal(size=(2, 4)) * size * 10.0 ** rng.uniform(-2.0, 0.0)
+        drive = {"force": (times, force * (rng.random() < 0.7)), "torque": (times, torque)}
+        t = np.linspace(0.0, times[-1], 25)
+        m, tight = (vr.roll(scene, V0, omega0, t, rtol, **drive) for rtol in (1e-6, 1e-10))
+        assert tight.status == vr.MotionStatus.DONE
+        worst.append(off(m, tight) / 1e-6)
+        assert balance(tight) <= tol.DRIVE_BALANCE
+    assert max(worst) <= 30.0
+    assert np.mean(np.array(worst) <= 3.0) >= 0.99
+
+
+def test_undriven_is_the_free_motion():
+    for V0, omega0 in ((1.5, 0.5), (1.0, -2.0), (0.3, 0.3)):
+        free = vr.roll(SCENE, V0, omega0, T, 1e-10)
+        m = vr.roll(SCENE, V0, omega0, T, 1e-10, force=([0.0], [0.0]))
+        assert off(m, free) <= tol.DRIVE_FREE
+        assert np.allclose(m.x, free.x, rtol=tol.DRIVE_FREE)
+        assert np.allclose(m.angle, free.angle, rtol=tol.DRIVE_FREE)
+        assert np.allclose(m.slip_loss, free.slip_loss, rtol=tol.DRIVE_LOSS)
+        assert np.allclose(m.rolling_loss, free.rolling_loss, rtol=tol.DRIVE_LOSS, atol=tol.DRIVE_LOSS)
+        assert not (free.force.any() or free.work_torque.any() or free.brake_loss.any())
+        assert m.onset_time == pytest.approx(free.onset_time, rel=tol.DRIVE_FREE, nan_ok=True)
+
+
+def test_mirror_symmetry():
+    """(V, omega, f, q) -> minus all: the same bits."""
+    for V0, omega0, drive in CASES.values():
+        mirrored = {}
+        for name, given in drive.items():
+            if isinstance(given, vr.Feedback):
+                mirrored[name] = vr.Feedback(-given.value, V=given.V, omega=given.omega)
+            else:
+                mirrored[name] = (given[0], [-v for v in given[1]]) if isinstance(given, tuple) else -given
+        m, other = vr.roll(SCENE, V0, omega0, T, **drive), vr.roll(SCENE, -V0, -omega0, T, **mirrored)
+        for field in ("V", "omega", "x", "angle", "force", "torque"):
+            assert np.array_equal(getattr(m, field), -getattr(other, field)), field
+        assert np.array_equal(m.delta, other.delta)
+
+
+def test_how_a_schedule_is_written():
+    """A number is a schedule of one piece; one cut in pieces, and a callable, are the same drive."""
+    m = vr.roll(ROLLER, 0.2, 0.2, T, torque=0.05)
+    piece = vr.roll(ROLLER, 0.2, 0.2, T, torque=([0.0], [0.05]))
+    assert np.array_equal(m.V, piece.V)
+    ramp = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 8.0], [0.0, 0.08]))
+    cut = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08]))
+    called = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=lambda t: 0.01 * t)
+    assert off(cut, ramp) <= 30e-9
+    assert off(called, ramp) <= 30e-9
+    twice = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
+    first = vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=0.01)
+    assert (
+        off(first, vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=([0.0, 2.0, 2.0], [0.01, 0.01, 0.03]))) <= 1e-9
+    )
+    assert twice.torque[T == 2.0] == 0.03  # the later side
+
+
+def test_a_sine():
+    """Ten periods, fitted to a tenth of rtol, against a table of 10^4 points."""
+    t = np.linspace(0.0, 10.0, 21)
+    m = vr.roll(ROLLER, 0.0, 0.0, t, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
+    assert m.drive_error <= 1e-10
+    grid = np.linspace(0.0, 10.0, 10_001)
+    table = vr.roll(ROLLER, 0.0, 0.0, t, torque=(grid, 0.1 * np.sin(2.0 * np.pi * grid)))
+    assert np.abs(m.V - table.V).max() <= tol.DRIVE_TABLE * np.abs(m.V).max()
+    assert m.reversals.size >= 1
+
+
+def test_settles_where_steady_says():
+    slope = math.radians(1.0)
+    s = vr.steady(ROLLER, slope=slope)
+    m = vr.roll(ROLLER, 0.0, 0.0, [400.0], 1e-10, slope=slope)
+    assert m.V[0] == pytest.approx(s.V[s.stable][0], rel=tol.DRIVE_STEADY)
+    assert m.omega[0] == pytest.approx(s.omega[s.stable][0], rel=tol.DRIVE_STEADY)
+    assert m.scene.kappa == ROLLER.kappa / math.sqrt(math.cos(slope))
+    assert m.force[0] == pytest.approx(math.tan(slope), rel=1e-15)
+
+
+def test_saddle_repels_and_critical_slope_brackets_runaway():
+    s = vr.steady(ROLLER, force=0.02)
+    saddle = s.V[~s.stable][0]
+    for factor, settles in ((0.98, True), (1.02, False)):
+        m = vr.roll(ROLLER, factor * saddle, factor * saddle, [2000.0], force=0.02)
+        assert (m.V[0] == pytest.approx(s.V[s.stable][0], rel=1e-4)) == settles
+        assert settles or m.V[0] > 2.0 * saddle
+    humps = vr.humps(ROLLER)
+    top = humps.M.max()
+    for factor, settles in ((0.99, True), (1.01, False)):
+        m = vr.roll(ROLLER, 0.0, 0.0, [4000.0], force=factor * top)
+        assert (m.V[0] < humps.V[humps.M.argmax()]) == settles
+
+
+def test_jump_of_traction_where_V_passes_0_in_stick():
+    """Q jumps by -2 j |g| d/(1 + j)^2 to leading order (Q algebraic at V = 0); speeds only kink."""
+    q, j, kappa, mu = -0.28, SCENE.j, SCENE.kappa, SCENE.mu
+    m = vr.roll(SCENE, 0.5, 0.5, 8.0, 1e-11, torque=q)
+    (turn,) = m.reversals
+    near = m.at([turn * (1.0 - 1e-9), turn * (1.0 + 1e-9)])
+    c = near.contact(fields=("Q",))
+
+    def traction(side):
+        """(1 + j) Q + j s d (Q + f) = q - j f, Q = 4 kappa d (1 - kappa |d|/mu)."""
+        law = lambda d: 4.0 * kappa * d * (1.0 - kappa * abs(d) / mu)  # noqa: E731
+        return law(brentq(lambda d: (1.0 + j) * law(d) + j * side * d * law(d) - q, -mu / 2 / kappa, mu / 2 / kappa))
+
+    assert c.Q == pytest.approx([traction(1.0), traction(-1.0)], rel=tol.DRIVE_TURN)
+
+
+def test_prescribed_omega_is_infinite_inertia():
+    schedule = ([0.0, 3.0, 8.0], [0.2, 1.0, -0.4])
+    m = vr.roll(ROLLER, 0.2, None, T, 1e-10, omega=schedule)
+    assert np.allclose(m.omega, np.interp(T, *schedule), rtol=0.0, atol=1e-10)
+    heavy, slopes = ROLLER.replace(j=1e9), (0.8 / 3.0, -1.4 / 5.0)
+    torque = ([0.0, 3.0, 3.0], [1e9 * slopes[0] / ROLLER.gamma] * 2 + [1e9 * slopes[1] / ROLLER.gamma])
+    other = vr.roll(heavy, 0.2, 0.2, T, 1e-10, torque=torque)
+    assert np.allclose(m.V, other.V, rtol=0.0, atol=tol.DRIVE_HEAVY)
+    assert balance(m) <= tol.DRIVE_BALANCE
+
+
+def test_towed_and_what_it_needs():
+    """Towed at a speed: the force is V'/gamma - Q + M/2; freely Q = -M/2."""
+    m = vr.roll(ROLLER, None, 0.3, np.linspace(0.0, 200.0, 5), 1e-9, V=0.3)
+    s = vr.steady(ROLLER, V=0.3, torque=0.0)
+    assert m.force[-1] == pytest.approx(float(np.ravel(s.M)[0]), rel=1e-7)
+    c = m.contact(fields=("Q", "M"))
+    assert c.Q[-1] == pytest.approx(-0.5 * c.M[-1], rel=1e-7)
+    assert balance(m) <= 1e-7
+
+
+def test_brake_holds_slips_and_lets_go():
+    """Locked while |Q + M/2| <= B, held at rest while |f| <= mu and |f + q| <= B, and away when the force is more."""
+    m = vr.roll(ROLLER, 0.5, 0.5, np.linspace(0.0, 10.0, 41), brake=0.5)
+    assert [s.regime for s in m.switches] == ["full slip", "locked", "held"]
+    assert m.omega[m.regime == 3].any() == False and (m.V[m.regime == 3] > 0.0).all()  # noqa: E712
+    assert m.V[-1] == m.omega[-1] == 0.0
+    assert balance(m) <= 1e-7
+    slides = m.switches[1].t
+    c = m.at([slides * 1.01]).contact(fields=("Q", "M"))
+    assert abs(c.Q[0] + 0.5 * c.M[0]) <= 0.5
+    force = ([0.0, 10.0], [0.0, 0.2])
+    away = vr.roll(ROLLER, 0.0, 0.0, np.linspace(0.0, 10.0, 41), force=force, brake=0.1)
+    assert away.switches[0].t == pytest.approx(5.0, rel=1e-6)  # where the force exceeds the brake
+    assert not away.V[away.t < 5.0].any()
+    assert away.V[-1] > 0.0
+
+
+def test_bodies_that_differ():
+    """Their own parts of M: energy closes; swapped bodies swap the parts; a rigid base leaves M to the cylinder."""
+    scene = vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+    t = np.geomspace(0.1, 300.0, 20)
+    t = np.append(0.0, t)
+    m = vr.roll(scene, 1.0, 0.4, t, 1e-9)
+    assert balance(m) <= 1e-7
+    c = m.contact(fields=("M", "M_half_space", "M_cylinder"))
+    assert np.allclose(c.M_half_space + c.M_cylinder, c.M, rtol=1e-13)
+    like = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5)
+    one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, 1e-10) for given in (like, BROAD))
+    assert np.array_equal(one.V, two.V)
+    # on a plate of its own share, by the kernel of two bodies
+    nearly = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5 + 1e-12)
+    three = vr.roll(scene.replace(material=nearly), 1.0, 0.4, t, 1e-10)
+    assert off(three, two) <= tol.DRIVE_FREE
+    e = vr.ensemble(scene, [1.0, 0.4], [0.4, 0.4], t, rtol=1e-9)
+    assert np.array_equal(e.V[0], m.V)
+    swapped = vr.Bodies(cylinder=PAIR.half_space, half_space=PAIR.cylinder, share=1.0 - PAIR.share)
+    d = vr.contact(scene.replace(material=swapped), m.V, omega=m.omega, fields=("M_half_space", "M_cylinder"))
+    assert np.allclose(d.M_half_space, c.M_cylinder, rtol=1e-12)
+
+
+def test_ten_humps_run_to_the_end():
+    modes = vr.Prony(E=[0.5 * 2.0**n for n in range(10)], tau=[100.0**-n for n in range(10)])
+    scene = vr.Scene(material=modes, kappa=10.0, mu=0.2, gamma=1.0, j=0.5)
+    m = vr.roll(scene, 1e6, 1e6, np.geomspace(1.0, 1e8, 30), 1e-8, force=1e-3)
+    assert m.status == vr.MotionStatus.DONE
+    assert np.isfinite(m.V).all()
+
+
+def test_ensemble_is_roll():
+    """Numbers and schedules each: bit for bit; zeros without a drive."""
+    q = np.linspace(-0.2, 0.2, 7)
+    e = vr.ensemble(ROLLER, 0.1, 0.1, T, torque=([0.0, 8.0], np.stack([q, 0.5 * q], axis=1)), force=0.01, threads=1)
+    two = vr.ensemble(ROLLER, 0.1, 0.1, T, torque=([0.0, 8.0], np.stack([q, 0.5 * q], axis=1)), force=0.01, threads=2)
+    assert np.array_equal(e.V, two.V)
+    for n in (0, 4):
+        m = vr.roll(ROLLER, 0.1, 0.1, T, torque=([0.0, 8.0], [q[n], 0.5 * q[n]]), force=0.01)
+        assert np.array_equal(e.V[n], m.V) and np.array_equal(e.x[n], m.x)
+    free = vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields=("V", "force", "brake_loss"))
+    assert free.force.shape == free.V.shape and not free.force.any()
+    tilted = vr.ensemble(ROLLER, 0.0, 0.0, T, slope=[0.01, 0.02])
+    assert np.array_equal(tilted.V[1], vr.roll(ROLLER, 0.0, 0.0, T, slope=0.02).V)
+
+
+REFUSALS = {
+    "both": (dict(V=1.0, omega=1.0), "V, omega given"),
+    "found": (dict(omega=1.0, torque=0.1), "torque"),
+    "start": (dict(omega0=2.0, omega=1.0), "omega0 = 2"),
+    "jump": (dict(omega0=None, omega=([0.0, 1.0, 1.0], [1.0, 1.0, 2.0])), "a jump at t = 1"),
+    "falls": (dict(force=([0.0, 2.0, 1.0], [0.0, 0.0, 0.0])), "times of force"),
+    "thrice": (dict(force=([0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 1.0, 2.0])), "there once, or twice"),
+    "shapes": (dict(force=([0.0, 1.0], [0.0, 0.0, 1.0])), "values (k,)"),
+    "steep": (dict(slope=1.6), "slope"),
+    "nan": (dict(torque=lambda t: math.nan), "torque(t)"),
+    "callable": (dict(torque=lambda t: float(t > 0.3)), "jumps near t = 0.3"),
+    "rest": (dict(force=0.1, rest=1e-3), "rest"),
+    "brake": (dict(brake=-1.0), "brake"),
+    "no start": (dict(V0=None), "V0"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSALS)
+def test_refusals(name):
+    given, words = REFUSALS[name]
+    start = {"V0": 1.0, "omega0": 1.0} | {key: given[key] for key in ("V0", "omega0") if key in given}
+    rest = {key: value for key, value in given.items() if key not in start}
+    with pytest.raises(vr.ParameterError) as told:
+        vr.roll(ROLLER, start["V0"], start["omega0"], T, **rest)
+    assert words in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+def test_flow_is_refused_and_exceptions_pass():
+    with pytest.raises(vr.ParameterError, match="driven"):
+        vr.ensemble(ROLLER, 1.0, 1.0, T, force=0.1, method="flow")
+
+    def fails(t):
+        raise RuntimeError("sensor")
+
+    with pytest.raises(RuntimeError, match="sensor"):
+        vr.roll(ROLLER, 1.0, 1.0, T, force=fails)
+
+
+def test_small_beginnings():
+    """Rest stays while nothing acts, and ends where a ramp begins; a push against friction below its limit moves."""
+    still = vr.roll(ROLLER, 0.0, 0.0, T, torque=([0.0, 4.0, 4.0, 8.0], [0.0, 0.0, 0.0, 0.1]))
+    assert not still.V[T <= 4.0].any() and (still.V[T > 4.0] > 0.0).all()
+    assert (still.regime[T < 4.0] == 2).all()
+    pushed = vr.roll(ROLLER, 0.0, 0.0, T, force=1e-6)
+    assert (pushed.V[1:] > 0.0).all()
+    balanced = vr.roll(ROLLER, 0.0, 0.0, T, force=-0.1, torque=0.1)
+    assert not balanced.V.any() and (balanced.regime == 2).all()
