@@ -42,7 +42,8 @@ def slope_portrait(scene: Scene = PAPER_SECTION_5, slope: float = np.radians(3.0
     plane = -0.5 * saddle, 2.0 * saddle
     V = np.linspace(*plane, 801)
     half = contact(scene, V, delta=0.0, fields="delta_star").delta_star * np.abs(V)
-    border = separatrix(scene, slope, np.linspace(*plane, _POINTS))
+    across = np.linspace(*plane, _POINTS)
+    border = separatrix(scene, slope, across)
     motions, slow = _motions(scene, slope, plane), _slow_manifold(scene, slope, saddle, plane)
     angle = f"${np.degrees(slope):.3g}^\\circ$"
     title = f"A slope of {angle} for {describe(scene, 'alpha', 'kappa', 'mu', 'j')}"
@@ -61,7 +62,7 @@ def slope_portrait(scene: Scene = PAPER_SECTION_5, slope: float = np.radians(3.0
             axes.plot(motion.V, height(motion.V, motion.omega), **_MOTION)
         for motion in slow:
             axes.plot(motion.V, height(motion.V, motion.omega), **_SLOW)
-        axes.plot(border[0], height(*border), **_SEPARATRIX)
+        axes.plot(border, height(border, across), **_SEPARATRIX)
         for at, face in zip((0, 1), ("black", "white"), strict=True):
             point = found.V[at], height(found.V[at], found.omega[at])
             axes.plot(*point, "o", color="black", markerfacecolor=face, markersize=6, zorder=4)
@@ -103,8 +104,8 @@ def _legend(node: float, saddle: float) -> list[Any]:
     return shades + [Line2D([], [], label=text, **style) for text, style in lines.items()]
 
 
-def separatrix(scene: Scene, slope: float, omega: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-    """(V, omega) of starts that end at the saddle: from less V motions run to the node, from more they run away."""
+def separatrix(scene: Scene, slope: float, omega: NDArray[np.float64]) -> NDArray[np.float64]:
+    """V of the starts that end at the saddle: from less V motions run to the node, from more they run away."""
     found = steady(scene, slope=slope)
     V2, omega2 = found.V[1], found.omega[1]
     rate = found.eigenvalues[1].real.max() * scene.gamma * np.cos(slope)
@@ -113,9 +114,10 @@ def separatrix(scene: Scene, slope: float, omega: NDArray[np.float64]) -> tuple[
     low, high = guess - V2, guess + V2
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        runs_away = ensemble(scene, middle, omega, _FOLDINGS / rate, slope=slope, rtol=1e-6).V[:, 0] > V2
+        end = ensemble(scene, middle, omega, _FOLDINGS / rate, slope=slope, rtol=1e-6, fields=("V",))
+        runs_away = np.ravel(np.asarray(end.V)) > V2
         low, high = np.where(runs_away, low, middle), np.where(runs_away, middle, high)
-    return 0.5 * (low + high), omega
+    return 0.5 * (low + high)
 
 
 def _motions(scene: Scene, slope: float, plane: tuple[float, float]) -> list[Motion]:

@@ -22,7 +22,8 @@ from .single import Motion, Switch, roll
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..cylinder import Cylinder
+#: of ``viscoroll.cylinder``, which stands above this module
+Cylinder = Any
 
 
 class Unit(NamedTuple):
