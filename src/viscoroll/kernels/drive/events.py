@@ -12,7 +12,7 @@ from .solve import EVENT, SPEED, Panel, panel_error, slope_at, solve
 #: row of the interpolant of an event's function, behind those of outputs
 _ROW = 9
 #: panels solved at most until one ends on the event, and how closely, as shares of the tolerance
-_CUTS, _ON, _NEWTON = 8, 1e-4, 1e-5
+_CUTS, _ON, _NEWTON = 8, 1e-2, 1e-3
 #: error over the tolerance from which on a panel is given up
 _HOPELESS = 30.0
 #: the least that rounding leaves, over what the function of an event is made of

@@ -15,6 +15,8 @@ from .solve import NEWTON, RATE, S_RATE, SECOND, SPEED, Panel, S, panel_error, p
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
 _FIRST, _RELAXED = 0.1, 3.0
+#: in full slip s may change by this, 1/zeta that divides slow from fast rolling being 1
+_SMOOTH = 2.0
 #: behind the onset of stick the law bends on the scale tau: nodes of the first panel lie as this power
 _GRADED, _BEND = 3, 50.0
 #: panels rejected in a row
@@ -26,7 +28,7 @@ _CUTTABLE = 1e6
 
 
 @kernel
-def _first_length(fresh, slopes, state, frame, case):
+def _first_length(fresh, slopes, clock, frame, case):
     """Length to try first."""
     nodes, scene = case.work.nodes, case.scene
     pace, rate, weight = abs(nodes[S_RATE, 0]), abs(nodes[RATE, 0]), slopes.weight
@@ -35,23 +37,31 @@ def _first_length(fresh, slopes, state, frame, case):
         if nodes[SPEED, 0] == 0.0:
             return np.inf
         slowest = max(pace / max(change, nodes[S, 0]), rate / nodes[SPEED, 0])
-        return _FIRST / slowest if slowest > 0.0 else np.inf
+        length = _FIRST / slowest if slowest > 0.0 else np.inf
+        return min(length, (nodes[S, 0] + _SMOOTH) / pace) if pace > 0.0 else length
     if not weight > 1e-90:  # from V = 0 on
         return np.inf
     length = _RELAXED * weight / abs(slopes.rate)
     if fresh:
         # as far as b may go at the bend of the law near eta = 0
         near = 1.0 - abs(nodes[SECOND, 0]) + scene.material.tau * nodes[S, 0]
-        return min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * weight / max(rate, 1e-300))
+        length = min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * weight / max(rate, 1e-300))
+        load = load_at(clock.tau, clock.piece, frame, case)
+        return min(length, weight / (4.0 * scene.kappa * max(load.per_V + load.per_omega, 1.0)))
     return min(length, _FIRST * nodes[S, 0] / pace) if pace > 0.0 else length
 
 
 @kernel(inline=True)
 def _pace_to_zero(panel, state, frame, case):
-    """Time until V = 0 at the pace at the start, in partial slip against the drive: there its law ends."""
+    """Time until V = 0 at the pace at the start: there the law bends, and that of partial slip ends.
+
+    In partial slip V only comes to 0 against the drive.
+    """
     pace = case.work.nodes[S_RATE, 0]
-    if frame.slips or not pace < 0.0:
+    if not pace < 0.0:
         return np.inf
+    if frame.slips:
+        return -state.s / pace
     load = load_at(panel.tau, panel.piece, frame, case)
     against = load.V_rate + load.omega_rate
     if against > 0.0 or (against == 0.0 and load.force + load.torque >= 0.0):
@@ -103,7 +113,7 @@ def phase(fresh, state, frame, clock, case):
     while clock.tau < end and clock.steps < limits.max_steps:
         frame, slopes = _begin(state, frame, clock, case)
         if length == 0.0:
-            length = _first_length(fresh, slopes, state, frame, case)
+            length = _first_length(fresh, slopes, clock, frame, case)
         left = end - clock.tau
         panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > 1e-90)
         zero = _pace_to_zero(panel, state, frame, case)

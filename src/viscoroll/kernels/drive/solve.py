@@ -38,7 +38,7 @@ NEWTON = 0.01
 #: step of the difference quotients in s, relative
 _STEP = 1e-7
 #: a mismatch of the rates at the left end overstates the error of their interpolants
-_OVERSTATED = 0.05
+_OVERSTATED = 0.02
 
 
 class Panel(NamedTuple):
@@ -225,11 +225,29 @@ def _mismatch(row, first, half, nodes):
 
 
 @kernel
+def _least(panel, case):
+    """s where the first output lies, over the largest: speeds there are to be right beside themselves."""
+    nodes, at = case.work.nodes, case.tau[case.tau.size - 1]
+    for i in range(case.tau.size):
+        if case.tau[i] > panel.tau:
+            at = case.tau[i]
+            break
+    largest = least = 0.0
+    for i in range(1, N + 1):
+        largest = max(largest, abs(nodes[S, i]))
+        if least == 0.0 or time_at(panel, i)[0] <= at:
+            least = abs(nodes[S, i])
+    return least / largest
+
+
+@kernel
 def panel_error(panel, slopes, frame, case):
     """Error of the interpolants over their tolerance; of b only what its relaxation leaves of it counts."""
     nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
     per_s, per_second = scales(frame, case)
     error = _mismatch(S_RATE, nodes[S_RATE, 0] if smooth else 0.0, half, nodes) / per_s
+    if nodes[S, 0] == 0.0 and not frame.slips:
+        error /= _least(panel, case)
     if panel.free:
         off = nodes[RATE, 0] / slopes.weight * half if smooth else 0.0
         for i in range(N):
