@@ -435,6 +435,19 @@ DMA_PYVISCO = (1.55, 1.75)
 DMA_SHIFT = 5e-4
 DMA_SHIFT_NOISY = 0.02
 
+# --- motions in SI units (test_motion_si.py) ---
+#: A motion in SI units against the dimensionless one, over the largest value: factors round.
+SI_MOTION = 1e-12
+#: Work against kinetic energy and losses, over the largest work, at rtol 1e-8.
+SI_ENERGY = 1e-7
+#: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8.
+SI_TERMINAL = 3e-7
+
+# --- driven runs in SI units (test_run_drives.py) ---
+#: A motion of a run, in seconds, against that of its roller, in T_epsilon, at rtol 1e-8, over the largest value: other
+#: units of time round otherwise, and may step otherwise; measured 1.4e-10.
+RUN_SI = 1e-8
+
 # --- driven motions (motion/test_drive.py) ---
 #: SciPy's Radau at rtol 1e-7, atol 1e-9, over corners of the law that it steps across.
 DRIVE_PEER = 2e-5

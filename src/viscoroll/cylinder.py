@@ -21,6 +21,8 @@ from .validity import Validity, coupling, inertia
 
 if TYPE_CHECKING:
     from .equilibria import Steady
+    from .motion.si import MotionSI
+    from .motion.single import Acting, Schedule
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 
@@ -306,6 +308,68 @@ class Cylinder:
         from .equilibria.si import steady_of
 
         return steady_of(self, force, torque, slope, V)
+
+    def roll(
+        self,
+        V0: float | None,
+        omega0: float | None,
+        t: ArrayLike,
+        rtol: float = 1e-8,
+        *,
+        force: Acting = 0.0,
+        torque: Acting = 0.0,
+        slope: float | None = None,
+        brake: Schedule | None = None,
+        omega: Schedule | None = None,
+        V: Schedule | None = None,
+        rest: float | None = None,
+        max_steps: int = 100_000,
+    ) -> MotionSI:
+        """Motion as :func:`viscoroll.roll`, in SI units, per m of length.
+
+        Parameters
+        ----------
+        V0, omega0 : start speeds, m/s and rad/s.
+        t : output times, s, or one end time.
+        rtol, max_steps : as there.
+        force, torque : N and N m per m: a number; (times in s, values); a callable of t in s; or a :class:`Feedback`
+            of any of these with gains over m/s and rad/s.
+        slope : rad, > 0 pushes along +V; the load is then P cos(slope), and P sin(slope) adds to ``force``.
+        brake : most torque that a brake takes, N m per m, as for ``force``.
+        omega, V : prescribed speed, rad/s of the motor or m/s of the axis, likewise.
+        rest : end the motion where both |V| and R |omega| fall below this, m/s.
+
+        Returns
+        -------
+        MotionSI
+            ``V`` in m/s, ``omega`` in rad/s, ``x`` in m, ``force`` and ``torque`` as above, works and losses in J/m,
+            ``power_force`` and ``power_torque`` in W/m, times of switches and reversals in s.  It is the dimensionless
+            motion of :meth:`scene`, ``motion``, to a few roundings (``tests/motion/test_motion_si.py``).
+
+        Raises
+        ------
+        ParameterError
+            As :func:`viscoroll.roll`; where a value of a message is dimensionless, the message says over what.
+
+        Warns
+        -----
+        RuntimeWarning
+            Where the motion could not be rolled to the end.
+
+        Examples
+        --------
+        A roller on a slope of 2 degrees, driven by 1 N m/m for the first second, then braked.
+
+        >>> import numpy as np, viscoroll as vr
+        >>> roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+        >>> down = np.radians(2.0)
+        >>> m = roller.roll(0.0, 0.0, 3.0, torque=([1.0, 1.0], [1.0, 0.0]), brake=([1.0, 1.0], [0.0, 5.0]), slope=down)
+        """
+        from .motion.driven import Drive
+        from .motion.si import roll_of
+
+        drive = Drive(force, torque, slope, brake, omega, V)
+        return roll_of(self, (V0, omega0), t, drive, rtol, rest, max_steps)
 
     def _part(self, M: ArrayLike | None, own: ArrayLike | None, name: str) -> Any:
         """The moment of one body."""

@@ -61,8 +61,9 @@ SYMBOLS = {
     ),
     "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
     "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/law/standard.py"),
-    "force": Symbol("f", "force along V over load", "finite", "", "equilibria/loads.py"),
-    "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "equilibria/loads.py"),
+    "force": Symbol("f", "force along V over load", "finite", "", "kernels/drive/load.py"),
+    "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "kernels/drive/load.py"),
+    "brake": Symbol("B", "most torque that a brake takes over load times radius", ">= 0", "", "kernels/drive/load.py"),
     "slope": Symbol(r"\vartheta", "angle of the slope, radians", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
     "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "equilibria/result.py"),
     "rate_fast": Symbol(
@@ -103,6 +104,19 @@ SYMBOLS = {
         "finite",
         "Eq. (22)",
         "kernels/motion/losses.py",
+    ),
+    "work_force": Symbol(
+        r"W_f", "work of the force since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/drive/rates.py"
+    ),
+    "work_torque": Symbol(
+        r"W_q", "work of the torque since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/drive/rates.py"
+    ),
+    "brake_loss": Symbol(
+        r"E_\mathrm{brake}",
+        "energy lost in the brake since t = 0 over m (R/T_epsilon)^2",
+        ">= 0",
+        "Eq. (22)",
+        "kernels/drive/rates.py",
     ),
     "onset_time": Symbol(
         "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/motion/slide_phase.py"

@@ -153,10 +153,11 @@ def test_example_of_help_runs(run, tables, here, figures, monkeypatch, command):
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
     (here / "docs").symlink_to(ROOT / "docs")
-    example = run(*command.split(), "--help").partition("example:\n  viscoroll ")[2]
+    _, *examples = run(*command.split(), "--help").partition("example:")[2].split("\n  viscoroll ")
     if command in ("tables", "tables build"):
-        example = example.replace("-o data/tables", "-o built")
-    assert run(*shlex.split(example)) or {path.suffix for path in here.iterdir()} & {".nc", ".txt", ".png"}
+        examples = [example.replace("-o data/tables", "-o built") for example in examples]
+    for example in examples:
+        assert run(*shlex.split(example)) or {path.suffix for path in here.iterdir()} & {".nc", ".txt", ".png"}
 
 
 NO_COMMAND = [
@@ -448,6 +449,75 @@ NO_ROLL = [
 def test_refused_roll(refuse):
     for argv, words in NO_ROLL:
         assert words in refuse("roll", *PRESET, *argv.split()), argv
+
+
+RAMP = ([0.0, 3e-3, 3e-3], [0.0, 0.02, 0.0])
+STILL = [*PRESET, "--V0", "0", "--omega0", "0"]
+
+
+def test_a_driven_motion_is_that_of_the_library(run, here):
+    """VALUE@TIME, a file of the same and degrees; force and torque stand in all three forms, the rest in netCDF."""
+    argv = ["roll", *STILL, "--times", "0:6e-3:7", "--slope", "3deg", "--brake", "0.01"]
+    (here / "q.csv").write_text("t,value\n0,0\n3e-3,0.02\n\n3e-3,0\n")
+    at = [*argv, "--torque", "0@0,0.02@3e-3,0@3e-3"]
+    assert run(*at) == run(*argv, "--torque", "q.csv")
+    for name in ("m.csv", "m.nc"):
+        assert "slope 0.05235987755" in run(*at, "-o", name)
+    times = np.linspace(0.0, 6e-3, 7)
+    expected = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, times, slope=np.radians(3.0), torque=RAMP, brake=0.01)
+    table = list(csv.DictReader(io.StringIO((here / "m.csv").read_text())))
+    assert f"{expected.force[0]:.10g}" in run(*at)
+    with xr.open_dataset(here / "m.nc", engine="h5netcdf", decode_times=False) as dataset:
+        for name in ("V", "omega", "x", "force", "torque"):
+            assert np.array_equal([float(row[name]) for row in table], getattr(expected, name))
+        for name in ("V", "force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"):
+            assert np.array_equal(dataset[name].values, getattr(expected, name))
+            assert dataset[name].attrs["long_name"]
+        assert dataset["drive_torque"].values.tolist() == RAMP[1]
+        assert dataset["drive_torque_time"].values.tolist() == RAMP[0]
+        assert dataset["drive_slope"].item() == np.radians(3.0)
+
+
+def test_a_prescribed_speed_needs_no_start(run):
+    expected = vr.roll(vr.PAPER_SECTION_5, 0.0, None, [0.0, 2e-3], omega=([0.0, 1e-3], [-1.0, 1.0]))
+    out = run("roll", *PRESET, "--V0", "0", "--omega", "-1@0,1@1e-3", "--times", "0,2e-3")
+    assert "omega = as prescribed" in out
+    assert f"{expected.torque[1]:.10g}" in out
+    assert f"V changes its sign at t = {expected.reversals[0]:.12g}" in out
+    assert "V = as prescribed" in run("roll", *PRESET, "--omega0", "0", "--V", "1", "--times", "0,2e-3")
+
+
+NO_DRIVE = [
+    ("--torque x", "--torque: 'x' must be a number"),
+    ("--torque 1@", "'' must be a number"),
+    ("--torque 1@0,2", "'2' must be VALUE@TIME"),
+    ("--torque 1@2,1@1", "times of torque = 2.0: must be in ascending order"),
+    ("--torque 1@0,1@0,1@0", "times of torque = 0.0: must be there once, or twice"),
+    ("--torque 1@-1", "times of torque = -1.0: must be"),
+    ("--force nan", "force = nan"),
+    ("--force none.csv", "none.csv: cannot be read"),
+    ("--force a.csv", "a.csv: must have a first line t,value"),
+    ("--force b.csv", "b.csv: '1' must be a time and a value"),
+    ("--force c.csv", "'f' must be a number"),
+    ("--slope 90deg", "slope = 1.57"),
+    ("--slope deg", "'' must be a number"),
+    ("--slope 1deg:2deg:3", "must be a number"),
+    ("--brake -1", "brake = -1.0: must be finite and >= 0"),
+    ("--V 0 --omega 0", "V, omega given = both"),
+    ("--V 1", "V0 = 0.0: must be None, or 1 as prescribed"),
+    ("--omega 0 --torque 1", "torque = given with omega="),
+    ("--torque 1 --rest 1e-3", "rest = 0.001: must be None while"),
+]
+
+
+def test_refused_drive(refuse, here):
+    (here / "a.csv").write_text("0,1\n1,2\n")
+    (here / "b.csv").write_text("t,value\n1\n")
+    (here / "c.csv").write_text("t,value\n1,f\n")
+    for argv, words in NO_DRIVE:
+        assert words in refuse("roll", *STILL, "--t-end", "1e-3", *argv.split()), argv
+    for argv in ("--V 1", "--omega 1 --ic IC1"):
+        assert "where a speed is prescribed" in refuse("roll", *PRESET, "--t-end", "1e-3", *argv.split())
 
 
 def test_ensemble(run, here):

@@ -35,12 +35,14 @@ from viscoroll.figures import (
     save,
 )
 from viscoroll.figures.run_distributions import even_bars
+from viscoroll.figures.slope import separatrix
 from viscoroll.runs import open_summaries, read_run, run_ensemble
 
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {
     "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble",
     "rolling-resistance", "rolling-equilibria", "law-of-modes", "law-of-pairs", "broad-stresses",
+    "wheel-spin", "reversal", "slope",
 }  # fmt: skip
 
 
@@ -86,6 +88,35 @@ def test_lines_differ_without_colour(drawn):
         labelled = [one for one in drawn[name].axes[0].get_lines() if not one.get_label().startswith("_")]
         styles = {(str(one._unscaled_dash_pattern), str(one.get_marker())) for one in labelled}
         assert len(styles) == len(labelled), name
+
+
+def test_a_start_with_wheel_spin(drawn):
+    """Friction is spent, omega runs ahead of V, and the stick comes back once the torque has gone."""
+    top, bottom = drawn["wheel-spin"].axes
+    ahead = line(top, r"$\omega$")[1] - line(top, "$V$")[1]
+    Q = line(bottom, "$Q$")[1]
+    assert ahead.max() > 1.0
+    assert ahead[-1] < 0.05
+    assert Q.max() == vr.PAPER_SECTION_5.mu
+    assert 0.0 < Q[-1] < line(bottom, "$q$")[1][-1] < vr.PAPER_SECTION_5.mu
+
+
+def test_traction_meets_its_limits_where_V_passes_0(drawn):
+    axes = drawn["reversal"].axes[1]
+    before, after, *circles = (np.array(one.get_data(), float) for one in axes.get_lines()[:4])
+    for (_, Q), ((t,), (limit,)), at in zip((before, after), circles, (-1, 0), strict=True):
+        assert before[0][-1] < t < after[0][0]
+        assert Q[at] == pytest.approx(limit, abs=tol.DRIVE_TURN)
+    assert circles[0][1] < circles[1][1] < 0.0
+
+
+def test_the_separatrix_parts_what_settles_from_what_runs_away():
+    scene, slope, omega = vr.PAPER_SECTION_5, np.radians(3.0), np.linspace(-0.3, 1.5, 5)
+    V = separatrix(scene, slope, omega)
+    saddle = vr.steady(scene, slope=slope).V[1]
+    for side in (-1e-4, 1e-4):
+        end = vr.ensemble(scene, V + side, omega, 1000.0 / scene.gamma, slope=slope).V[:, 0]
+        assert (side * (end - saddle) > 0.1 * abs(side)).all()
 
 
 def test_even_bars_of_what_lies_close_together():

@@ -144,7 +144,7 @@ def test_a_regime_that_was_not_reached_is_no_full_slip():
     regime = tiny.to_xarray().regime
     assert regime.values[0, -1] == -1
     meanings = dict(zip(regime.flag_values.tolist(), regime.flag_meanings.split(), strict=True))
-    assert meanings == {-1: "not_reached", 0: "full_slip", 1: "partial_slip", 2: "rest"}
+    assert meanings == {-1: "not_reached", 0: "full_slip", 1: "partial_slip", 2: "rest", 3: "locked", 4: "held"}
 
 
 def test_status_and_messages():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
 from pathlib import Path
@@ -51,6 +52,22 @@ def _part(text: str) -> float | NDArray[np.float64]:
         raise ArgumentTypeError(f"{text!r}: {error}") from None
     except (ValueError, TypeError):
         raise ArgumentTypeError(f"{text!r} must be {NUMBERS}") from None
+
+
+def angles(text: str) -> Any:
+    """Numbers in rad, or in degrees with ``deg`` behind them: 3deg, 0deg:6deg:61."""
+    if "deg" not in text:
+        return numbers(text)
+    low, *rest = text.split(":")
+    ends = [low, *rest[:1]]
+    if any(not end.endswith("deg") for end in ends):
+        raise ArgumentTypeError(f"{text!r} must be degrees throughout, as in 0deg:6deg:61")
+    return numbers(":".join([end.removesuffix("deg") for end in ends] + rest[1:])) * (math.pi / 180.0)
+
+
+def angle(text: str) -> float:
+    """One angle in rad, or in degrees with ``deg`` behind it."""
+    return number(text.removesuffix("deg")) * (math.pi / 180.0 if text.endswith("deg") else 1.0)
 
 
 def times(text: str) -> list[float]:

@@ -17,6 +17,7 @@ from .arguments import (
     number,
     scene_of,
 )
+from .drive import add_drive_options, drive_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 #: Rows of a motion on the screen where --t-end leaves the output times to the steps taken.
 _ROWS_SHOWN = 20
+_COLUMNS, _ACTING = ("t", "V", "omega", "x", "angle", "delta"), ("force", "torque")
 
 
 def add_commands(commands: Any) -> None:
@@ -34,26 +36,40 @@ def add_commands(commands: Any) -> None:
     parser = commands.add_parser(
         "roll",
         help="one motion from given start speeds",
-        description="Motion of the cylinder from (V0, omega0), Eq. (22), through all regimes of slip.",
-        epilog="example:\n  viscoroll roll --preset paper-section-5 --V0 1.5 --omega0 0.5 --times 0:3e-3:7",
+        description="Motion of the cylinder from (V0, omega0), Eq. (22), through all regimes of slip; free, or\n"
+        "pushed, driven and braked.",
+        epilog="example:\n  viscoroll roll --preset paper-section-5 --V0 1.5 --omega0 0.5 --times 0:3e-3:7\n"
+        "  viscoroll roll --preset paper-section-5 --V0 0 --omega0 0 --times 0:6e-3:7 "
+        "--slope 3deg --torque 0@0,0.02@3e-3,0@3e-3",
     )
     parser.add_argument("--V0", type=number, help="start velocity of the axis")
     parser.add_argument("--omega0", type=number, help="start angular velocity")
     parser.add_argument("--ic", metavar="NAME", help="start of the paper's Sect. 5.1: IC1, IC2 or IC3")
     add_time_options(parser, "output falls on the steps taken")
+    add_drive_options(parser)
     add_scene_options(parser)
     add_output_option(parser, *FORMATS)
     parser.set_defaults(run=_roll)
 
 
-def _start(arguments: Namespace) -> tuple[float, float]:
+def _start(arguments: Namespace, drive: dict[str, Any]) -> tuple[float | None, float | None]:
+    """Start speeds; None for one that is prescribed."""
     from ..presets import PAPER_STARTS
 
-    given = {f"--{name}": value for name in ("V0", "omega0", "ic") if (value := getattr(arguments, name)) is not None}
-    if given.keys() == {"--V0", "--omega0"}:
+    prescribed = drive.keys() & {"V", "omega"}
+    if prescribed:
+        free = [name for name in ("V", "omega") if name not in prescribed and getattr(arguments, f"{name}0") is None]
+        if arguments.ic is not None or free:
+            needed = " and ".join(f"--{name}0" for name in free) or "--V0 and --omega0"
+            raise ParameterError(
+                "start", "--ic" if arguments.ic else "nothing", f"{needed} where a speed is prescribed"
+            )
         return arguments.V0, arguments.omega0
-    if given.keys() != {"--ic"}:
-        raise ParameterError("start", ", ".join(given) or "nothing", "--V0 and --omega0, or --ic")
+    starts = [f"--{name}" for name in ("V0", "omega0", "ic") if getattr(arguments, name) is not None]
+    if starts == ["--V0", "--omega0"]:
+        return arguments.V0, arguments.omega0
+    if starts != ["--ic"]:
+        raise ParameterError("start", ", ".join(starts) or "nothing", "--V0 and --omega0, or --ic")
     if arguments.ic not in PAPER_STARTS:
         raise ParameterError("ic", repr(arguments.ic), "out of " + ", ".join(PAPER_STARTS))
     return PAPER_STARTS[arguments.ic]
@@ -65,39 +81,47 @@ def _roll(arguments: Namespace) -> int:
     from ..motion import roll
     from .output import deliver
 
-    start = _start(arguments)
+    drive = drive_of(arguments)
+    start = _start(arguments, drive)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
-        motion = roll(scene_of(arguments), *start, arguments.t, arguments.rtol, rest=arguments.rest)
+        motion = roll(scene_of(arguments), *start, arguments.t, arguments.rtol, rest=arguments.rest, **drive)
     rows = np.arange(motion.t.size)
-    heading = _motion_heading(motion, start)
+    heading = _motion_heading(motion, start, drive)
     if arguments.output is None and np.ndim(arguments.t) == 0 and rows.size > _ROWS_SHOWN:
         heading.append(f"{_ROWS_SHOWN} of {rows.size} output times are shown; -o FILE keeps all")
         rows = np.linspace(0, rows.size - 1, _ROWS_SHOWN).astype(int)
-    deliver(arguments.output, lambda: _motion_sheet(motion, heading, rows), motion.to_xarray)
+    deliver(
+        arguments.output,
+        lambda: _motion_sheet(motion, heading, rows, _COLUMNS + _ACTING * bool(drive)),
+        motion.to_xarray,
+    )
     if arguments.output is not None:
         print("\n".join(heading))
     return 0
 
 
-def _motion_heading(motion: Motion, start: tuple[float, float]) -> list[str]:
-    heading = [
-        f"Motion from V = {start[0]:g}, omega = {start[1]:g}",
-        f"onset of partial slip: t = {motion.onset_time:.12g}",
-    ]
-    heading += [f"{switch.regime} from t = {switch.t:.12g}" for switch in motion.switches]
+def _motion_heading(motion: Motion, start: tuple[float | None, ...], drive: dict[str, Any]) -> list[str]:
+    V0, omega0 = ("as prescribed" if speed is None else f"{speed:g}" for speed in start)
+    heading = [f"Motion from V = {V0}, omega = {omega0}"]
+    if "slope" in drive:
+        heading.append(f"slope {drive['slope']:.12g} rad: kappa, gamma, force and torque are those of P cos(slope)")
+    heading.append(f"onset of partial slip: t = {motion.onset_time:.12g}")
+    events = [(switch.t, f"{switch.regime} from") for switch in motion.switches]
+    events += [(t, "V changes its sign at") for t in motion.reversals.tolist()]
+    heading += [f"{what} t = {t:.12g}" for t, what in sorted(events)]
     if not math.isnan(motion.rest_time):
         heading.append(f"rest threshold crossed: t = {motion.rest_time:.12g}")
     return [*heading, f"ended: {motion.message} ({motion.steps} steps)"]
 
 
-def _motion_sheet(motion: Motion, heading: list[str], rows: NDArray[np.intp]) -> Sheet:
+def _motion_sheet(motion: Motion, heading: list[str], rows: NDArray[np.intp], names: tuple[str, ...]) -> Sheet:
     import numpy as np
 
     from ..motion.single import REGIMES
     from .output import Sheet
 
-    columns = {name: getattr(motion, name)[rows] for name in ("t", "V", "omega", "x", "angle", "delta")}
+    columns = {name: getattr(motion, name)[rows] for name in names}
     columns["regime"] = np.array([REGIMES[code] if code >= 0 else "not reached" for code in motion.regime[rows]])
     constants = {name: getattr(motion.scene, name) for name in PARAMETERS}
     return Sheet(tuple(heading), constants, columns)

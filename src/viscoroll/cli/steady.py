@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from argparse import ArgumentTypeError, Namespace
+from argparse import Namespace
 from typing import Any
 
-from .arguments import FORMATS, NUMBERS, add_output_option, add_scene_options, numbers, scene_of
+from .arguments import FORMATS, NUMBERS, add_output_option, add_scene_options, angles, numbers, scene_of
 
 #: columns, as of :class:`viscoroll.equilibria.Steady`
 _COLUMNS = ("force", "torque", "V", "omega", "delta", "Q", "M", "beta", "grip", "stable")
 _TITLE = "Steady rolling of a viscoelastic cylinder"
 #: loads without an equilibrium that are told of
 _LINES = 3
-
-
-def angles(text: str) -> Any:
-    """Numbers in rad, or in degrees with ``deg`` behind them: 3deg, 0deg:6deg:61."""
-    if "deg" not in text:
-        return numbers(text)
-    low, *rest = text.split(":")
-    ends = [low, *rest[:1]]
-    if any(not end.endswith("deg") for end in ends):
-        raise ArgumentTypeError(f"{text!r} must be degrees throughout, as in 0deg:6deg:61")
-    return numbers(":".join([end.removesuffix("deg") for end in ends] + rest[1:])) * (math.pi / 180.0)
 
 
 def add_commands(commands: Any) -> None:

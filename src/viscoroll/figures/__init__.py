@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from ..material_plot import save
 from .deceleration import figure_5, figure_6, figure_7
 from .distribution import ensemble_distribution
+from .drive import reversal, wheel_spin
 from .law import figure_2, figure_3
 from .maps import atlas_errors
 from .material import rolling_resistance
@@ -20,6 +21,7 @@ from .portrait import phase_portrait
 from .run_distributions import run_distributions
 from .sensitivity import sobol_bars
 from .series import broad_stresses, law_of_materials, law_of_pairs
+from .slope import slope_portrait
 from .steady import rolling_equilibria
 
 if TYPE_CHECKING:
@@ -27,8 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FIGURES", "atlas_errors", "broad_stresses", "ensemble_distribution", "figure_2", "figure_3", "figure_5",
-    "figure_6", "figure_7", "law_of_materials", "law_of_pairs", "phase_portrait", "rolling_equilibria",
-    "rolling_resistance",    "run_distributions", "save", "sobol_bars",
+    "figure_6", "figure_7", "law_of_materials", "law_of_pairs", "phase_portrait", "reversal", "rolling_equilibria",
+    "rolling_resistance", "run_distributions", "save", "slope_portrait", "sobol_bars", "wheel_spin",
 ]  # fmt: skip
 
 FIGURES: dict[str, Callable[..., Figure]] = {
@@ -42,6 +44,9 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "ensemble": ensemble_distribution,
     "rolling-resistance": rolling_resistance,
     "rolling-equilibria": rolling_equilibria,
+    "wheel-spin": wheel_spin,
+    "reversal": reversal,
+    "slope": slope_portrait,
     "law-of-modes": law_of_materials,
     "law-of-pairs": law_of_pairs,
     "broad-stresses": broad_stresses,

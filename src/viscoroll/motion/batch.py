@@ -56,6 +56,7 @@ class Ensemble:
         relative to the energy at the start if larger; NaN without a map.
     flow_problem : why a map that was tried could not be used, or "".
     drive_error : as of a :class:`Motion`.
+    drive : what was given to drive them.
     """
 
     scene: Scene
@@ -84,6 +85,7 @@ class Ensemble:
     flow_error: float
     flow_problem: str
     drive_error: float
+    drive: Drive
 
     def __len__(self) -> int:
         return self.status.size
@@ -248,7 +250,7 @@ def ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
         onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
-        drive_error=ready.error if ready else 0.0,
+        drive_error=ready.error if ready else 0.0, drive=drive,
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,12 +13,15 @@ from ..bodies import Bodies
 from ..errors import MOTION_STATUS, ParameterError
 from ..prony_array import PronyArray
 from ..symbols import SYMBOLS
+from .driven import ACTING
+from .export_drive import drive_variables
 
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+_LOSSES = ("slip_loss", "rolling_loss")
 _REGIME = {
     "long_name": "regime of motion",
-    "flag_values": np.array([-1, 0, 1, 2], dtype=np.int8),
-    "flag_meanings": "not_reached full_slip partial_slip rest",
+    "flag_values": np.array([-1, 0, 1, 2, 3, 4], dtype=np.int8),
+    "flag_meanings": "not_reached full_slip partial_slip rest locked held",
 }
 _OWN: dict[str, dict[str, Any]] = {
     "regime": _REGIME,
@@ -78,16 +82,25 @@ def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
     return xr.Variable(dims, values, attributes(name))
 
 
-def motion_dataset(motion: Any) -> xr.Dataset:
-    """One motion over t."""
-    data = {name: _variable(("t",), name, getattr(motion, name)) for name in ("V", "omega", "x", "angle", "delta")}
+def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
+    """One motion over t; under a drive with what acted, works and losses.  ``described``: attributes of a quantity."""
+    names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if motion.drive.acts else ()))
+    data = {name: xr.Variable(("t",), getattr(motion, name), described(name)) for name in names}
     data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
+    driven: dict[str, Any] = {}
+    if motion.drive.acts:
+        given, driven = drive_variables(motion.drive, described)
+        data |= given
+        when = {"long_name": "times at which V changes its sign", "units": described("t")["units"]}
+        data["reversals"] = xr.Variable(("reversal",), motion.reversals, when)
+        driven["drive_error"] = motion.drive_error
     return xr.Dataset(
         data,
-        coords={"t": _variable(("t",), "t", motion.t)},
+        coords={"t": xr.Variable(("t",), motion.t, described("t"))},
         attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
         | {name: getattr(motion.scene, name) for name in _PARAMETERS}
         | _material(motion.scene)
+        | driven
         | {
             "onset_time": motion.onset_time,
             "rest_time": motion.rest_time,
@@ -103,7 +116,7 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     dims = ("motion", "t")
     data = {
         name: _variable(dims, name, getattr(result, name))
-        for name in ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
+        for name in ("V", "omega", "x", "angle", "delta", *_LOSSES, *ACTING)
         if getattr(result, name) is not None
     }
     if result.regime is not None:
@@ -119,9 +132,13 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
+    given, texts = drive_variables(result.drive, attributes)
+    data |= given
     attrs = (
         _globals("Ensemble of motions")
         | _material(result.scene)
+        | texts
+        | {"drive_error": result.drive_error}
         | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     )
     return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
@@ -132,7 +149,7 @@ def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
     if not len(result):
         raise ParameterError("motions", 0, "at least one: a summary is over motions")
     data: dict[str, xr.Variable] = {}
-    for name in ("V", "omega", "x", "angle", "slip_loss", "rolling_loss"):
+    for name in ("V", "omega", "x", "angle", *_LOSSES, *ACTING):
         values = getattr(result, name)
         if values is None:
             continue

@@ -128,6 +128,11 @@ class Motion:
         return np.stack([getattr(found, name)[0] for name in LOSSES])
 
     @property
+    def drive(self) -> Drive:
+        """What was given to drive it."""
+        return self._inputs.drive
+
+    @property
     def message(self) -> str:
         """The status in words."""
         return MOTION_STATUS[self.status]
@@ -330,6 +335,8 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, 
     if driven:
         ready = prepared(drive, scene, V0, omega0, inputs.end, inputs.rtol)
         refuse_rest(inputs.rest, ready)
+        if ready.pieces.shape[0] > 1:
+            raise ParameterError("drive", f"of {ready.pieces.shape[0]} motions", "one motion's; for many use ensemble")
         scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
     material, unit = scene.in_own_time()
     one = np.array((scene.kappa, scene.mu, scene.gamma * unit * unit, scene.j, V0 * unit, omega0 * unit)).reshape(-1, 1)

@@ -13,6 +13,7 @@ from ..motion import ensemble
 from ..motion.batch import Ensemble
 from ..scene import Scene
 from . import draws
+from .drives import drive_of
 from .ranges import CYLINDER, SCENE, START
 from .runfile import Run
 from .solids import Modes
@@ -59,7 +60,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) ->
     return ensemble(
         scene, V0, omega0, run.t,
         method=run.method, rtol=run.settings.rtol, rest=run.rest, fields=run.fields,
-        speed=run.fastest or None if run.method == "flow" else None, threads=threads,
+        speed=run.fastest or None if run.method == "flow" else None, threads=threads, **drive_of(values),
     )  # fmt: skip
 
 

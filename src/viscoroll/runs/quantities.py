@@ -57,6 +57,7 @@ def _start_energy(motions: Ensemble) -> NDArray:
     return np.where(energy > 0.0, energy, np.nan)
 
 
+_ENERGY = "over m (R/T_epsilon)^2"
 QUANTITIES = {
     "V": Quantity("velocity of the axis", ("V",), _field("V"), "V", "times T_epsilon/R"),
     "omega": Quantity("angular velocity", ("omega",), _field("omega"), "omega", "times T_epsilon"),
@@ -73,6 +74,23 @@ QUANTITIES = {
     "slip_loss": Quantity("share of the initial kinetic energy lost in slip", ("slip_loss",), _loss("slip_loss")),
     "rolling_loss": Quantity(
         "share of the initial kinetic energy lost in rolling", ("rolling_loss",), _loss("rolling_loss")
+    ),
+    "force": Quantity("force along V", ("force",), _field("force"), "force", "over load"),
+    "torque": Quantity("torque along omega", ("torque",), _field("torque"), "torque", "over load times radius"),
+    "work_force": Quantity(
+        "work of the force since t = 0", ("work_force",), _field("work_force"), "work_force", _ENERGY
+    ),
+    "work_torque": Quantity(
+        "work of the torque since t = 0", ("work_torque",), _field("work_torque"), "work_torque", _ENERGY
+    ),
+    "brake_loss": Quantity(
+        "energy lost in the brake since t = 0", ("brake_loss",), _field("brake_loss"), "brake_loss", _ENERGY
+    ),
+    "slip_energy": Quantity(
+        "energy lost in slip since t = 0", ("slip_loss",), _field("slip_loss"), "slip_loss", _ENERGY
+    ),
+    "rolling_energy": Quantity(
+        "energy lost in rolling since t = 0", ("rolling_loss",), _field("rolling_loss"), "rolling_loss", _ENERGY
     ),
     "onset_time": Quantity(
         "time of the first change from full to partial slip", (), lambda motions, k: motions.onset_time, "t",

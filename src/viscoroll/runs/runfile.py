@@ -6,6 +6,9 @@
     V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
     omega0 = 0.5
 
+    [drive]                        # if wanted
+    torque = { times = [0.0, 1e-3, 1e-3], values = [0.0, 0.02, 0.0] }
+
     [run]
     n = 1_000_000
     seed = 7
@@ -36,6 +39,7 @@ from ..motion.checks import controls, output_times
 from ..prony import Prony
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
+from .drives import is_driven, lasts
 from .inputs import Inputs
 from .quantities import QUANTITIES
 from .ranges import CYLINDER, SCENE, START
@@ -44,7 +48,7 @@ from .units import dimensionless
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
-_SECTIONS = ("preset", "scene", "cylinder", *MATERIALS, "start", "correlation", "run")
+_SECTIONS = ("preset", "scene", "cylinder", *MATERIALS, "start", "drive", "correlation", "run")
 
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
@@ -91,6 +95,8 @@ class Run:
         """How every block is rolled: settled by the run as a whole, so that bits do not depend on blocks."""
         if self.settings.method != "auto":
             return self.settings.method
+        if is_driven(self.inputs):
+            return "integrate"
         return "flow" if self.one_scene and self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
 
     @property
@@ -173,10 +179,12 @@ def read_run(path: str | PathLike[str]) -> Run:
     sections, base = _parameters(path, content)
     correlation = content.get("correlation", {})
     materials = {name: content[name] for name in MATERIALS if name in content}
-    inputs = read_inputs(Path(path), sections, base, correlation, materials)
+    drive = content.get("drive", {})
+    inputs = read_inputs(Path(path), sections, base, correlation, materials, drive)
     times = _checked(path, settings, inputs)
     stored = materials_of(path, {name: given for name, given in materials.items() if "file" in given})
     described = sections | materials | {f"{name} stored": as_toml(found) for name, found in stored.items()}
+    described |= {"drive": drive} if drive else {}
     digest = _digest(settings, times, described, base, correlation, inputs)
     return Run(Path(path).read_text(encoding="utf-8"), settings, inputs, times, digest)
 
@@ -218,8 +226,13 @@ def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.floa
                 raise fault(path, "run", key, problem)
     if not settings.summaries:
         raise fault(path, "run", "summaries", "summaries = []: must name at least one quantity")
+    if settings.method == "flow" and is_driven(inputs):
+        raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' with [drive]")
     if settings.method == "flow" and set(inputs.uncertain) - set(START):
         raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' where scenes differ")
+    if settings.rest is not None and lasts(inputs):
+        problem = f"rest = {settings.rest!r}: must be left out where [drive] lasts to the end"
+        raise fault(path, "run", "rest", problem)
     if settings.rest is not None and inputs.si and {"R", "T_epsilon"} & set(inputs.uncertain):
         problem = f"rest = {settings.rest!r}: must be left out where R or T_epsilon is uncertain"
         raise fault(path, "run", "rest", problem)

@@ -18,6 +18,7 @@ from .. import __version__
 from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..extras import imported
+from .drives import PREFIX
 from .evaluate import roll_inputs
 from .inputs import LARGEST, SMALLEST, Inputs
 from .quantities import QUANTITIES, valued
@@ -106,10 +107,15 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
     scene = "cylinder" if inputs.si else "scene"
     for file, sample in inputs.joint.items():
         if len(sample.columns) > 1:
-            places = ", ".join(f"[{'start' if name in START else scene}] {name}" for name in sample.columns)
+            places = ", ".join(f"[{_section(name, scene)}] {name}" for name in sample.columns)
             allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
             raise ParameterError(places, f"rows of {file}", allowed)
     return inputs.uncertain
+
+
+def _section(name: str, scene: str) -> str:
+    """Of the run file, that an input stands in."""
+    return "start" if name in START else "drive" if name.startswith(PREFIX) else scene
 
 
 def _power_of_two(n: int) -> int:

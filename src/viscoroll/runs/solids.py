@@ -80,7 +80,7 @@ def read_material(reader: Reader, given: dict[str, Any]) -> None:
     reader.section = "material"
     for name in _SOLID:
         if name in given:
-            plain[name] = _median(reader, name, given[name], CYLINDER[name])
+            plain[name] = median(reader, name, given[name], CYLINDER[name])
     material = materials_of(reader.path, {"material": plain})["material"]
     reader.fixed |= {"series": material.prony if series is None else series, "T_ref": material.T_ref}
 
@@ -90,10 +90,10 @@ def _medians(reader: Reader, section: str, name: str, value: Any) -> Any:
     if name not in SERIES[section.rsplit(".", 1)[1]] or not isinstance(value, list):
         return value
     reader.section = section
-    return [_median(reader, f"{name}_{n}", entry, MODES[name], line=name) for n, entry in enumerate(value, 1)]
+    return [median(reader, f"{name}_{n}", entry, MODES[name], line=name) for n, entry in enumerate(value, 1)]
 
 
-def _median(reader: Reader, name: str, value: Any, allowed: Any, line: str = "") -> float:
+def median(reader: Reader, name: str, value: Any, allowed: Any, line: str = "") -> float:
     reader.put(name, value, allowed, line)
     reader.line = ""
     return float(np.median(_spread(reader, name, np.array([0.5]))))

@@ -15,8 +15,9 @@ from ..material import Material
 from ..material_file import materials_of
 from ..pair import Pair, Plane
 from ..sections import fault, hint, refuse_unknown
+from .drives import read_drive
 from .inputs import Distribution, Inputs, Joint
-from .ranges import CYLINDER, OPTIONAL, SCENE, SOLID, START, START_SI, Range
+from .ranges import CYLINDER, DRIVE, DRIVE_SI, OPTIONAL, SCENE, SOLID, START, START_SI, Range
 from .solids import SERIES, is_uncertain, read_material, read_series
 
 _PLANES = ("strain", "stress")
@@ -162,8 +163,9 @@ def read_inputs(
     base: dict[str, Any],
     correlation: dict[str, Any],
     materials: dict[str, Any],
+    drive: dict[str, Any],
 ) -> Inputs:
-    """Inputs of the sections and of the materials; ``base`` fills in what sections leave out.  Raises ConfigError."""
+    """Inputs of sections, materials and drive; ``base`` fills in what sections leave out.  Raises ConfigError."""
     reader = Reader(path)
     cylinder = {name: allowed for name, allowed in CYLINDER.items() if not (materials and name in SOLID)}
     ranges = {"cylinder": cylinder, "start": START_SI} if "cylinder" in sections else {"scene": SCENE, "start": START}
@@ -181,6 +183,10 @@ def read_inputs(
             elif name not in OPTIONAL:
                 needed = "alpha, prony or creep" if name == "alpha" else name
                 raise fault(path, "", section, f"[{section}] needs {needed}")
+    driven = DRIVE_SI if "cylinder" in sections else DRIVE
+    refuse_unknown(path, "drive", drive, driven)
+    reader.section = "drive"
+    read_drive(reader, drive, driven)
     if "cylinder" in sections:
         reader.section = "cylinder"
         plane = sections["cylinder"].get("plane", "strain")

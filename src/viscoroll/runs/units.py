@@ -8,35 +8,16 @@ for every cylinder.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..motion import export
+from ..motion.si import SI
 from ..symbols import SYMBOLS
 from .ranges import CYLINDER
 
-
-class Unit(NamedTuple):
-    """What a column is in a run in SI units."""
-
-    long_name: str
-    units: str
-
-
-SI = {
-    "t": Unit("time", "s"),
-    "V0": Unit("initial velocity of the axis", "m s-1"),
-    "omega0": Unit("initial angular velocity", "rad s-1"),
-    "V": Unit("velocity of the axis", "m s-1"),
-    "omega": Unit("angular velocity", "rad s-1"),
-    "x": Unit("distance travelled", "m"),
-    "angle": Unit("angle turned", "rad"),
-    "slip_loss": Unit("energy lost in slip since t = 0, per length of the cylinder", "J m-1"),
-    "rolling_loss": Unit("energy lost in rolling since t = 0, per length of the cylinder", "J m-1"),
-    "onset_time": Unit("time of the first change from full to partial slip", "s"),
-    "rest_time": Unit("time at which the rest threshold was crossed", "s"),
-}
+_ENERGIES = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
 def are_si(values: Mapping[str, Any]) -> bool:
@@ -49,15 +30,23 @@ def unit_of_time(values: Mapping[str, Any]) -> Any:
     return values["T_ref"] if "T_ref" in values else values["T_epsilon"]
 
 
+def load_of(values: Mapping[str, Any]) -> Any:
+    """Load of a cylinder, N/m; on a slope P cos(slope)."""
+    load = values["load"] if "load" in values else values["m"] * values["g"]
+    return load * np.cos(values["drive_slope"]) if "drive_slope" in values else load
+
+
 def scales(values: Mapping[str, Any]) -> dict[str, Any]:
     """Column -> what it is multiplied by to be in SI units; numbers or one a motion; nothing for a scene."""
     if not are_si(values):
         return {}
     speed, spin = values["R"] / unit_of_time(values), 1.0 / unit_of_time(values)
     energy = values["m"] * speed**2
+    load = load_of(values)
     # the integrals over time are over seconds already
     return {
-        "V": speed, "omega": spin, "x": speed, "angle": spin, "slip_loss": energy, "rolling_loss": energy,
+        "V": speed, "omega": spin, "x": speed, "angle": spin, "force": load, "torque": load * values["R"],
+        **dict.fromkeys(_ENERGIES, energy),
     }  # fmt: skip
 
 
@@ -76,6 +65,10 @@ _MODES = {
 
 def attributes(name: str, si: bool) -> dict[str, Any]:
     """long_name, units and more of a column, as JSON takes them."""
+    if name.startswith("drive_"):
+        what, _, corner = name.removeprefix("drive_").partition("_")
+        about = attributes(what, si)
+        return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
     if si and name in SI:
         return SI[name]._asdict()
     kind, _, number = name.partition("_")

@@ -1,0 +1,47 @@
+"""What drove a motion, or many, for a dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..drive import Feedback
+from .driven import Drive
+
+_LINEAR = "linear between its times, constant outside; a time given twice is a jump"
+
+
+def drive_variables(
+    drive: Drive, described: Callable[[str], dict[str, Any]]
+) -> tuple[dict[str, xr.Variable], dict[str, Any]]:
+    """(variables ``drive_force`` and the like, with their times where they have some; attributes for callables).
+
+    Numbers stand over () or (motion), (times, values) over (drive_force_time) or (motion, drive_force_time); gains of a
+    feedback are attributes.  ``described``: attributes of a quantity.
+    """
+    variables: dict[str, xr.Variable] = {}
+    texts: dict[str, Any] = {}
+    for name, whole in drive._asdict().items():
+        if whole is None or (isinstance(whole, float | int) and whole == 0.0 and name in ("force", "torque")):
+            continue
+        key, feeds_back = f"drive_{name}", isinstance(whole, Feedback)
+        given = whole.value if feeds_back else whole
+        gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}
+        if callable(given):
+            texts[key] = "a function of t" + "".join(f", {what} = {gain:.15g}" for what, gain in gains.items())
+            continue
+        about = described(name)
+        about = about | {"long_name": f"given: {about['long_name']}"} | gains
+        if isinstance(given, tuple):
+            times, values = (np.asarray(part, np.float64) for part in given)
+            along = {"long_name": f"times of the given {name}", "units": described("t")["units"]}
+            variables[f"{key}_time"] = xr.Variable((f"{key}_time",), times, along)
+            dims = ("motion", f"{key}_time")[-values.ndim :]
+            variables[key] = xr.Variable(dims, values, about | {"comment": _LINEAR})
+        else:
+            number = np.asarray(given, np.float64)
+            variables[key] = xr.Variable(("motion",)[: number.ndim], number, about)
+    return variables, texts

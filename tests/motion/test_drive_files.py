@@ -1,0 +1,71 @@
+"""Driven motions as datasets, and at other times."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from refusals import refused
+
+import viscoroll as vr
+
+SCENE = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+RAMP = ([0.0, 1.0, 1.0], [0.0, 0.2, 0.0])
+ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
+
+
+def test_other_times_keep_the_drive():
+    t = np.linspace(0.0, 4.0, 9)
+    m = vr.roll(SCENE, 0.0, 0.0, t, force=np.sin, torque=RAMP, slope=0.01, brake=0.02)
+    same = vr.roll(SCENE, 0.0, 0.0, 4.0, force=np.sin, torque=RAMP, slope=0.01, brake=0.02).at(t)
+    for name in ("V", "omega", *ACTING):
+        assert np.array_equal(getattr(m, name), getattr(same, name)), name
+
+
+def test_a_motion_carries_its_drive(tmp_path):
+    """Whatever kind it is: a number, times and values, a callable, gains; what was not given is not there."""
+    torque = vr.Feedback(RAMP, omega=-0.1)
+    m = vr.roll(SCENE, 0.2, 0.0, np.linspace(0.0, 4.0, 9), force=np.cos, torque=torque, slope=-0.5)
+    m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
+        for name in ACTING:
+            assert np.array_equal(data[name].values, getattr(m, name))
+            assert data[name].attrs.keys() >= {"long_name", "units", "symbol"}
+        assert data.attrs["drive_force"] == "a function of t"
+        assert data.attrs["drive_error"] == m.drive_error > 0.0
+        assert data["drive_torque"].values.tolist() == RAMP[1]
+        assert data["drive_torque_time"].values.tolist() == RAMP[0]
+        assert data["drive_torque"].attrs["gain_omega"] == -0.1
+        assert data["drive_slope"].item() == -0.5
+        assert data.attrs["kappa"] == m.scene.kappa > SCENE.kappa
+        assert np.array_equal(data["reversals"].values, m.reversals)
+        assert m.reversals.size > 0
+        assert "drive_brake" not in data
+
+
+def test_a_free_motion_has_none():
+    data = vr.roll(SCENE, 0.2, 0.0, [1.0]).to_xarray()
+    assert not {"force", "slip_loss", "reversals", "drive_force"} & set(data)
+
+
+def test_regimes_of_a_brake_have_names():
+    m = vr.roll(SCENE, 0.5, 0.5, np.linspace(0.0, 20.0, 9), brake=1.0)
+    assert set(m.regime) >= {3, 4}
+    found = m.to_xarray().regime
+    meanings = dict(zip(found.flag_values.tolist(), found.flag_meanings.split(), strict=True))
+    assert (meanings[3], meanings[4]) == ("locked", "held")
+
+
+def test_an_ensemble_carries_its_drives():
+    steps = ([0.0, 1.0, 1.0], [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
+    e = vr.ensemble(SCENE, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING))
+    data = e.to_xarray()
+    assert data["drive_torque"].dims == ("motion", "drive_torque_time")
+    assert data["drive_slope"].values.tolist() == [0.01, 0.02]
+    for name in ACTING:
+        assert np.array_equal(data[name].values, getattr(e, name))
+        assert np.array_equal(e.summary()[f"{name}_mean"].values, getattr(e, name).mean(axis=0))
+
+
+def test_one_motion_takes_the_drive_of_one():
+    for force in ([1.0, 2.0], ([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])):
+        refused(lambda force=force: vr.roll(SCENE, 0.0, 0.0, 1.0, force=force), "drive = of 2 motions: must be one")

@@ -1,0 +1,146 @@
+"""Driven motions of a cylinder in SI units."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from refusals import refused
+
+import viscoroll as vr
+
+ROLLER = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+R, T, P = ROLLER.R, ROLLER.T_ref, ROLLER.load
+TIMES = np.linspace(0.0, 2.0, 9)
+WORKS = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
+
+
+def agree(m, free, load):
+    """A motion in SI units with a dimensionless one."""
+    energy = ROLLER.m * (R / T) ** 2
+    units = {"V": R / T, "omega": 1.0 / T, "x": R, "angle": 1.0, "delta": 1.0, "force": load, "torque": load * R}
+    units |= dict.fromkeys(WORKS, energy)
+    for name, unit in units.items():
+        expected = getattr(free, name) * unit
+        finite = np.isfinite(expected)
+        largest = np.abs(expected[finite]).max(initial=0.0)
+        assert getattr(m, name)[finite] == pytest.approx(expected[finite], abs=tol.SI_MOTION * largest), name
+    assert m.reversals == pytest.approx(free.reversals * T, rel=tol.SI_MOTION)
+    assert [s.t for s in m.switches] == pytest.approx([s.t * T for s in free.switches], rel=tol.SI_MOTION)
+    assert [s.regime for s in m.switches] == [s.regime for s in free.switches]
+    assert np.array_equal(m.regime, free.regime)
+
+
+def test_the_dimensionless_motion_in_other_units():
+    """Numbers, schedules, callables, feedback, slope, brake: each over its unit, by hand."""
+    down, scene = -0.05, ROLLER.scene()
+    load = P * np.cos(down)
+    m = ROLLER.roll(
+        0.02, 0.1, TIMES, force=vr.Feedback(np.sin, V=-3.0, omega=0.2),
+        torque=([0.5, 1.0, 1.0], [0.0, 4.0, 1.0]), slope=down, brake=([1.5, 1.5], [0.0, 6.0]),
+    )  # fmt: skip
+    free = vr.roll(
+        scene, 0.02 * T / R, 0.1 * T, TIMES / T, slope=down,
+        force=vr.Feedback(lambda t: np.sin(t * T) / load, V=-3.0 * (R / T) / load, omega=0.2 / (T * load)),
+        torque=([0.5 / T, 1.0 / T, 1.0 / T], np.array([0.0, 4.0, 1.0]) / (load * R)),
+        brake=([1.5 / T, 1.5 / T], [0.0, 6.0 / (load * R)]),
+    )  # fmt: skip
+    agree(m, free, load)
+    assert np.array_equal(m.t, TIMES)
+    assert m.scene == free.scene
+    assert m.power_force == pytest.approx(m.force * m.V)
+    assert m.contact("Q").Q == pytest.approx(free.contact("Q").Q, rel=tol.SI_MOTION)
+
+
+def test_prescribed_speeds_in_other_units():
+    m = ROLLER.roll(0.0, None, TIMES, omega=([0.0, 1.0], [0.0, 0.5]))
+    agree(m, vr.roll(ROLLER.scene(), 0.0, None, TIMES / T, omega=([0.0, 1.0 / T], [0.0, 0.5 * T])), P)
+    corners, speeds = np.array([0.0, 1.0, 2.0]), np.array([0.01, 0.03, -0.01])
+    m = ROLLER.roll(None, 0.0, TIMES, V=(corners, speeds), torque=0.5)
+    free = vr.roll(ROLLER.scene(), None, 0.0, TIMES / T, V=(corners / T, speeds * T / R), torque=0.5 / (P * R))
+    agree(m, free, P)
+
+
+def test_work_is_energy_and_losses():
+    m = ROLLER.roll(0.02, 0.1, TIMES, force=20.0, torque=-2.0, slope=0.02, brake=0.3)
+    kinetic = 0.5 * ROLLER.m * (m.V**2 + ROLLER.j * (R * m.omega) ** 2)
+    works = m.work_force + m.work_torque
+    gained = kinetic - kinetic[0] + m.slip_loss + m.rolling_loss + m.brake_loss
+    assert works == pytest.approx(gained, abs=tol.SI_ENERGY * np.abs(works).max())
+
+
+def test_the_terminal_speed_is_that_of_steady():
+    """A roller that is pressed with more than its weight, and of another material than the base."""
+    tread = vr.Material(3e5, 0.49, vr.Prony([0.5, 1.0], [1.0, 0.1]), T_ref=2.0)
+    pressed = vr.Cylinder(R=0.1, m=5.0, mu=0.4, material=tread, base=vr.Material.rigid(), load=500.0)
+    m = pressed.roll(0.0, 0.0, [50.0], slope=np.radians(1.0))
+    slow = pressed.steady(slope=np.radians(1.0))
+    assert m.V[-1] == pytest.approx(slow.V[slow.stable][0], rel=tol.SI_TERMINAL)
+    assert m.force[-1] == pytest.approx(500.0 * np.sin(np.radians(1.0)))
+
+
+def test_end_time_and_other_times():
+    m = ROLLER.roll(0.02, 0.1, 1.9, torque=1.0)
+    assert (m.t[0], m.t[-1]) == (0.0, 1.9)
+    again = m.at(m.t)
+    assert again.V == pytest.approx(m.V, rel=tol.SI_MOTION)
+    assert np.array_equal(again.torque, m.torque)
+    assert (m.message, m.steps > 0, m.drive_error) == ("reached the last output time", True, 0.0)
+
+
+def test_dataset_in_si(tmp_path):
+    brake = ([1.0, 1.0], [0.0, 3.0])
+    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, force=np.sin, brake=brake)
+    m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
+        for name in ("V", "omega", "x", "angle", "delta", "force", "torque", *WORKS):
+            assert np.array_equal(data[name].values, getattr(m, name))
+        assert {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss")} == {
+            "t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1",
+        }  # fmt: skip
+        assert data["drive_torque"].item() == 2.0
+        assert data["drive_brake_time"].values.tolist() == brake[0]
+        assert data["drive_brake_time"].attrs["units"] == "s"
+        assert data["drive_brake"].values.tolist() == brake[1]
+        assert data.attrs["drive_force"] == "a function of t"
+        assert (data.attrs["R"], data.attrs["load"], data.attrs["T_ref"]) == (R, P, T)
+
+
+def test_a_free_motion_in_si():
+    m, free = ROLLER.roll(0.02, 0.1, TIMES), vr.roll(ROLLER.scene(), 0.02 * T / R, 0.1 * T, TIMES / T)
+    agree(m, free, P)
+    assert "force" not in m.to_xarray()
+    rested = ROLLER.roll(0.02, 0.1, 100.0, rest=1e-5)
+    assert rested.rest_time == pytest.approx(
+        vr.roll(ROLLER.scene(), 0.02 * T / R, 0.1 * T, 100.0 / T, rest=1e-5 * T / R).rest_time * T
+    )
+
+
+REFUSED = [
+    ({"V0": np.nan}, "V0 = nan"),
+    ({"V0": [1.0, 2.0]}, "V0 = [1.0, 2.0]: must be a single number"),
+    ({"V0": None}, "V0 = None: must be a finite number"),
+    ({"t": -1.0}, "t = -1.0"),
+    ({"t": [1.0, 0.5]}, "in ascending order"),
+    ({"rtol": 1.0}, "rtol = 1.0"),
+    ({"slope": 1.6}, "slope = 1.6: must be an angle below pi/2"),
+    ({"slope": [0.1, 0.2]}, "slope = [0.1, 0.2]: must be a single number"),
+    ({"force": "1 N"}, "force = '1 N'"),
+    ({"force": [1.0, 2.0]}, "of 2 motions"),
+    ({"force": ([0.0, 1.0], [0.0])}, "times (2,), values (1,)"),
+    ({"force": ([0.0, -1.0], [0.0, 1.0])}, "times of force = -1.0"),
+    ({"torque": ([2.0, 1.0], [0.0, 1.0])}, "in ascending order (dimensionless: times over 10.7 s"),
+    ({"torque": lambda t: np.nan}, "torque(t) = nan"),
+    ({"brake": -1.0}, "brake = -1.0: must be finite and >= 0"),
+    ({"rest": 0.0}, "rest = 0.0"),
+    ({"rest": 1e-3, "force": 1.0}, "rest = "),
+    ({"V": 0.1, "omega": 1.0}, "V, omega given = both"),
+    ({"V": 0.1, "force": 1.0}, "force = given with V="),
+]
+
+
+def test_refusals():
+    for given, words in REFUSED:
+        call = {"V0": 0.0, "omega0": 0.0, "t": 1.0} | given
+        refused(lambda call=call: ROLLER.roll(**call), words)
