@@ -14,7 +14,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.law.material import at_contact, generators
-from viscoroll.kernels.law.series import weighted_loop
+from viscoroll.kernels.law.series import Parts, room
+from viscoroll.kernels.law.series import shares as parts_of
 from viscoroll.material_tables import record, series
 from viscoroll.reference import series as raw
 from viscoroll.reference import spectral
@@ -103,9 +104,9 @@ def chebyshev(random: np.random.Generator, count: int) -> Claim:
         p = random_series(random, int(random.integers(1, 5)), 3.0, (-1.0, 1.0))
         table = record(p)
         z = float(p.tau[-1] * 10.0 ** random.uniform(-2.0, np.log10(THICKEST)))
-        other, part, weights = spectral.contact(p, z, TERMS), np.empty(1), random.random(p.T.size)
-        weighted_loop(series(p), weights, np.array([z]), part, 0, 1)
-        found = np.array([*generators(z, table), at_contact(z, table)[4], part[0]])
+        other, weights = spectral.contact(p, z, TERMS), random.random(p.T.size)
+        known = Parts(**series(p)._asdict(), weights=weights)
+        found = np.array([*generators(z, table), at_contact(z, table)[4], parts_of(z, known, room(known))[0]])
         claim.add(abs(found / [*other[:3], weights @ other.shares] - 1.0), at(z=z) + f", {p!r}")
     return claim
 

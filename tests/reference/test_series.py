@@ -37,10 +37,11 @@ def test_chebyshev_against_the_conditions_and_the_kernels(p, z):
     assert found[:3] == pytest.approx([float(value) for value in truth[:3]], rel=tol.CHEBYSHEV)
     assert found.shares == pytest.approx(shares, rel=tol.CHEBYSHEV)
     assert sum(shares) == pytest.approx(float(truth.m), rel=tol.SERIES_FORMS)
-    part = np.empty(1)
     for j in range(p.T.size):
-        kernels.weighted_loop(known, np.eye(p.T.size)[j], np.array([z]), part, 0, 1)
-        assert part[0] == pytest.approx(shares[j], rel=tol.SERIES_FUNCTIONS)
+        weighted = kernels.Parts(**known._asdict(), weights=np.eye(p.T.size)[j])
+        part, rest, _, _ = kernels.shares(z, weighted, kernels.room(weighted))
+        assert part == pytest.approx(shares[j], rel=tol.SERIES_FUNCTIONS)
+        assert part + rest == pytest.approx(float(truth.m), rel=tol.SERIES_FORMS)
 
 
 def test_too_few_terms_show():
