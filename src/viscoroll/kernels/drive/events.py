@@ -24,10 +24,12 @@ _ROUNDING = 1e-14
 
 
 @kernel
-def first_event(frame, nodes):
-    """(Event whose function first falls below 0 at a node, that node); NO_EVENT for none."""
+def first_event(known, nodes):
+    """(Event but the ``known`` one whose function first falls below 0 at a node, that node); NO_EVENT for none."""
     event, node = NO_EVENT, N + 1
     for row in range(EVENTS):
+        if row == known:
+            continue
         largest = 0.0
         for i in range(N + 1):
             largest = max(largest, nodes[EVENT + row, i])
@@ -98,8 +100,8 @@ def cut(event, length, longest, panel, slopes, frame, case):
         size = panel_error(panel, slopes, frame, case)
         if size > _HOPELESS:
             return event, panel, size
-        earlier, node = first_event(frame, nodes)
-        if earlier not in (NO_EVENT, event) and node < N:
+        earlier, node = first_event(event, nodes)
+        if earlier != NO_EVENT and nodes[EVENT + earlier, node] < -near * _size(earlier, nodes):
             low, high, met = 0.0, length, True
             event, length = earlier, length_until(earlier, node, panel, case)
             continue

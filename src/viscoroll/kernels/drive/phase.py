@@ -80,7 +80,7 @@ def _attempt(panel, left, aimed, slopes, frame, case):
     if not size <= _CUTTABLE:
         return event, panel, size, ahead
     # where the regime ends the law bends: the panel that ends there may be good where this one is not
-    event, node = first_event(frame, nodes)
+    event, node = first_event(NO_EVENT, nodes)
     at = longest = panel.length
     if event != NO_EVENT:
         at = length_until(event, node, panel, case)

@@ -246,7 +246,7 @@ def panel_error(panel, slopes, frame, case):
     nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
     per_s, per_second = scales(frame, case)
     error = _mismatch(S_RATE, nodes[S_RATE, 0] if smooth else 0.0, half, nodes) / per_s
-    if nodes[S, 0] == 0.0 and not frame.slips:
+    if nodes[SPEED, 0] == 0.0:
         error /= _least(panel, case)
     if panel.free:
         off = nodes[RATE, 0] / slopes.weight * half if smooth else 0.0
