@@ -47,6 +47,14 @@ def test_a_free_motion_has_none():
     assert not {"force", "slip_loss", "reversals", "drive_force"} & set(data)
 
 
+def test_a_callable_that_starts_at_rest_does():
+    """Its polynomials begin with rounding of either sign, which would be a start in full slip the wrong way."""
+    for speed in ({"V": lambda t: 0.1 * np.sin(t), "omega0": 0.0}, {"omega": lambda t: 0.1 * np.sin(t), "V0": 0.0}):
+        m = vr.roll(SCENE, **{"V0": None, "omega0": None, "t": [0.0, 0.5, 1.0]} | speed)
+        assert m.V[0] == m.omega[0] == 0.0
+        assert (m.switches, m.reversals.size) == ((), 0)
+
+
 def test_regimes_of_a_brake_have_names():
     m = vr.roll(SCENE, 0.5, 0.5, np.linspace(0.0, 20.0, 9), brake=1.0)
     assert set(m.regime) >= {3, 4}
