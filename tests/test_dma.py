@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import tolerances as tol
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from places import DATA
+from places import DATA, ROOT
 from processes import printed
 from refusals import refused
 
@@ -336,3 +338,20 @@ def test_a_file_that_is_not_there(tmp_path):
 def test_the_import_stays_light():
     code = "import viscoroll as vr; vr.fit_prony; import sys; print('scipy' in sys.modules, 'numba' in sys.modules)"
     assert printed(code).split() == ["False", "False"]
+
+
+def test_what_the_contact_sees_of_the_data():
+    """The passage of the contact at rest takes l0/V; a shift of the material shifts the data with it."""
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
+    cylinder = vr.Cylinder(R=0.1, m=30.0, material=fit.material(0.5), mu=0.5)
+    V = np.geomspace(1e-6, 1e4, 30)
+    found = fit.validity(cylinder, V)
+    lam = vr.contact(cylinder.scene(), V, delta=0.0).lam
+    np.testing.assert_allclose(found.value, cylinder.V_to_si(V) / (lam * cylinder.l0), rtol=1e-14)
+    assert found.holds.any()
+    assert not found.holds[[0, -1]].any()
+    cold = replace(cylinder, material=fit.material(0.5).at(0.0, lambda _: 100.0))
+    np.testing.assert_allclose(fit.validity(cold, V).value, found.value, rtol=1e-12)  # V is over T_ref
+    assert "the data reach from 0.063 to" in found.sentence
+    other = replace(cylinder, material=vr.Material.elastic(1e6, 0.5))
+    refused(lambda: fit.validity(other, V), "cylinder", "of the material of this fit")

@@ -55,7 +55,7 @@ def test_presets():
     assert (rounded.alpha, rounded.kappa, rounded.mu, rounded.gamma, rounded.j) == (11.0, 2.91, 0.2, 1.1e4, 0.5)
     assert vr.PAPER_FIGURES_2_3.kappa == pytest.approx(10.0 * rounded.kappa, rel=tol.SCENE)
     assert PAPER_CYLINDER.scene() == vr.PAPER_SECTION_5
-    assert set(PRESETS) == {"paper-section-5", "paper-section-5-rounded", "paper-figures-2-3"}
+    assert set(PRESETS) == {"paper-section-5", "paper-section-5-rounded", "paper-figures-2-3", "rubber-roller"}
     assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 
@@ -370,3 +370,13 @@ def test_law_at_the_ends_of_its_range():
         np.testing.assert_allclose(near[V <= 1.0], far[V <= 1.0], rtol=1e-7)
     low = vr.contact(vr.Scene(1e12, 1e-145, 1e-145 * 1e-140), 1.0, delta=0.0)
     assert np.isfinite([low.delta_star, low.M]).all()
+
+
+def test_the_rubber_roller_is_inside_the_limits_of_steady_rolling():
+    """As the paper's cylinder is not."""
+    V = np.geomspace(1e-2, 1e3, 20)
+    found = vr.RUBBER_ROLLER.validity(V)
+    assert found.steady.holds
+    assert found.small_contact.holds.all()
+    assert found.steady.value == pytest.approx(0.008, rel=0.1)
+    assert vr.PAPER_SECTION_5.validity(0.5).steady.value == pytest.approx(600.0, rel=0.1)

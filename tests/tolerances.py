@@ -280,6 +280,8 @@ MOMENT = 1e-12
 SI_UNITS = 1e-13
 #: the same of a series, at rtol 1e-10, another unit of time; measured 4.6e-15.
 SI_SERIES = 3e-14
+#: g, h, m and shares by Chebyshev polynomials where they resolve the layer at the front edge; measured 1e-14.
+CHEBYSHEV = 1e-12
 #: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
 SI_SERIES_RTOL = 1e-7
 

@@ -99,7 +99,7 @@ def proofs(results: Results) -> str:
     """One table a proof."""
     titles = {
         "ratios": "Bessel ratios", "contact": "Contact states", "shape": "Shape", "slopes": "Slopes and stress",
-        "motion": "Motion", "series": "Series and pairs",
+        "motion": "Motion", "series": "Series and pairs", "driven": "Driven motion",
     }  # fmt: skip
     columns = {
         "claim": "{claim}", "domain": "{domain}", "points": "{points:,}", "bound": "{bound!n}", "worst": "{worst!n}",

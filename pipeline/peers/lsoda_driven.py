@@ -52,7 +52,7 @@ def _compiled():
 
 
 def roll(par: NDArray, start: NDArray, t: NDArray, rtol: float) -> tuple[NDArray, int]:
-    """((V, omega) at ``t`` or NaN, evaluations) of one motion; ``par``: alpha, kappa, mu, j, f, f', q, q'; gamma = 1."""
+    """((V, omega) at ``t`` or NaN, evaluations) of one motion; ``par``: alpha, kappa, mu, j, f, f', q, q'."""
     address, one = _compiled()
     given = np.append(par, 0.0)
     found, good = one(address, start.copy(), given, t, rtol, ATOL_SHARE * rtol)

@@ -30,6 +30,8 @@ _HOME = {
     "PAPER_SECTION_5_ROUNDED": "presets",
     "PAPER_FIGURES_2_3": "presets",
     "PAPER_STARTS": "presets",
+    "RUBBER_CYLINDER": "presets",
+    "RUBBER_ROLLER": "presets",
     "fit_prony": "dma",
     "Fit": "dma",
     "read_dma": "dma",

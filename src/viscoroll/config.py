@@ -104,7 +104,7 @@ _PAPER_DEFAULT = {
 
 
 def preset(name: str) -> Scene:
-    """The paper's scene of that name.
+    """The scene of that name: the paper's, or the rubber roller.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def preset(name: str) -> Scene:
 def read_scene(path: str | PathLike[str]) -> Scene:
     """Scene of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
 
-    ``preset`` names a scene of the paper, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
+    ``preset`` names a scene of :mod:`presets`, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
     ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane, load) in SI units; E to T_sigma stand in a
     section [material] instead where there is one, and [base] is the half-space where it differs.
 

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bodies import Bodies
-from .prony import Modes, Prony
+from .prony import Prony
 from .prony_array import PronyArray
+from .prony_forms import Modes
 
 #: materials that a thread keeps, of each kind
 _KEPT = 8

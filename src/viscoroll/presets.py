@@ -1,8 +1,10 @@
-"""What the paper computes: its cylinder, its scenes by name, its starts."""
+"""Scenes by name: what the paper computes, with its cylinder and its starts, and a rubber roller beside it."""
 
 from __future__ import annotations
 
 from .cylinder import Cylinder
+from .material import Material
+from .prony import Prony
 from .scene import Scene
 
 #: Sect. 5 as it was computed: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and
@@ -14,10 +16,18 @@ PAPER_SECTION_5_ROUNDED = Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0
 #: Figs. 2 and 3 use kappa = 29.1, ten times that of Sects. 4-5; alpha is varied there
 #: (1, 1.5, 21.5, 81.5 in Figs. 2 and 3b, 11 in Fig. 3a).
 PAPER_FIGURES_2_3 = Scene(alpha=11.0, kappa=29.1, mu=0.2, gamma=1.1e4, j=0.5)
+#: The paper's cylinder of a rubber with short times: nu = 0.008, where the paper's has 600, so that the law of steady
+#: rolling may drive its motion (:meth:`Scene.validity`).  T_ref is 1 s: V is the speed in radii a second.
+RUBBER_CYLINDER = Cylinder(
+    R=0.1, m=35.5, mu=0.3,
+    material=Material(3e6, 0.5, Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5]), name="rubber", density=1130.0),
+)  # fmt: skip
+RUBBER_ROLLER = RUBBER_CYLINDER.scene()
 PRESETS = {
     "paper-section-5": PAPER_SECTION_5,
     "paper-section-5-rounded": PAPER_SECTION_5_ROUNDED,
     "paper-figures-2-3": PAPER_FIGURES_2_3,
+    "rubber-roller": RUBBER_ROLLER,
 }
 #: Initial conditions (V, omega) of Sect. 5.1.
 PAPER_STARTS = {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import broadcast_shape, checked
 from .errors import ParameterError
-from .prony import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, Prony, of_creep, of_relaxation
+from .prony import HIGHEST_ALPHA, MOST_MODES, WIDEST, Prony
+from .prony_forms import Modes, of_creep, of_relaxation
 
 
 class Block(NamedTuple):

@@ -7,7 +7,6 @@ the fields that were named.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
@@ -17,7 +16,7 @@ from .blocks import elements, run_blocks
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ConvergenceError, ParameterError
-from .material_tables import inverses, record, records, series, unsteadiness
+from .material_tables import inverses, record, series, unsteadiness
 from .prony import Prony
 from .prony_array import PronyArray
 from .scene import Scene
@@ -282,7 +281,9 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
     from .kernels.law.material import Own
 
     if isinstance(material, PronyArray):
-        return lambda numbers, *rest: _loop_each(records(material, numbers.astype(np.int64)), *rest)
+        from .contact_each import states_each
+
+        return states_each(material, _PER_SPEED)
     if method == "direct":
         from .kernels.printed.loop import direct_loop
 
@@ -296,26 +297,6 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
         return lambda alphas, *rest: state_loop(record(material), *rest)
     loop = state_loop if count < TOGETHER else contact_loop
     return lambda alphas, *rest: loop(Own(alphas), *rest)
-
-
-def _loop_each(given: tuple, states: Any, need: Any, rows: NDArray, out: NDArray, start: int, stop: int) -> Any:
-    """``state_loop`` of states with a material each, each in its own time."""
-    from .kernels.law.contact_loop import state_loop
-    from .kernels.law.state import ROWS
-
-    record, unit = given
-    states = states._replace(V=_times(states.V, unit))
-    if states.creep_is_omega:
-        states = states._replace(creep=_times(states.creep, unit))
-    status = state_loop(record, states, need, rows, out, start, stop)
-    for n, row in enumerate(rows):
-        if ROWS[row] in _PER_SPEED:
-            out[n] *= unit
-    return status
-
-
-def _times(values: NDArray, unit: NDArray) -> NDArray:
-    return flattened(values * unit, np.broadcast_shapes(values.shape, unit.shape))
 
 
 def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
@@ -375,7 +356,7 @@ def stress(
     shape = broadcast_shape(**arrays)
     x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
     modes = series(material) if isinstance(material, Prony) else None
-    loop = _stress_each(material) if many else lambda alphas, *rest: stress_loop(modes or Own(alphas), *rest)
+    loop = _stresses(material) if many else lambda alphas, *rest: stress_loop(modes or Own(alphas), *rest)
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 
@@ -390,17 +371,7 @@ def stress(
     return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)})
 
 
-def _stress_each(materials: PronyArray) -> Callable:
-    """``stress_loop`` over points with a material each, which lie together where they share one."""
-    from .kernels.law.material import Own
-    from .kernels.law.stress_loop import stress_loop
+def _stresses(materials: PronyArray) -> Callable:
+    from .contact_each import stresses_each
 
-    def loop(numbers: NDArray, points: Any, p: NDArray, tau: NDArray, start: int, stop: int) -> None:
-        for first, last in pairwise([start, *(1 + np.flatnonzero(np.diff(numbers))), stop]):
-            own, unit = materials[int(numbers[min(first, numbers.size - 1)])].in_own_time()
-            some = points._make(part[first:last] if part.size > 1 else part for part in points)
-            some = some._replace(zeta=flattened(some.zeta / unit, some.zeta.shape))
-            given = series(own) if own.E.size else Own(flattened(np.ones(1), (1,)))
-            stress_loop(given, some, p[first:last], tau[first:last], 0, last - first)
-
-    return loop
+    return stresses_each(materials)

@@ -69,6 +69,15 @@ def test_law_tables_and_the_rest(folder):
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
 
 
+def test_series(folder):
+    """Every material has its row, and those of several modes the time of their table."""
+    (rows,) = measured(folder, "series")
+    assert len(rows) == 9
+    for row in rows:
+        assert all(row[kind]["ns"] > 0.0 for kind in ("contact", "motion") if kind in row)
+    assert {row["material"] for row in rows if row["table_ms"]} >= {"1 modes", "30 modes", "pair of 10 and 3 modes"}
+
+
 def test_first_calls(folder):
     """Compiled where the cache is empty, and nothing where it is full."""
     (first,) = measured(folder, "first-calls")

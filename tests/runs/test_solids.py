@@ -87,6 +87,10 @@ def test_a_certain_series_has_one_scene(read):
     )
     assert (run.one_scene, run.method) == (True, "flow")
     assert scene_of(run.inputs.fixed).material == vr.Prony([0.5, 2.0], [1.0, 1e-2])
+    roller = read('preset = "rubber-roller"\n[start]\nV0 = 1.0\nomega0 = 0.0\n[run]\nn = 3\nt = 1.0')
+    assert scene_of(roller.inputs.fixed) == vr.RUBBER_ROLLER
+    slower = read('preset = "rubber-roller"\n[scene]\nalpha = 3.0\n[start]\nV0 = 1\nomega0 = 0\n[run]\nn = 3\nt = 1.0')
+    assert scene_of(slower.inputs.fixed) == vr.RUBBER_ROLLER.replace(alpha=3.0)
     preset = read(text.replace("[scene]", 'preset = "paper-section-5"\n[scene]').replace("E_2.omega0 = 0.5", ""))
     assert scene_of(preset.inputs.fixed).material == vr.Prony([0.5, 2.0], [1.0, 1e-2])
 

@@ -116,7 +116,9 @@ def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = numb
         "scene", "a preset or a file, changed by any of the parameters; or --alpha, --kappa and --mu alone"
     )
     base = group.add_mutually_exclusive_group()
-    base.add_argument("--preset", metavar="NAME", help="paper-section-5, paper-section-5-rounded or paper-figures-2-3")
+    base.add_argument(
+        "--preset", metavar="NAME", help="paper-section-5, paper-section-5-rounded, paper-figures-2-3, rubber-roller"
+    )
     base.add_argument("--scene", metavar="FILE.toml", help="a file with [scene], [cylinder] (SI) or preset")
     for name in PARAMETERS:
         default = {"gamma": " (default 1)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")

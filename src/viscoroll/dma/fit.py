@@ -13,12 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import number
 from ..errors import ParameterError
 from ..prony import MOST_MODES, WIDEST, Prony
+from ..rolling_contact import contact
+from ..validity import Assumption
 from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
 from .shift import Shifts, master_curve
 from .spectrum import FLOOR, Spectrum, misfits
 
 if TYPE_CHECKING:
+    from ..cylinder import Cylinder
     from ..material import Material
 
 #: highest over lowest frequency; times reach a decade beyond on either side
@@ -111,6 +114,42 @@ class Fit:
         from ..material import Material
 
         return Material(E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density)
+
+    def validity(self, cylinder: Cylinder, V: ArrayLike) -> Assumption:
+        """Whether the contact of a cylinder of this material sees frequencies that the data hold.
+
+        A contact is passed in lam l0/V, which must lie within the times of the data; shifted to another temperature
+        (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer that is passed in
+        less: modes faster than the passage act there as far as they go.
+
+        Parameters
+        ----------
+        cylinder : of ``material()`` of this fit, at any temperature.
+        V : speed of the axis times T_ref/R, any sign.
+
+        Returns
+        -------
+        Assumption
+            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``, of the shape of V.
+
+        Raises
+        ------
+        ParameterError
+            A cylinder of another series; NaN or infinite V.
+        """
+        if cylinder.pair.cylinder.prony != self.prony:
+            raise ParameterError("cylinder", f"{cylinder.pair.cylinder!r:.60}", "of the material of this fit")
+        lam = contact(cylinder.scene(), V, delta=0.0, fields="lam").lam
+        a_T = cylinder.pair.cylinder.T_ref / self.T_ref
+        seen = a_T * np.abs(cylinder.V_to_si(V)) / (lam * cylinder.l0)
+        low, high = float(self.omega[0]), float(self.omega[-1])
+        fastest = self.prony.tau.min(initial=np.inf) * self.T_ref
+        return Assumption(
+            (low <= seen) & (seen <= high), seen,
+            f"the contact is passed at {np.min(seen, initial=np.inf):.2g} to {np.max(seen, initial=0.0):.2g} 1/s, the "
+            f"layer at its front edge faster, up to {1.0 / fastest:.2g} 1/s of the fastest mode; "
+            f"the data reach from {low:.2g} to {high:.2g} rad/s",
+        )  # fmt: skip
 
     def __str__(self) -> str:
         from .report import report

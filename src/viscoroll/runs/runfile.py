@@ -36,6 +36,7 @@ from ..material_file import SECTIONS as MATERIALS
 from ..material_file import as_toml, materials_of
 from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
+from ..prony import Prony
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
 from .drives import is_driven, lasts
@@ -208,6 +209,8 @@ def _parameters(path: Any, content: dict[str, Any]) -> tuple[dict[str, dict[str,
         except ParameterError as error:
             raise fault(path, "", "preset", str(error)) from error
         base = {name: getattr(scene, name) for name in SCENE}
+        if scene.material is not None:
+            base = base | {"alpha": None, "series": scene.material}
     kinds = {"cylinder": CYLINDER} if "cylinder" in content else {"scene": SCENE}
     return {name: content.get(name, {}) for name in kinds} | {"start": content["start"]}, base
 
@@ -262,9 +265,11 @@ def _samples(inputs: Inputs) -> list[list[str]]:
 
 
 def _plain(value: Any) -> Any:
-    """Infinite bounds as text: JSON has none."""
+    """Infinite bounds and series as text: JSON has none."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
+    if isinstance(value, Prony):
+        return repr(value)
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value

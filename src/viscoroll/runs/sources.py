@@ -173,7 +173,7 @@ def read_inputs(
         reader.section = section
         others = {"cylinder": ("plane",), "scene": tuple(SERIES)}.get(section, ())
         refuse_unknown(path, section, given, (*ranges[section], *others))
-        series = _series(reader, section, given) if section == "scene" else None
+        series = _series(reader, section, given, base) if section == "scene" else None
         for name, allowed in ranges[section].items():
             value = given.get(name, base.get(name, allowed.default))
             if name == "alpha" and series is not None:
@@ -207,10 +207,12 @@ def read_inputs(
     return inputs
 
 
-def _series(reader: Reader, section: str, given: dict[str, Any]) -> Any:
-    """File the series that stands in place of alpha, if there is one."""
+def _series(reader: Reader, section: str, given: dict[str, Any], base: dict[str, Any]) -> Any:
+    """File the series that stands in place of alpha, of the section or of its preset, if there is one."""
     series, _ = read_series(reader, section, given)
     reader.section = section
+    if series is None and "alpha" not in given:
+        series = base.get("series")
     if series is not None:
         if "alpha" in given:
             raise fault(reader.path, section, "alpha", "alpha and a series: must be one of the two")

@@ -1,0 +1,116 @@
+"""Driven motions: random ones of all kinds against tight tolerances, the balance of energy, and another method.
+
+The other method is SciPy's Radau on (V, omega) and the contact law: it knows of no regime and no event.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from tqdm import tqdm
+
+import viscoroll as vr
+
+from .claim import Claim, at
+
+#: errors are over rtol: of all motions, and of 99 in 100; and where neighbours part by more than this, over that too
+WORST, MOST, APART = 30.0, 3.0, 10.0
+#: the balance of energy over its largest term, and the distance from the other method over the largest speed
+BALANCE, OTHER = 1e-8, 1e-6
+TIGHT, OTHER_RTOL = 1e-11, 1e-9
+DOMAIN = "random scenes, starts from rest and not, force and torque that stay, ramp and jump"
+Case = tuple[vr.Scene, float, float, NDArray, dict[str, Any]]
+
+
+def random_case(random: np.random.Generator) -> Case:
+    """A scene, a start, output times, and a drive of up to three pieces."""
+    scene = vr.Scene(
+        1.0 + 10.0 ** random.uniform(-1.0, 2.0), 10.0 ** random.uniform(0.3, 2.0), 10.0 ** random.uniform(-1.7, 0.0),
+        1.0, random.uniform(0.2, 1.2),
+    )  # fmt: skip
+    V0, omega0 = random.normal(size=2) * 10.0 ** random.uniform(-2.0, 0.5) * (random.random() < 0.7)
+    end, size = 10.0 ** random.uniform(0.0, 2.0), 2.0 * scene.mu * 10.0 ** random.uniform(-2.0, 0.0)
+    cuts = np.repeat(np.sort(random.uniform(0.0, end, random.integers(0, 3))), 2)
+    times = np.concatenate([[0.0], cuts, [end]])
+    force, torque = random.normal(size=(2, times.size)) * size
+    if random.random() < 0.5:  # pieces that stay
+        force, torque = np.repeat(force[::2], 2)[: times.size], np.repeat(torque[::2], 2)[: times.size]
+    drive = {"force": (times, force * (random.random() < 0.7)), "torque": (times, torque * (random.random() < 0.7))}
+    return scene, V0, omega0, np.linspace(0.0, end, 30), drive
+
+
+def off(one: vr.Motion, other: vr.Motion) -> float:
+    """Largest difference of V and omega over the largest speed so far; infinite where one has not reached the end."""
+    fastest = np.maximum.accumulate(np.maximum(np.abs(other.V), np.abs(other.omega)))
+    difference = np.maximum(np.abs(one.V - other.V), np.abs(one.omega - other.omega))
+    found = float(np.max(difference[fastest > 0.0] / fastest[fastest > 0.0], initial=0.0))
+    return found if np.isfinite(other.V[-1]) and np.isfinite(one.V[-1]) else np.inf
+
+
+def apart(case: Case, rtol: float, best: vr.Motion) -> float:
+    """What a start that is shifted by rtol moves the motion by, over rtol: large near a saddle."""
+    scene, V0, omega0, t, drive = case
+    return off(vr.roll(scene, V0 * (1.0 + rtol), omega0 * (1.0 + rtol), t, TIGHT, **drive), best) / rtol
+
+
+def balance(m: vr.Motion) -> float:
+    """What is missing in the balance of energy, over the largest of its terms."""
+    energy, work = 0.5 * (m.V**2 + m.scene.j * m.omega**2), m.work_force + m.work_torque
+    lost = m.brake_loss + m.slip_loss + m.rolling_loss
+    scale = max(float(np.abs(part).max()) for part in (energy, work, lost))
+    return float(np.abs(work - (energy - energy[0]) - lost).max()) / scale if scale > 0.0 else 0.0
+
+
+def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """All rows."""
+    random = np.random.default_rng(sizes["seed"] + 7)
+    tolerances = sizes["driven_rtol"]
+    worst = {rtol: Claim(f"V and omega over the largest speed so far, rtol {rtol:.0e}, over rtol", DOMAIN, WORST)
+             for rtol in tolerances}  # fmt: skip
+    many = Claim(f"share of motions beyond {MOST:g} rtol, all rtol", DOMAIN, 0.01)
+    parting = Claim(
+        f"share of motions whose neighbours part by more than {APART:g}, which are judged by that", DOMAIN, 1.0
+    )
+    energy = Claim(f"balance of energy at rtol {TIGHT:.0e}", DOMAIN, BALANCE)
+    beyond, grown, count = 0, 0, sizes["driven_motions"]
+    for n in tqdm(range(count), desc="driven motions", leave=False):
+        case = random_case(random)
+        scene, V0, omega0, t, drive = case
+        best, where = vr.roll(scene, V0, omega0, t, TIGHT, **drive), f"motion {n}, {scene!r:.200}"
+        energy.add(balance(best), where)
+        rtol = tolerances[n % len(tolerances)]
+        error = off(vr.roll(scene, V0, omega0, t, rtol, **drive), best) / rtol
+        if MOST < error < np.inf:
+            growth = apart(case, rtol, best)
+            grown, error = grown + (growth > APART), error / growth if growth > APART else error
+        worst[rtol].add(error, where)
+        beyond += error > MOST
+    many.add(beyond / count)
+    parting.add(grown / count)
+    return [claim.row for claim in [*worst.values(), many, parting, energy, other_method(random, sizes)]]
+
+
+def other_method(random: np.random.Generator, sizes: dict[str, Any]) -> Claim:
+    """Motions under a drive that stays, by SciPy's Radau."""
+    claim = Claim(
+        "V and omega against SciPy's Radau, over the largest speed", "random scenes and drives that stay", OTHER
+    )
+    for n in tqdm(range(sizes["driven_peers"]), desc="by Radau", leave=False):
+        scene, _, _, _, _ = random_case(random)
+        V0, omega0 = random.normal(size=2)
+        f, q = random.normal(size=2) * scene.mu
+        t = np.linspace(0.0, 5.0, 20)
+
+        def rates(_: float, state: NDArray, scene: Any = scene, f: float = f, q: float = q) -> list[float]:
+            c = vr.contact(scene, state[0], omega=state[1], fields=("Q", "M"))
+            return [c.Q - 0.5 * c.M + f, (q - c.Q - 0.5 * c.M) / scene.j]
+
+        m = vr.roll(scene, V0, omega0, t, TIGHT, force=f, torque=q)
+        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, rtol=OTHER_RTOL, atol=1e-3 * OTHER_RTOL)
+        fastest = max(np.abs(m.V).max(), np.abs(m.omega).max())
+        difference = np.abs(found.y - [m.V, m.omega]).max() if found.y.shape == (2, t.size) else np.inf
+        claim.add(float(difference) / fastest, f"motion {n}, " + at(V0=float(V0), omega0=float(omega0), f=f, q=q))
+    return claim
