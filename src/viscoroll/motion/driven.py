@@ -119,7 +119,9 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
         if given is not None:
             speed = curve(name, given, end, rtol)
             rate, prescribed, error = slope_of(name, speed), code, speed.error
-            start = _prescribed_start(f"{name}0" if code == 1 else "V0", V0 if code == 2 else omega0, speed)
+            # of a callable itself: its fit is off by rounding, and may be of the other sign
+            own = np.array([float(given(0.0))]) if callable(given) else start_value(speed)
+            start = _prescribed_start(f"{name}0" if code == 1 else "V0", V0 if code == 2 else omega0, speed, own)
             V0, omega0 = (start, omega0) if code == 2 else (V0, start)
     for name, value, by in (("V0", V0, "V"), ("omega0", omega0, "omega")):
         if value is None:
@@ -129,9 +131,8 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
     return Prepared(pieces, _gains(drive), prescribed, scene, V0, omega0, error)
 
 
-def _prescribed_start(name: str, given: Any, speed: Curve) -> Any:
-    """The start that a schedule prescribes."""
-    start = start_value(speed)
+def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.float64]) -> Any:
+    """The start that a schedule prescribes, a number where it is one for all."""
     scale = float(np.abs(speed.terms).sum(axis=-1).max(initial=0.0))
     if given is not None and not (np.abs(checked(name, given) - start) <= _START * scale).all():
         raise ParameterError(name, given, f"None, or {float(start[0]):.12g} as prescribed")

@@ -16,7 +16,7 @@ from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..rolling_contact import Values, contact
 from ..scene import Scene
-from .checks import controls, output_times, start_speeds
+from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import ROWS, Drive, prepared, refuse_rest
 from .each import to_unit
 
@@ -161,6 +161,7 @@ class Motion:
         reached = self.regime >= 0
         V, delta = self.V[reached], self.delta[reached]
         delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
+        V = np.where((V == 0.0) & np.signbit(V), -SPEED_RANGE[0], V)  # -0: the limit from there
         found = contact(self.scene, V, delta=delta, fields=fields, **options)
         return found if reached.all() else Values({k: _with_gaps(v, reached) for k, v in found.as_dict().items()})
 
