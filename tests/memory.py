@@ -7,7 +7,9 @@ from viscoroll.motion import flow
 
 
 def forget() -> None:
-    """Neither a table of this thread nor a flow map is at hand; maps on disk and compiled kernels stay."""
+    """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
     flow._recent.clear()
     material_tables._kept.materials.clear()
     material_tables._kept.inverses.clear()
+    material_tables._series_table.cache_clear()
+    material_tables._pair_tables.cache_clear()

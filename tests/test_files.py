@@ -184,7 +184,7 @@ RAW = {"open", "write_text", "write_bytes", "savefig", "to_netcdf", "save", "sav
        "savetxt", "to_csv", "to_parquet", "netcdf_file", "File", "copyfile"}  # fmt: skip
 #: composed in memory and written by ``write_bytes``, or to a path that ``replacing`` gave
 KNOWN = {
-    "files.py: dataset.to_netcdf", "flow_store.py: np.savez", "export.py: h5netcdf.File", "export.py: path.open",
+    "files.py: dataset.to_netcdf", "stored.py: np.savez", "export.py: h5netcdf.File", "export.py: path.open",
     "cache.py: temporary.write_bytes",
 }  # fmt: skip
 #: stages that write to scratch folders of their own
@@ -202,7 +202,7 @@ def calls(node: ast.AST) -> list[ast.Call]:
 def writes(call: ast.Call) -> bool:
     """Whether a call may write a file by other means than those of ``files.py``."""
     name = ast.unparse(call.func).rpartition(".")
-    if name[2] not in RAW or name[0] in {"", "files", "tables", "vr.tables", "figures"}:
+    if name[2] not in RAW or name[0] in {"", "files", "material", "stored", "tables", "vr.tables", "figures"}:
         return name[2] == "open" and not name[0] and for_writing(call)
     return name[2] not in {"open", "File"} or for_writing(call)
 

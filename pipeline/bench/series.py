@@ -62,9 +62,10 @@ def spread(random: np.random.Generator, modes: int, count: int) -> Any:
 
 
 def built(scene: vr.Scene) -> float | None:
-    """Milliseconds that the table of a series takes; None where nothing is built ahead."""
+    """Milliseconds that the table of a series takes where none is on disk; None where nothing is built ahead."""
     material, _ = scene.in_own_time()
     if not isinstance(material, vr.Prony):
         return None
-    material_tables._series_table.cache_clear()
-    return 1e3 * seconds_of(lambda: material_tables._series_table(material))[0]
+    modes = material.modes
+    bins = material_tables._bins(modes.a[-1], modes.b[0])
+    return 1e3 * seconds_of(lambda: material_tables._filled(material_tables.series(material), *bins))[0]

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import stored
 from .bodies import Bodies
 from .prony import Prony
 from .prony_array import PronyArray
@@ -21,6 +22,8 @@ from .prony_forms import Modes
 _KEPT = 8
 #: octaves beyond the shortest and the longest time of a material from which on it is in its limits
 _MARGIN = 28
+#: modes from which on a table takes as long to fill as to write to disk, and ten times as long as to read
+_WORTH_STORING = 10
 
 
 class _Kept(threading.local):
@@ -103,13 +106,27 @@ def _bins(fastest: float, slowest: float) -> tuple[int, int]:
     return first, stop
 
 
-def _filled(known: Any, prony: Prony) -> Any:
-    """The table of functions of z of a series, between its ends."""
+def _table(known: Any, modes: Modes) -> Any:
+    """The table of functions of z of a series, between its ends; one of many modes is kept on disk."""
+    first, stop = _bins(modes.a[-1], modes.b[0])
+    if modes.a.size < _WORTH_STORING:
+        return _filled(known, first, stop)
+    numbers = np.concatenate([*map(np.ravel, known), [first, stop]])  # all that the kernel is given
+    path = stored.folder("series") / stored.file_name(numbers)
+    found = stored.load(path, "table of a series", numbers, lambda arrays: arrays["table"])
+    if found is None:
+        found = _filled(known, first, stop)
+        stored.save(path, numbers, table=found)
+    return found
+
+
+def _filled(known: Any, first: int, stop: int) -> Any:
+    """A table with these bins made."""
     from .kernels.law.series import fill
     from .kernels.numerics.quartet import empty_table
 
-    first, stop = _bins(prony.modes.a[-1], prony.modes.b[0])
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
+    table[:] = np.nan  # what lay in memory before shall not reach the disk
     fill(known, first, stop, table)
     return table
 
@@ -165,7 +182,7 @@ def _series_table(prony: Prony) -> Any:
 
     modes = prony.modes
     ends = _ends(modes, 1.0, sum(prony.second_moments))
-    return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), _filled(series(prony), prony), ends)
+    return Tabulated(prony.alpha, prony.T_mean, float(1.0 / modes.a[-1]), _table(series(prony), modes), ends)
 
 
 @lru_cache(maxsize=_KEPT)
@@ -181,7 +198,7 @@ def _pair_tables(bodies: Bodies) -> Any:
         Body(math.fsum(share * modes.J / modes.b), _ends(modes, share, 2.0 * math.fsum(share * rises)))
         for share in (weights, 1.0 - weights)
     )
-    parts = _filled(Parts(**series(whole)._asdict(), weights=weights), whole)
+    parts = _table(Parts(**series(whole)._asdict(), weights=weights), modes)
     return Pair(**_series_table(whole)._asdict(), parts=parts, half_space=half_space, cylinder=cylinder)
 
 

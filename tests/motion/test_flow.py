@@ -12,6 +12,7 @@ from processes import printed
 from refusals import refused
 
 import viscoroll as vr
+from viscoroll import stored
 from viscoroll.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
@@ -337,7 +338,7 @@ def test_a_disk_that_cannot_be_written_is_no_obstacle(tmp_path, monkeypatch):
 
 
 def test_old_maps_are_removed(monkeypatch):
-    monkeypatch.setattr(flow_store, "_KEPT", 2)
+    monkeypatch.setattr(stored, "KEPT", 2)
     for mu in (0.2, 0.3, 0.4):
         flow.flow_map(SCENE.replace(mu=mu), 2.0)
     assert len(list(flow_store.folder().iterdir())) == 2

@@ -1,11 +1,7 @@
-"""Flow maps on disk: under the compile cache, sealed, those used last."""
+"""Flow maps on disk."""
 
 from __future__ import annotations
 
-import hashlib
-import io
-import warnings
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,12 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import OutputError
-from ..files import seal, seal_holds, write_bytes
+from .. import stored
 from ..prony import Prony
-
-#: maps kept on disk; the one that was used longest ago goes first
-_KEPT = 64
 
 
 @dataclass(frozen=True)
@@ -52,10 +44,8 @@ class FlowMap:
 
 
 def folder() -> Path:
-    """Where maps are kept: they are worth no more than the kernels that fill and read them."""
-    from ..kernels.compile.cache import cache_root, sources_digest
-
-    return cache_root() / f"flow-{sources_digest()}"
+    """Where maps are kept."""
+    return stored.folder("flow")
 
 
 def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
@@ -68,54 +58,28 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
 
 def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     """File of the map for kappa V < 2**octave at stick onset."""
-    name = hashlib.sha256(b"sealed" + np.array([*_numbers(parameters), octave]).tobytes()).hexdigest()[:20]
-    return folder() / f"{name}.npz"
+    return folder() / stored.file_name((*_numbers(parameters), octave))
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     """The map in a file; None if there is none, or after a warning, none that is whole."""
-    try:
-        content = path.read_bytes()
-    except OSError:
-        return None
-    try:
-        found = _parsed(content, parameters)
-    except Exception as error:
-        warnings.warn(f"{path}: flow map is damaged ({error}); it is built anew", RuntimeWarning, stacklevel=2)
-        return None
-    with suppress(OSError):  # a folder that is read-only
-        path.touch()
-    return found
-
-
-def _parsed(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
     from ..kernels.flow.layout import SIZE
 
-    if not seal_holds(content):
-        raise ValueError("its bytes differ from the SHA-256 at their end")
-    with np.load(io.BytesIO(content)) as data:
-        numbers = tuple(data["parameters"].tolist())
+    def read(data: Any) -> FlowMap:
         found = FlowMap(
             parameters, int(data["first"]), data["table"],
             float(data["error"]), float(data["path_error"]), float(data["loss_error"]), str(data["problem"]),
         )  # fmt: skip
-    if numbers != _numbers(parameters) or found.table.shape != (SIZE,):
-        raise ValueError("it is that of another scene")
-    return found
+        if found.table.shape != (SIZE,):
+            raise ValueError("its table is of another size")
+        return found
+
+    return stored.load(path, "flow map", _numbers(parameters), read)
 
 
 def save(made: FlowMap, path: Path) -> None:
-    """Keep a map, sealed; where it cannot be written it is built anew next time."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        content = io.BytesIO()
-        np.savez(
-            content, parameters=_numbers(made.parameters), first=made.first, table=made.table,
-            error=made.error, path_error=made.path_error, loss_error=made.loss_error, problem=made.problem,
-        )  # fmt: skip
-        write_bytes(path, seal(content.getvalue()))
-        oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
-        for file in oldest[:-_KEPT]:
-            file.unlink()
-    except (OSError, OutputError):
-        pass
+    """Keep a map; where it cannot be written it is built anew next time."""
+    stored.save(
+        path, _numbers(made.parameters), first=made.first, table=made.table,
+        error=made.error, path_error=made.path_error, loss_error=made.loss_error, problem=made.problem,
+    )  # fmt: skip
