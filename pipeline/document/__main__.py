@@ -41,7 +41,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
         "bench_peers": bench.peers, "bench_all": bench.headline, "bench_fixed_scene": bench.fixed_scene,
         "bench_own": bench.own_parameters, "bench_agreement": bench.agreement, "bench_law": bench.law,
         "bench_scaling": bench.scaling, "bench_skips": bench.skips, "bench_cold_start": bench.cold_start,
-        "bench_first_calls": bench.first_calls, "bench_series": bench.series,
+        "bench_first_calls": bench.first_calls, "bench_series": bench.series, "bench_driven": bench.driven,
     },
 }  # fmt: skip
 BLOCKS = {name: (stage, text) for stage, texts in STAGES.items() for name, text in texts.items()}

@@ -178,7 +178,7 @@ def series(results: Results) -> str:
 def driven(results: Results) -> str:
     """Driven motions beside LSODA."""
     columns = {
-        "drive": "{kind}", "method": "{method}, rtol {rtol:.0e}", "median, µs": "{median_us:.3g}",
+        "drive": "{kind}", "method": "{method}, rtol {rtol:.0e}", "motions": "{motions}", "median, µs": "{median_us:.3g}",
         "95th percentile, µs": "{p95_us:.3g}", "mean, µs": "{mean_us:.3g}", "error, median": "{median_error:.1e}",
         "max": "{max_error:.1e}", "failed": "{failed}",
     }  # fmt: skip
