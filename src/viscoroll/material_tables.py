@@ -22,7 +22,7 @@ from .prony_forms import Modes
 _KEPT = 8
 #: octaves beyond the shortest and the longest time of a material from which on it is in its limits
 _MARGIN = 28
-#: modes from which on a table takes as long to fill as to write to disk, and ten times as long as to read
+#: modes from which on a table takes about as long to fill as to write to disk, and several times as long as to read
 _WORTH_STORING = 10
 
 
