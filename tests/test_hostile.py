@@ -266,7 +266,7 @@ def test_no_kernel_is_compiled_again_for_another_kind_of_array():
 def test_empty():
     nothing = np.empty((0,))
     assert vr.stress(SCENE, nothing, 1.0, delta=0.0).p.shape == (0,)
-    assert vr.stress(SCENE, np.empty((3, 1)) * 0.0, nothing, delta=0.0).tau.shape == (3, 0)
+    assert vr.stress(SCENE, np.zeros((3, 1)), nothing, delta=0.0).tau.shape == (3, 0)
     for method in ("integrate", "flow", "auto"):
         many = vr.ensemble(SCENE, nothing, nothing, 1.0, method=method)
         assert many.V.shape == (0, 1)

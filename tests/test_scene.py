@@ -376,7 +376,7 @@ def test_the_rubber_roller_is_inside_the_limits_of_steady_rolling():
     """As the paper's cylinder is not."""
     V = np.geomspace(1e-2, 1e3, 20)
     found = vr.RUBBER_ROLLER.validity(V)
-    assert found.steady.holds
+    assert found.steady.holds.all()
     assert found.small_contact.holds.all()
-    assert found.steady.value == pytest.approx(0.008, rel=0.1)
+    assert found.steady.value.max() == pytest.approx(0.008, rel=0.1)
     assert vr.PAPER_SECTION_5.validity(0.5).steady.value == pytest.approx(600.0, rel=0.1)

@@ -291,6 +291,15 @@ def test_ten_humps_run_to_the_end():
     assert np.isfinite(m.V).all()
 
 
+def test_a_material_each_is_roll():
+    """Their bins are made where they are met, those of one material are there: the same bits."""
+    each = vr.Prony(E=[[1.0, 2.0, 3.0], [2.0, 0.5, 1.0], [4.0, 1.0, 0.3]], tau=[1.0, 0.1, 0.01])
+    q = np.array([0.02, -0.05, 0.1])
+    e = vr.ensemble(ROLLER.replace(material=each), 0.3, 0.1, T, torque=q)
+    for n in range(3):
+        assert np.array_equal(e.V[n], vr.roll(ROLLER.replace(material=each[n]), 0.3, 0.1, T, torque=q[n]).V)
+
+
 def test_ensemble_is_roll():
     """Numbers and schedules each: bit for bit; zeros without a drive."""
     q = np.linspace(-0.2, 0.2, 7)

@@ -13,7 +13,7 @@ from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
-from ..numerics.bins import offset_slope
+from ..numerics.bins import bin_number, offset_slope
 from . import standard
 from .each import Ends, Filled, made
 from .standard import GAUSS_W, GAUSS_X, Standard
@@ -106,6 +106,22 @@ _make = by_record(2, (Tabulated, _make_own), (Filled, _make_met))
 
 
 @kernel(inline=True)
+def _beyond_full(z, material):
+    """Whether a bin that is not there lies beyond the ends."""
+    return material.ends.known
+
+
+@kernel(inline=True)
+def _beyond_met(z, material):
+    """As the last, of a material whose bins are made where they are met."""
+    number = bin_number(z, quartet.BITS)
+    return number < material.first or number >= material.stop
+
+
+_beyond = by_record(1, (Tabulated, _beyond_full), (Filled, _beyond_met))
+
+
+@kernel(inline=True)
 def _row(z, material):
     """Row of the bin of z, which is made if it is not there."""
     row, there = quartet.row_of(z, material.table)
@@ -164,7 +180,7 @@ def at_rolling(z, material):
     """(g, h, g', h', m of the half-space, m of the cylinder) at z."""
     row, there = quartet.row_of(z, material.table)
     if rarely(not there):
-        if material.ends.known:
+        if _beyond(z, material):
             g, h, dg, dh = at_an_end(z, material)
             m, _ = moment_at_an_end(z, material.T_mean, material.ends, material)
             return g, h, dg, dh, 0.5 * m, 0.5 * m
