@@ -177,12 +177,16 @@ def series(results: Results) -> str:
 
 def driven(results: Results) -> str:
     """Driven motions beside LSODA."""
+    rows = [
+        row | {name: "" if row[name] is None else f"{row[name]:.1e}" for name in ("median_error", "max_error")}
+        for row in results["bench-driven"]["measured"]["rows"]
+    ]
     columns = {
-        "drive": "{kind}", "method": "{method}, rtol {rtol:.0e}", "motions": "{motions}", "median, µs": "{median_us:.3g}",
-        "95th percentile, µs": "{p95_us:.3g}", "mean, µs": "{mean_us:.3g}", "error, median": "{median_error:.1e}",
-        "max": "{max_error:.1e}", "failed": "{failed}",
+        "drive": "{kind}", "method": "{method}, rtol {rtol:.0e}", "motions": "{motions}",
+        "median, µs": "{median_us:.3g}", "95th percentile, µs": "{p95_us:.3g}", "mean, µs": "{mean_us:.3g}",
+        "error, median": "{median_error}", "max": "{max_error}", "given up": "{failed}",
     }  # fmt: skip
-    return listed(columns, results["bench-driven"]["measured"]["rows"])
+    return listed(columns, rows)
 
 
 def cold_start(results: Results) -> str:

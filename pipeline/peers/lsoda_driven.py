@@ -21,7 +21,8 @@ from ..bench.jit import compiled
 INSTALLED = bool(find_spec("numbalsoda"))
 #: share of rtol that the absolute tolerance is
 ATOL_SHARE = 1e-3
-_MOST_STEPS = 5_000_000
+#: between two outputs
+_MOST_STEPS = 20_000
 _NEED = Need(True, True, False, True, False)
 
 
