@@ -11,6 +11,7 @@ import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -21,6 +22,7 @@ from processes import printed, python
 
 from viscoroll.kernels.compile import cache as cache_module
 from viscoroll.kernels.compile import deferred, notice
+from viscoroll.kernels.compile.choice import by_record
 from viscoroll.kernels.compile.jit import kernel
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
@@ -156,6 +158,32 @@ def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypat
     assert square(2.0) == 4.0  # told once, and warnings are errors here
 
 
+class Known(NamedTuple):
+    x: float
+
+
+class Other(NamedTuple):
+    x: float
+
+
+def _one(record):
+    return record.x
+
+
+def _two(record):
+    return 2.0 * record.x
+
+
+def test_a_record_takes_its_own_version_and_never_that_of_another():
+    once, twice = kernel(_one), kernel(_two)
+    strict, open_ended = by_record(0, (Known, twice)), by_record(0, (Known, twice), otherwise=once)
+    asked = [kernel(lambda record, of=of: of(record)) for of in (strict, open_ended)]
+    assert asked[0](Known(3.0)) == asked[1](Known(3.0)) == 6.0
+    assert asked[1](Other(3.0)) == 3.0
+    with pytest.raises(TypeError, match="Other: not out of Known"):
+        strict(Other(3.0))
+
+
 def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
     @kernel
     def wrong(x):
@@ -213,6 +241,7 @@ def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path):
     """What one process compiled without checks is not what another one, that asks for them, is given."""
     script = """
 import numpy as np
+from viscoroll.kernels.compile.choice import by_record
 from viscoroll.kernels.compile.jit import kernel
 
 @kernel

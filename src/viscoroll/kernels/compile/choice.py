@@ -10,18 +10,25 @@ from numba.core import sigutils
 from .jit import kernel
 
 
-def by_record(at: int, *versions: tuple[type, Callable]) -> Callable:
+def by_record(at: int, *versions: tuple[type, Callable], otherwise: Callable | None = None) -> Callable:
     """The version for the record that argument number ``at`` is: pairs of a record's class and a kernel.
 
-    The first serves records that are not among them too.
+    ``otherwise`` serves the records that are not among them; without it they are refused, with a TypeError.
     """
-    known, first = dict(versions), versions[0][1]
+    known = dict(versions)
+
+    def chosen(kind: type) -> Callable:
+        found = known.get(kind, otherwise)
+        if found is None:
+            raise TypeError(f"{kind.__name__}: not out of " + ", ".join(one.__name__ for one in known))
+        return found
+
     if numba.config.DISABLE_JIT:
-        return lambda *given: known.get(type(given[at]), first)(*given)
-    stand_in = kernel(first.py_func)
+        return lambda *given: chosen(type(given[at]))(*given)
+    stand_in = kernel(versions[0][1].py_func)
 
     def version(given: Any) -> Any:
-        return known.get(given[at].instance_class, first)
+        return chosen(given[at].instance_class)
 
     def get_call_template(given: tuple, named: dict[str, Any]) -> Any:
         return version(given).get_call_template(given, named)

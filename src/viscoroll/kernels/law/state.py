@@ -12,9 +12,7 @@ from .length import OK, contact_solution, near_length
 from .material import at_contact, fast_limit, generator_slopes, moment_of
 from .pair import Pair, fast_parts, parts
 from .slopes import slope_ratio, slope_ratio_rise
-from .standard import Standard
 from .stick import CLOSE, stick_from_root, stick_solution
-from .tabulated import Tabulated
 
 #: Order of the rows of the kernel's output; the last four, of a :class:`Pair` alone.
 ROWS = (
@@ -238,4 +236,4 @@ def _parts_of_pair(V, kappa, solved, material, need_slopes, out):
         out[DM_HALF_SPACE_DV], out[DM_CYLINDER_DV] = half_space - per * d_half_space, cylinder - per * d_cylinder
 
 
-_put_parts = by_record(3, (Standard, _no_parts), (Tabulated, _no_parts), (Pair, _parts_of_pair))
+_put_parts = by_record(3, (Pair, _parts_of_pair), otherwise=_no_parts)

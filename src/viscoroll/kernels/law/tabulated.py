@@ -102,7 +102,7 @@ def _make_met(row, z, material):
     return row if made(row, z, material) else _make_own(row, z, material)
 
 
-_make = by_record(2, (Tabulated, _make_own), (Filled, _make_met))
+_make = by_record(2, (Filled, _make_met), otherwise=_make_own)
 
 
 @kernel(inline=True)
