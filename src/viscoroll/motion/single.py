@@ -373,11 +373,6 @@ def _driven(given: tuple, drives: tuple, times: NDArray, limits: tuple, notes: t
     from ..kernels.drive.loop import drive_loop
     from ..kernels.motion.loop import INFO
 
-    switches, ends = notes
-    noted = np.zeros(ends.size + 1 if ends.size else 0)
     out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
-    drive_loop(given, drives, times, limits, np.arange(len(ROWS)), out, info, (switches, noted))
-    if ends.size:
-        count = min(int(noted[0]), ends.size)
-        ends[:count] = noted[1 : count + 1]
+    drive_loop(given, drives, times, limits, np.arange(len(ROWS)), out, info, notes)
     return out[:, 0], info[0]

@@ -7,10 +7,8 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.collocation import NODES, N, rise_at, rise_terms
 from .records import EDGE, EVENTS, NO_EVENT, SLOW, STOP
-from .solve import EVENT, SPEED, Panel, panel_error, slope_at, solve
+from .solve import EVENT, OF_EVENT, SPEED, Panel, panel_error, slope_at, solve
 
-#: row of the interpolant of an event's function, behind those of outputs
-_ROW = 9
 #: panels solved at most until one ends on the event, and how closely, as shares of the tolerance
 _CUTS, _ON, _NEWTON = 8, 1e-2, 1e-3
 #: error over the tolerance from which on a panel is given up
@@ -48,14 +46,14 @@ def first_event(known, nodes):
 @kernel
 def _place(event, node, nodes, powers):
     """v in [0, 2] at which the interpolant of an event's function passes 0 before this node."""
-    rise_terms(nodes[EVENT + event], powers, _ROW)
+    rise_terms(nodes[EVENT + event], powers, OF_EVENT)
     start = nodes[EVENT + event, 0]
     low, high = 1.0 + NODES[node - 1], 1.0 + NODES[node]
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        if start + rise_at(middle, powers, _ROW) > 0.0:
+        if start + rise_at(middle, powers, OF_EVENT) > 0.0:
             low = middle
         else:
             high = middle

@@ -12,9 +12,11 @@ from ..law.length import OK, contact_length
 from ..law.material import generators
 from ..law.stick import stick_length
 from ..motion.collocation import N
+from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL
+from ..motion.records import REST
 from .load import acting, load_at, piece_end, undriven
 from .origin import STAYS, STICKS, depart, leaving_time
-from .output import INTERPOLANTS, coast, put_still, put_to_end, regime_of
+from .output import coast, put_still, put_to_end, regime_of
 from .phase import phase
 from .rates import rates_at
 from .records import (
@@ -23,7 +25,6 @@ from .records import (
     KINK,
     NEITHER,
     NO_EVENT,
-    REST,
     REVERSED,
     SLOW,
     STOP,
@@ -36,9 +37,8 @@ from .records import (
     State,
     Work,
 )  # fmt: skip
-from .solve import PATHS, ROWS, S
+from .solve import INTERPOLANTS, PATHS, ROWS, S
 
-DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
 #: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
 #: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
@@ -50,14 +50,23 @@ _SLOWEST = 1e-17
 
 
 @kernel
-def _spin(omega, piece, tau, frame, case):
-    """Sign of omega where a brake acts on it, else 0."""
-    return np.sign(omega) if load_at(tau, piece, frame, case).brake > 0.0 else 0.0
+def _here(state, frame, clock, case):
+    """(The drive, what the equations say) at a state."""
+    load = load_at(clock.tau, clock.piece, frame, case)
+    return load, rates_at(state.s, state.second, load, frame, case.scene)
+
+
+@kernel
+def _excess(state, frame, clock, case):
+    """(Torque that would turn a wheel held at omega = 0, the most that the brake can take of it)."""
+    load, rates = _here(state, frame, clock, case)
+    _, torque, _ = acting(rates.V, 0.0, load, frame)
+    return torque - rates.Q - rates.M_cylinder, load.brake
 
 
 @kernel
 def enter(V, omega, clock, case):
-    """The regime of a start with V or omega not 0: (state, frame, status)."""
+    """The regime of a start with V or omega not 0, but for its brake: (state, frame, status)."""
     scene = case.scene
     material, kappa, mu, _ = scene
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
@@ -72,33 +81,26 @@ def enter(V, omega, clock, case):
     frame = Frame(True, direction, sigma, 0.0, False)
     if V == 0.0 or abs(slip) >= limit:
         # at V = 0 the frame is that which V turns to
-        pace = rates_at(s, omega, load_at(clock.tau, clock.piece, frame, case), frame, scene).s_rate
-        if V == 0.0 and pace < 0.0:
+        if V == 0.0 and _here(State(s, omega), frame, clock, case)[1].s_rate < 0.0:
             direction, omega, sigma = -direction, -omega, -sigma
-        spin = _spin(omega, clock.piece, clock.tau, frame, case)
-        return State(s, omega), Frame(True, direction, sigma, spin, False), OK
+        return State(s, omega), Frame(True, direction, sigma, 0.0, False), OK
     zeta = 1.0 / s
     _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
-    spin = _spin(omega, clock.piece, clock.tau, frame, case)
-    return State(s, sigma * (D * s)), Frame(False, direction, sigma, spin, False), status
+    return State(s, sigma * (D * s)), Frame(False, direction, sigma, 0.0, False), status
 
 
 @kernel
 def locks(state, frame, clock, case):
     """Whether the brake holds omega, which has just become 0."""
-    load = load_at(clock.tau, clock.piece, frame, case)
-    rates = rates_at(state.s, state.second, load, frame, case.scene)
-    _, torque, _ = acting(rates.V, 0.0, load, frame)
-    return abs(rates.Q + rates.M_cylinder - torque) <= load.brake
+    excess, most = _excess(state, frame, clock, case)
+    return abs(excess) <= most
 
 
 @kernel
 def released(state, frame, clock, case):
     """The frame once a brake that held omega lets go, or the sign of omega changes under it."""
-    load = load_at(clock.tau, clock.piece, frame, case)
-    rates = rates_at(state.s, state.second, load, frame, case.scene)
-    _, torque, _ = acting(rates.V, 0.0, load, frame)
-    spin = np.sign(torque - rates.Q - rates.M_cylinder) if load.brake > 0.0 else 0.0
+    excess, most = _excess(state, frame, clock, case)
+    spin = np.sign(excess) if most > 0.0 else 0.0
     return Frame(frame.slips, frame.direction, frame.sigma, spin, False)
 
 
@@ -111,7 +113,7 @@ def switch(event, state, frame, clock, case):
             return state, frame, True
         return State(state.s, sigma), Frame(False, direction, sigma, spin, locked), False
     if event == EDGE:
-        omega = rates_at(state.s, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene).omega
+        omega = _here(state, frame, clock, case)[1].omega
         return State(state.s, omega), Frame(True, direction, sigma, spin, locked), False
     if event == KINK:
         return State(state.s, 0.0), Frame(False, direction, -sigma, spin, locked), False
@@ -161,13 +163,12 @@ def note(what, noted, clock, case):
 def at_new_piece(state, frame, clock, case):
     """The frame where a piece of the drive begins: brakes take hold or let go."""
     slips, direction, sigma, spin, locked = frame
-    load = load_at(clock.tau, clock.piece, frame, case)
-    omega = rates_at(state.s, state.second, load, frame, case.scene).omega
-    if locked or omega == 0.0:
+    load, rates = _here(state, frame, clock, case)
+    if locked or rates.omega == 0.0:
         if load.brake > 0.0 and locks(state, frame, clock, case):
             return Frame(slips, direction, sigma, spin, True)
         return released(state, frame, clock, case)
-    return Frame(slips, direction, sigma, _spin(omega, clock.piece, clock.tau, frame, case), False)
+    return Frame(slips, direction, sigma, np.sign(rates.omega) if load.brake > 0.0 else 0.0, False)
 
 
 @kernel
@@ -182,8 +183,7 @@ def unresolved(state, frame, clock, case):
     """Whether V is so small that b relaxes within the rounding of time: then it may as well be 0."""
     if frame.slips:
         return False
-    load = load_at(clock.tau, clock.piece, frame, case)
-    rates = rates_at(state.s, state.second, load, frame, case.scene)
+    _, rates = _here(state, frame, clock, case)
     return rates.weight < _ROUNDING * clock.tau * abs(rates.rate_slope)
 
 
@@ -196,7 +196,7 @@ def follow(moving, state, frame, clock, case):
         if clock.steps >= case.limits.max_steps:
             return STEP_LIMIT, clock, turns, onset_time, np.nan
         if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
-            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps)
+            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends)
             frame = at_new_piece(state, frame, clock, case) if moving else frame
         event, direction, before = NO_EVENT, frame.direction, clock
         if moving and clock.tau >= end:
@@ -245,7 +245,7 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     matrix, right = np.empty((2 * N, 2 * N)), np.empty(2 * N)
     work = Work(np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), matrix, right, np.zeros(PATHS))
     case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
-    clock = Clock(0.0, 0, 0, 0)
+    clock = Clock(0.0, 0, 0, 0, 0)
     state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False
     if V0 != 0.0 or omega0 != 0.0:
         moving = True

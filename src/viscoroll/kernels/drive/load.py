@@ -4,7 +4,7 @@ of four polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .records import OMEGA, SPEED, Load
+from .records import NEITHER, OMEGA, SPEED, Load
 
 #: columns: start, scale, and from here on as many coefficients for each function as there are terms
 START, SCALE, FIRST = 0, 1, 2
@@ -59,7 +59,7 @@ def piece_end(piece, case):
 def undriven(piece, drive):
     """Whether nothing drives from this piece on, which is the last."""
     gains = drive.gains
-    if piece + 1 < drive.pieces.shape[0] or drive.prescribed != 0:
+    if piece + 1 < drive.pieces.shape[0] or drive.prescribed != NEITHER:
         return False
     acting = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)
     for column in range(FIRST, drive.pieces.shape[1]):

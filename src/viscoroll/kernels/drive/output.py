@@ -6,18 +6,15 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..motion.collocation import integral_terms, rise_at, rise_terms
+from ..motion.records import FULL, PARTIAL, REST
 from .load import load_at, needed
 from .rates import rates_at
-from .records import FULL, LOCKED, PARTIAL, REST, Clock, Frame
-from .solve import PATH, PATHS, SECOND, S, risen
+from .records import LOCKED, Clock, Frame
+from .solve import OF_PATH, OF_S, OF_SECOND, PATH, PATHS, SECOND, S, risen
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
 FORCE, WORK = 6, 8
-#: row of the interpolant of s, in front of those of the path
-_OF_S, _OF_SECOND, _OF_PATH = 0, 1, 2
-#: their number, with that of an event behind
-INTERPOLANTS = _OF_PATH + PATHS + 1
 
 
 @kernel
@@ -46,7 +43,7 @@ def put_still(until, closed, regime, clock, case):
         for n in range(PATHS):
             _put_path(at, n, case.work.totals[n], case)
         at += 1
-    return Clock(until, at, clock.piece, clock.steps + 1)
+    return Clock(until, at, clock.piece, clock.steps + 1, clock.ends)
 
 
 @kernel
@@ -69,38 +66,28 @@ def put_to_end(state, frame, clock, case):
         _put_state(column, state.s, state.second, clock.piece, frame, case)
         for n in range(PATHS):
             _put_path(column, n, case.work.totals[n], case)
-    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps)
+    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps, clock.ends)
 
 
 @kernel
 def _put(column, v, panel, frame, case):
     """One column from the interpolants of a panel."""
     nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
-    s = nodes[S, 0] + rise_at(v, powers, _OF_S)
-    second = nodes[SECOND, 0] + rise_at(v, powers, _OF_SECOND)
+    s = nodes[S, 0] + rise_at(v, powers, OF_S)
+    second = nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND)
     _put_state(column, s, second, panel.piece, frame, case)
     for n in range(PATHS):
-        way = rise_at(v, powers, _OF_PATH + n)
+        way = rise_at(v, powers, OF_PATH + n)
         _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
 
 
 @kernel
 def _terms(panel, nodes, powers):
     """Interpolants of a panel."""
-    rise_terms(nodes[S], powers, _OF_S)
-    rise_terms(nodes[SECOND], powers, _OF_SECOND)
+    rise_terms(nodes[S], powers, OF_S)
+    rise_terms(nodes[SECOND], powers, OF_SECOND)
     for n in range(PATHS):
-        integral_terms(nodes[PATH + n], 0.5 * panel.length, powers, _OF_PATH + n)
-
-
-@kernel
-def _note_end(end, case):
-    """Note where a panel ends."""
-    ends = case.notes.ends
-    if ends.size > 0:
-        ends[0] += 1.0
-        if ends[0] < ends.size:
-            ends[int(ends[0])] = end / case.gamma
+        integral_terms(nodes[PATH + n], 0.5 * panel.length, powers, OF_PATH + n)
 
 
 @kernel
@@ -117,11 +104,12 @@ def pass_panel(end, panel, frame, clock, case):
             share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
             _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
             at += 1
-    _note_end(end, case)
+    if clock.ends < case.notes.ends.size:
+        case.notes.ends[clock.ends] = end / case.gamma
     for n in range(PATHS):
         way = risen(PATH + n, panel, case.work.nodes)
         case.work.totals[n] += frame.direction * way if n < 2 else way
-    return Clock(end, at, clock.piece, clock.steps)
+    return Clock(end, at, clock.piece, clock.steps, clock.ends + 1)
 
 
 @kernel
@@ -147,5 +135,5 @@ def coast(state, frame, clock, case):
         for n in range(PATHS):
             _put_path(at, n, totals[n] + (direction * way if n < 2 else 0.0), case)
     last = case.tau[case.tau.size - 1]
-    clock = Clock(last, case.tau.size, clock.piece, clock.steps)
+    clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends)
     return clock, end / case.gamma if end <= last else np.nan

@@ -23,6 +23,8 @@ _GRADED, _BEND = 3, 50.0
 _MOST_REJECTIONS = 60
 #: s at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
+#: V that stands for 0
+_NO_SPEED = 1e-90
 #: error over the tolerance up to which a panel shows where its regime ends
 _CUTTABLE = 1e6
 
@@ -39,7 +41,7 @@ def _first_length(fresh, slopes, clock, frame, case):
         slowest = max(pace / max(change, nodes[S, 0]), rate / nodes[SPEED, 0])
         length = _FIRST / slowest if slowest > 0.0 else np.inf
         return min(length, (nodes[S, 0] + _SMOOTH) / pace) if pace > 0.0 else length
-    if not weight > 1e-90:  # from V = 0 on
+    if not weight > _NO_SPEED:  # from V = 0 on
         return np.inf
     length = _RELAXED * weight / abs(slopes.rate)
     if fresh:
@@ -115,12 +117,12 @@ def phase(fresh, state, frame, clock, case):
         if length == 0.0:
             length = _first_length(fresh, slopes, clock, frame, case)
         left = end - clock.tau
-        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > 1e-90)
+        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > _NO_SPEED)
         zero = _pace_to_zero(panel, state, frame, case)
         aimed = zero < panel.length and rejected == 0
         if zero < panel.length:
             panel = Panel(panel.tau, zero, power, panel.piece, panel.free)
-        clock = Clock(clock.tau, clock.at, clock.piece, clock.steps + 1)
+        clock = Clock(clock.tau, clock.at, clock.piece, clock.steps + 1, clock.ends)
         event, panel, size, length = _attempt(panel, left, aimed, slopes, frame, case)
         rejected += 1
         if not size <= 1.0:

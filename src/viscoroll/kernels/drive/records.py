@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-#: regimes, as outputs give them: omega = 0 while V is not, and V = omega = 0 by a brake, beside those of a free motion
-FULL, PARTIAL, REST, LOCKED, HELD = range(5)
+from ..motion.records import REST
+
+#: regimes beside those of a free motion: omega = 0 while V is not, and V = omega = 0 by a brake
+LOCKED, HELD = REST + 1, REST + 2
 #: stands among the changes of regime for a change of the sign of V
 REVERSED = -1
 #: what ends a phase: the edge of the stick zone, delta = 0, V = 0, omega = 0 under a brake, both speeds below a
@@ -75,12 +77,13 @@ class State(NamedTuple):
 
 
 class Clock(NamedTuple):
-    """tau = gamma t, the next output column, the piece of the drive, steps taken."""
+    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted."""
 
     tau: float
     at: int
     piece: int
     steps: int
+    ends: int
 
 
 class Work(NamedTuple):
@@ -95,7 +98,7 @@ class Work(NamedTuple):
 
 class Notes(NamedTuple):
     """Room for what is noted on the way: (t, regime behind) of the switches, REVERSED among them, (k, 2), and the ends
-    of panels, the first of which is how many there were."""
+    of panels."""
 
     switches: Any
     ends: Any

@@ -29,6 +29,9 @@ PATH = 11
 PATHS = 7
 EVENT = PATH + PATHS
 ROWS = EVENT + EVENTS
+#: rows of the interpolants: of s, of the second unknown, of the path, of the function of an event
+OF_S, OF_SECOND, OF_PATH, OF_EVENT = 0, 1, 2, 2 + PATHS
+INTERPOLANTS = OF_EVENT + 1
 
 _MOST_ITERATIONS = 12
 #: gain of an iteration from which on new slopes are taken; the least that Newton's iteration can leave
