@@ -1,11 +1,15 @@
-"""What pushes and turns the cylinder: :class:`Feedback`."""
+"""What pushes and turns the cylinder: :class:`Feedback`, and the slope that it stands on."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from .checks import checked, number
+from .errors import ParameterError
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,3 +41,19 @@ class Feedback:
             object.__setattr__(self, "value", value if value.ndim else float(value))
         for name in ("V", "omega"):
             object.__setattr__(self, name, number(name, getattr(self, name)))
+
+
+def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(tan(theta), cos(theta)) of a slope in rad; (0, 1) without.
+
+    Raises
+    ------
+    ParameterError
+        A slope that is not in (-pi/2, pi/2).
+    """
+    theta = checked("slope", 0.0 if slope is None else slope)
+    steep = np.abs(theta) >= 0.5 * np.pi
+    if steep.any():
+        allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2)"
+        raise ParameterError("slope", f"{theta[steep].flat[0]:g}", allowed)
+    return np.tan(theta), np.cos(theta)

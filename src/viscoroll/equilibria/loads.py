@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import broadcast_shape, checked
-from ..drive import Feedback
+from ..drive import Feedback, slope_factor
 from ..errors import ParameterError
 from ..scene import Scene
 
@@ -55,21 +54,6 @@ class Loads:
     mu: NDArray[np.float64]
     j: NDArray[np.float64]
     V: NDArray[np.float64] | None
-
-
-def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(tan(theta), cos(theta)) of a slope in rad; (0, 1) without.
-
-    Raises
-    ------
-    ParameterError
-        A slope that is not in (-pi/2, pi/2).
-    """
-    theta = checked("slope", 0.0 if slope is None else slope)
-    steep = np.abs(theta) >= 0.5 * math.pi
-    if steep.any():
-        raise ParameterError("slope", f"{theta[steep].flat[0]:g}", "in (-pi/2, pi/2), rad")
-    return np.tan(theta), np.cos(theta)
 
 
 def loads_of(

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import checked
-from ..drive import Feedback
+from ..drive import Feedback, slope_factor
 from ..errors import ParameterError
-from .loads import slope_factor
 from .result import Loss, Steady
 from .rolling import steady
 

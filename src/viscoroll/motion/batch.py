@@ -17,14 +17,13 @@ from ..prony_array import PronyArray
 from ..rolling_contact import flattened
 from ..scene import Scene
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
-from .driven import ACTING, ROWS, Drive, Prepared, prepared, refuse_rest
+from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest
 from .each import roll_each, to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 
 if TYPE_CHECKING:
     import xarray as xr
 
-STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 FIELDS = STATES + LOSSES + ACTING
 _PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 #: motions a block: where all are integrated, and where most come from a map

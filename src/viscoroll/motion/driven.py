@@ -8,16 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import checked
-from ..drive import Feedback
+from ..drive import Feedback, slope_factor
 from ..errors import ParameterError
 from ..scene import Scene
 from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
-#: rows of the kernel's output behind those of a free motion
+STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
-ROWS = ("V", "omega", "x", "angle", "delta", "regime", *ACTING, "slip_loss", "rolling_loss")
+#: rows of the kernel's output
+ROWS = STATES + ACTING + LOSSES
 #: a prescribed start may be off by this share of the largest prescribed speed
 _START = 1e-9
+
+
+def _is_zero(given: Any) -> bool:
+    return isinstance(given, float | int) and given == 0.0
 
 
 class Drive(NamedTuple):
@@ -31,10 +36,15 @@ class Drive(NamedTuple):
     V: Any = None
 
     @property
+    def given(self) -> dict[str, Any]:
+        """What is given, by name: not None, and no force or torque that is the number 0."""
+        nothing = {name for name in ("force", "torque") if _is_zero(getattr(self, name))}
+        return {name: each for name, each in self._asdict().items() if each is not None and name not in nothing}
+
+    @property
     def acts(self) -> bool:
         """Whether there is anything but force and torque 0."""
-        zero = all(isinstance(given, float | int) and given == 0.0 for given in self[:2])
-        return not zero or any(given is not None for given in self[2:])
+        return bool(self.given)
 
     @property
     def prescribes(self) -> bool:
@@ -58,11 +68,13 @@ class Prepared(NamedTuple):
         """Pieces, of the ``chosen`` motions where each has its own, and gains, with time counted in ``unit``."""
         pieces = self.pieces[chosen] if self.pieces.shape[0] > 1 else self.pieces
         if unit != 1.0:
+            from ..kernels.drive.load import FIRST, RATE, SCALE, START, terms_of
+
             pieces = pieces.copy()
-            terms = (pieces.shape[-1] - 2) // 4
-            pieces[..., 0] /= unit
-            pieces[..., 1] *= unit
-            pieces[..., 2 + 2 * terms : 2 + 3 * terms] *= unit * unit
+            terms = terms_of(pieces[0, 0])
+            pieces[..., START] /= unit
+            pieces[..., SCALE] *= unit
+            pieces[..., FIRST + RATE * terms : FIRST + (RATE + 1) * terms] *= unit * unit
         return np.ascontiguousarray(pieces), self.gains / unit, self.prescribed
 
 
@@ -76,11 +88,8 @@ def tilted(scene: Scene, slope: Any) -> tuple[Scene, Any]:
     """
     if slope is None:
         return scene, 0.0
-    angle = checked("slope", slope)
-    if not (np.abs(angle) < 0.5 * np.pi).all():
-        raise ParameterError("slope", float(np.max(np.abs(angle))), "an angle below pi/2 in size, radians")
-    cosine = np.cos(angle)
-    return scene.replace(kappa=scene.kappa / np.sqrt(cosine), gamma=scene.gamma * cosine), np.tan(angle)
+    tangent, cosine = slope_factor(slope)
+    return scene.replace(kappa=scene.kappa / np.sqrt(cosine), gamma=scene.gamma * cosine), tangent
 
 
 def _added(one: Curve, more: Any) -> Curve:
@@ -101,6 +110,8 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
         What is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what is then found given as well;
         a start that is not the prescribed one.
     """
+    from ..kernels.drive.records import NEITHER, OMEGA, SPEED
+
     scene, tangent = tilted(scene, drive.slope)
     if drive.V is not None and drive.omega is not None:
         raise ParameterError("V, omega given", "both", "one prescribed speed")
@@ -113,16 +124,16 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
     force = _added(curve("force", drive.force, end, rtol), tangent)
     torque = curve("torque", drive.torque, end, rtol)
     brake = curve("brake", 0.0 if drive.brake is None else drive.brake, end, rtol, low=0.0)
-    rate, prescribed, error = Curve(np.zeros(1), np.array([np.inf]), np.zeros((1, 1, 1))), 0, 0.0
-    for code, name in ((1, "omega"), (2, "V")):
+    rate, prescribed, error = curve("rate", 0.0, end, rtol), NEITHER, 0.0
+    for code, name in ((OMEGA, "omega"), (SPEED, "V")):
         given = getattr(drive, name)
         if given is not None:
             speed = curve(name, given, end, rtol)
             rate, prescribed, error = slope_of(name, speed), code, speed.error
             # of a callable itself: its fit is off by rounding, and may be of the other sign
             own = np.array([float(given(0.0))]) if callable(given) else start_value(speed)
-            start = _prescribed_start(f"{name}0" if code == 1 else "V0", V0 if code == 2 else omega0, speed, own)
-            V0, omega0 = (start, omega0) if code == 2 else (V0, start)
+            start = _prescribed_start(f"{name}0", V0 if code == SPEED else omega0, speed, own)
+            V0, omega0 = (start, omega0) if code == SPEED else (V0, start)
     for name, value, by in (("V0", V0, "V"), ("omega0", omega0, "omega")):
         if value is None:
             raise ParameterError(name, None, f"a number, unless {by}= prescribes it")

@@ -24,9 +24,7 @@ def drive_variables(
     """
     variables: dict[str, xr.Variable] = {}
     texts: dict[str, Any] = {}
-    for name, whole in drive._asdict().items():
-        if whole is None or (isinstance(whole, float | int) and whole == 0.0 and name in ("force", "torque")):
-            continue
+    for name, whole in drive.given.items():
         key, feeds_back = f"drive_{name}", isinstance(whole, Feedback)
         given = whole.value if feeds_back else whole
         gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}

@@ -22,7 +22,7 @@ from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .driven import Drive
 from .flow_store import FlowMap, load, path_of, save
-from .single import Inputs, rolled
+from .rolling import Inputs, rolled
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows

@@ -121,14 +121,14 @@ def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float
 
 def slope_of(name: str, speed: Curve) -> Curve:
     """The slope over t of a prescribed speed, which must not jump."""
-    ends = speed.ends - speed.starts
+    lengths = speed.ends - speed.starts
     right, left = speed.terms[:, :-1].sum(axis=-1), _at_start(speed.terms[:, 1:])
     scale = max(float(np.abs(speed.terms).max(initial=0.0)), 1e-300)
     jumps = np.flatnonzero((np.abs(right - left) > 1e-12 * scale + 4.0 * speed.error).any(axis=0))
     if jumps.size:
         raise ParameterError(name, f"a jump at t = {speed.starts[jumps[0] + 1]:.6g}", "a speed that does not jump")
     order = np.arange(1, speed.terms.shape[-1])
-    terms = speed.terms[..., 1:] * order * (2.0 / ends)[:, None]
+    terms = speed.terms[..., 1:] * order * (2.0 / lengths)[:, None]
     return speed._replace(terms=terms if order.size else np.zeros_like(speed.terms))
 
 
@@ -144,6 +144,8 @@ def start_value(speed: Curve) -> NDArray[np.float64]:
 
 def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms)."""
+    from ..kernels.drive.load import FIRST, SCALE, START
+
     starts = np.unique(np.concatenate([each.starts for each in curves]))
     starts = starts[starts < end] if end > 0.0 else starts[:1]
     ends = np.append(starts[1:], np.inf)
@@ -151,11 +153,12 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
         ends[-1] = min(ends[-1], each.ends[each.starts <= starts[-1]][-1])
     count = max(each.terms.shape[0] for each in curves)
     terms = max(each.terms.shape[-1] for each in curves)
-    rows = np.zeros((count, starts.size, 2 + len(curves) * terms))
-    rows[..., 0], rows[..., 1] = starts, 2.0 / (ends - starts)
+    rows = np.zeros((count, starts.size, FIRST + len(curves) * terms))
+    rows[..., START], rows[..., SCALE] = starts, 2.0 / (ends - starts)
     for n, each in enumerate(curves):
         part = _restricted(each, starts, ends)
-        rows[..., 2 + n * terms : 2 + n * terms + part.shape[-1]] = part
+        first = FIRST + n * terms
+        rows[..., first : first + part.shape[-1]] = part
     return rows
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import checked, number
-from ..drive import Feedback
+from ..drive import Feedback, slope_factor
 from ..errors import MotionStatus, ParameterError
 from ..rolling_contact import Values
 from ..scene import Scene
 from .checks import output_times
-from .driven import Drive, tilted
+from .driven import Drive
 from .single import Motion, Switch, roll
 
 if TYPE_CHECKING:
@@ -176,7 +176,7 @@ def roll_of(
     """``Cylinder.roll``."""
     slope = None if drive.slope is None else number("slope", drive.slope)
     scene = cylinder.scene()
-    tilted(scene, slope)  # refuses a slope that is none
+    slope_factor(slope)  # refuses one that is too steep
     drive = drive._replace(slope=slope)
     V0, omega0 = (
         None if speed is None else number(name, speed) for name, speed in zip(("V0", "omega0"), start, strict=True)

@@ -28,6 +28,7 @@ class Range(NamedTuple):
 
 
 def positive(unit: str = "1", default: float | None = None) -> Range:
+    """Any number above 0."""
     return Range(0.0, True, unit=unit, default=default)
 
 

@@ -94,6 +94,7 @@ def _medians(reader: Reader, section: str, name: str, value: Any) -> Any:
 
 
 def median(reader: Reader, name: str, value: Any, allowed: Any, line: str = "") -> float:
+    """File an input; the median of its distribution, or its number."""
     reader.put(name, value, allowed, line)
     reader.line = ""
     return float(np.median(_spread(reader, name, np.array([0.5]))))

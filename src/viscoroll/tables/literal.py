@@ -84,6 +84,7 @@ def _linear(nodes: NDArray, values: NDArray, points: NDArray, axis: int) -> NDAr
 
 
 def literal(grid: LiteralGrid, threads: int | None, progress: bool, command: str | None) -> xr.Dataset:
+    """The table over (V, delta, alpha) of a grid, with the errors of linear interpolation."""
     import xarray as xr
 
     axes = grid.axes()
@@ -117,6 +118,7 @@ def _laid_out(
 
 
 def of_material(grid: MaterialGrid, command: str | None) -> xr.Dataset:
+    """The table over (V, delta) of one material or of a pair, likewise."""
     import xarray as xr
 
     scene, axes, law = grid.scene(), grid.axes(), grid.pair.law
