@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +11,7 @@ from tqdm import tqdm
 import viscoroll as vr
 
 from ..peers import lsoda_driven as peer
+from ..timing import seconds_of
 
 #: this many copies of a motion are rolled at once, and so many times, the least of which counts
 _COPIES, _TIMES = 40, 3
@@ -98,13 +97,6 @@ def _exact(motion: Motion) -> NDArray:
     return np.stack([m.V, m.omega], axis=1)
 
 
-def _seconds_of(call: Callable[[], Any]) -> tuple[float, Any]:
-    """Wall time of a quick call, without a collection of garbage before it, and its result."""
-    start = time.perf_counter()
-    result = call()
-    return time.perf_counter() - start, result
-
-
 def _ours(motion: Motion, rtol: float) -> tuple[float, NDArray]:
     """(Seconds, V and omega at the times) by the package, a motion's share of many copies at once."""
 
@@ -114,7 +106,7 @@ def _ours(motion: Motion, rtol: float) -> tuple[float, NDArray]:
             fields=("V", "omega"), **motion.drive(),
         )  # fmt: skip
 
-    found = [_seconds_of(roll) for _ in range(_TIMES)]
+    found = [seconds_of(roll, collect=False) for _ in range(_TIMES)]
     e = found[0][1]
     return min(seconds for seconds, _ in found) / _COPIES, np.stack([e.V[0], e.omega[0]], axis=1)
 
@@ -123,7 +115,7 @@ def _peers(motion: Motion, rtol: float) -> tuple[float, NDArray]:
     """(Seconds, V and omega at the times) by the peer."""
     best = np.inf
     for _ in range(_TIMES):
-        seconds, (found, _) = _seconds_of(lambda: peer.roll(motion.par(), motion.start, motion.t, rtol))
+        seconds, (found, _) = seconds_of(lambda: peer.roll(motion.par(), motion.start, motion.t, rtol), collect=False)
         best = min(best, seconds)
         if seconds > 0.01:  # nothing that a second run would change
             break

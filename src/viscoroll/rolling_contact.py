@@ -12,10 +12,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .blocks import elements, run_blocks
+from .blocks import elements, run_blocks, solve_blocks
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
-from .errors import ConvergenceError, ParameterError
+from .errors import ParameterError
 from .material_tables import inverses, record, series, unsteadiness
 from .prony import Prony
 from .prony_array import PronyArray
@@ -258,19 +258,17 @@ def _compute(
     out = np.empty((len(names), count))
     loop = _chosen_loop(material, arrays[0], need.slopes, count, method)
     alphas, *parts = (elements(array, shape) for array in arrays)
-    failures: list[int] = []
 
-    def work(start: int, stop: int) -> None:
+    def solve(start: int, stop: int) -> int:
         found = np.empty((len(names), stop - start))
         kappa, mu, V, creep = (part(start, stop) for part in parts)
         states = States(kappa, mu, V, creep, creep_is_omega)
-        if loop(alphas(start, stop), states, need, rows, found, 0, stop - start):
-            failures.append(start)
+        status: int = loop(alphas(start, stop), states, need, rows, found, 0, stop - start)
         out[:, start:stop] = found
+        return status
 
-    run_blocks(work, count, _BLOCK_EACH if isinstance(material, PronyArray) else _BLOCK)
-    if failures:
-        raise ConvergenceError(f"contact: an iteration hit its cap near element {min(failures)} (method {method!r})")
+    block = _BLOCK_EACH if isinstance(material, PronyArray) else _BLOCK
+    solve_blocks(solve, count, block, f"contact: an iteration hit its cap near element {{}} (method {method!r})")
     return out
 
 

@@ -31,9 +31,8 @@ CASES = {
 }
 
 
-def kinetic(m, scene=None) -> np.ndarray:
-    j = (scene or m.scene).j
-    return 0.5 * (m.V**2 + j * m.omega**2)
+def kinetic(m) -> np.ndarray:
+    return 0.5 * (m.V**2 + m.scene.j * m.omega**2)
 
 
 def fastest(m) -> np.ndarray:

@@ -7,8 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import run_blocks
-from ..errors import ConvergenceError
+from ..blocks import run_blocks, solve_blocks
 from ..material_tables import record
 from .loads import Loads
 from .resistance import Law, branches
@@ -63,12 +62,4 @@ def states_at(law: Law, loads: Loads, load: NDArray, sign: NDArray, zeta: NDArra
 
 def solved(what: str, loop: Callable[[int, int], int], count: int) -> None:
     """Run a kernel over blocks; ConvergenceError if an iteration hit its cap."""
-    failures: list[int] = []
-
-    def work(start: int, stop: int) -> None:
-        if loop(start, stop):
-            failures.append(start)
-
-    run_blocks(work, count, _BLOCK)
-    if failures:
-        raise ConvergenceError(f"steady: an iteration for the {what} hit its cap near state {min(failures)}")
+    solve_blocks(loop, count, _BLOCK, f"steady: an iteration for the {what} hit its cap near state {{}}")

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import run_blocks
-from ..errors import ConvergenceError
+from ..blocks import solve_blocks
 
 #: Pairs of the two outer axes that a thread solves at a time.
 _BLOCK = 128
@@ -20,15 +19,8 @@ NODE_ERROR = "nodes are root solves, error below 1e-12 of the largest value of e
 
 def run(solve: Callable[[int, int], int], count: int, threads: int | None, label: str | None) -> None:
     """Run ``solve(start, stop) -> status`` over all blocks."""
-    failures: list[int] = []
-
-    def work(start: int, stop: int) -> None:
-        if solve(start, stop):
-            failures.append(start)
-
-    run_blocks(work, count, _BLOCK, threads=threads, progress=label)
-    if failures:
-        raise ConvergenceError(f"tables: an iteration hit its cap near pair {min(failures)} of the two outer axes")
+    problem = "tables: an iteration hit its cap near pair {} of the two outer axes"
+    solve_blocks(solve, count, _BLOCK, problem, threads=threads, progress=label)
 
 
 def off_nodes(nodes: NDArray, random: np.random.Generator, count: int = 1) -> NDArray:
@@ -39,6 +31,7 @@ def off_nodes(nodes: NDArray, random: np.random.Generator, count: int = 1) -> ND
 
 
 def tolerances(method: str, measured: dict[str, Any], allowed: dict[str, float]) -> str:
+    """The errors of a table, measured by ``method``, in a sentence for its attributes."""
     parts = [
         f"{name} {error:.2g}" + (f" (allowed {allowed[name]:.2g})" if name in allowed else "")
         for name, error in measured.items()
