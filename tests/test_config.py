@@ -128,7 +128,7 @@ NO_SCENE = [
     (ROLLER + RUBBER.replace("0.5", "0.6"), ["[material] nu = 0.6"]),
     (ROLLER + "[material]\nE = inf\nnu = 0.5", ["base = rigid"]),
     (SCENE + RUBBER, ["'material'", "preset, scene, cylinder"]),
-    (SCENE + "prony = { E = [1.0], tau = [1.0] }", ["alpha, material given = both"]),
+    (SCENE + "prony = { E = [1.0], tau = [1.0] }", ["alpha and material are both given"]),
     (SCENE.replace("alpha = 11", "prony = { E = [-1.0], tau = [1.0] }"), ["[scene.prony] E = -1.0"]),
     (SCENE.replace("alpha", "alhpa"), ["[scene]", "'alhpa'", "did you mean 'alpha'?"]),
     (SCENE.replace("[scene]", "[scnee]"), ["'scnee'", "preset, scene, cylinder", "did you mean 'scene'?"]),

@@ -346,12 +346,12 @@ def test_what_the_contact_sees_of_the_data():
     cylinder = vr.Cylinder(R=0.1, m=30.0, material=fit.material(0.5), mu=0.5)
     V = np.geomspace(1e-6, 1e4, 30)
     found = fit.validity(cylinder, V)
-    lam = vr.contact(cylinder.scene(), V, delta=0.0).lam
-    np.testing.assert_allclose(found.value, cylinder.V_to_si(V) / (lam * cylinder.l0), rtol=1e-14)
+    lam = vr.contact(cylinder.scene(), cylinder.V_from_si(V), delta=0.0).lam
+    np.testing.assert_allclose(found.value, V / (lam * cylinder.l0), rtol=1e-14)
     assert found.holds.any()
     assert not found.holds[[0, -1]].any()
     cold = replace(cylinder, material=fit.material(0.5).at(0.0, lambda _: 100.0))
-    np.testing.assert_allclose(fit.validity(cold, V).value, found.value, rtol=1e-12)  # V is over T_ref
+    np.testing.assert_allclose(fit.validity(cold, V / 100.0).value, found.value, rtol=1e-12)
     assert "the data reach from 0.063 to" in found.sentence
     other = replace(cylinder, material=vr.Material.elastic(1e6, 0.5))
     refused(lambda: fit.validity(other, V), "cylinder", "of the material of this fit")

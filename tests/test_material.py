@@ -259,7 +259,7 @@ BAD_IMPORTS = [
     ]),
     (vr.Material.lsdyna, {"G": [1e6], "beta": [1.0], "nu": 0.4, "G_inf": 1e6}, [
         ({"G": [-1.0]}, "G = -1.0"), ({"beta": [-1.0]}, "beta = -1.0"), ({"G0": 3e6}, "G0 and G_inf"),
-        ({"G_inf": None}, "nothing"), ({"beta": [0.0]}, "G_inf and beta = 0"), ({"nu": None}, "neither"),
+        ({"G_inf": None}, "nothing"), ({"beta": [0.0]}, "G_inf and beta = 0"), ({"nu": None}, "give nu or bulk"),
         ({"bulk": 1e9}, "both"), ({"nu": None, "bulk": 0.0}, "bulk = 0.0"),
         ({"G_inf": None, "G0": 1e6}, "G0 - sum G = 0.0"), ({"nu": 0.7}, "nu = 0.7"),
     ]),

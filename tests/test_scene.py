@@ -225,14 +225,14 @@ def test_forces_of_a_pair():
     assert pair.traction_to_si(0.1, M_half_space=0.03) == pytest.approx(P * 0.07, rel=tol.SCENE)
     assert pair.torque_to_si(0.1, M_cylinder=0.03) == pytest.approx(P * 0.1 * 0.13, rel=tol.SCENE)
     assert like.traction_to_si(0.1, M_half_space=0.015) == like.traction_to_si(0.1, 0.03)
-    refused(partial(pair.traction_to_si, 0.1, 0.03), "M given", "M_half_space=")
-    refused(partial(pair.torque_to_si, 0.1, 0.03), "M given", "M_cylinder=")
-    refused(partial(like.torque_to_si, 0.1), "neither")
+    refused(partial(pair.traction_to_si, 0.1, 0.03), "give M_half_space in place of M")
+    refused(partial(pair.torque_to_si, 0.1, 0.03), "give M_cylinder in place of M")
+    refused(partial(like.torque_to_si, 0.1), "give M or M_cylinder")
     refused(partial(like.torque_to_si, 0.1, 0.1, M_cylinder=0.1), "both")
 
 
 BAD_PAIRS = [
-    ({"material": RUBBER, "E": 1e6, "T_sigma": 1.0}, "material, E, T_sigma given = both: must be one of"),
+    ({"material": RUBBER, "E": 1e6, "T_sigma": 1.0}, "material and E, T_sigma are both given"),
     ({}, "E = None"),
     ({"E": 1e6, "nu": 0.4, "T_epsilon": 1.0}, "T_sigma = None"),
     ({"material": "rubber"}, "material = 'rubber': must be a Material"),
@@ -240,7 +240,11 @@ BAD_PAIRS = [
     ({"material": vr.Material.rigid()}, "base = rigid: must be a body that deforms"),
     ({"material": vr.Material.rigid(), "base": vr.Material.rigid()}, "base = rigid"),
     ({"material": RUBBER, "load": 0.0}, "load = 0.0"),
-    ({"material": RUBBER, "load": [1.0, 2.0]}, "load"),
+    ({"material": RUBBER, "load": [1.0, -2.0]}, "load = -2.0 at row 1"),
+    (
+        {"material": RUBBER, "load": [1.0, 2.0], "m": [1.0, 2.0, 3.0]},
+        "m (3,)",
+    ),
     ({"material": RUBBER, "mu": None}, "mu = None"),
 ]
 
@@ -287,7 +291,7 @@ def test_shape():
 
 BAD_SCENES = [
     *(({name: bad}, name) for name in ("kappa", "mu", "gamma", "j") for bad in (0.0, -1.0, math.nan, math.inf)),
-    *(({"alpha": bad}, "alpha") for bad in (1.0 - 1e-15, 0.0, -2.0, math.nan, math.inf, "eleven", None)),
+    *(({"alpha": bad}, "alpha") for bad in (1.0 - 1e-15, 0.0, -2.0, math.nan, math.inf, "eleven")),
     ({"alpha": [2.0, 0.5]}, "alpha"),
     ({"kappa": [[1.0, math.nan]]}, "kappa"),
 ]
@@ -300,8 +304,13 @@ def test_bad_scene():
 
 
 def test_bad_value_is_shown():
-    with pytest.raises(vr.ParameterError, match=r"^alpha = 0\.5: must be finite and >= 1, <= 1e\+12$"):
+    with pytest.raises(vr.ParameterError, match=r"^alpha = 0\.5 at row 1: must be finite and >= 1, <= 1e\+12$"):
         vr.Scene([2.0, 0.5], 2.0, 0.2)
+    with pytest.raises(vr.ParameterError, match=r"^mu = nan at row 12345, and 3 more: must be finite and > 0$"):
+        vr.Scene(2.0, 2.0, np.where(np.isin(np.arange(20000), [12345, 13000, 14000, 19999]), math.nan, 0.2))
+    with pytest.raises(vr.ParameterError, match=r"^mu is a masked array: give mu.compressed\(\)$"):
+        vr.Scene(2.0, 2.0, np.ma.masked_less([0.2, -1.0], 0.0))
+    assert refused(partial(vr.Scene, kappa=2.0, mu=0.2)) == "give alpha or material"
     with pytest.raises(vr.ParameterError, match=r"^mu = -0\.2: must be finite and > 0$"):
         vr.Scene(2.0, 2.0, -0.2)
 
@@ -317,7 +326,8 @@ BAD_CYLINDERS = [
     ({"nu": -1.0}, "nu"),
     ({"T_epsilon": 0.5}, "T_epsilon"),
     ({"plane": "bent"}, "plane"),
-    ({"R": [0.1, 0.2]}, "R"),
+    ({"T_epsilon": [10.0, 11.0]}, "T_epsilon"),
+    ({"R": [0.1, 0.0]}, "R"),
     ({"g": 0.0}, "g"),
     ({"j": -0.5}, "j"),
 ]

@@ -435,13 +435,19 @@ DMA_PYVISCO = (1.55, 1.75)
 DMA_SHIFT = 5e-4
 DMA_SHIFT_NOISY = 0.02
 
-# --- motions in SI units (test_motion_si.py) ---
+# --- SI units (si/) ---
 #: A motion in SI units against the dimensionless one, over the largest value: factors round.
 SI_MOTION = 1e-12
 #: Work against kinetic energy and losses, over the largest work, at rtol 1e-8; measured 4.7e-10.
 SI_ENERGY = 1e-8
 #: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8; measured 5e-14.
 SI_TERMINAL = 1e-11
+#: Slopes against central differences of a step 1e-5 of the speed: the square of the step, and rounding over it.
+SI_SLOPE = 1e-5
+#: Trapezoids over 2e4 points, square roots at both ends of the contact: (2/2e4)^1.5.
+SI_INTEGRAL = 1e-5
+#: Motions of an ensemble against roll at rtol 1e-8: equal steps, other rounding of inputs.
+SI_ENSEMBLE = 1e-9
 
 # --- driven runs in SI units (test_run_drives.py) ---
 #: A motion of a run, in seconds, against that of its roller, in T_epsilon, at rtol 1e-8, over the largest value: other

@@ -17,7 +17,7 @@ import xarray as xr
 import viscoroll as vr
 from viscoroll.config import preset
 from viscoroll.files import write_dataset
-from viscoroll.motion.export import attributes
+from viscoroll.symbols import attributes
 
 from .. import stage
 

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from viscoroll.figures import save
-from viscoroll.figures.style import new_figure, number
 from viscoroll.files import write_dataset
+from viscoroll.plots.style import new_figure, number
 from viscoroll.reference import contact_enclosure
 from viscoroll.symbols import SYMBOLS, label
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from viscoroll.figures import save
-from viscoroll.figures.style import LINES, THIN, new_figure
+from viscoroll.plots.style import LINES, THIN, new_figure
 
 from ..results import RESULTS, parser
 from ..stage import ROOT, told

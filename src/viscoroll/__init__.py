@@ -50,6 +50,7 @@ _HOME = {
     "ConfigError": "errors",
     "ConvergenceError": "errors",
     "MissingDependencyError": "errors",
+    "ModelWarning": "errors",
     "MotionStatus": "errors",
     "MOTION_STATUS": "errors",
 }

@@ -33,6 +33,8 @@ def checked_extent(
         given = np.asarray(value)
     except ValueError:  # ragged
         given = np.asarray(None)
+    if isinstance(value, np.ma.MaskedArray):
+        raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
     if given.dtype.kind not in "iuf":
         raise ParameterError(name, f"{value!r:.60}", allowed)
     array = given.astype(np.float64, copy=False)
@@ -41,8 +43,18 @@ def checked_extent(
     above = smallest > low if strict else smallest >= low
     if array.size and not (above and -math.inf < smallest and largest < math.inf and largest <= high):
         bad = ~(np.isfinite(array) & (array > low if strict else array >= low) & (array <= high))
-        raise ParameterError(name, array[bad].flat[0] if array.ndim else array[()], allowed)
+        raise ParameterError(name, _listed(array, bad), allowed)
     return array, (smallest, largest)
+
+
+def _listed(array: NDArray[np.float64], bad: NDArray[np.bool_]) -> str:
+    """The first bad value, its place, and how many more there are."""
+    if array.ndim == 0:
+        return str(array[()])
+    first = tuple(int(n[0]) for n in np.nonzero(bad))
+    place = f"at row {first[0]}" if array.ndim == 1 else f"at {first}"
+    more = int(np.count_nonzero(bad)) - 1
+    return f"{array[first]} {place}" + (f", and {more} more" if more else "")
 
 
 def extent(array: NDArray[np.float64]) -> tuple[float, float]:

@@ -34,11 +34,17 @@ def _again(kind: type[ViscorollError], arguments: tuple[Any, ...]) -> ViscorollE
 
 
 class ParameterError(ViscorollError, ValueError):
-    """``name`` has a ``value`` outside what is ``allowed``."""
+    """``name`` has a ``value`` outside what is ``allowed``; ``sentence`` says it where "must be" does not."""
 
-    def __init__(self, name: str, value: Any, allowed: str) -> None:
+    def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
         self.name, self.value, self.allowed = name, value, allowed
-        super().__init__(f"{name} = {value!s}: must be {allowed}")
+        super().__init__(sentence or f"{name} = {value!s}: must be {allowed}")
+
+
+def one_of(first: str, second: str, both: bool) -> ParameterError:
+    """The error where both or neither of two names were given."""
+    sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
+    return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
 
 
 class OutOfTableError(ParameterError):
@@ -79,6 +85,10 @@ class MissingDependencyError(ViscorollError):
 
 class ConvergenceError(ViscorollError):
     """An iteration reached its cap; a defect of this package, please report the input."""
+
+
+class ModelWarning(UserWarning):
+    """An assumption of the model fails grossly for a motion; said once a process."""
 
 
 class MotionStatus(IntEnum):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .checks import checked, number
-from .errors import ParameterError
+from .errors import ParameterError, one_of
 from .prony import Prony
 
 
@@ -130,7 +130,7 @@ class FromPrograms:
         rest = _long_time(strengths, rates, G0, G_inf)
         strengths, times = strengths[rates > 0.0], 1.0 / rates[rates > 0.0]
         if (nu is None) == (bulk is None):
-            raise ParameterError("nu, bulk given", "neither" if nu is None else "both", "exactly one of the two")
+            raise one_of("nu", "bulk", both=nu is not None)
         if bulk is None:
             nu, prony = poisson(nu), Prony(strengths / rest, times)
         else:

@@ -15,8 +15,10 @@ from .checks import checked, number
 from .errors import ParameterError
 from .importers import FromPrograms, poisson
 from .prony import Prony
+from .results import Row, Shown
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 
@@ -173,6 +175,26 @@ class Material(FromPrograms):
         risen = -np.expm1(-self._over(t, "t", self.prony.T))
         return (1.0 / self.prony.alpha + (self.prony.J * risen).sum(axis=-1))[()]
 
+    def to_xarray(self) -> xr.Dataset:
+        """Both forms of the series and the constants, with names and units, as :meth:`to_netcdf` writes them."""
+        from .material_store import as_dataset
+
+        return as_dataset(self)
+
+    def _card(self) -> tuple[str, list[Row]]:
+        rows = [
+            Row("E", f"{self.E:.6g}", "Pa, of long times"), Row("instantaneous", f"{self.instant:.6g}", "Pa"),
+            Row("nu", f"{self.nu:g}"), Row("modes", str(self.prony.E.size)), Row("T_ref", f"{self.T_ref:.6g}", "s"),
+        ]  # fmt: skip
+        if self.prony.E.size:
+            slowest, fastest = (f"{time * self.T_ref:.3g}" for time in (self.prony.tau[0], self.prony.tau[-1]))
+            rows.append(Row("relaxation times", f"{slowest} to {fastest}", "s"))
+        if self.density is not None:
+            rows.append(Row("density", f"{self.density:g}", "kg/m^3"))
+        return self.name or "Material", rows
+
+    _repr_html_ = Shown._repr_html_
+
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """E', E'' and tan delta over frequency, and E(t), in a figure of matplotlib.
 
@@ -185,7 +207,8 @@ class Material(FromPrograms):
         OutputError
             If it cannot be written there.
         """
-        from .material_plot import master_curve, save
+        from .plots.material import master_curve
+        from .plots.style import save
 
         figure = master_curve(self)
         if path is not None:
@@ -247,7 +270,8 @@ class Material(FromPrograms):
             return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
 
 
-def refuse_short_retardation(T_epsilon: float, T_sigma: float) -> None:
+def refuse_short_retardation(T_epsilon: float, T_sigma: ArrayLike) -> None:
     """Raise ParameterError where T_epsilon < T_sigma."""
-    if T_epsilon < T_sigma:
-        raise ParameterError("T_epsilon", T_epsilon, f">= T_sigma = {T_sigma}")
+    longest = np.max(T_sigma, initial=0.0)
+    if longest > T_epsilon:
+        raise ParameterError("T_epsilon", T_epsilon, f">= T_sigma = {longest}")

@@ -15,11 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from .blocks import elements, run_blocks, solve_blocks
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
-from .errors import ParameterError
+from .errors import ParameterError, one_of
+from .labels import unlabelled
 from .material_tables import inverses, record, series, unsteadiness
 from .prony import Prony
 from .prony_array import PronyArray
-from .scene import Scene
+from .results import Values
+from .scene import Scene, checked_scene
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
@@ -41,33 +43,6 @@ WORTHWHILE = 4096
 _FASTEST = 1e300
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
-
-
-class Values:
-    """Named results of one call; a name that was not asked for is an AttributeError."""
-
-    def __init__(self, values: dict[str, Any]) -> None:
-        self._values = values
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        try:
-            return self._values[name]
-        except KeyError:
-            held = ", ".join(self._values)
-            raise AttributeError(f"{name!r} was not computed; this result holds {held}") from None
-
-    def __dir__(self) -> Iterable[str]:
-        return self._values
-
-    def __repr__(self) -> str:
-        width = max([11, *map(len, self._values)])
-        return "\n".join(f"{name:>{width}} = {value}" for name, value in self._values.items())
-
-    def as_dict(self) -> dict[str, Any]:
-        """The results by name."""
-        return dict(self._values)
 
 
 def contact(
@@ -134,10 +109,12 @@ def contact(
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
     however they broadcast (``tests/test_hostile.py``).
     """
+    checked_scene(scene, "contact")
     if (delta is None) == (omega is None):
-        both = "both" if delta is not None else "neither"
-        raise ParameterError("delta, omega given", both, "exactly one of the two")
+        raise one_of("delta", "omega", both=delta is not None)
     names = _field_names(fields, scene.like_bodies, slopes, method)
+    plain, labels = unlabelled({"V": V, "delta": delta, "omega": omega})
+    V, delta, omega = plain["V"], plain["delta"], plain["omega"]
     creep_name = "omega" if delta is None else "delta"
     inputs = {
         "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
@@ -171,7 +148,8 @@ def contact(
         rows[UNSTEADY] = _unsteady(material, arrays["alpha"], rows["zeta"], shape) * unit**2
     for name in _PER_SPEED & rows.keys():
         rows[name] *= unit
-    return Values({name: _shaped(name, rows[name], shape) for name in names})
+    given = {"V": V, creep_name: omega if delta is None else delta}
+    return Values({name: _shaped(name, rows[name], shape) for name in names}, given, labels=labels)
 
 
 def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ...]) -> NDArray:
@@ -340,6 +318,7 @@ def stress(
     from .kernels.law.material import Own
     from .kernels.law.stress_loop import Points, stress_loop
 
+    checked_scene(scene, "stress")
     state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
@@ -366,7 +345,8 @@ def stress(
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
-    return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)})
+    given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
+    return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)}, given, title="Stresses")
 
 
 def _stresses(materials: PronyArray) -> Callable:

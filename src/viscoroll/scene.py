@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from .bodies import Bodies
 from .checks import broadcast_shape, checked, checked_extent
-from .errors import ParameterError
+from .errors import ParameterError, one_of
 from .prony import HIGHEST_ALPHA, Prony
 from .prony_array import PronyArray
-from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained
+from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained, unlike_speeds
 
 
-def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
+def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
+    """A number, or a copy that nobody can write to."""
     if array.ndim == 0:
         return float(array)
     array = array.copy()
@@ -24,11 +25,28 @@ def _frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
     return array
 
 
+PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two parameters are equal, arrays or not."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other)
+    return bool(one == other)
+
+
 #: of mu/kappa, in which delta_star is measured
 RATIO_RANGE = (1e-290, 1e290)
 
 
-@dataclass(frozen=True, eq=False)
+def _short(value: Any) -> str:
+    """A number, or what an array holds, in few words."""
+    if not isinstance(value, np.ndarray):
+        return f"{value:.12g}" if isinstance(value, float) else repr(value)
+    return f"<{value.shape} in [{value.min():.6g}, {value.max():.6g}]>" if value.size else f"<{value.shape}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Scene:
     """Dimensionless parameters of the rolling cylinder (Eqs. (4) and Sect. 3.1).
 
@@ -41,7 +59,7 @@ class Scene:
     kappa : R/l0 = sqrt(E' R/(32 P)), radius over contact length at rest, > 0;
         the half-space theory asks for kappa >> 1.
     mu : coefficient of friction, > 0.
-    gamma : P T_epsilon^2/(m R), > 0; only scales time.  Not used by contact or stress.
+    gamma : P T_epsilon^2/(m R), > 0; only scales time.  What moves needs it: roll and ensemble.
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n series, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
@@ -57,20 +75,22 @@ class Scene:
     alpha: Any = None
     kappa: Any = None
     mu: Any = None
-    gamma: Any = 1.0
+    gamma: Any = None
     j: Any = 0.5
     material: Prony | PronyArray | Bodies | None = None
 
     def __post_init__(self) -> None:
         if self.material is not None:
             if self.alpha is not None:
-                raise ParameterError("alpha, material given", "both", "one of the two")
+                raise one_of("alpha", "material", both=True)
             if not isinstance(self.material, Prony | PronyArray | Bodies):
                 raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
             object.__setattr__(self, "alpha", self.material.alpha)
+        if self.alpha is None:
+            raise one_of("alpha", "material", both=False)
         arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
-        for name in ("kappa", "mu", "gamma", "j"):
+        for name in ("kappa", "mu", "gamma", "j") if self.gamma is not None else ("kappa", "mu", "j"):
             arrays[name], extents[name] = checked_extent(name, getattr(self, name), low=0.0, strict=True)
         broadcast_shape(**arrays)
         if arrays["mu"].size and arrays["kappa"].size:
@@ -79,12 +99,18 @@ class Scene:
             if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
                 _refuse_ratio(arrays["mu"], arrays["kappa"])
         for name, array in arrays.items():
-            object.__setattr__(self, name, _frozen(array))
+            object.__setattr__(self, name, frozen(array))
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape that the parameters broadcast to; () for one scene."""
-        return np.broadcast_shapes(*(np.shape(getattr(self, f.name)) for f in fields(self) if f.name != "material"))
+        return np.broadcast_shapes(*map(np.shape, self.numbers.values()))
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """alpha, kappa, mu, gamma and j by name, those that are given."""
+        values = {name: getattr(self, name) for name in PARAMETERS}
+        return {name: value for name, value in values.items() if value is not None}
 
     def replace(self, **changes: Any) -> Scene:
         """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
@@ -120,8 +146,13 @@ class Scene:
         """Whether cylinder and half-space deform alike, each taking half of M."""
         return not isinstance(self.material, Bodies) or self.material.like
 
-    def validity(self, V: ArrayLike) -> Validity:
+    def validity(self, V: ArrayLike, omega: ArrayLike | None = None) -> Validity:
         """Which assumptions of the model the contact at speed V strains.
+
+        Parameters
+        ----------
+        V : speed of the axis, any sign.
+        omega : angular velocity; without it the creep is not known.
 
         Returns
         -------
@@ -131,30 +162,67 @@ class Scene:
         Raises
         ------
         ParameterError
-            NaN or infinite V, shapes that do not broadcast, a material each.
+            NaN or infinite speeds, shapes that do not broadcast, a material each.
         """
         plane = "the cylinder is long or held between walls (plane strain), or a thin disc"
-        return self._validity(V, inertia(None), coupling(), plane)
+        return self._validity(V, omega, inertia(None), coupling(), plane)
 
-    def _validity(self, V: ArrayLike, slow: Assumption, bodies: Assumption, plane: str) -> Validity:
-        speed = checked("V", V)
-        given = {name: np.asarray(getattr(self, name)) for name in ("alpha", "kappa", "gamma", "j")}
-        broadcast_shape(V=speed, **given)
+    def _validity(
+        self, V: ArrayLike, omega: ArrayLike | None, slow: Assumption, bodies: Assumption, plane: str
+    ) -> Validity:
+        given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
+        broadcast_shape(**given, **{name: np.asarray(value) for name, value in self.numbers.items()})
         if isinstance(self.material, PronyArray):
             raise ParameterError("material", repr(self.material), "one material, as material[i]")
         material, unit = self.in_own_time()
-        found = strained(material, self.kappa, speed * unit)
-        nu = np.asarray(self.gamma * (unit**2 * found.unsteady) / (1.0 + np.asarray(self.j)))
-        return judge(found, slow, steadiness(nu), bodies, plane)
+        found = strained(material, self.kappa, given["V"] * unit)
+        nu = None
+        if self.gamma is not None:
+            nu = np.asarray(self.gamma * (unit**2 * found.unsteady) / (1.0 + np.asarray(self.j)))
+        delta, full_slip = None, None
+        if omega is not None:
+            speed, spin = given["V"], given["omega"]
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+                delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
+            full_slip = np.abs(delta) >= self.mu * np.asarray(found.reach)
+        return judge(found, slow, steadiness(nu), unlike_speeds(delta, full_slip), bodies, plane)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
             return NotImplemented
-        names = [f.name for f in fields(self) if f.name != "material"]
-        same = all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
-        return same and self.material == other.material
+        return all(same(getattr(self, name), getattr(other, name)) for name in (*PARAMETERS, "material"))
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        parts = [np.asarray(value, np.float64) for value in self.numbers.values()]
+        # + 0.0: -0 and 0 are equal
+        return hash((*((part.shape, (part + 0.0).tobytes()) for part in parts), self.material))
+
+    def __repr__(self) -> str:
+        given = self.numbers if self.material is None else {"material": self.material} | self.numbers
+        if self.material is not None:
+            del given["alpha"]
+        return f"Scene({', '.join(f'{name}={_short(value)}' for name, value in given.items())})"
+
+
+def checked_scene(given: Any, call: str, *, moves: bool = False) -> Scene:
+    """``given`` where it is a scene; ``moves``: with a gamma.
+
+    Raises
+    ------
+    ParameterError
+        Otherwise; of a cylinder with a word on what to write.
+    """
+    if not isinstance(given, Scene):
+        kind = type(given).__name__
+        if hasattr(given, "scene"):
+            sentence = f"{call} takes a Scene, not a {kind}: give its .scene(), or call .{call}(...) of it in SI units"
+        else:
+            sentence = f"{call} takes a Scene, not {given!r:.60}"
+        raise ParameterError("scene", kind, "a Scene", sentence)
+    if moves and given.gamma is None:
+        sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
+        raise ParameterError("gamma", None, "a number > 0", sentence)
+    return given
 
 
 def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:

@@ -124,6 +124,24 @@ SYMBOLS = {
 }
 
 
+def attributes(name: str) -> dict[str, str]:
+    """long_name, units, symbol and equation of a quantity; of a partial derivative its meaning."""
+    if name not in SYMBOLS:
+        return {"long_name": meaning(name), "units": "1"}
+    symbol = SYMBOLS[name]
+    return {"long_name": symbol.long_name, "units": symbol.units, "symbol": symbol.latex, "equation": symbol.equation}
+
+
+def meaning(name: str) -> str:
+    """What a quantity is, in words."""
+    if name in SYMBOLS:
+        return SYMBOLS[name].long_name
+    if name.startswith("d") and "_d" in name:
+        upper, _, lower = name[1:].partition("_d")
+        return f"partial derivative of {upper} with respect to {lower}"
+    return {"full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die"}.get(name, "")
+
+
 def label(name: str) -> str:
     """Axis label of a quantity: its symbol; everything here is dimensionless."""
     return f"${SYMBOLS[name].latex}$"

@@ -25,6 +25,8 @@ STEADY_LIMIT, NOT_THIS_MOTION = 0.4, 1.6
 _STEPS, _FAST_OCTAVES, _SLOW_OCTAVES = 8, 8, 12
 #: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
 DUNDURS_LIMIT = 0.05
+#: in full slip cylinder and half-space pass the contact at speeds that differ by this share; M takes one speed for both
+CREEP_LIMIT = 0.3
 
 
 class Assumption(NamedTuple):
@@ -51,6 +53,8 @@ class Validity(NamedTuple):
     steady : value: nu = gamma max|N|/(1 + j), M = M(V) + N V' for slow changes, over all speeds from 0 to V, to 0.5 %.
         It rules whether the law of steady rolling may drive a motion; contact states and rolling at constant speed are
         not concerned.
+    creep : value: |delta|; where the contact slips fully the two bodies pass it at different speeds, and the rolling
+        moment is that of the axis' speed for both.  Needs omega.
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
     plane : not to be seen from V.
     """
@@ -59,6 +63,7 @@ class Validity(NamedTuple):
     under_axis: Assumption
     quasistatic: Assumption
     steady: Assumption
+    creep: Assumption
     bodies: Assumption
     plane: Assumption
 
@@ -116,7 +121,9 @@ def _over_speeds(material: float | Prony) -> tuple[NDArray[np.float64], ...]:
 
 
 def steadiness(nu: Any) -> Assumption:
-    """Whether motions may be driven by the law of steady rolling."""
+    """Whether motions may be driven by the law of steady rolling; None where nu is not known."""
+    if nu is None:
+        return Assumption(None, None, "whether the law of steady rolling may drive a motion needs gamma")
     most = float(np.max(nu, initial=0.0))
     return Assumption(
         nu <= STEADY_LIMIT, nu,
@@ -126,6 +133,21 @@ def steadiness(nu: Any) -> Assumption:
             if most <= NOT_THIS_MOTION
             else "is not that of this cylinder, which rocks in its own imprint; contact states are not concerned"
         ),
+    )  # fmt: skip
+
+
+def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:
+    """Whether both bodies pass the contact at about one speed; None where the creep is not known."""
+    if delta is None:
+        return Assumption(None, None, "both bodies pass the contact at about one speed; give omega to see whether")
+    size = np.abs(delta)
+    most = float(np.max(size, initial=0.0, where=full_slip))
+    return Assumption(
+        ~full_slip | (size <= CREEP_LIMIT), size,
+        f"the speeds of the two bodies in the contact differ by {100.0 * most:.2g} % in full slip, where the rolling "
+        f"moment takes that of the axis for both; up to {100.0 * CREEP_LIMIT:g} % counts as small"
+        if most > 0.0
+        else "both bodies pass the contact at about one speed: it does not slip fully",
     )  # fmt: skip
 
 
@@ -161,7 +183,9 @@ def coupling(long: float | None = None, instant: float | None = None, *, like: b
     )  # fmt: skip
 
 
-def judge(found: Strained, slow: Assumption, steady: Assumption, bodies: Assumption, plane: str) -> Validity:
+def judge(
+    found: Strained, slow: Assumption, steady: Assumption, creep: Assumption, bodies: Assumption, plane: str
+) -> Validity:
     """Numbers put into words."""
     reach, epsilon, _ = found
     far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
@@ -175,4 +199,4 @@ def judge(found: Strained, slow: Assumption, steady: Assumption, bodies: Assumpt
         f"epsilon = {ahead:.2g}: the contact "
         + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
     )  # fmt: skip
-    return Validity(small, under, slow, steady, bodies, Assumption(None, None, plane))
+    return Validity(small, under, slow, steady, creep, bodies, Assumption(None, None, plane))

@@ -335,8 +335,8 @@ def test_contact_text_file_and_methods(run, here):
 
 
 NO_CONTACT = [
-    ("--V 1", "delta, omega given = neither"),
-    ("--V 1 --delta 0 --omega 1", "delta, omega given = both"),
+    ("--V 1", "give delta or omega"),
+    ("--V 1 --delta 0 --omega 1", "delta and omega are both given"),
     ("--delta 0", "--V"),
     ("--V nan --delta 0", "V = nan"),
     ("--V 1 --delta -inf", "delta = -inf"),
@@ -377,8 +377,10 @@ def test_stress_across_the_contact(run, here, V):
 
 def test_refused_stress(refuse):
     for argv, words in (
-        ("--V 1", "neither"), ("--V 1 --delta 0 --x nan", "x = nan"), ("--V 1,2 --delta 0", "'1,2' must be a number"),
-    ):  # fmt: skip
+        ("--V 1", "give delta or omega"),
+        ("--V 1 --delta 0 --x nan", "x = nan"),
+        ("--V 1,2 --delta 0", "'1,2' must be a number"),
+    ):
         assert words in refuse("stress", *PRESET, *argv.split()), argv
 
 
@@ -493,7 +495,7 @@ NO_DRIVE = [
     ("--torque 1@0,2", "'2' must be VALUE@TIME"),
     ("--torque 1@2,1@1", "times of torque = 2.0: must be in ascending order"),
     ("--torque 1@0,1@0,1@0", "times of torque = 0.0: must be there once, or twice"),
-    ("--torque 1@-1", "times of torque = -1.0: must be"),
+    ("--torque 1@-1", "times of torque = -1.0 at row 0: must be"),
     ("--force nan", "force = nan"),
     ("--force none.csv", "none.csv: cannot be read"),
     ("--force a.csv", "a.csv: must have a first line t,value"),
@@ -503,10 +505,10 @@ NO_DRIVE = [
     ("--slope deg", "'' must be a number"),
     ("--slope 1deg:2deg:3", "must be a number"),
     ("--brake -1", "brake = -1.0: must be finite and >= 0"),
-    ("--V 0 --omega 0", "V, omega given = both"),
+    ("--V 0 --omega 0", "V and omega are both given"),
     ("--V 1", "V0 = 0.0: must be None, or 1 as prescribed"),
-    ("--omega 0 --torque 1", "torque = given with omega="),
-    ("--torque 1 --rest 1e-3", "rest = 0.001: must be None while"),
+    ("--omega 0 --torque 1", "torque is given beside omega="),
+    ("--torque 1 --rest 1e-3", "rest = 0.001 is given, but something drives"),
 ]
 
 

@@ -317,7 +317,7 @@ def test_ensemble_is_roll():
 
 
 REFUSALS = {
-    "both": ({"V": 1.0, "omega": 1.0}, "V, omega given"),
+    "both": ({"V": 1.0, "omega": 1.0}, "V and omega are both given"),
     "found": ({"omega": 1.0, "torque": 0.1}, "torque"),
     "start": ({"omega0": 2.0, "omega": 1.0}, "omega0 = 2"),
     "jump": ({"omega0": None, "omega": ([0.0, 1.0, 1.0], [1.0, 1.0, 2.0])}, "a jump at t = 1"),

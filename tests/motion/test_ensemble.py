@@ -209,7 +209,7 @@ def test_nothing_half_written(tmp_path):
 
 
 BAD_CALLS = [
-    ({"V0": [1.0, math.nan]}, "V0 = nan: must be a finite number"),
+    ({"V0": [1.0, math.nan]}, "V0 = nan at row 1: must be a finite number"),
     ({"V0": [1.0, 2.0], "omega0": [1.0, 2.0, 3.0]}, "V0 (2,), omega0 (3,): must be broadcastable"),
     ({"scene": SCENE.replace(mu=[0.1, 0.2]), "V0": [1.0, 2.0, 3.0]}, "mu (2,), V0 (3,)"),
     ({"V0": [[1.0, 2.0]]}, "must be scalars or vectors (n,)"),

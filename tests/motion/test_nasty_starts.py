@@ -114,7 +114,7 @@ def test_refused():
             (1.0, -1e308, "omega0 = -1e+308: must be at most 1e+100"),
             (5e-324, 5e-324, "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
             (0.0, -1e-310, "max(|V0|, |omega0|) = 1e-310: must be 0, or at least 1e-300"),
-            (math.inf, 1.0, "V0 = inf: must be a finite number"),
+            (math.inf, 1.0, "V0 = inf at row 1: must be a finite number"),
         ):
             refused(partial(vr.ensemble, SCENE, [1.0, V0], [1.0, omega0], 1.0, method=method), text)
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..symbols import SYMBOLS
+from ..symbols import attributes, meaning
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,26 +78,10 @@ def as_dataset(
     import xarray as xr
 
     dims = tuple(axes)
-    data = {name: xr.Variable(dims, _numeric(array), _attributes(name)) for name, array in values.items()}
-    coordinates = {name: xr.Variable((name,), axis, _attributes(name)) for name, axis in axes.items()}
+    data = {name: xr.Variable(dims, _numeric(array), attributes(name)) for name, array in values.items()}
+    coordinates = {name: xr.Variable((name,), axis, attributes(name)) for name, axis in axes.items()}
     provenance = {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
     return xr.Dataset(data, coordinates, provenance | constants)
-
-
-def meaning(name: str) -> str:
-    """What a quantity is, in words."""
-    if name in SYMBOLS:
-        return SYMBOLS[name].long_name
-    if name.startswith("d") and "_d" in name:
-        upper, _, lower = name[1:].partition("_d")
-        return f"partial derivative of {upper} with respect to {lower}"
-    return {"full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die"}.get(name, "")
-
-
-def _attributes(name: str) -> dict[str, Any]:
-    from ..motion.export import attributes
-
-    return attributes(name) if name in SYMBOLS else {"long_name": meaning(name), "units": "1"}
 
 
 def _numeric(array: NDArray) -> NDArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import number
 from ..errors import ParameterError
 from ..prony import MOST_MODES, WIDEST, Prony
-from ..rolling_contact import contact
 from ..validity import Assumption
 from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
@@ -21,6 +21,9 @@ from .shift import Shifts, master_curve
 from .spectrum import FLOOR, Spectrum, misfits
 
 if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
     from ..cylinder import Cylinder
     from ..material import Material
 
@@ -125,7 +128,7 @@ class Fit:
         Parameters
         ----------
         cylinder : of ``material()`` of this fit, at any temperature.
-        V : speed of the axis times T_ref/R, any sign.
+        V : speed of the axis, m/s, any sign.
 
         Returns
         -------
@@ -139,9 +142,8 @@ class Fit:
         """
         if cylinder.pair.cylinder.prony != self.prony:
             raise ParameterError("cylinder", f"{cylinder.pair.cylinder!r:.60}", "of the material of this fit")
-        lam = contact(cylinder.scene(), V, delta=0.0, fields="lam").lam
         a_T = cylinder.pair.cylinder.T_ref / self.T_ref
-        seen = a_T * np.abs(cylinder.V_to_si(V)) / (lam * cylinder.l0)
+        seen = a_T * np.abs(V) / cylinder.contact(V, delta=0.0, fields="length").length
         low, high = float(self.omega[0]), float(self.omega[-1])
         fastest = self.prony.tau.min(initial=np.inf) * self.T_ref
         return Assumption(
@@ -150,6 +152,30 @@ class Fit:
             f"layer at its front edge faster, up to {1.0 / fastest:.2g} 1/s of the fastest mode; "
             f"the data reach from {low:.2g} to {high:.2g} rad/s",
         )  # fmt: skip
+
+    def plot(self) -> Figure:
+        """Storage and loss modulus of the data with those of the fit, in a figure of matplotlib."""
+        from ..plots.material import fitted
+
+        return fitted(self)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Data and fit over omega, the series over ``mode``, and the constants as attributes."""
+        import xarray as xr
+
+        storage, loss = self.modulus(self.omega)
+        columns = {"storage": self.storage, "loss": self.loss, "storage_fit": storage, "loss_fit": loss}
+        data = {name: xr.Variable("omega", values, {"units": "unit of the data"}) for name, values in columns.items()}
+        data |= {"E": xr.Variable("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
+        data |= {"tau": xr.Variable("mode", self.prony.tau * self.T_ref, {"units": "s"})}
+        about = {"E_long": self.E, "T_ref": self.T_ref, "misfit_storage": self.misfit.storage}
+        coords = {"omega": xr.Variable("omega", self.omega, {"units": "rad s-1"})}
+        return xr.Dataset(
+            data, coords, attrs=about | {"misfit_loss": self.misfit.loss, "title": "Fit of a Prony series"}
+        )
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(str(self))}</pre>"
 
     def __str__(self) -> str:
         from .report import report

@@ -110,7 +110,9 @@ def _given(force: ArrayLike | Feedback | None, torque: ArrayLike | Feedback | No
             raise ParameterError(name, "a feedback", "a number or an array where V is given")
     names = [name for name, value in (("force", force), ("torque", torque)) if value is not None]
     if len(names) == 2:
-        raise ParameterError("V, force, torque given", "all", "two of them: the third is found")
+        sentence = "V, force and torque are all given: give two of them, the third is found"
+        raise ParameterError("V, force, torque", "all", "two of them", sentence)
     if not names and slope is None:
-        raise ParameterError("V given", "alone", "with one of force, torque, slope")
+        sentence = "V is given alone: give one of force, torque and slope with it"
+        raise ParameterError("V", "alone", "with one of force, torque, slope", sentence)
     return names[0] if names else "force"

@@ -19,7 +19,7 @@ from ..bodies import Bodies
 from ..errors import ParameterError
 from ..material_tables import record
 from ..prony import Prony
-from ..scene import Scene
+from ..scene import Scene, checked_scene
 from .zeros import zeros
 
 #: zeta in the material's own time that is looked at, and of it octaves beyond the shortest and the longest time that
@@ -127,6 +127,7 @@ def humps(scene: Scene) -> Humps:
     -----
     M is good to 1e-14, V to 1e-11 (``tests/test_steady.py``).
     """
+    checked_scene(scene, "humps")
     for name in ("alpha", "kappa"):
         if np.ndim(getattr(scene, name)):
             raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..results import Row, Shown, short
+from ..symbols import attributes
 from .loads import Loads
 from .reason import Reasons
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_FIELDS = (
+    "V", "omega", "delta", "Q", "M", "M_half_space", "M_cylinder", "beta", "grip", "force", "torque",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -31,8 +42,8 @@ class Loss:
     efficiency: NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Steady:
+@dataclass(frozen=True, repr=False)
+class Steady(Shown):
     """Equilibria of rolling under load; what :func:`viscoroll.steady` gives back.
 
     The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); where they are fewer, it is
@@ -65,12 +76,53 @@ class Steady:
     torque: NDArray[np.float64]
     loss: Loss
     count: Any
-    reasons: Reasons = field(repr=False)
+    reasons: Reasons
+    #: attributes of a quantity: without dimension, or in SI units
+    described: Callable[[str], dict[str, Any]] = attributes
 
     @property
     def reason(self) -> Any:
         """Why there is no equilibrium; "" where there is one.  Of arrays of loads an array of strings."""
         return self.reasons.text()
+
+    def _card(self) -> tuple[str, list[Row]]:
+        if np.ndim(self.count):
+            loads = f"{np.size(self.count)} loads"
+            found = f"{int(np.sum(self.count))}, {int(np.sum(self.stable))} of them stable"
+            return f"Steady rolling under {loads}", [Row("equilibria", found), Row("V", short(self.V), self._unit("V"))]
+        if not self.count:
+            return "Steady rolling: no equilibrium", [Row("reason", str(self.reason))]
+        rows = []
+        for n in range(self.count):
+            rows.append(Row("equilibrium", "stable" if self.stable[n] else "not stable"))
+            for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
+                rows.append(Row(f"  {name}", f"{getattr(self, name)[n]:.6g}", self._unit(name)))
+        return "Steady rolling", rows
+
+    def _unit(self, name: str) -> str:
+        units = str(self.described(name)["units"])
+        return "" if units == "1" else units
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over loads and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
+        import xarray as xr
+
+        shape = np.shape(self.count)
+        dims = ("load",) if len(shape) == 1 else tuple(f"load_{n}" for n in range(len(shape)))
+        over = (*dims, "equilibrium")
+        data = {name: xr.Variable(over, getattr(self, name), self.described(name)) for name in _FIELDS}
+        data["stable"] = xr.Variable(over, self.stable.astype(np.int8), self.described("stable"))
+        for n, name in enumerate(("rate_fast", "rate_slow")):
+            units = {} if self.described is attributes else {"units": "s-1", "long_name": f"{name}, of disturbances"}
+            data[name] = xr.Variable(over, self.eigenvalues[..., n].real, attributes(name) | units)
+        power = {"long_name": "power lost", "units": "1" if self.described is attributes else "W m-1"}
+        for name in ("slip", "half_space", "cylinder"):
+            about = power | {"long_name": f"power lost: {name.replace('_', ' ')}"}
+            data[f"loss_{name}"] = xr.Variable(over, getattr(self.loss, name), about)
+        for name, words in (("coefficient", "rolling resistance over load"), ("efficiency", "power out over power in")):
+            data[name] = xr.Variable(over, getattr(self.loss, name), {"long_name": words, "units": "1"})
+        data["count"] = xr.Variable(dims, self.count, {"long_name": "number of equilibria", "units": "1"})
+        return xr.Dataset(data, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..drive import Feedback
 from ..errors import ParameterError
-from ..scene import Scene
+from ..scene import Scene, checked_scene
 from .loads import Loads, loads_of
 from .reason import reasons_of
 from .resistance import LEAST_LOAD, MOST_LOAD, Law, branches
@@ -71,6 +71,7 @@ def steady(
     Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
     to that over ``grip`` (``tests/test_steady.py``).
     """
+    checked_scene(scene, "steady")
     loads = loads_of(scene, force, torque, slope, V)
     law = Law.of(scene)
     gained = bool(loads.gains.V or loads.gains.omega)

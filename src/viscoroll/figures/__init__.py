@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..material_plot import save
+from ..plots.style import save
 from .deceleration import figure_5, figure_6, figure_7
 from .distribution import ensemble_distribution
 from .drive import reversal, wheel_spin

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..motion import Motion, roll
+from ..plots.style import LINES, MARKERS, THIN, describe, new_figure, number, scaled
 from ..presets import PAPER_SECTION_5, PAPER_STARTS
 from ..rolling_contact import stress
 from ..scene import Scene
 from ..symbols import label
-from .style import LINES, MARKERS, THIN, describe, new_figure, number, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..plots.style import THIN, new_figure, number, scaled
 from ..presets import PAPER_SECTION_5_ROUNDED
 from ..symbols import label
-from .style import THIN, new_figure, number, scaled
 
 if TYPE_CHECKING:
     import xarray as xr

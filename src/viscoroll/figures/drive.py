@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, roll
+from ..plots.style import LINES, SHADES, THIN, describe, new_figure, scaled
 from ..presets import PAPER_SECTION_5
 from ..scene import Scene
 from ..symbols import label
-from .style import LINES, SHADES, THIN, describe, new_figure, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..plots.style import LINES, THIN, describe, new_figure, scaled
 from ..presets import PAPER_FIGURES_2_3
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label
-from .style import LINES, THIN, describe, new_figure, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..plots.style import new_figure, number
 from ..symbols import label
-from .style import new_figure, number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dma import Fit, fit_prony
+from ..plots.style import LINES, new_figure
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label
-from .style import LINES, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

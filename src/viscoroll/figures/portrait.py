@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..motion import Motion, roll
+from ..plots.style import SHADES, describe, new_figure
 from ..presets import PAPER_SECTION_5
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import SYMBOLS, label
-from .style import SHADES, describe, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import THIN, labelled, new_figure, with_unit
+from ..plots.style import THIN, labelled, new_figure, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bodies import Bodies
+from ..plots.style import LINES, THIN, new_figure, number
 from ..prony import Prony
 from ..rolling_contact import contact, stress
 from ..scene import Scene
 from ..symbols import label
-from .style import LINES, THIN, new_figure, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from ..equilibria import steady
 from ..motion import Motion, ensemble, roll
+from ..plots.style import LINES, SHADES, describe, new_figure
 from ..presets import PAPER_SECTION_5
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import SYMBOLS, label
-from .style import LINES, SHADES, describe, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

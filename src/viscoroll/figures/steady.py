@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..equilibria import humps, steady
+from ..plots.style import LINES, THIN, describe, new_figure
 from ..presets import PAPER_SECTION_5
 from ..prony import Prony
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label
-from .style import LINES, THIN, describe, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,27 +14,32 @@ from ..checks import broadcast_shape, extent, number
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..prony_array import PronyArray
+from ..results import Row, Shown
 from ..rolling_contact import flattened
-from ..scene import Scene
+from ..scene import PARAMETERS, Scene, checked_scene
+from ..symbols import attributes
+from ..validity import Validity
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest
 from .each import roll_each, to_unit
 from .flow import Answer, FlowMap, ask, flow_map
+from .warned import look
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FIELDS = STATES + LOSSES + ACTING
-_PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 #: motions a block: where all are integrated, and where most come from a map
 _BLOCK, _MAPPED_BLOCK = 64, 1 << 14
+#: motions that validity looks at
+_JUDGED = 256
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
 #: thousand (docs/benchmark.md, "One scene")
 FLOW_PAYS = 4096
 
 
-@dataclass(frozen=True)
-class Ensemble:
+@dataclass(frozen=True, repr=False)
+class Ensemble(Shown):
     """Motions 0 ... n - 1 at common output times; everything dimensionless.
 
     Attributes
@@ -117,11 +122,49 @@ class Ensemble:
 
         return summary_dataset(self, tuple(quantiles))
 
+    def validity(self) -> Validity:
+        """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
+
+        See :meth:`Scene.validity`; arrays over the motions, of more than 256 over that many of them, evenly picked.
+        """
+        fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        for name, found in fastest.items():
+            if (values := getattr(self, name)) is not None:
+                fastest[name] = np.fmax(found, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
+        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(int))
+        parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
+        scene = self.scene if self.scene.material is not None or not parts else self.scene.replace(**parts)
+        return scene.validity(fastest["V"][some], omega=np.copysign(fastest["omega"], self.V0 * self.omega0)[some])
+
+    def _card(self) -> tuple[str, list[Row]]:
+        return card_of(self, attributes)
+
     def to_xarray(self) -> xr.Dataset:
         """Dataset over (motion, t) with starts, outputs, onset and status."""
         from .export import ensemble_dataset
 
         return ensemble_dataset(self)
+
+
+def card_of(result: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
+    """What an ensemble says of itself, in either units; ``described``: attributes of a quantity."""
+    ends = [Row("ended", f"{count}: {message}") for message, count in result.messages().items()]
+    rows = [Row("t", f"{result.t.size} times to {result.t[-1]:.6g}", _unit(described("t")))]
+    for name in ("V", "omega", "x"):
+        if (values := getattr(result, name)) is not None and values.size:
+            last = values[:, -1][np.isfinite(values[:, -1])]
+            low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
+            text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
+            rows.append(Row(name, text, _unit(described(name))))
+    stuck = np.isfinite(result.onset_time).sum()
+    rows.append(Row("onset of partial slip", f"in {stuck}"))
+    if result.flow.any():
+        rows.append(Row("by the flow map", f"{result.flow.sum()}, stated error {result.flow_error:.2g}"))
+    return f"Ensemble of {len(result)} motions", rows + ends
+
+
+def _unit(described: dict[str, Any]) -> str:
+    return "" if described["units"] == "1" else str(described["units"])
 
 
 def ensemble(
@@ -193,6 +236,7 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_hostile.py``).
     """
+    checked_scene(scene, "ensemble", moves=True)
     times = output_times(t)
     names = (fields,) if isinstance(fields, str) else tuple(fields)
     for name in names:
@@ -202,6 +246,7 @@ def ensemble(
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     drive, ready = Drive(force, torque, slope, brake, omega, V), None
+    look(scene, V0, omega0)
     if drive.acts or not scene.like_bodies:
         ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
         refuse_rest(threshold, ready)
@@ -209,7 +254,7 @@ def ensemble(
     if method == "flow" and (scene.shape or ready):
         what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in _PARAMETERS}
+    arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
     starts: Any = V0, omega0
     arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
     if ready and ready.pieces.shape[0] > 1:

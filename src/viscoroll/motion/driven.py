@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..checks import checked
 from ..drive import Feedback, slope_factor
-from ..errors import ParameterError
+from ..errors import ParameterError, one_of
 from ..scene import Scene
 from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
@@ -114,13 +114,15 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
 
     scene, tangent = tilted(scene, drive.slope)
     if drive.V is not None and drive.omega is not None:
-        raise ParameterError("V, omega given", "both", "one prescribed speed")
+        raise one_of("V", "omega", both=True)
     for name, found, own in (("omega", "torque", drive.omega), ("V", "force", drive.V)):
         given = getattr(drive, found)
         if own is not None and (callable(given) or np.ndim(given) or given != 0.0):
-            raise ParameterError(found, f"given with {name}=", f"left out: it is what the prescribed {name} needs")
+            sentence = f"{found} is given beside {name}=: leave it out, it is what the prescribed {name} needs"
+            raise ParameterError(found, given, "left out", sentence)
     if drive.brake is not None and drive.omega is not None:
-        raise ParameterError("brake", "given with omega=", "left out: omega is prescribed")
+        sentence = "brake is given beside omega=: leave it out, omega is prescribed"
+        raise ParameterError("brake", drive.brake, "left out", sentence)
     force = _added(curve("force", drive.force, end, rtol), tangent)
     torque = curve("torque", drive.torque, end, rtol)
     brake = curve("brake", 0.0 if drive.brake is None else drive.brake, end, rtol, low=0.0)
@@ -136,7 +138,7 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
             V0, omega0 = (start, omega0) if code == SPEED else (V0, start)
     for name, value, by in (("V0", V0, "V"), ("omega0", omega0, "omega")):
         if value is None:
-            raise ParameterError(name, None, f"a number, unless {by}= prescribes it")
+            raise ParameterError(name, None, "a number", f"{name} is not given, and no {by}= prescribes it")
     pieces = pieces_of((force, torque, rate, brake), end)
     error = max(error, force.error, torque.error, brake.error)
     return Prepared(pieces, _gains(drive), prescribed, scene, V0, omega0, error)
@@ -163,4 +165,5 @@ def refuse_rest(rest: float, drives: Prepared) -> None:
     """
     acting = drives.prescribed or drives.gains.any() or drives.pieces[:, -1, 2:].any()
     if rest > 0.0 and acting:
-        raise ParameterError("rest", rest, "None while something drives the motion to its end")
+        sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
+        raise ParameterError("rest", rest, "None", sentence)

@@ -12,11 +12,11 @@ from .. import __version__
 from ..bodies import Bodies
 from ..errors import MOTION_STATUS, ParameterError
 from ..prony_array import PronyArray
-from ..symbols import SYMBOLS
+from ..scene import PARAMETERS
+from ..symbols import attributes
 from .driven import ACTING
 from .export_drive import drive_variables
 
-_PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 _LOSSES = ("slip_loss", "rolling_loss")
 _REGIME = {
     "long_name": "regime of motion",
@@ -40,24 +40,24 @@ _OWN: dict[str, dict[str, Any]] = {
 _STARTS = {"V0": "V", "omega0": "omega"}
 
 
-def column_attributes(name: str) -> dict[str, Any]:
+def column_attributes(name: str, described: Callable[[str], dict[str, Any]] = attributes) -> dict[str, Any]:
     """Attributes of a field, a start or another column of an ensemble."""
+    if name == "rest_time" and described is not attributes:
+        return described(name)
     if name in _OWN:
         return dict(_OWN[name])
     if name in _STARTS:
-        found = attributes(_STARTS[name])
+        found = described(_STARTS[name])
         return found | {"long_name": "initial " + found["long_name"]}
-    return attributes(name)
-
-
-def attributes(name: str) -> dict[str, Any]:
-    """long_name, units, symbol and equation of a quantity."""
-    symbol = SYMBOLS[name]
-    return {"long_name": symbol.long_name, "units": symbol.units, "symbol": symbol.latex, "equation": symbol.equation}
+    return described(name)
 
 
 def _globals(title: str) -> dict[str, str]:
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
+
+
+def _numbers(scene: Any) -> dict[str, Any]:
+    return {name: value for name in PARAMETERS if (value := getattr(scene, name)) is not None}
 
 
 def _material(scene: Any) -> dict[str, Any]:
@@ -78,10 +78,6 @@ def _series(materials: PronyArray) -> dict[str, tuple[Any, dict[str, str]]]:
     }
 
 
-def _variable(dims: tuple[str, ...], name: str, values: Any) -> xr.Variable:
-    return xr.Variable(dims, values, attributes(name))
-
-
 def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
     """One motion over t; under a drive with what acted, works and losses.  ``described``: attributes of a quantity."""
     names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if motion.drive.acts else ()))
@@ -98,7 +94,7 @@ def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = att
         data,
         coords={"t": xr.Variable(("t",), motion.t, described("t"))},
         attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
-        | {name: getattr(motion.scene, name) for name in _PARAMETERS}
+        | _numbers(motion.scene)
         | _material(motion.scene)
         | driven
         | {
@@ -111,28 +107,28 @@ def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = att
     )
 
 
-def ensemble_dataset(result: Any) -> xr.Dataset:
+def ensemble_dataset(result: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
     """All motions over (motion, t)."""
     dims = ("motion", "t")
     data = {
-        name: _variable(dims, name, getattr(result, name))
+        name: xr.Variable(dims, getattr(result, name), described(name))
         for name in ("V", "omega", "x", "angle", "delta", *_LOSSES, *ACTING)
         if getattr(result, name) is not None
     }
     if result.regime is not None:
         reached = np.where(np.isnan(result.regime), -1, result.regime)
         data["regime"] = xr.Variable(dims, reached.astype(np.int8), _REGIME)
-    for name in _PARAMETERS:
+    for name in PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
-        data[name] = _variable(("motion",) if value.ndim else (), name, value)
+        data[name] = xr.Variable(("motion",) if value.ndim else (), value, attributes(name))
     if isinstance(result.scene.material, PronyArray):
-        for name, (values, described) in _series(result.scene.material).items():
+        for name, (values, about) in _series(result.scene.material).items():
             shape = (len(result), values.shape[1])
-            data[name] = xr.Variable(("motion", "mode"), np.broadcast_to(values, shape), described)
+            data[name] = xr.Variable(("motion", "mode"), np.broadcast_to(values, shape), about)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
-        data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name))
+        data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name, described))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
-    given, texts = drive_variables(result.drive, attributes)
+    given, texts = drive_variables(result.drive, described)
     data |= given
     attrs = (
         _globals("Ensemble of motions")
@@ -141,10 +137,12 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
         | {"drive_error": result.drive_error}
         | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     )
-    return xr.Dataset(data, coords={"t": _variable(("t",), "t", result.t)}, attrs=attrs)
+    return xr.Dataset(data, coords={"t": xr.Variable(("t",), result.t, described("t"))}, attrs=attrs)
 
 
-def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
+def summary_dataset(
+    result: Any, quantiles: tuple[float, ...], described: Callable[[str], dict[str, Any]] = attributes
+) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
     if not len(result):
         raise ParameterError("motions", 0, "at least one: a summary is over motions")
@@ -153,12 +151,16 @@ def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
         values = getattr(result, name)
         if values is None:
             continue
-        data[f"{name}_mean"] = _variable(("t",), name, np.nanmean(values, axis=0))
-        data[f"{name}_std"] = _variable(("t",), name, np.nanstd(values, axis=0))
-        data[f"{name}_quantiles"] = _variable(("quantile", "t"), name, np.nanquantile(values, quantiles, axis=0))
+        data[f"{name}_mean"] = xr.Variable(("t",), np.nanmean(values, axis=0), described(name))
+        data[f"{name}_std"] = xr.Variable(("t",), np.nanstd(values, axis=0), described(name))
+        data[f"{name}_quantiles"] = xr.Variable(
+            ("quantile", "t"), np.nanquantile(values, quantiles, axis=0), described(name)
+        )
     onset = result.onset_time[np.isfinite(result.onset_time)]
     if onset.size:
-        data["onset_time_quantiles"] = _variable(("quantile",), "onset_time", np.quantile(onset, quantiles))
-    coords = {"t": _variable(("t",), "t", result.t), "quantile": ("quantile", np.array(quantiles))}
+        data["onset_time_quantiles"] = xr.Variable(
+            ("quantile",), np.quantile(onset, quantiles), described("onset_time")
+        )
+    coords = {"t": xr.Variable(("t",), result.t, described("t")), "quantile": ("quantile", np.array(quantiles))}
     attrs = _globals("Summary of an ensemble of motions") | {"motions": len(result)}
     return xr.Dataset(data, coords=coords, attrs=attrs | {f"ended: {text}": n for text, n in result.messages().items()})

@@ -13,11 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
-from ..rolling_contact import Values, contact
-from ..scene import Scene
+from ..results import Row, Shown, Values
+from ..rolling_contact import contact
+from ..scene import Scene, checked_scene
+from ..symbols import attributes
+from ..validity import Validity
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import LOSSES, ROWS, Drive
 from .rolling import Inputs, rolled
+from .warned import look
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,8 +43,8 @@ class Switch(NamedTuple):
     regime: str
 
 
-@dataclass(frozen=True)
-class Motion:
+@dataclass(frozen=True, repr=False)
+class Motion(Shown):
     """One motion of the cylinder; everything dimensionless.
 
     Attributes
@@ -146,7 +150,19 @@ class Motion:
         delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
         V = np.where((V == 0.0) & np.signbit(V), -SPEED_RANGE[0], V)  # -0: the limit from there
         found = contact(self.scene, V, delta=delta, fields=fields, **options)
-        return found if reached.all() else Values({k: _with_gaps(v, reached) for k, v in found.as_dict().items()})
+        whole = {name: _with_gaps(values, reached) for name, values in found.as_dict().items()}
+        return Values(whole, {"t": self.t}, title="Contact along a motion")
+
+    def validity(self) -> Validity:
+        """Which assumptions of the model the motion strains, at each output time that it reached.
+
+        See :meth:`Scene.validity`; ``creep`` is that of the motion, ``steady`` takes in all speeds from 0 to V.
+        """
+        reached = self.regime >= 0
+        return self.scene.validity(self.V[reached], omega=self.omega[reached])
+
+    def _card(self) -> tuple[str, list[Row]]:
+        return card_of(self, attributes)
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end]; by the continuous output of the methods.
@@ -176,6 +192,28 @@ class Motion:
         from .export import motion_dataset
 
         return motion_dataset(self)
+
+
+def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
+    """What a motion says of itself, in either units; ``described``: attributes of a quantity."""
+
+    def unit(name: str) -> str:
+        found = str(described(name)["units"])
+        return "" if found == "1" else found
+
+    rows = [Row("t", f"{motion.t.size} times to {motion.t[-1]:.6g}", unit("t"))]
+    for name in ("V", "omega", "x"):
+        values = getattr(motion, name)
+        rows.append(Row(name, f"{values[0]:.6g} to {values[-1]:.6g}", unit(name)))
+    for name, given in motion.drive.given.items():
+        rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", unit(name)))
+    if not np.isnan(motion.onset_time):
+        rows.append(Row("onset of partial slip", f"t = {motion.onset_time:.6g}", unit("t")))
+    if motion.switches:
+        rows.append(Row("changes of regime", f"{len(motion.switches)}, the last to {motion.switches[-1].regime}"))
+    if motion.reversals.size:
+        rows.append(Row("reversals of V", str(motion.reversals.size)))
+    return "Motion", [*rows, Row("ended", f"{motion.message} ({motion.steps} steps)")]
 
 
 def _with_gaps(values: NDArray, reached: NDArray[np.bool_]) -> NDArray:
@@ -262,8 +300,10 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
+    checked_scene(scene, "roll", moves=True)
     times = output_times(t)
     drive = Drive(force, torque, slope, brake, omega, V)
+    look(scene, V0, omega0)
     given = [0.0 if value is None else value for value in (V0, omega0)] if drive.prescribes else [V0, omega0]
     speeds = start_speeds(*given)
     tilt = np.asarray(0.0 if slope is None else slope)

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cylinder import scene_from_si, scene_of_pair, scene_of_series
 from ..motion import ensemble
 from ..motion.batch import Ensemble
 from ..scene import Scene
+from ..si.scaling import scene_from_si, scene_of_pair, scene_of_series
 from . import draws
 from .drives import drive_of
 from .ranges import CYLINDER, SCENE, START

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.batch import Ensemble
-from .units import SI
+from ..si.units import attributes
 
 
 class Quantity(NamedTuple):
@@ -31,7 +31,7 @@ class Quantity(NamedTuple):
 
     def units(self, si: bool) -> str:
         """Its unit."""
-        return SI[self.like].units if si and self.like else "1"
+        return str(attributes(self.like)["units"]) if si and self.like else "1"
 
 
 def _field(name: str) -> Callable[[Ensemble, int], NDArray]:

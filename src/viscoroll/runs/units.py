@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..motion import export
-from ..motion.si import SI
+from ..si.units import QUANTITIES
+from ..si.units import attributes as si_attributes
 from ..symbols import SYMBOLS
 from .ranges import CYLINDER
 
@@ -69,8 +70,8 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
         what, _, corner = name.removeprefix("drive_").partition("_")
         about = attributes(what, si)
         return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
-    if si and name in SI:
-        return SI[name]._asdict()
+    if si and name in QUANTITIES:
+        return si_attributes(name)
     kind, _, number = name.partition("_")
     if kind in _MODES and number.isdecimal():
         return {"long_name": _MODES[kind].format(number), "units": "1"}

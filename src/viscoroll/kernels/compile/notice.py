@@ -13,7 +13,7 @@ told = False
 def tell(seconds: float) -> None:
     """Say, once a process, that compiling begins and takes so long; nothing below a second."""
     global told
-    if told or seconds < 1.0 or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or _is_worker():
+    if told or seconds < 1.0 or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker():
         return
     told = True
     print(
@@ -23,7 +23,7 @@ def tell(seconds: float) -> None:
     )
 
 
-def _is_worker() -> bool:
+def is_worker() -> bool:
     """Whether this process computes for another one, which has said it."""
     if multiprocessing.parent_process() is not None:
         return True

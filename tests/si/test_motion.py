@@ -50,7 +50,7 @@ def test_the_dimensionless_motion_in_other_units():
     assert np.array_equal(m.t, TIMES)
     assert m.scene == free.scene
     assert m.power_force == pytest.approx(m.force * m.V)
-    assert m.contact("Q").Q == pytest.approx(free.contact("Q").Q, rel=tol.SI_MOTION)
+    assert m.contact("Q").Q == pytest.approx(free.contact("Q").Q * load, rel=tol.SI_MOTION)
 
 
 def test_prescribed_speeds_in_other_units():
@@ -129,14 +129,14 @@ REFUSED = [
     ({"force": "1 N"}, "force = '1 N'"),
     ({"force": [1.0, 2.0]}, "of 2 motions"),
     ({"force": ([0.0, 1.0], [0.0])}, "times (2,), values (1,)"),
-    ({"force": ([0.0, -1.0], [0.0, 1.0])}, "times of force = -1.0"),
+    ({"force": ([0.0, -1.0], [0.0, 1.0])}, "times of force = -1.0 at row 1"),
     ({"torque": ([2.0, 1.0], [0.0, 1.0])}, "in ascending order (dimensionless: times over 10.7 s"),
     ({"torque": lambda t: np.nan}, "torque(t) = nan"),
     ({"brake": -1.0}, "brake = -1.0: must be finite and >= 0"),
     ({"rest": 0.0}, "rest = 0.0"),
     ({"rest": 1e-3, "force": 1.0}, "rest = "),
-    ({"V": 0.1, "omega": 1.0}, "V, omega given = both"),
-    ({"V": 0.1, "force": 1.0}, "force = given with V="),
+    ({"V": 0.1, "omega": 1.0}, "V and omega are both given"),
+    ({"V": 0.1, "force": 1.0}, "force is given beside V="),
 ]
 
 

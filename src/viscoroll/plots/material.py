@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import OutputError, ParameterError
-from .files import replacing
+from ..errors import ParameterError
+from .style import LINES, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,17 +49,17 @@ def master_curve(material: Any) -> Figure:
     return figure
 
 
-def save(figure: Figure, path: str | PathLike[str]) -> None:
-    """Write a figure, whole or not at all; the suffix of ``path`` chooses the format.
-
-    Raises
-    ------
-    OutputError
-        If it cannot be written there, or the suffix names no format.
-    """
-    formats = sorted(figure.canvas.get_supported_filetypes())
-    suffix = Path(path).suffix
-    if suffix.removeprefix(".").lower() not in formats:
-        raise OutputError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
-    with replacing(path) as temporary:
-        figure.savefig(temporary)
+def fitted(fit: Any) -> Figure:
+    """Storage and loss modulus of a :class:`viscoroll.Fit`: the data and the curves of the series."""
+    omega = np.geomspace(fit.omega[0], fit.omega[-1], _POINTS)
+    misfit = f"misfit {fit.misfit.storage:.1%} in E', {fit.misfit.loss:.1%} in E''"
+    title = f"Prony series of {fit.prony.E.size} modes: {misfit}"
+    figure, axes = new_figure(title)
+    for values, curve, name, line in zip(
+        (fit.storage, fit.loss), fit.modulus(omega), ("E'", "E''"), LINES, strict=False
+    ):
+        axes.loglog(fit.omega, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=name)
+        axes.loglog(omega, curve, **line, label=f"{name} of the fit")
+    axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, unit of the data")
+    axes.legend(frameon=False, fontsize="small", ncols=2)
+    return figure

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..scene import Scene
+from ..errors import OutputError
+from ..files import replacing
 from ..symbols import SYMBOLS, label
 
 if TYPE_CHECKING:
@@ -35,7 +38,7 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def describe(scene: Scene, *names: str) -> str:
+def describe(scene: Any, *names: str) -> str:
     """The named parameters of a scene, for a title line."""
     return ", ".join(f"${SYMBOLS[name].latex} = {number(getattr(scene, name))}$" for name in names)
 
@@ -54,6 +57,15 @@ def labelled(name: str, units: str = "1") -> str:
     return with_unit(label(name) if name in SYMBOLS else name.replace("_", " "), units, ", ")
 
 
+def axis(values: Any) -> str:
+    """Axis label of a variable of a dataset: its symbol or its name, and its unit."""
+    about, name = values.attrs, str(values.name)
+    symbol = SYMBOLS[name].latex if name in SYMBOLS else about.get("symbol", "")
+    # an SI quantity is not the ratio that its symbol may spell out
+    symbol = symbol.partition("/")[0] if about.get("units", "1") != "1" else symbol
+    return with_unit(f"${symbol}$" if symbol else name.replace("_", " "), about.get("units", "1"), ", ")
+
+
 def with_unit(text: str, units: str, between: str = " ") -> str:
     """Text, and behind it a unit like "m s-1", but for numbers ("1")."""
     return text if units == "1" else text + between + re.sub(r"(-\d)", r"$^{\1}$", units)
@@ -62,3 +74,19 @@ def with_unit(text: str, units: str, between: str = " ") -> str:
 def scaled(name: str, exponent: int) -> str:
     """Axis label of a quantity whose values are shown times 10^exponent."""
     return rf"${SYMBOLS[name].latex}\times 10^{{{exponent}}}$"
+
+
+def save(figure: Figure, path: str | PathLike[str]) -> None:
+    """Write a figure, whole or not at all; the suffix of ``path`` chooses the format.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written there, or the suffix names no format.
+    """
+    formats = sorted(figure.canvas.get_supported_filetypes())
+    suffix = Path(path).suffix
+    if suffix.removeprefix(".").lower() not in formats:
+        raise OutputError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
+    with replacing(path) as temporary:
+        figure.savefig(temporary)

@@ -1,0 +1,108 @@
+"""Figures of motions: one, many, and quantiles of many."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .style import LINES, SHADES, THIN, axis, new_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_GREYS = ("0.85", "0.65", "0.45")
+_FULL_SLIP = 0
+#: a histogram needs some
+_FEWEST = 8
+_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+def one(data: xr.Dataset) -> Figure:
+    """V and omega, what acts, and the path over time; full slip is shaded."""
+    driven = [name for name in ("force", "torque") if name in data]
+    rows: list[tuple[str, ...]] = [("V",), ("omega",), ("x",)] if _units(data, "V") else [("V", "omega"), ("x",)]
+    if driven:
+        rows += [(name,) for name in driven] if _units(data, "force") else [tuple(driven)]
+    figure, axes = new_figure(_title(data), len(rows), 1, (7.2, 1.0 + 1.9 * len(rows)), sharex=True, squeeze=False)
+    t = data["t"].values
+    for box, names in zip(axes.ravel(), rows, strict=True):
+        for name, line in zip(names, LINES, strict=False):
+            box.plot(t, data[name].values, label=axis(data[name]), **line)
+        _shade(box, t, data["regime"].values == _FULL_SLIP)
+        box.axhline(0.0, **THIN)
+        box.set_ylabel(", ".join(axis(data[name]) for name in names))
+        if len(names) > 1:
+            box.legend(frameon=False, fontsize="small")
+    axes[-1, 0].set(xlabel=axis(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0))
+    return figure
+
+
+def ensemble(data: xr.Dataset) -> Figure:
+    """A row a quantity: quantile bands over time; beside the first the onset of partial slip."""
+    names = [name for name in ("V", "omega", "x", "angle") if name in data and data[name].ndim == 2]
+    figure, rows = new_figure(
+        f"{data.sizes['motion']} motions", max(len(names), 1), 2, (9.6, 2.8 * max(len(names), 1)), squeeze=False
+    )
+    t = data["t"].values
+    for name, (left, right) in zip(names, rows, strict=False):
+        values = data[name].values
+        reached = np.isfinite(values).any(axis=0)
+        levels = np.full((len(_LEVELS), t.size), np.nan)
+        levels[:, reached] = np.nanquantile(values[:, reached], _LEVELS, axis=0)
+        _bands(left, t, np.array(_LEVELS), levels)
+        left.set(xlabel=axis(data["t"]), ylabel=axis(data[name]))
+        last = values[:, -1][np.isfinite(values[:, -1])]
+        _bars(right, last, f"{axis(data[name])} at the end", values.shape[0])
+    return figure
+
+
+def bands(data: xr.Dataset) -> Figure:
+    """A row a quantity of a summary: quantile bands over time."""
+    names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
+    names = [name for name in names if data[f"{name}_quantiles"].ndim == 2]
+    figure, axes = new_figure(
+        f"{data.attrs.get('motions', '')} motions".strip(), len(names), 1, (6.4, 1.0 + 2.4 * len(names)), squeeze=False
+    )
+    for name, box in zip(names, axes.ravel(), strict=True):
+        found = data[f"{name}_quantiles"]
+        _bands(box, data["t"].values, data["quantile"].values, found.values)
+        box.set(xlabel=axis(data["t"]), ylabel=axis(found))
+    return figure
+
+
+def _bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
+    """Quantiles over time: pairs of them as bands, a middle one as a line."""
+    for n in range(levels.size // 2):
+        text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
+        axes.fill_between(t, values[n], values[-1 - n], color=_GREYS[n % len(_GREYS)], linewidth=0.0, label=text)
+    if levels.size % 2:
+        axes.plot(t, values[levels.size // 2], ".-", color="black", label=f"{100 * levels[levels.size // 2]:g} %")
+    axes.axhline(0.0, **THIN)
+    axes.legend(frameon=False, fontsize="small")
+
+
+def _bars(axes: Any, values: NDArray, label: str, count: int) -> None:
+    axes.set(xlabel=label, ylabel=f"motions, of {count}")
+    if values.size >= _FEWEST and np.ptp(values) > 1e-12 * np.abs(values).max():
+        axes.hist(values, bins=40, color="0.6")
+    else:
+        axes.plot(values, np.arange(1, values.size + 1), "o", color="black")
+    axes.locator_params(axis="x", nbins=6)
+
+
+def _shade(axes: Any, t: NDArray, full_slip: NDArray[np.bool_]) -> None:
+    """Grey where the motion slips fully."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], full_slip.astype(np.int8), [0]))))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        axes.axvspan(t[first], t[min(last, t.size - 1)], color=SHADES["full slip"], linewidth=0.0, zorder=0)
+
+
+def _units(data: xr.Dataset, name: str) -> bool:
+    return bool(data[name].attrs.get("units", "1") != "1")
+
+
+def _title(data: xr.Dataset) -> str:
+    return f"Motion: {data.attrs['status']}; full slip is grey" if "status" in data.attrs else "Motion"

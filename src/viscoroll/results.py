@@ -1,0 +1,164 @@
+"""What every result can do: say itself in few lines, as HTML, as xarray and pandas, and draw itself."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .symbols import attributes
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+#: rows of a short table
+_MOST_ROWS = 40
+
+
+class Row(NamedTuple):
+    """A line of a result: a name, what it holds, its unit ("" without)."""
+
+    name: str
+    value: str
+    unit: str = ""
+
+
+class Shown:
+    """A result that shows itself; a subclass says its :meth:`_card`, and gives :meth:`to_xarray`."""
+
+    def _card(self) -> tuple[str, list[Row]]:
+        """A title and a line for each thing worth a look."""
+        raise NotImplementedError
+
+    def to_xarray(self) -> xr.Dataset:
+        """All of it as a dataset, with names and units."""
+        raise NotImplementedError
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state."""
+        return self.to_xarray().to_dataframe()
+
+    def plot(self) -> Figure:
+        """Draw it; a figure of matplotlib, with ``savefig``.
+
+        Raises
+        ------
+        ParameterError
+            Where there is nothing to draw over, as of a single state.
+        """
+        from .plots import draw
+
+        return draw(self.to_xarray())
+
+    def __repr__(self) -> str:
+        title, rows = self._card()
+        width = max((len(row.name) for row in rows), default=0)
+        return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
+
+    def _repr_html_(self) -> str:
+        title, rows = self._card()
+        cells = "".join(
+            "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
+            for row in rows[:_MOST_ROWS]
+        )
+        return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
+
+
+def short(value: Any) -> str:
+    """A number, or what an array holds, in few words."""
+    if not isinstance(value, np.ndarray):
+        return f"{value:.12g}" if isinstance(value, float) else str(value)
+    if value.ndim == 0 or 0 < value.size <= 4:
+        return np.array2string(value, precision=6, separator=", ")
+    finite = value[np.isfinite(value)] if value.dtype.kind == "f" else value
+    if not finite.size:
+        return f"{value.shape}, none finite" if value.size else f"{value.shape}"
+    text = f"{value.shape}, {finite.min():.6g} to {finite.max():.6g}"
+    return text + (f", {value.size - finite.size} not finite" if finite.size < value.size else "")
+
+
+class Values(Shown):
+    """Named results of one call; a name that was not asked for is an AttributeError.
+
+    given : the arguments over which they were computed, by name.
+    units : unit of each that has one; title : what they are; labels : gives a result those of its arguments.
+    """
+
+    def __init__(
+        self,
+        values: dict[str, Any],
+        given: dict[str, Any] | None = None,
+        units: dict[str, str] | None = None,
+        title: str = "Contact",
+        labels: Callable[[str, Any], Any] | None = None,
+    ) -> None:
+        self._values = values if labels is None else {name: labels(name, value) for name, value in values.items()}
+        self._given, self._units, self._title = given or {}, units or {}, title
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self._values[name]
+        except KeyError:
+            held = ", ".join(self._values)
+            raise AttributeError(f"{name!r} was not computed; this result holds {held}") from None
+
+    def __dir__(self) -> Iterable[str]:
+        return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The results by name."""
+        return dict(self._values)
+
+    def _card(self) -> tuple[str, list[Row]]:
+        shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
+        title = self._title + (f", {shape}" if shape else "")
+        return title, [Row(name, short(value), self._units.get(name, "")) for name, value in self._values.items()]
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over the arguments that vary, with names and units.
+
+        An axis along which one argument alone varies has its name and its values; others are called ``state``.
+        """
+        import xarray as xr
+
+        plain = {name: np.asarray(value) for name, value in self._values.items()}
+        given = {name: np.asarray(value) for name, value in self._given.items()}
+        shape = np.broadcast_shapes(*(array.shape for array in (*plain.values(), *given.values())))
+        dims, coordinates = _axes(given, shape)
+        data = {}
+        for name, array in (given | plain).items():
+            if name in coordinates:
+                continue
+            whole = np.broadcast_to(array, shape) if array.ndim else array
+            kept = whole.astype(np.int8) if whole.dtype == bool else whole
+            data[name] = xr.Variable(dims if array.ndim else (), kept, self._attributes(name))
+        coords = {name: xr.Variable((name,), values, self._attributes(name)) for name, values in coordinates.items()}
+        return xr.Dataset(data, coords, attrs={"title": self._title})
+
+    def _attributes(self, name: str) -> dict[str, Any]:
+        found = attributes(name)
+        return found | {"units": self._units[name]} if name in self._units else found
+
+
+def _axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, NDArray]]:
+    """Names of the axes, and the coordinates of those that one argument alone varies along."""
+    dims, coordinates = [], {}
+    for axis in range(len(shape)):
+        along = [name for name, array in given.items() if _varies(array, axis - len(shape))]
+        if len(along) == 1 and given[along[0]].size == shape[axis]:
+            dims.append(along[0])
+            coordinates[along[0]] = given[along[0]].ravel()
+        else:
+            dims.append("state" if len(shape) == 1 else f"state_{axis}")
+    return tuple(dims), coordinates
+
+
+def _varies(array: NDArray, axis: int) -> bool:
+    return -axis <= array.ndim and array.shape[axis] > 1

@@ -1,0 +1,70 @@
+"""Contact states, stresses and the validity of a cylinder in SI units."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..checks import checked
+from ..labels import unlabelled
+from ..results import Values
+from ..rolling_contact import OF_BODIES, contact, stress
+from .units import QUANTITIES, Cylinder, Units, over, units_of
+
+
+def contact_of(
+    cylinder: Cylinder, V: ArrayLike, omega: ArrayLike | None, delta: ArrayLike | None, **options: Any
+) -> Values:
+    """``Cylinder.contact``."""
+    one = units_of(cylinder)
+    plain, labels = unlabelled({"V": V, "omega": omega, "delta": delta})
+    V, omega, delta = plain["V"], plain["omega"], plain["delta"]
+    fields = options.pop("fields")
+    asked = (fields,) if isinstance(fields, str) else None if fields is None else tuple(fields)
+    if asked is not None:
+        asked = tuple(dict.fromkeys("lam" if name == "length" else name for name in asked))
+    speeds = {"V": over("V", V, one), "omega": over("omega", omega, one), "delta": delta}
+    found = contact(cylinder.scene(), **speeds, fields=asked, **options).as_dict()
+    names = list(found) if fields is None else [fields] if isinstance(fields, str) else list(fields)
+    if fields is None:
+        names.insert(names.index("lam") + 1, "length")
+        # of like bodies they are M/2 each: what force and moment on the cylinder take
+        found |= {name: 0.5 * found["M"] for name in OF_BODIES if name not in found}
+        names += [name for name in OF_BODIES if name not in names]
+    if options.get("slopes"):
+        names += [name for name in found if name not in names and name != "lam"]
+    values = {name: _in_si(name, found["lam" if name == "length" else name], one) for name in names}
+    given = {"V": V} | ({"omega": omega} if delta is None else {"delta": delta})
+    return Values(values, given, _units(values) | _units(given), "Contact of a cylinder, SI units", labels)
+
+
+def stress_of(
+    cylinder: Cylinder, x: ArrayLike, V: ArrayLike, omega: ArrayLike | None, delta: ArrayLike | None
+) -> Values:
+    """``Cylinder.stress``."""
+    one = units_of(cylinder)
+    found = stress(
+        cylinder.scene(), checked("x", x) / one.l0, over("V", V, one), omega=over("omega", omega, one), delta=delta
+    ).as_dict()
+    given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
+    values = {name: _in_si(name, value, one) for name, value in found.items()}
+    return Values(values, given, _units(values) | _units(given), "Stresses in the contact of a cylinder, SI units")
+
+
+def in_si(found: Values, one: Units, given: dict[str, Any]) -> Values:
+    """A dimensionless contact state in SI units."""
+    values = {name: _in_si(name, value, one) for name, value in found.as_dict().items()}
+    return Values(values, given, _units(values) | _units(given), "Contact of a cylinder, SI units")
+
+
+def _in_si(name: str, value: Any, one: Any) -> Any:
+    if name not in QUANTITIES:
+        return value
+    found = np.asarray(value) * QUANTITIES[name].of(one)
+    return found if found.ndim else float(found)
+
+
+def _units(names: Any) -> dict[str, str]:
+    return {name: QUANTITIES[name].units for name in names if name in QUANTITIES}

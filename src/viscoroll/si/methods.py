@@ -1,0 +1,228 @@
+"""What a cylinder does, in SI units: :class:`InSI`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal
+
+from numpy.typing import ArrayLike
+
+from ..drive import Feedback
+from ..results import Values
+
+if TYPE_CHECKING:
+    from ..equilibria import Steady
+    from ..motion.single import Acting, Schedule
+    from .motion import EnsembleSI, MotionSI
+
+
+class InSI:
+    """Contact, stresses, motions and steady rolling of a cylinder; each takes and gives SI units, per m of length."""
+
+    def contact(
+        self,
+        V: ArrayLike,
+        omega: ArrayLike | None = None,
+        *,
+        delta: ArrayLike | None = None,
+        fields: Iterable[str] | None = None,
+        slopes: bool = False,
+        method: Literal["table", "direct"] = "table",
+    ) -> Values:
+        """State of the contact as :func:`viscoroll.contact`, in SI units, per m of length.
+
+        Parameters
+        ----------
+        V, omega : m/s and rad/s.  delta : creep ratio (omega R - V)/V, in place of omega.
+        fields, slopes, method : as there, and ``length`` among the fields.
+
+        Returns
+        -------
+        Values
+            ``length`` of the contact in m; ``Q`` in N/m; ``M``, ``M_half_space`` and ``M_cylinder`` in N m/m; slopes of
+            these; ratios as there.  Force and moment on the cylinder, Eqs. (20), (21), are Q - M_half_space/R and
+            Q R + M_cylinder.
+
+        Raises
+        ------
+        ParameterError, ConvergenceError
+            As there; where a value of a message is dimensionless, it says so.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+        >>> state = roller.contact(V=0.01, omega=0.099)
+        >>> traction, moment = state.Q, state.M
+        """
+        from .contact import contact_of
+
+        return contact_of(self, V, omega, delta, fields=fields, slopes=slopes, method=method)
+
+    def stress(
+        self, x: ArrayLike, V: ArrayLike, omega: ArrayLike | None = None, *, delta: ArrayLike | None = None
+    ) -> Values:
+        """Pressure and shear stress along the contact as :func:`viscoroll.stress`, in Pa.
+
+        Parameters
+        ----------
+        x : position from the foot of the axis, m, positive along the axis of V.
+        V, omega, delta : as for :meth:`contact`.
+
+        Returns
+        -------
+        Values
+            ``p`` and ``tau``, Pa.
+
+        Raises
+        ------
+        ParameterError, ConvergenceError
+            As there.
+        """
+        from .contact import stress_of
+
+        return stress_of(self, x, V, omega, delta)
+
+    def steady(
+        self,
+        *,
+        force: ArrayLike | Feedback | None = None,
+        torque: ArrayLike | Feedback | None = None,
+        slope: ArrayLike | None = None,
+        V: ArrayLike | None = None,
+    ) -> Steady:
+        """Steady rolling under load as :func:`viscoroll.steady`, in SI units.
+
+        Parameters
+        ----------
+        force, torque : N and N m per m of length, numbers, arrays or a :class:`Feedback` with gains over m/s and rad/s.
+        slope : rad, > 0 drives along +V; the load is then P cos(slope), and P sin(slope) adds to ``force``.
+        V : m/s, in place of one of force and torque.
+
+        Returns
+        -------
+        Steady
+            ``V`` in m/s, ``omega`` in rad/s, ``force``, ``Q`` in N/m, ``torque``, ``M`` and its parts in N m/m,
+            ``eigenvalues`` in 1/s, powers of ``loss`` in W/m.
+
+        Raises
+        ------
+        ParameterError, ConvergenceError
+            As :func:`viscoroll.steady`; values in messages are dimensionless, but those of ``reason``.
+        """
+        from .steady import steady_of
+
+        return steady_of(self, force, torque, slope, V)
+
+    def roll(
+        self,
+        V0: float | None,
+        omega0: float | None,
+        t: ArrayLike,
+        rtol: float = 1e-8,
+        *,
+        force: Acting = 0.0,
+        torque: Acting = 0.0,
+        slope: float | None = None,
+        brake: Schedule | None = None,
+        omega: Schedule | None = None,
+        V: Schedule | None = None,
+        rest: float | None = None,
+        max_steps: int = 100_000,
+    ) -> MotionSI:
+        """Motion as :func:`viscoroll.roll`, in SI units, per m of length.
+
+        Parameters
+        ----------
+        V0, omega0 : start speeds, m/s and rad/s.
+        t : output times, s, or one end time.
+        rtol, max_steps : as there.
+        force, torque : N and N m per m: a number; (times in s, values); a callable of t in s; or a :class:`Feedback`
+            of any of these with gains over m/s and rad/s.
+        slope : rad, > 0 pushes along +V; the load is then P cos(slope), and P sin(slope) adds to ``force``.
+        brake : most torque that a brake takes, N m per m, as for ``force``.
+        omega, V : prescribed speed, rad/s of the motor or m/s of the axis, likewise.
+        rest : end the motion where both |V| and R |omega| fall below this, m/s.
+
+        Returns
+        -------
+        MotionSI
+            ``V`` in m/s, ``omega`` in rad/s, ``x`` in m, ``force`` and ``torque`` as above, works and losses in J/m,
+            ``power_force`` and ``power_torque`` in W/m, times of switches and reversals in s.  It is the dimensionless
+            motion of :meth:`scene`, ``motion``, to a few roundings (``tests/si/test_motion.py``).
+
+        Raises
+        ------
+        ParameterError
+            As :func:`viscoroll.roll`; where a value of a message is dimensionless, the message says over what.
+
+        Warns
+        -----
+        RuntimeWarning
+            Where the motion could not be rolled to the end.
+
+        Examples
+        --------
+        A roller on a slope of 2 degrees, driven by 1 N m/m for the first second, then braked.
+
+        >>> import numpy as np, viscoroll as vr
+        >>> roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+        >>> down = np.radians(2.0)
+        >>> m = roller.roll(0.0, 0.0, 3.0, torque=([1.0, 1.0], [1.0, 0.0]), brake=([1.0, 1.0], [0.0, 5.0]), slope=down)
+        """
+        from ..motion.driven import Drive
+        from .motion import roll_of
+
+        drive = Drive(force, torque, slope, brake, omega, V)
+        return roll_of(self, (V0, omega0), t, drive, rtol, rest, max_steps)
+
+    def ensemble(
+        self,
+        V0: ArrayLike | None,
+        omega0: ArrayLike | None,
+        t: ArrayLike,
+        *,
+        force: Any = 0.0,
+        torque: Any = 0.0,
+        slope: ArrayLike | None = None,
+        brake: Any = None,
+        omega: Any = None,
+        V: Any = None,
+        rest: float | None = None,
+        **options: Any,
+    ) -> EnsembleSI:
+        """Roll n motions as :func:`viscoroll.ensemble`, in SI units, per m of length.
+
+        Parameters
+        ----------
+        V0, omega0 : start speeds, m/s and rad/s, numbers or arrays (n,); the cylinder's numbers may be arrays too.
+        t : output times, s, common to all; one number: the final state only.
+        force, torque, slope, brake, omega, V : as for :meth:`roll`; numbers may be arrays of n, values of
+            (times, values) of shape (n, k).
+        rest : m/s, as for :meth:`roll`.
+        **options : method, rtol, fields, max_steps, speed (m/s), threads, progress, as there.
+
+        Returns
+        -------
+        EnsembleSI
+            The fields of :class:`Ensemble` in m/s, rad/s, m, s, N/m, N m/m and J/m.
+
+        Raises
+        ------
+        ParameterError
+            As there; where a value of a message is dimensionless, the message says over what.
+
+        Examples
+        --------
+        The distance of a hundred rollers of uncertain friction.
+
+        >>> import numpy as np, viscoroll as vr
+        >>> friction = np.random.default_rng(0).uniform(0.2, 0.4, 100)
+        >>> rollers = vr.RUBBER_CYLINDER.replace(mu=friction)
+        >>> e = rollers.ensemble(0.5, 0.0, [0.1, 1.0], rtol=1e-6)
+        >>> distance = e.x[:, -1]
+        """
+        from ..motion.driven import Drive
+        from .motion import ensemble_of
+
+        return ensemble_of(self, (V0, omega0), t, Drive(force, torque, slope, brake, omega, V), rest, **options)

@@ -1,0 +1,276 @@
+"""Motions of a cylinder in SI units: :class:`MotionSI` and :class:`EnsembleSI`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..checks import number
+from ..drive import slope_factor
+from ..errors import MotionStatus, ParameterError
+from ..motion.batch import Ensemble, ensemble
+from ..motion.batch import card_of as ensemble_card
+from ..motion.checks import output_times
+from ..motion.driven import Drive
+from ..motion.single import Motion, Switch, card_of, roll
+from ..motion.warned import look
+from ..results import Row, Shown, Values
+from ..scene import Scene
+from ..validity import Validity
+from .contact import in_si as contact_in_si
+from .units import Cylinder, Units, attributes, in_words, over, to_si, units_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: of a motion, what has a unit; in an ensemble that and more
+_ROWS = ("V", "omega", "x", "angle", "force", "torque", "work_force", "work_torque", "brake_loss")
+_SCALED = {*_ROWS, "slip_loss", "rolling_loss", "V0", "omega0", "onset_time", "rest_time"}
+
+
+@dataclass(frozen=True, repr=False)
+class MotionSI(Shown):
+    """One motion of a cylinder in SI units, per m of its length.
+
+    Attributes
+    ----------
+    cylinder, drive : what rolled, and what was given to drive it.
+    motion : the dimensionless :class:`Motion` that this one shows.
+    t, V, omega, x, angle : s, m/s, rad/s, m, rad.
+    switches, reversals, onset_time, rest_time : as of :class:`Motion`, in s.
+    force, torque : N and N m per m; the force holds the pull of the slope, P sin(slope).
+    work_force, work_torque, brake_loss : J/m.
+    """
+
+    cylinder: Cylinder
+    drive: Drive
+    motion: Motion
+    t: NDArray[np.float64]
+    V: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    x: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    switches: tuple[Switch, ...]
+    reversals: NDArray[np.float64]
+    onset_time: float
+    rest_time: float
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    work_force: NDArray[np.float64]
+    work_torque: NDArray[np.float64]
+    brake_loss: NDArray[np.float64]
+
+    @property
+    def scene(self) -> Scene:
+        """The dimensionless scene, on its slope."""
+        return self.motion.scene
+
+    @property
+    def delta(self) -> NDArray[np.float64]:
+        """Creep ratio (omega R - V)/V."""
+        return self.motion.delta
+
+    @property
+    def regime(self) -> NDArray[np.int8]:
+        """As of :class:`Motion`."""
+        return self.motion.regime
+
+    @property
+    def status(self) -> MotionStatus:
+        """How the motion ended."""
+        return self.motion.status
+
+    @property
+    def message(self) -> str:
+        """The status in words."""
+        return self.motion.message
+
+    @property
+    def steps(self) -> int:
+        """Integration steps taken."""
+        return self.motion.steps
+
+    @property
+    def drive_error(self) -> float:
+        """As of :class:`Motion`, dimensionless."""
+        return self.motion.drive_error
+
+    @property
+    def slip_loss(self) -> NDArray[np.float64]:
+        """Energy lost in slip since t = 0, J/m."""
+        return to_si("slip_loss", self.motion.slip_loss, self._units)
+
+    @property
+    def rolling_loss(self) -> NDArray[np.float64]:
+        """Energy lost in rolling since t = 0, J/m."""
+        return to_si("rolling_loss", self.motion.rolling_loss, self._units)
+
+    @property
+    def power_force(self) -> NDArray[np.float64]:
+        """Power of the force, W/m."""
+        return self.force * self.V
+
+    @property
+    def power_torque(self) -> NDArray[np.float64]:
+        """Power of the torque, W/m."""
+        return self.torque * self.omega
+
+    @property
+    def _units(self) -> Units:
+        return units_of(self.cylinder, self.drive.slope)
+
+    def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
+        """Contact state along the motion as of :meth:`Motion.contact`, in SI units: Q in N/m, M in N m/m."""
+        return contact_in_si(self.motion.contact(fields, **options), self._units, {"t": self.t})
+
+    def validity(self) -> Validity:
+        """Which assumptions of the model the motion strains, at each output time, as :meth:`Motion.validity`."""
+        return self.cylinder.validity(self.V[self.regime >= 0], omega=self.omega[self.regime >= 0])
+
+    def at(self, t: ArrayLike) -> MotionSI:
+        """The same motion at other times within [0, end], s, as :meth:`Motion.at`."""
+        times = output_times(t)
+        return in_si(self.cylinder, self.drive, self.motion.at(times / self.cylinder.T_ref), times)
+
+    def _card(self) -> tuple[str, list[Row]]:
+        return card_of(self, attributes)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over t as of :meth:`Motion.to_xarray`, in SI units; cylinder and scene are attributes."""
+        from ..motion.export import motion_dataset
+
+        return motion_dataset(self, attributes).assign_attrs(_about(self.cylinder))
+
+
+@dataclass(frozen=True, repr=False)
+class EnsembleSI(Shown):
+    """Motions of cylinders in SI units; as :class:`viscoroll.motion.batch.Ensemble`, with its names.
+
+    Attributes
+    ----------
+    cylinder, drive : what rolled, and what was given to drive it.
+    ensemble : the dimensionless :class:`Ensemble` that this one shows.
+    t : s.
+    """
+
+    cylinder: Cylinder
+    drive: Drive
+    ensemble: Ensemble
+    t: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.ensemble)
+
+    def __getattr__(self, name: str) -> Any:
+        """V, omega, x, onset_time and the others of an ensemble, in SI units: m/s, rad/s, m, s, N/m, J/m."""
+        if name.startswith("_") or name not in Ensemble.__dataclass_fields__:
+            raise AttributeError(f"an ensemble has no {name!r}")
+        value = getattr(self.ensemble, name)
+        if value is None or name not in _SCALED:
+            return value
+        return to_si(name, value, units_of(self.cylinder, self.drive.slope))
+
+    def __dir__(self) -> Iterable[str]:
+        return sorted({*super().__dir__(), *Ensemble.__dataclass_fields__})
+
+    def validity(self) -> Validity:
+        """Which assumptions of the model the motions strain, as :meth:`Ensemble.validity`."""
+        return self.ensemble.validity()
+
+    def messages(self) -> dict[str, int]:
+        """How many motions ended in which way, in words."""
+        return self.ensemble.messages()
+
+    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
+        """Mean, standard deviation and quantiles over the motions, as :meth:`Ensemble.summary`, in SI units."""
+        from ..motion.export import summary_dataset
+
+        return summary_dataset(self, tuple(quantiles), attributes)
+
+    def _card(self) -> tuple[str, list[Row]]:
+        return ensemble_card(self, attributes)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over (motion, t) as of :meth:`Ensemble.to_xarray`, in SI units."""
+        from ..motion.export import ensemble_dataset
+
+        return ensemble_dataset(self, attributes).assign_attrs(_about(self.cylinder))
+
+
+def _about(cylinder: Cylinder) -> dict[str, Any]:
+    """The cylinder's numbers as attributes of a dataset."""
+    return {name: getattr(cylinder, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
+
+
+def _asked(cylinder: Cylinder, t: ArrayLike, drive: Drive) -> tuple[Scene, Units, NDArray[np.float64], dict[str, Any]]:
+    """(scene, units, output times in s, the drive's arguments without dimension)."""
+    slope_factor(drive.slope)  # refuses one that is too steep
+    one = units_of(cylinder, drive.slope)
+    times = output_times(t) if np.ndim(t) else np.array([number("t", t, low=0.0)])
+    given = {name: over(name, value, one) for name, value in drive._asdict().items() if name != "slope"}
+    return cylinder.scene(), one, times, given | {"slope": drive.slope}
+
+
+def roll_of(
+    cylinder: Cylinder, start: tuple[float | None, float | None], t: ArrayLike, drive: Drive, rtol: float,
+    rest: float | None, max_steps: int,
+) -> MotionSI:  # fmt: skip
+    """``Cylinder.roll``."""
+    drive = drive._replace(slope=None if drive.slope is None else number("slope", drive.slope))
+    scene, one, times, given = _asked(cylinder, t, drive)
+    V0, omega0 = (
+        None if speed is None else from_si(number(name, speed))
+        for name, speed, from_si in zip(
+            ("V0", "omega0"), start, (cylinder.V_from_si, cylinder.omega_from_si), strict=True
+        )
+    )
+    rest = None if rest is None else over("V", number("rest", rest, low=0.0, strict=True), one)
+    _look_at_waves(cylinder, scene, start, (V0, omega0))
+    try:
+        motion = roll(
+            scene, V0, omega0, (times if np.ndim(t) else times[0]) / one.T, rtol, rest=rest, max_steps=max_steps,
+            **given,
+        )  # fmt: skip
+    except ParameterError as error:
+        raise in_words(error, one) from error
+    return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
+
+
+def _look_at_waves(cylinder: Cylinder, scene: Scene, start: tuple[Any, Any], bare: tuple[Any, Any]) -> None:
+    """As ``look``, with the start's speeds over that of shear waves where a density is known."""
+    V, omega = (0.0 if speed is None else np.abs(np.asarray(speed, np.float64)) for speed in start)
+    ratio = cylinder._slowness(np.maximum(V, omega * cylinder.R), None)[0]
+    look(scene, *bare, waves=0.0 if ratio is None else float(np.max(ratio, initial=0.0)))
+
+
+def in_si(cylinder: Cylinder, drive: Drive, motion: Motion, times: NDArray[np.float64]) -> MotionSI:
+    """A dimensionless motion of a cylinder in SI units, at ``times`` in s."""
+    one = units_of(cylinder, drive.slope)
+    rows = {name: to_si(name, getattr(motion, name), one) for name in _ROWS}
+    return MotionSI(
+        cylinder, drive, motion, times, **rows, switches=tuple(Switch(s.t * one.T, s.regime) for s in motion.switches),
+        reversals=motion.reversals * one.T, onset_time=motion.onset_time * one.T, rest_time=motion.rest_time * one.T,
+    )  # fmt: skip
+
+
+def ensemble_of(
+    cylinder: Cylinder, start: tuple[Any, Any], t: ArrayLike, drive: Drive, rest: float | None, **options: Any
+) -> EnsembleSI:
+    """``Cylinder.ensemble``."""
+    scene, one, times, given = _asked(cylinder, t, drive)
+    V0, omega0 = (over(name, speed, one) for name, speed in zip(("V0", "omega0"), start, strict=True))
+    if rest is not None and np.ndim(one.speed):
+        raise ParameterError("rest", rest, "None", "rest counts in R/T_ref: give it with one R for all motions")
+    rest = None if rest is None else over("V", number("rest", rest, low=0.0, strict=True), one)
+    _look_at_waves(cylinder, scene, start, (V0, omega0))
+    if options.get("speed") is not None:
+        options["speed"] = over("V", number("speed", options["speed"], low=0.0, strict=True), one)
+    try:
+        found = ensemble(scene, V0, omega0, times / one.T, rest=rest, **given, **options)
+    except ParameterError as error:
+        raise in_words(error, one) from error
+    return EnsembleSI(cylinder, drive, found, times)

@@ -1,0 +1,48 @@
+"""From SI units to the dimensionless scene: Sect. 3.1 and Eq. (4)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..pair import Pair, effective_modulus
+from ..scene import Scene
+
+
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+    """l0 of Sect. 3.1, m."""
+    return np.sqrt(32.0 * R * load / E_prime)
+
+
+def scene_from_si(
+    R: Any, m: Any, E: Any, nu: Any, T_epsilon: Any, T_sigma: Any, mu: Any, j: Any, g: Any, plane: str, load: Any = None
+) -> Scene:
+    """The scene of a :class:`Cylinder`, or of many: its fields, unchecked, numbers or arrays."""
+    T_epsilon, T_sigma = (np.asarray(value, np.float64)[()] for value in (T_epsilon, T_sigma))
+    # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
+    with np.errstate(all="ignore"):
+        alpha = T_epsilon / T_sigma
+    return Scene(alpha, *_scaled(R, m, g, load, effective_modulus(E, nu, plane), T_epsilon, mu), j)
+
+
+def scene_of_pair(R: Any, m: Any, pair: Pair, mu: Any, j: Any, g: Any, load: Any = None) -> Scene:
+    """As :func:`scene_from_si`, of a pair of materials; times over its T_ref."""
+    kappa, mu, gamma = _scaled(R, m, g, load, pair.E_prime, np.float64(pair.T_ref), mu)
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=pair.law)
+
+
+def scene_of_series(
+    R: Any, m: Any, E: Any, nu: Any, T_ref: float, series: Any, mu: Any, j: Any, g: Any, plane: str, load: Any = None
+) -> Scene:
+    """As :func:`scene_from_si`, of a series, or of one each, with the long-time modulus E; times over T_ref."""
+    kappa, mu, gamma = _scaled(R, m, g, load, effective_modulus(E, nu, plane), np.float64(T_ref), mu)
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=series)
+
+
+def _scaled(R: Any, m: Any, g: Any, load: Any, E_prime: Any, T: Any, mu: Any) -> tuple[Any, Any, Any]:
+    """(kappa, mu, gamma) of Sect. 3.1 and Eq. (4)."""
+    R, m = (np.asarray(value, np.float64)[()] for value in (R, m))
+    with np.errstate(all="ignore"):
+        P = m * g if load is None else np.asarray(load, np.float64)[()]
+        return R / contact_length(R, P, E_prime), mu, P * T**2 / (m * R)

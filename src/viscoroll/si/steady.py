@@ -1,0 +1,52 @@
+"""Steady rolling of a cylinder in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..drive import Feedback, slope_factor
+from ..equilibria import Loss, Steady, steady
+from .units import Cylinder, attributes, over, units_of
+
+
+def steady_of(
+    cylinder: Cylinder,
+    force: ArrayLike | Feedback | None,
+    torque: ArrayLike | Feedback | None,
+    slope: ArrayLike | None,
+    V: ArrayLike | None,
+) -> Steady:
+    """``Cylinder.steady``."""
+    slope_factor(slope)  # refuses one that is too steep
+    scene, one = cylinder.scene(), units_of(cylinder, slope)
+    given = {name: over(name, value, one) for name, value in (("force", force), ("torque", torque), ("V", V))}
+    found = steady(scene, **given, slope=slope)
+    load = np.asarray(one.P)
+    each, R, T, speed = (_beside(unit) for unit in (load, one.R, one.T, one.speed))
+    loss, power = found.loss, each * speed
+    words = "force + torque/R", "rolling moment over R", " N/m", " m/s"
+    shape = found.reasons.shape
+    factors = np.broadcast_to(load, shape).ravel(), np.broadcast_to(one.speed, shape).ravel()
+    moments = {name: getattr(found, name) * each * R for name in ("M", "M_half_space", "M_cylinder")}
+    return replace(
+        found,
+        V=found.V * speed,
+        omega=found.omega / T,
+        Q=found.Q * each,
+        **moments,
+        force=found.force * each,
+        torque=found.torque * each * R,
+        eigenvalues=found.eigenvalues * (_beside(scene.gamma) / T * (each / _beside(cylinder.load)))[..., np.newaxis],
+        loss=Loss(loss.slip * power, loss.half_space * power, loss.cylinder * power, loss.coefficient, loss.efficiency),
+        reasons=replace(found.reasons, words=words, factors=factors),
+        described=attributes,
+    )
+
+
+def _beside(unit: ArrayLike) -> NDArray[np.float64]:
+    """A unit beside the axis of equilibria."""
+    array = np.asarray(unit, np.float64)
+    return array[..., np.newaxis] if array.ndim else array

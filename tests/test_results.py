@@ -1,0 +1,161 @@
+"""What results say of themselves: short text, HTML, xarray, pandas, figures; labels and warnings."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from places import ROOT
+from processes import printed
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.motion import warned
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+ROLLER = vr.RUBBER_CYLINDER
+
+
+@pytest.fixture(scope="module")
+def results():
+    """One of each kind, dimensionless and in SI units."""
+    t, V = np.linspace(0.0, 4e-3, 9), np.geomspace(1e-2, 1.0, 5)
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"), modes=3, misfit=0.2)
+    return {
+        "contact": vr.contact(SCENE, V[:, None], delta=np.linspace(-0.02, 0.02, 4)),
+        "contact in SI": ROLLER.contact(V, delta=0.01),
+        "stress": vr.stress(SCENE, np.linspace(-0.2, 0.6, 21), 0.5, delta=-0.01),
+        "motion": vr.roll(SCENE, 1.5, 0.5, t),
+        "driven": vr.roll(SCENE, 0.0, 0.0, t, torque=([0.0, 2e-3], [0.0, 0.1])),
+        "motion in SI": ROLLER.roll(1.0, 0.0, np.linspace(0.0, 1.0, 9)),
+        "ensemble": vr.ensemble(SCENE, np.linspace(0.5, 1.5, 12), 0.5, t),
+        "ensemble in SI": ROLLER.ensemble(np.linspace(0.5, 1.5, 3), 0.0, [0.1, 0.2]),
+        "steady": vr.steady(SCENE, slope=np.radians([1.0, 2.0, 30.0])),
+        "steady in SI": ROLLER.steady(slope=np.radians([0.01, 0.02])),
+        "fit": fit,
+        "material": ROLLER.material,
+    }
+
+
+def test_each_shows_itself(results):
+    """A short text, HTML, a dataset with units, and a figure with labelled axes."""
+    for name, result in results.items():
+        assert len(repr(result)) < 1500, name
+        assert len(repr(result).splitlines()) < 25, name
+        assert result._repr_html_().startswith("<"), name
+        data = result.to_xarray()
+        for variable in () if name == "fit" else data.data_vars.values():
+            assert variable.attrs.get("units") or "flag_values" in variable.attrs, (name, variable.name)
+        figure = result.plot()
+        assert isinstance(figure, Figure)
+        figure.draw_without_rendering()
+        assert any(axes.get_xlabel() for axes in figure.axes), name
+
+
+def test_si_units_are_on_the_axes_and_in_the_text(results):
+    assert "m/s" in repr(ROLLER) or "Pa" in repr(ROLLER)
+    assert "m s-1" in repr(results["motion in SI"])
+    assert any("m s$^{-1}$" in axes.get_ylabel() for axes in results["motion in SI"].plot().axes)
+    assert results["contact in SI"].to_xarray()["Q"].attrs["units"] == "N m-1"
+
+
+def test_axes_are_named_after_what_varies(results):
+    data = results["contact"].to_xarray()
+    assert data["Q"].dims == ("V", "delta")
+    assert data.Q.sel(V=1.0, method="nearest").size == 4
+    assert results["steady"].to_xarray()["V"].dims == ("load", "equilibrium")
+    table = results["motion"].to_pandas()
+    assert table.index.name == "t"
+    assert table["V"].iloc[0] == 1.5
+    refused(vr.contact(SCENE, 1.0, delta=0.01).plot, "nothing to draw over")
+
+
+def test_scenes_hash_and_are_short():
+    many = SCENE.replace(mu=np.linspace(0.1, 0.3, 1000))
+    assert {SCENE: 1}[SCENE.replace(mu=0.2)] == 1
+    assert hash(many) == hash(SCENE.replace(mu=np.linspace(0.1, 0.3, 1000)))
+    assert len(repr(many)) < 120
+    assert eval(repr(SCENE), {"Scene": vr.Scene}) == SCENE
+
+
+def test_labels_are_kept():
+    """xarray and pandas in, the same out; unlike labels are not mixed."""
+    import pandas as pd
+    import xarray as xr
+
+    V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]}, name="speed")
+    creep = xr.DataArray([0.0, 0.01, 0.02], dims="creep")
+    found = vr.contact(SCENE, V, delta=creep)
+    assert found.Q.dims == ("run", "creep")
+    assert found.Q.sel(run="b").values == pytest.approx(vr.contact(SCENE, 0.2, delta=creep.values).Q)
+    table = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"])
+    Q = vr.contact(SCENE, table["V"], delta=table["delta"]).Q
+    assert list(Q.index) == ["x", "y"]
+    assert Q["y"] == vr.contact(SCENE, 0.2, delta=0.01).Q
+    refused(lambda: vr.contact(SCENE, table["V"], delta=table["delta"].iloc[::-1]), "index")
+    refused(lambda: vr.contact(SCENE, V, delta=np.array([0.0, 0.1])), "labels")
+
+
+def test_no_gamma_no_motion():
+    """What moves asks for gamma by name; what does not, does not."""
+    still = SCENE.replace(gamma=None)
+    for call in (vr.roll, vr.ensemble):
+        told = refused(lambda call=call: call(still, 1.0, 0.5, 1e-3))
+        assert told.startswith(f"{call.__name__} needs the scene's gamma")
+    assert vr.contact(still, 1.0, delta=0.0).M == vr.contact(SCENE, 1.0, delta=0.0).M
+    assert vr.steady(still, slope=0.05).V.tolist() == vr.steady(SCENE, slope=0.05).V.tolist()
+    assert vr.humps(still).M.tolist() == vr.humps(SCENE).M.tolist()
+    assert still.validity(1.0).steady.holds is None
+    assert still.validity(1.0).small_contact == SCENE.validity(1.0).small_contact
+
+
+def test_a_word_where_the_model_is_grossly_at_fault(monkeypatch):
+    """Once a process, for the paper's own example; none for a roller inside the limits, nor in a worker."""
+
+    def told(*call, **options) -> list[str]:
+        monkeypatch.setattr(warned, "_looked", 0)
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            vr.roll(*call, **options)
+            vr.roll(*call, **options)
+        assert all(issubclass(each.category, vr.ModelWarning) for each in found)
+        assert all(each.filename == __file__ for each in found)
+        return [str(each.message) for each in found]
+
+    (text,) = told(vr.PAPER_SECTION_5, 1.5, 0.5, 1e-3)
+    assert "nu = gamma max|N|/(1 + j) is 6" in text
+    assert told(vr.RUBBER_ROLLER, 1.0, 1.0, 1.0) == []
+    (text,) = told(vr.Scene(11.0, 0.5, 0.2, 0.1), 1.0, 1.0, 1e-3)
+    assert "kappa = R/l0 = 0.5" in text
+    (text,) = told(vr.Scene(11.0, 10.0, 0.02, 0.1), 0.5, -0.5, 1e-3)
+    assert "creep of order 1" in text
+    monkeypatch.setattr(warned, "is_worker", lambda: True)
+    assert told(vr.PAPER_SECTION_5, 1.5, 0.5, 1e-3) == []
+
+
+def test_fast_cylinders_are_told_of_waves(monkeypatch):
+    monkeypatch.setattr(warned, "_looked", 0)
+    with pytest.warns(vr.ModelWarning, match="times those of shear waves"):
+        ROLLER.roll(100.0, 1000.0, 0.01)
+
+
+def test_validity_of_motions(results):
+    """All of it along a motion: the numbers are those of the scene at each output."""
+    m = results["motion"]
+    found = m.validity()
+    assert found.steady.value[0] == SCENE.validity(m.V[0]).steady.value
+    assert found.creep.value == pytest.approx(np.abs(m.delta))
+    assert not found.creep.holds[0]
+    assert found.creep.holds[-1]
+    assert results["motion in SI"].validity().quasistatic.value.shape == (9,)
+    assert results["ensemble"].validity().steady.value.shape == (12,)
+    each = vr.ensemble(SCENE.replace(mu=np.linspace(0.1, 0.3, 400)), 1.0, 0.5, 1e-3)
+    assert each.validity().small_contact.value.shape == (256,)
+    assert "nu = " in str(found)
+
+
+def test_figures_are_not_loaded_until_drawn():
+    code = "import sys, viscoroll as vr; repr(vr.PAPER_SECTION_5); vr.contact; print('matplotlib' in sys.modules)"
+    assert printed(code).split()[-1] == "False"
