@@ -30,7 +30,7 @@ class SceneSection(msgspec.Struct, kw_only=True):
     alpha: float | None = None
     kappa: float
     mu: float
-    gamma: float = 1.0
+    gamma: float | None = None
     j: float = 0.5
     prony: dict[str, Any] | None = None
     creep: dict[str, Any] | None = None
@@ -117,7 +117,13 @@ def preset(name: str) -> Scene:
 
 
 def read_scene(path: str | PathLike[str]) -> Scene:
-    """Scene of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
+    """The dimensionless scene of :func:`read_body`; errors as there."""
+    body = read_body(path)
+    return body.scene() if isinstance(body, Cylinder) else body
+
+
+def read_body(path: str | PathLike[str]) -> Scene | Cylinder:
+    """Scene or cylinder of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
 
     ``preset`` names a scene of :mod:`presets`, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
     ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane, load) in SI units; E to T_sigma stand in a
@@ -142,7 +148,9 @@ def read_scene(path: str | PathLike[str]) -> Scene:
             return preset(content["preset"])
         if "cylinder" in content:
             rolls = msgspec.structs.asdict(as_struct(path, "cylinder", content["cylinder"], CylinderSection))
-            return Cylinder(**(rolls | materials_of(path, content))).scene()
+            body = Cylinder(**(rolls | materials_of(path, content)))
+            body.scene()  # refuses what leaves the range of doubles
+            return body
         return _scene(path, as_struct(path, "scene", content["scene"], SceneSection))
     except ParameterError as error:
         section = "" if "preset" in content else given[0]

@@ -23,7 +23,7 @@ _AT = re.compile(r"\$\.(\w+)")
 def read(path: str | PathLike[str]) -> dict[str, Any]:
     """The content of a TOML file; raises ConfigError."""
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
     except UnicodeDecodeError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -99,6 +100,9 @@ def whole(text: str) -> int:
     try:
         return int(text)
     except ValueError:
+        with suppress(ValueError):
+            if float(text).is_integer():  # 1e6
+                return int(float(text))
         raise ArgumentTypeError(f"{text!r} must be a whole number") from None
 
 
@@ -121,7 +125,7 @@ def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = numb
     )
     base.add_argument("--scene", metavar="FILE.toml", help="a file with [scene], [cylinder] (SI) or preset")
     for name in PARAMETERS:
-        default = {"gamma": " (default 1)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")
+        default = {"gamma": " (what moves needs it)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")
         symbol = SYMBOLS[name]
         group.add_argument(f"--{name}", type=value, help=f"{symbol.long_name}, {symbol.range}{default}")
 
@@ -143,7 +147,7 @@ def scene_parameters(arguments: Namespace) -> dict[str, Any]:
         base = preset(arguments.preset)
     elif arguments.scene is not None:
         base = read_scene(arguments.scene)
-    parameters = {} if base is None else {name: getattr(base, name) for name in PARAMETERS}
+    parameters = {} if base is None else base.numbers
     changed = {name: getattr(arguments, name) for name in PARAMETERS if getattr(arguments, name) is not None}
     if base is not None and base.material is not None and "alpha" not in changed:
         parameters |= {"alpha": None, "material": base.material}
@@ -152,13 +156,6 @@ def scene_parameters(arguments: Namespace) -> dict[str, Any]:
         given = ", ".join(f"--{name}" for name in parameters) or "nothing"
         raise ParameterError("scene", given, "--preset, --scene, or --alpha, --kappa and --mu")
     return parameters
-
-
-def scene_of(arguments: Namespace) -> Scene:
-    """The scene that the options name; errors as :func:`scene_parameters`, and of Scene."""
-    from ..scene import Scene
-
-    return Scene(**scene_parameters(arguments))
 
 
 def add_creep_options(parser: ArgumentParser, value: Callable[[str], Any]) -> None:
@@ -177,11 +174,13 @@ def add_time_options(parser: ArgumentParser, end: str, required: bool = True) ->
     parser.add_argument("--rest", type=number, help="end a motion where max(|V|, |omega|) falls below this")
 
 
-def output_path(*suffixes: str) -> Callable[[str], Path]:
-    """A file with one of ``suffixes``; what cannot be written is refused before any work."""
+def output_path(*suffixes: str) -> Callable[[str], Path | None]:
+    """A file with one of ``suffixes``, or None for -; what cannot be written is refused before any work."""
 
-    def path(text: str) -> Path:
-        if Path(text).suffix not in suffixes:
+    def path(text: str) -> Path | None:
+        if text == "-":
+            return None
+        if Path(text).suffix.lower() not in suffixes:
             raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
         try:
             has_folder, is_folder = Path(text).parent.is_dir(), Path(text).is_dir()
@@ -197,9 +196,13 @@ def output_path(*suffixes: str) -> Callable[[str], Path]:
 
 
 def add_output_option(parser: ArgumentParser, *suffixes: str, required: bool = False) -> None:
-    """-o FILE with one of ``suffixes``."""
-    where = "" if required else "; without it: text to standard output"
+    """-o FILE with one of ``suffixes``; where text may be one, --format too."""
+    where = "" if required else "; without it, or -: standard output"
     parser.add_argument(
         "-o", dest="output", metavar="FILE", type=output_path(*suffixes), required=required,
         help=f"{' or '.join(suffixes)}{where}",
     )  # fmt: skip
+    if not required:
+        parser.add_argument(
+            "--format", choices=("text", "csv", "json"), default="text", help="of standard output (default: text)"
+        )

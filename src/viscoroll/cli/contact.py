@@ -13,8 +13,8 @@ from .arguments import (
     add_scene_options,
     number,
     numbers,
-    scene_of,
 )
+from .body import body_of
 
 _POINTS = 101
 
@@ -49,36 +49,31 @@ def add_commands(commands: Any) -> None:
     parser.set_defaults(run=_stress)
 
 
-def _constants(scene: Any) -> dict[str, float]:
-    return {name: getattr(scene, name) for name in ("alpha", "kappa", "mu")}
-
-
 def _contact(arguments: Namespace) -> int:
     import numpy as np
 
-    from ..rolling_contact import contact
     from .output import Sheet, as_dataset, deliver
 
-    scene = scene_of(arguments)
+    body = body_of(arguments)
     V = np.atleast_1d(arguments.V)
     creep = {
         name: np.atleast_1d(value)
         for name, value in (("delta", arguments.delta), ("omega", arguments.omega))
         if value is not None
     }
-    result = contact(
-        scene, V[:, np.newaxis], **creep, slopes=arguments.slopes, method=arguments.method,
+    result = body.contact(
+        V[:, np.newaxis], **creep, slopes=arguments.slopes, method=arguments.method,
         fields=None if arguments.fields is None else arguments.fields.split(","),
     )  # fmt: skip
     axes = {"V": V, **creep}
     values = {name: value for name, value in result.as_dict().items() if name not in axes}
     columns = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
     columns |= {name: value.ravel() for name, value in values.items()}
-    constants, title = _constants(scene), "Contact of a viscoelastic cylinder rolling with partial slip"
+    constants, title = _of_contact(body), "Contact of a viscoelastic cylinder rolling with partial slip"
     deliver(
-        arguments.output,
-        lambda: Sheet((title,), constants, columns),
-        lambda: as_dataset(title, axes, values, constants),
+        arguments,
+        lambda: Sheet((title,), constants, columns, body.units),
+        lambda: as_dataset(title, axes, values, constants, body.units),
     )
     return 0
 
@@ -86,24 +81,29 @@ def _contact(arguments: Namespace) -> int:
 def _stress(arguments: Namespace) -> int:
     import numpy as np
 
-    from ..rolling_contact import contact, stress
     from .output import Sheet, as_dataset, deliver
 
-    scene = scene_of(arguments)
+    body = body_of(arguments)
     speeds = {"V": arguments.V, "delta": arguments.delta, "omega": arguments.omega}
-    state = contact(scene, **speeds, fields=("lam", "epsilon", "delta", "beta"))
+    names = ("lam", "epsilon", "delta", "beta", *(("length",) if body.units else ()))
+    state = body.contact(**speeds, fields=names)
     if arguments.x is None:
         # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
         ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
-        x = 0.5 * state.lam * (ahead if arguments.V >= 0.0 else -ahead[::-1])
+        x = 0.5 * getattr(state, names[-1] if body.units else "lam") * (ahead if arguments.V >= 0.0 else -ahead[::-1])
     else:
         x = np.atleast_1d(arguments.x)
-    values = stress(scene, x, **speeds).as_dict()
+    values = body.stress(x, **speeds).as_dict()
     title = "Pressure and shear stress of a rolling viscoelastic cylinder"
-    constants = {**_constants(scene), "V": arguments.V, **state.as_dict()}
+    constants = {**_of_contact(body), "V": arguments.V, **state.as_dict()}
     deliver(
-        arguments.output,
-        lambda: Sheet((title,), constants, {"x": x, **values}),
-        lambda: as_dataset(title, {"x": x}, values, constants),
+        arguments,
+        lambda: Sheet((title,), constants, {"x": x, **values}, body.units),
+        lambda: as_dataset(title, {"x": x}, values, constants, body.units),
     )
     return 0
+
+
+def _of_contact(body: Any) -> dict[str, float]:
+    """The parameters that contact and stress use."""
+    return {name: value for name, value in body.constants.items() if name not in ("gamma", "j")}

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 from ..errors import ParameterError
 from .arguments import (
     FORMATS,
-    PARAMETERS,
     add_output_option,
     add_scene_options,
     add_time_options,
     number,
-    scene_of,
 )
+from .body import body_of
 from .drive import add_drive_options, drive_of
 
 if TYPE_CHECKING:
@@ -78,22 +77,21 @@ def _start(arguments: Namespace, drive: dict[str, Any]) -> tuple[float | None, f
 def _roll(arguments: Namespace) -> int:
     import numpy as np
 
-    from ..motion import roll
     from .output import deliver
 
-    drive = drive_of(arguments)
+    drive, body = drive_of(arguments), body_of(arguments)
     start = _start(arguments, drive)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
-        motion = roll(scene_of(arguments), *start, arguments.t, arguments.rtol, rest=arguments.rest, **drive)
+        motion = body.roll(*start, arguments.t, arguments.rtol, rest=arguments.rest, **drive)
     rows = np.arange(motion.t.size)
     heading = _motion_heading(motion, start, drive)
     if arguments.output is None and np.ndim(arguments.t) == 0 and rows.size > _ROWS_SHOWN:
         heading.append(f"{_ROWS_SHOWN} of {rows.size} output times are shown; -o FILE keeps all")
         rows = np.linspace(0, rows.size - 1, _ROWS_SHOWN).astype(int)
     deliver(
-        arguments.output,
-        lambda: _motion_sheet(motion, heading, rows, _COLUMNS + _ACTING * bool(drive)),
+        arguments,
+        lambda: _motion_sheet(motion, heading, rows, _COLUMNS + _ACTING * bool(drive), body),
         motion.to_xarray,
     )
     if arguments.output is not None:
@@ -106,7 +104,10 @@ def _motion_heading(motion: Motion, start: tuple[float | None, ...], drive: dict
     heading = [f"Motion from V = {V0}, omega = {omega0}"]
     if "slope" in drive:
         heading.append(f"slope {drive['slope']:.12g} rad: kappa, gamma, force and torque are those of P cos(slope)")
-    heading.append(f"onset of partial slip: t = {motion.onset_time:.12g}")
+    if math.isnan(motion.onset_time):
+        heading.append(f"no onset of partial slip by t = {motion.t[-1]:.12g}")
+    else:
+        heading.append(f"onset of partial slip: t = {motion.onset_time:.12g}")
     events = [(switch.t, f"{switch.regime} from") for switch in motion.switches]
     events += [(t, "V changes its sign at") for t in motion.reversals.tolist()]
     heading += [f"{what} t = {t:.12g}" for t, what in sorted(events)]
@@ -115,7 +116,9 @@ def _motion_heading(motion: Motion, start: tuple[float | None, ...], drive: dict
     return [*heading, f"ended: {motion.message} ({motion.steps} steps)"]
 
 
-def _motion_sheet(motion: Motion, heading: list[str], rows: NDArray[np.intp], names: tuple[str, ...]) -> Sheet:
+def _motion_sheet(
+    motion: Motion, heading: list[str], rows: NDArray[np.intp], names: tuple[str, ...], body: Any
+) -> Sheet:
     import numpy as np
 
     from ..motion.single import REGIMES
@@ -123,5 +126,5 @@ def _motion_sheet(motion: Motion, heading: list[str], rows: NDArray[np.intp], na
 
     columns = {name: getattr(motion, name)[rows] for name in names}
     columns["regime"] = np.array([REGIMES[code] if code >= 0 else "not reached" for code in motion.regime[rows]])
-    constants = {name: getattr(motion.scene, name) for name in PARAMETERS}
-    return Sheet(tuple(heading), constants, columns)
+    constants = body.constants if body.units else motion.scene.numbers
+    return Sheet(tuple(heading), constants, columns, body.units)

@@ -6,12 +6,13 @@ import argparse
 import os
 import re
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import ViscorollError
-from . import contact, ensemble, material, motion, plot, sensitivity, steady, tables, warmup
+from . import contact, doctor, ensemble, material, motion, plot, sensitivity, steady, tables, validity, warmup
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
@@ -43,15 +44,19 @@ def parser() -> Parser:
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     commands = program.add_subparsers(metavar="COMMAND", required=True)
-    for group in (contact, motion, steady, ensemble, sensitivity, tables, material, plot, warmup):
+    for group in (contact, motion, steady, validity, ensemble, sensitivity, tables, material, plot, warmup, doctor):
         group.add_commands(commands)
     return program
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the program on ``argv`` (default: that of the process); returns its exit code."""
+    if sys.stdout is None:  # closed by the shell
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (as long as the process)
     try:
-        return _run(sys.argv[1:] if argv is None else argv)
+        with warnings.catch_warnings():
+            warnings.showwarning = _told
+            return _run(sys.argv[1:] if argv is None else argv)
     except ViscorollError as error:
         return _failed(error)
     except MemoryError as error:
@@ -72,6 +77,12 @@ def _run(argv: Sequence[str]) -> int:
         code = int(finished.code or 0)
     sys.stdout.flush()
     return code
+
+
+def _told(message: Warning | str, *_: Any, **__: Any) -> None:
+    """A warning in one line."""
+    if sys.stderr is not None:
+        print("viscoroll: warning:", " ".join(str(message).split()), file=sys.stderr)
 
 
 def _failed(error: object) -> int:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from .arguments import FORMATS, NUMBERS, add_output_option, add_scene_options, angles, numbers, scene_of
+from .arguments import FORMATS, NUMBERS, add_output_option, add_scene_options, angles, numbers
+from .body import body_of
 
 #: columns, as of :class:`viscoroll.equilibria.Steady`
 _COLUMNS = ("force", "torque", "V", "omega", "delta", "Q", "M", "beta", "grip", "stable")
@@ -35,13 +36,12 @@ def add_commands(commands: Any) -> None:
 def _steady(arguments: Namespace) -> int:
     import numpy as np
 
-    from ..equilibria import steady
     from .output import Sheet, as_dataset, deliver
 
-    scene = scene_of(arguments)
+    body = body_of(arguments)
     given = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
     given = {name: np.atleast_1d(value) for name, value in given.items() if value is not None}
-    found = steady(scene, **given)
+    found = body.steady(**given)
     held = np.isfinite(found.V)
     columns: dict[str, Any] = {}
     if "slope" in given:
@@ -49,11 +49,11 @@ def _steady(arguments: Namespace) -> int:
     columns |= {name: getattr(found, name)[held] for name in _COLUMNS}
     rates = found.eigenvalues[held].real
     columns |= {"rate_fast": rates[:, 0], "rate_slow": rates[:, 1]}
-    constants = {name: getattr(scene, name) for name in ("alpha", "kappa", "mu", "j")}
+    constants = {name: value for name, value in body.constants.items() if name != "gamma"}
     deliver(
-        arguments.output,
-        lambda: Sheet((_TITLE, *_without(found.reason)), constants, columns),
-        lambda: as_dataset(_TITLE, {"row": np.arange(rates.shape[0])}, columns, constants),
+        arguments,
+        lambda: Sheet((_TITLE, *_without(found.reason)), constants, columns, body.units),
+        lambda: as_dataset(_TITLE, {"row": np.arange(rates.shape[0])}, columns, constants, body.units),
     )
     return 0
 
