@@ -546,6 +546,27 @@ def test_ensemble(run, here):
         assert dataset.attrs["drawn_V0"] == "scipy.stats.uniform(-2, 4)"
 
 
+def test_a_driven_ensemble(run, here):
+    """Drives of ``roll``, each also drawn; a prescribed speed in place of its start."""
+    from scipy import stats
+
+    argv = ["ensemble", *STILL, "-n", "8", "--seed", "3", "--times", "3e-3,6e-3", "--slope", "normal:0:0.01"]
+    run(*argv, "--torque", "0@0,0.02@3e-3,0@3e-3", "--force", "uniform:0:1e-3", "--brake", "0.01", "-o", "e.csv")
+    drawn = vr.sampling.sample(
+        8, 3, V0=0.0, omega0=0.0, drive_slope=stats.norm(0, 0.01), drive_force=stats.uniform(0, 1e-3)
+    )
+    expected = vr.ensemble(
+        vr.PAPER_SECTION_5, 0.0, 0.0, [3e-3, 6e-3], torque=RAMP, brake=0.01, slope=drawn["drive_slope"],
+        force=drawn["drive_force"], fields=("V", "omega", "force"),
+    )  # fmt: skip
+    columns = rows((here / "e.csv").read_text())
+    for name in ("V", "omega", "force"):
+        assert np.array_equal(columns[name].reshape(8, 2), getattr(expected, name)), name
+    out = run("ensemble", *PRESET, "-n", "2", "--V0", "uniform:0:0.1", "--omega", "0@0,0.1@3e-3", "--t-end", "3e-3")
+    assert "drawn_V0 scipy.stats.uniform(0, 0.1)" in out
+    assert "drawn_omega0" not in out
+
+
 def test_ensemble_summary(run, here):
     argv = ["ensemble", *DRAWN, "--t-end", "1e-3"]
     out = run(*argv)

@@ -156,8 +156,19 @@ REFUSED = [
     ("brake = 0.01", "brake = { times = [0.0, 1.0], values = [1.0] }", "times (2,), values (1,)"),
     ("brake = 0.01", "brake = { times = [1.0, 0.0], values = [1.0, 2.0] }", "in ascending order"),
     ("brake = 0.01", "brake = { times = [], values = [] }", "times (0,)"),
-    ("brake = 0.01", "brake = { times = [ANY], values = [1.0] }", "must be a plain number, the same for every motion"),
-    ("brake = 0.01", "V = 0.01", "unknown key 'V'"),
+    (
+        "brake = 0.01",
+        "brake = { times = [2.0, ANY], values = [1.0, 2.0] }",
+        "brake: time 2 may be 0, before 2: truncate",
+    ),
+    ("brake = 0.01", "brake = { times = [ANY, 0.5], values = [1.0, 2.0] }", "brake: time 2 = 0.5, before 1"),
+    ("brake = 0.01", 'brake = { times = ["same"], values = [1.0] }', "or 'same' as the one before"),
+    (
+        "brake = 0.01",
+        "brake = { times = [ANY, 'same', 'same'], values = [1.0, 2.0, 3.0] }",
+        "once, or twice for a jump",
+    ),
+    ("brake = 0.01", "V = 0.01", "V0: must be left out: [drive] prescribes V"),
     ('"norm", scale = 0.01, truncate = [-0.1, 0.1]', '"norm"', "drive_slope: reaches from -inf to inf"),
     ("force = {", "force = inf\n#", "drive_force = inf: must be a finite number"),
     ("n = 40", "n = 40\nrest = 1e-3", "rest = 0.001: must be left out where [drive] lasts to the end"),
@@ -178,3 +189,83 @@ def test_a_drive_that_ends_goes_with_a_rest(read):
     text = SCENE[: SCENE.index("slope")] + SCENE[SCENE.index("[run]") :]
     run = read(text.replace("n = 40", "n = 4\nrest = 1e-3"))
     assert (roll_block(run, 0)[1].status <= 1).all()
+
+
+OWN_TIMES = """
+preset = "paper-section-5"
+[start]
+V0 = 0.0
+omega0 = 0.0
+[drive]
+torque = { times = [0.0, RISE, "same", FALL], values = [0.0, { distribution = "uniform", scale = 0.3 }, 0.05, -0.1] }
+force = { times = [5e-4, 5e-4], values = [0.0, 0.01] }
+[run]
+n = 12
+t = [1e-3, 3e-3]
+keep = "all"
+""".replace("RISE", '{ distribution = "uniform", loc = 1e-3, scale = 5e-4 }').replace(
+    "FALL", '{ distribution = "uniform", loc = 2e-3, scale = 1e-3 }'
+)
+
+
+def test_times_of_its_own_for_every_motion(read, tmp_path):
+    """As each motion by itself, to the last bit, jumps included; the times are inputs, in the digest and the store."""
+    run = read(OWN_TIMES)
+    values, motions = roll_block(run, 0)
+    assert set(run.inputs.uncertain) == {"drive_torque_time_2", "drive_torque_time_4", "drive_torque_2"}
+    for n in range(12):
+        top, jump, end = (values[f"drive_torque_{name}"][n] for name in ("2", "time_2", "time_4"))
+        m = vr.roll(
+            vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3, 3e-3], force=([5e-4, 5e-4], [0.0, 0.01]),
+            torque=([0.0, jump, jump, end], [0.0, top, 0.05, -0.1]),
+        )  # fmt: skip
+        for name in ("V", "omega", "x"):
+            assert np.array_equal(getattr(m, name), getattr(motions, name)[n]), (n, name)
+    assert read(OWN_TIMES.replace("5e-4 }", "6e-4 }")).digest != run.digest
+    run_ensemble(run, tmp_path / "s.zarr", threads=1)
+    export_netcdf(tmp_path / "s.zarr", tmp_path / "s.nc")
+    with xr.open_dataset(tmp_path / "s.nc", group="motions", engine="h5netcdf", decode_times=False) as kept:
+        assert np.array_equal(kept["drive_torque_time_2"].values, values["drive_torque_time_2"])
+        assert kept["drive_torque_time_2"].attrs["long_name"].startswith("time 2 of the given torque")
+    dataset = motions.to_xarray()
+    assert dataset["drive_torque_time"].dims == dataset["drive_torque"].dims == ("motion", "drive_torque_corner")
+
+
+@pytest.mark.parametrize("name", ["V", "omega"])
+def test_prescribed_speeds_of_a_run(read, name):
+    """A motor or a tow whose speed is drawn, over times that are; of a cylinder in its units."""
+    free, given, other = ("omega0", "V0", "omega") if name == "V" else ("V0", "omega0", "V")
+    text = OWN_TIMES.replace("torque = {", f"{name} = {{").replace('"same", ', "").replace("0.05, ", "")
+    text = text.replace("force =", "torque =" if name == "V" else "force =").replace(f"{given} = 0.0", "")
+    values, motions = roll_block(read(text), 0)
+    for n in range(12):
+        times = [0.0, *(values[f"drive_{name}_time_{k}"][n] for k in (2, 3))]
+        m = vr.roll(
+            vr.PAPER_SECTION_5, **{"V0": None, "omega0": None, free: 0.0}, t=[1e-3, 3e-3],
+            **{name: (times, [0.0, values[f"drive_{name}_2"][n], -0.1])},
+            **{"torque" if name == "V" else "force": ([5e-4, 5e-4], [0.0, 0.01])},
+        )  # fmt: skip
+        assert np.array_equal(m.V, motions.V[n]), n
+        assert np.array_equal(m.omega, motions.omega[n]), n
+    lines = [
+        (f"{free} = 0.0", "V0 = 0.0\nomega0 = 0.0", f"{given}: must be left out: [drive] prescribes {name}"),
+        ("[run]", f"{other} = 1.0\n[run]", f"{free}: must be left out: [drive] prescribes {other}"),
+        ("[run]", f"{'force' if name == 'V' else 'brake'} = 1.0\n[run]", f"must be left out with a prescribed {name}"),
+        ("n = 12", "n = 12\nrest = 1e-3", "rest = 0.001: must be left out where [drive] lasts to the end"),
+    ]
+    for old, new, words in lines:
+        wrong = text.replace(old, new)
+        refused(lambda wrong=wrong: read(wrong), words, error=vr.ConfigError)
+
+
+def test_a_prescribed_speed_of_a_cylinder_in_si_units(read):
+    text = CYLINDER[: CYLINDER.index("torque = ")] + "omega = { times = [0.0, 1.0], values = [0.05, 0.2] }\n[run]\n"
+    run = read(text.replace("omega0 = 0.05\n", "") + CYLINDER[CYLINDER.index("n = 8") :])
+    values, motions = roll_block(run, 0)
+    columns = columns_of(run, values, motions)
+    for n in range(8):
+        roller = vr.Cylinder(R=values["R"][n], m=values["m"][n], E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+        m = roller.roll(0.014, None, [0.5, 1.0, 2.0], omega=([0.0, 1.0], [0.05, 0.2]))
+        for name in ("V", "omega", "x", "torque", "work_torque"):
+            expected = getattr(m, name)
+            assert columns[name][n] == pytest.approx(expected, rel=tol.RUN_SI, abs=tol.RUN_SI * np.abs(expected).max())

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from collections.abc import Callable
 from typing import Any
 
-from .arguments import angle, number
+from .arguments import DISTRIBUTIONS, angle, distribution, number
 
 SCHEDULE = (
     "a number, or VALUE@TIME,VALUE@TIME,... (linear between, constant outside,\n"
@@ -22,12 +23,23 @@ _WHAT = {
 }
 
 
-def add_drive_options(parser: ArgumentParser) -> None:
-    """--force, --torque, --slope, --brake, --omega and --V."""
-    group = parser.add_argument_group("drive", f"SCHEDULE: {SCHEDULE}")
-    group.add_argument("--slope", type=angle, help="angle in rad, or as 3deg; > 0 pushes along +V, the load is P cos")
+def add_drive_options(parser: ArgumentParser, drawn: bool = False) -> None:
+    """--force, --torque, --slope, --brake, --omega and --V; ``drawn``: each may be a distribution."""
+    may = f"\n{DISTRIBUTIONS.removeprefix('a number, ')} in place of a number" if drawn else ""
+    group = parser.add_argument_group("drive", f"SCHEDULE: {SCHEDULE}{may}")
+    slope = "angle in rad, or as 3deg; > 0 pushes along +V, the load is P cos"
+    group.add_argument("--slope", type=_or_drawn(angle) if drawn else angle, help=slope)
     for name, what in _WHAT.items():
-        group.add_argument(f"--{name}", type=schedule, metavar="SCHEDULE", help=what)
+        group.add_argument(f"--{name}", type=_or_drawn(schedule) if drawn else schedule, metavar="SCHEDULE", help=what)
+
+
+def _or_drawn(plain: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Distributions too."""
+
+    def parsed(text: str) -> Any:
+        return distribution(text) if text.split(":")[0] in ("uniform", "normal") else plain(text)
+
+    return parsed
 
 
 def drive_of(arguments: Namespace) -> dict[str, Any]:

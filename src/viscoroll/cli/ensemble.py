@@ -20,6 +20,7 @@ from .arguments import (
     scene_parameters,
     whole,
 )
+from .drive import add_drive_options, drive_of
 
 if TYPE_CHECKING:
     from ..motion import Ensemble
@@ -39,7 +40,9 @@ def add_commands(commands: Any) -> None:
         f"{DISTRIBUTIONS}.  Prints a summary.\n"
         "-o FILE.nc keeps every motion, FILE.csv too (a row per motion and time), FILE.txt the summary.",
         epilog="example:\n  viscoroll ensemble --preset paper-section-5 -n 1000 --seed 1 "
-        "--V0 uniform:-2:2 --omega0 normal:0:1 --mu uniform:0.1:0.3 --times 1e-3,3e-3",
+        "--V0 uniform:-2:2 --omega0 normal:0:1 --mu uniform:0.1:0.3 --times 1e-3,3e-3\n"
+        "  viscoroll ensemble --preset paper-section-5 -n 1000 --V0 0 --omega0 0 --slope normal:0:0.01 "
+        "--torque 0@0,0.02@3e-3,0@3e-3 --times 3e-3,6e-3",
     )
     parser.add_argument("what", nargs="*", metavar="RUN.toml", help="a run file; or verify or export, and a store")
     runs.add_options(parser)
@@ -54,11 +57,14 @@ def add_commands(commands: Any) -> None:
     for name in ("--V0", "--omega0"):
         parser.add_argument(name, type=distribution, help=DISTRIBUTIONS)
     add_time_options(parser, "the final state alone", required=False)
+    add_drive_options(parser, drawn=True)
     add_scene_options(parser, distribution)
     add_output_option(parser, *FORMATS, ".zarr")
     parser.set_defaults(run=_ensemble, parser=parser)
 
 
+#: fields of its motions, and of driven ones
+_FIELDS, _ACTING = ("V", "omega", "x"), ("force", "torque")
 #: What an ensemble without a run file cannot do without, and where it is parsed to.
 _NEEDED = {"-n": "n", "--V0": "V0", "--omega0": "omega0", "--t-end or --times": "t"}
 
@@ -67,7 +73,8 @@ def _ensemble(arguments: Namespace) -> int:
     if arguments.what:
         return runs.run(arguments)
     runs.refuse_options(arguments)
-    missing = [name for name, key in _NEEDED.items() if getattr(arguments, key) is None]
+    prescribed = {f"{name}0" for name in ("V", "omega") if getattr(arguments, name) is not None}
+    missing = [name for name, key in _NEEDED.items() if getattr(arguments, key) is None and key not in prescribed]
     if missing:
         arguments.parser.error(f"the following arguments are required: RUN.toml, or {', '.join(missing)}")
     return _in_memory(arguments)
@@ -81,12 +88,17 @@ def _in_memory(arguments: Namespace) -> int:
 
     parameters = scene_parameters(arguments)
     random = {name: value for name, value in parameters.items() if hasattr(value, "ppf")}
-    drawn = {"V0": arguments.V0, "omega0": arguments.omega0, **random}
+    starts = {name: getattr(arguments, name) for name in ("V0", "omega0")}
+    drive = drive_of(arguments)
+    random |= {f"drive_{name}": value for name, value in drive.items() if hasattr(value, "ppf")}
+    drawn = {name: value for name, value in starts.items() if value is not None} | random
     columns = sample(arguments.n, arguments.seed, arguments.design, **drawn)
     scene = Scene(**{name: columns.columns.get(name, value) for name, value in parameters.items()})
     result = ensemble(
-        scene, columns["V0"], columns["omega0"], arguments.t,
+        scene, columns.columns.get("V0"), columns.columns.get("omega0"), arguments.t,
         method=arguments.method, rtol=arguments.rtol, rest=arguments.rest, progress=sys.stderr.isatty(),
+        fields=_FIELDS + _ACTING * bool(drive),
+        **{name: columns.columns.get(f"drive_{name}", value) for name, value in drive.items()},
     )  # fmt: skip
     record = {"seed": arguments.seed, "design": arguments.design}
     record |= {f"drawn_{name}": _formula(value) for name, value in drawn.items()}
@@ -126,7 +138,7 @@ def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
         heading.append(f"{result.flow.sum()} motions from the flow map, stated error {result.flow_error:.1e}")
     elif result.flow_problem:
         heading.append(f"no flow map: {result.flow_problem}")
-    names = [name for name in ("V", "omega", "x") if f"{name}_mean" in summary]
+    names = [name for name in _FIELDS + _ACTING if f"{name}_mean" in summary]
     levels = {f"{level:.0%}": n for n, level in enumerate(summary["quantile"].values)}
     columns = {"quantity": np.repeat(names, result.t.size), "t": np.tile(result.t, len(names))}
     columns |= {part: np.concatenate([summary[f"{name}_{part}"].values for name in names]) for part in ("mean", "std")}
@@ -151,5 +163,6 @@ def _motions_sheet(result: Ensemble) -> Sheet:
     each |= {name: getattr(result, name) for name in ("onset_time", "rest_time", "status")}
     columns = {name: np.repeat(value, result.t.size) for name, value in each.items()}
     columns["t"] = np.tile(result.t, len(result))
-    columns |= {name: getattr(result, name).ravel() for name in ("V", "omega", "x")}
+    found = {name: getattr(result, name) for name in _FIELDS + _ACTING}
+    columns |= {name: values.ravel() for name, values in found.items() if values is not None}
     return Sheet((), _constants(result), columns)

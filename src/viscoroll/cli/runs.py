@@ -20,6 +20,7 @@ _OPTIONS = {"cluster": None, "threads": None, "dry_run": False}
 _OF_THE_FILE = {
     "n": None, "seed": 0, "design": "random", "method": "auto", "V0": None, "omega0": None, "t": None, "rtol": 1e-8,
     "rest": None, "preset": None, "scene": None, "alpha": None, "kappa": None, "mu": None, "gamma": None, "j": None,
+    **dict.fromkeys(("slope", "force", "torque", "brake", "omega", "V")),
 }  # fmt: skip
 
 

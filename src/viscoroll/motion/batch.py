@@ -196,7 +196,7 @@ def ensemble(
     V0, omega0 : start speeds, scalars or arrays (n,).
     t : output times, ascending, common to all; one number: the final state only.
     force, torque, slope, brake, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays of n,
-        values of (times, values) of shape (n, k).
+        times and values of (times, values) of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk

@@ -19,8 +19,9 @@ def drive_variables(
 ) -> tuple[dict[str, xr.Variable], dict[str, Any]]:
     """(variables ``drive_force`` and the like, with their times where they have some; attributes for callables).
 
-    Numbers stand over () or (motion), (times, values) over (drive_force_time) or (motion, drive_force_time); gains of a
-    feedback are attributes.  ``described``: attributes of a quantity.
+    Numbers stand over () or (motion), (times, values) over (drive_force_time) or (motion, drive_force_time), or where
+    motions have times of their own over (motion, drive_force_corner); gains of a feedback are attributes.
+    ``described``: attributes of a quantity.
     """
     variables: dict[str, xr.Variable] = {}
     texts: dict[str, Any] = {}
@@ -36,8 +37,9 @@ def drive_variables(
         if isinstance(given, tuple):
             times, values = (np.asarray(part, np.float64) for part in given)
             along = {"long_name": f"times of the given {name}", "units": described("t")["units"]}
-            variables[f"{key}_time"] = xr.Variable((f"{key}_time",), times, along)
-            dims = ("motion", f"{key}_time")[-values.ndim :]
+            corners = f"{key}_time" if times.ndim == 1 else f"{key}_corner"
+            variables[f"{key}_time"] = xr.Variable(("motion", corners)[-times.ndim :], times, along)
+            dims = ("motion", corners)[-values.ndim :]
             variables[key] = xr.Variable(dims, values, about | {"comment": _LINEAR})
         else:
             number = np.asarray(given, np.float64)

@@ -32,6 +32,7 @@ _FIT = _TO_TERMS.T @ np.linalg.inv(chebyshev.chebvander(_NODES, TERMS - 1))
 class Curve(NamedTuple):
     """A function of time for one motion or m of them: starts and ends (k,), the last end infinite; terms (m, k, terms).
 
+    Where motions have times of their own starts and ends are (m, k), and pieces may have no length.
     error : the largest difference seen between a callable and its fit.
     """
 
@@ -65,15 +66,18 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
 def _linear(name: str, times: Any, values: Any, low: float) -> Curve:
     """Linear between times, constant outside; a time given twice is a jump."""
     times, values = checked(f"times of {name}", times, low=0.0), checked(f"values of {name}", values, low=low)
-    if times.ndim != 1 or times.size == 0 or values.ndim not in (1, 2) or values.shape[-1] != times.size:
+    fits = {times.ndim, values.ndim} <= {1, 2} and times.size > 0 and values.shape[-1] == times.shape[-1]
+    if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
         shapes = f"times {times.shape}, values {values.shape}"
         raise ParameterError(name, shapes, "times (k,) and values (k,), or (n, k) for n motions")
     if (np.diff(times) < 0.0).any():
-        raise ParameterError(f"times of {name}", times[:-1][np.diff(times) < 0.0][0], "in ascending order")
-    if (times[2:] == times[:-2]).any():
-        thrice = times[:-2][times[2:] == times[:-2]][0]
-        raise ParameterError(f"times of {name}", thrice, "there once, or twice for a jump")
+        raise ParameterError(f"times of {name}", times[..., :-1][np.diff(times) < 0.0][0], "in ascending order")
+    thrice = times[..., 2:] == times[..., :-2]
+    if thrice.any():
+        raise ParameterError(f"times of {name}", times[..., :-2][thrice][0], "there once, or twice for a jump")
     values = np.atleast_2d(values)
+    if times.ndim == 2:
+        return _linear_each(times, values)
     rises = np.flatnonzero(np.diff(times) > 0.0)
     starts, ends = times[rises], times[rises + 1]
     first, second = values[:, rises], values[:, rises + 1]
@@ -83,6 +87,16 @@ def _linear(name: str, times: Any, values: Any, low: float) -> Curve:
         terms = np.concatenate([_flat(values[:, :1]), terms], axis=1)
     starts, ends = np.r_[starts, times[-1]], np.r_[ends, np.inf]
     return Curve(starts, ends, np.concatenate([terms, _flat(values[:, -1:])], axis=1))
+
+
+def _linear_each(times: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
+    """The same with times (m, k) of their own: all segments stay, and one before the first time."""
+    first, second = values[:, :-1], values[:, 1:]
+    terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
+    terms = np.concatenate([_flat(values[:, :1]), terms, _flat(values[:, -1:])], axis=1)
+    ends = np.concatenate([times, np.full((len(times), 1), np.inf)], axis=1)
+    starts = np.concatenate([np.zeros((len(times), 1)), times], axis=1)
+    return Curve(starts, ends, np.broadcast_to(terms, (len(times), *terms.shape[1:])))
 
 
 def _flat(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -124,11 +138,18 @@ def slope_of(name: str, speed: Curve) -> Curve:
     lengths = speed.ends - speed.starts
     right, left = speed.terms[:, :-1].sum(axis=-1), _at_start(speed.terms[:, 1:])
     scale = max(float(np.abs(speed.terms).max(initial=0.0)), 1e-300)
-    jumps = np.flatnonzero((np.abs(right - left) > 1e-12 * scale + 4.0 * speed.error).any(axis=0))
+    least = 1e-12 * scale + 4.0 * speed.error
+    jumps = np.flatnonzero((np.abs(right - left) > least).any(axis=0))
     if jumps.size:
-        raise ParameterError(name, f"a jump at t = {speed.starts[jumps[0] + 1]:.6g}", "a speed that does not jump")
+        at = speed.starts[..., jumps[0] + 1].flat[0]
+        raise ParameterError(name, f"a jump at t = {at:.6g}", "a speed that does not jump")
+    within = (lengths == 0.0) & (np.abs(speed.terms[..., 1:]).sum(axis=-1) > least)  # pieces without length
+    if within.any():
+        at = np.broadcast_to(speed.starts, within.shape)[within][0]
+        raise ParameterError(name, f"a jump at t = {at:.6g}", "a speed that does not jump")
     order = np.arange(1, speed.terms.shape[-1])
-    terms = speed.terms[..., 1:] * order * (2.0 / lengths)[:, None]
+    per = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
+    terms = speed.terms[..., 1:] * order * per[..., None]
     return speed._replace(terms=terms if order.size else np.zeros_like(speed.terms))
 
 
@@ -146,6 +167,8 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms)."""
     from ..kernels.drive.load import FIRST, SCALE, START
 
+    if any(each.starts.ndim == 2 for each in curves):
+        return _pieces_each(curves, end)
     starts = np.unique(np.concatenate([each.starts for each in curves]))
     starts = starts[starts < end] if end > 0.0 else starts[:1]
     ends = np.append(starts[1:], np.inf)
@@ -162,19 +185,56 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     return rows
 
 
+def _pieces_each(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
+    """The same where motions have times of their own; pieces between equal times have no length and are passed over."""
+    from ..kernels.drive.load import FIRST, SCALE, START
+
+    count = max(max(each.terms.shape[0], np.atleast_2d(each.starts).shape[0]) for each in curves)
+    own = [np.broadcast_to(each.starts, (count, each.starts.shape[-1])) for each in curves]
+    starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
+    ends = np.concatenate([starts[:, 1:], np.full((count, 1), np.inf)], axis=1)
+    terms = max(each.terms.shape[-1] for each in curves)
+    rows = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms))
+    lengths = ends - starts
+    rows[..., START] = starts
+    np.divide(2.0, lengths, out=rows[..., SCALE], where=lengths > 0.0)
+    for n, (each, first) in enumerate(zip(curves, own, strict=True)):
+        which = (first[:, None, :] <= starts[:, :, None]).sum(axis=2) - 1
+        last = np.take_along_axis(np.broadcast_to(each.ends, first.shape), which, axis=1)
+        whole = np.take_along_axis(
+            np.broadcast_to(each.terms, (count, *each.terms.shape[1:])), which[..., None], axis=1
+        )
+        begin = np.take_along_axis(first, which, axis=1)
+        at = FIRST + n * terms
+        rows[..., at : at + whole.shape[-1]] = _moved(whole, begin, last, starts, ends)
+    at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
+    late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
+    acting = rows[np.arange(count), at_end, FIRST:]
+    rows[..., FIRST:] = np.where(late[..., None], acting[:, None], rows[..., FIRST:])  # the last acts at the end
+    return rows
+
+
 def _restricted(each: Curve, starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
     """Terms of a curve over other pieces, each within one of its own."""
     own = np.searchsorted(each.starts, starts, side="right") - 1
     terms, first, last = each.terms[:, own], each.starts[own], each.ends[own]
     if (first == starts).all() and (last == ends).all():
         return terms
-    whole = np.where(np.isinf(last), 1.0, last - first)
-    scale = np.where(np.isinf(last), 0.0, (ends - starts) / whole)
-    shift = np.where(np.isinf(last), 0.0, (starts - first) / whole * 2.0 - 1.0 + scale)
+    return _moved(terms, first, last, starts, ends)
+
+
+def _moved(
+    terms: NDArray[np.float64], first: NDArray, last: NDArray, starts: NDArray, ends: NDArray
+) -> NDArray[np.float64]:
+    """Terms of pieces from ``first`` to ``last`` as those of the parts from ``starts`` to ``ends``."""
+    endless = np.isinf(last) | (last == first)
+    whole = np.where(endless, 1.0, last - first)
+    scale = np.where(endless, 0.0, np.where(endless, 0.0, ends - starts) / whole)
+    shift = np.where(endless, 0.0, (starts - first) / whole * 2.0 - 1.0 + scale)
     moved = np.zeros_like(terms)
     for n in range(terms.shape[-1] - 1, -1, -1):  # Horner's scheme with x -> shift + scale x
         raised = np.zeros_like(moved)
-        raised[..., 1:] = moved[..., :-1] * scale[:, None]
-        moved = moved * shift[:, None] + raised
+        raised[..., 1:] = moved[..., :-1] * scale[..., None]
+        moved = moved * shift[..., None] + raised
         moved[..., 0] += terms[..., n]
     return moved

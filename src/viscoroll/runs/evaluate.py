@@ -56,7 +56,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) ->
     scene = scene_of(values)
     if are_si(values):
         scene = scene.replace(gamma=scene.gamma / unit_of_time(values))
-    V0, omega0 = (_column(dimensionless(values, name), motion_count) for name in START)
+    V0, omega0 = (_column(dimensionless(values, name), motion_count) if name in values else None for name in START)
     return ensemble(
         scene, V0, omega0, run.t,
         method=run.method, rtol=run.settings.rtol, rest=run.rest, fields=run.fields,
@@ -70,7 +70,8 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Any], Ensemble]:
     if run.inputs.dimensions:
         return values, roll_inputs(run, values)
     start, stop = run.edges(block)  # nothing is uncertain: the same motion stop - start times
-    return values, roll_inputs(run, values | {"V0": np.full(stop - start, values["V0"])})
+    free = next(name for name in START if name in values)
+    return values, roll_inputs(run, values | {free: np.full(stop - start, values[free])})
 
 
 def _column(value: Any, count: int) -> NDArray[np.float64]:

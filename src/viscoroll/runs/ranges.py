@@ -56,10 +56,15 @@ SOLID, OPTIONAL = ("E", "nu", "T_epsilon", "T_sigma"), ("load",)
 START = {"V0": Range(-1e100, high=1e100), "omega0": Range(-1e100, high=1e100)}
 START_SI = {"V0": START["V0"]._replace(unit="m/s"), "omega0": START["omega0"]._replace(unit="rad/s")}
 _STEEP = math.nextafter(0.5 * math.pi, 0.0)
-DRIVE = {"force": Range(), "torque": Range(), "brake": Range(0.0), "slope": Range(-_STEEP, high=_STEEP, unit="rad")}
+DRIVE = {
+    "force": Range(), "torque": Range(), "brake": Range(0.0), "slope": Range(-_STEEP, high=_STEEP, unit="rad"),
+    "V": START["V0"], "omega": START["omega0"],
+}  # fmt: skip
 DRIVE_SI = {
     "force": Range(unit="N/m"), "torque": Range(unit="N m/m"), "brake": Range(0.0, unit="N m/m"),
-    "slope": DRIVE["slope"],
+    "slope": DRIVE["slope"], "V": START_SI["V0"], "omega": START_SI["omega0"],
 }  # fmt: skip
+#: times of a drive
+TIME = Range(0.0)
 #: strengths and times of a series, by the name of a list of them in a file
 MODES = {"E": Range(0.0), "tau": positive(), "J": Range(0.0, high=1.0), "T": positive()}

@@ -7,7 +7,7 @@
     omega0 = 0.5
 
     [drive]                        # if wanted
-    torque = { times = [0.0, 1e-3, 1e-3], values = [0.0, 0.02, 0.0] }
+    torque = { times = [0.0, 1e-3, "same"], values = [0.0, 0.02, 0.0] }
 
     [run]
     n = 1_000_000

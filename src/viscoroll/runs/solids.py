@@ -97,10 +97,10 @@ def median(reader: Reader, name: str, value: Any, allowed: Any, line: str = "") 
     """File an input; the median of its distribution, or its number."""
     reader.put(name, value, allowed, line)
     reader.line = ""
-    return float(np.median(_spread(reader, name, np.array([0.5]))))
+    return float(np.median(spread(reader, name, np.array([0.5]))))
 
 
-def _spread(reader: Reader, name: str, at: Any) -> Any:
+def spread(reader: Reader, name: str, at: Any) -> Any:
     """Values of an input at points of its distribution, all of a sample, or its number."""
     if name in reader.fixed:
         return np.full(1, reader.fixed[name])
@@ -111,7 +111,7 @@ def _spread(reader: Reader, name: str, at: Any) -> Any:
 
 def _refuse_infinite_modulus(reader: Reader, section: str, strengths: tuple[str, ...]) -> None:
     """Of a creep series sum J must be below 1 in every draw."""
-    most = sum(float(np.max(_spread(reader, name, np.ones(1)))) for name in strengths)
+    most = sum(float(np.max(spread(reader, name, np.ones(1)))) for name in strengths)
     if not most < 1.0:
         problem = f"J may sum to {most:g}: truncate so that it stays below 1, and the instantaneous modulus finite"
         raise fault(reader.path, section, "J", problem)

@@ -15,7 +15,7 @@ from ..material import Material
 from ..material_file import materials_of
 from ..pair import Pair, Plane
 from ..sections import fault, hint, refuse_unknown
-from .drives import read_drive
+from .drives import prescribed_start, read_drive
 from .inputs import Distribution, Inputs, Joint
 from .ranges import CYLINDER, DRIVE, DRIVE_SI, OPTIONAL, SCENE, SOLID, START, START_SI, Range
 from .solids import SERIES, is_uncertain, read_material, read_series
@@ -175,6 +175,8 @@ def read_inputs(
         refuse_unknown(path, section, given, (*ranges[section], *others))
         series = _series(reader, section, given, base) if section == "scene" else None
         for name, allowed in ranges[section].items():
+            if prescribed_start(reader, name, given, drive):
+                continue
             value = given.get(name, base.get(name, allowed.default))
             if name == "alpha" and series is not None:
                 continue

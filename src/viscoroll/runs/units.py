@@ -69,6 +69,9 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     if name.startswith("drive_"):
         what, _, corner = name.removeprefix("drive_").partition("_")
         about = attributes(what, si)
+        if corner.startswith("time_"):
+            times = f"time {corner.removeprefix('time_')} of the given {what}"
+            return {"long_name": times, "units": attributes("t", si)["units"]}
         return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
     if si and name in QUANTITIES:
         return si_attributes(name)
