@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import os
 import re
 import shlex
 import subprocess
 import sys
 import types
+import warnings
 
 import numpy as np
 import pytest
@@ -22,6 +24,7 @@ import viscoroll as vr
 from viscoroll import config
 from viscoroll.cli import main
 from viscoroll.material_file import read_materials
+from viscoroll.motion import warned
 from viscoroll.tables import AtlasGrid, LiteralGrid
 
 PRESET = ["--preset", "paper-section-5"]
@@ -30,7 +33,9 @@ DRAWN = [*PRESET, "-n", "8", "--V0", "uniform:-2:2", "--omega0", "normal:0:1"]
 EXPORT = ["tables", "export", "--kappa", "2.91", "--mu", "0.2", "--V", "0.1:1:5:log", "--delta", "-0.04:0.04:9"]
 TABLE_COMMANDS = ["tables build", "tables export", "tables info", "tables validate"]
 MATERIAL_COMMANDS = ["material show", "material plot", "material fit"]
-COMMANDS = ["contact", "stress", "roll", "steady", "ensemble", *TABLE_COMMANDS, *MATERIAL_COMMANDS, "plot"]
+COMMANDS = [
+    "contact", "stress", "roll", "steady", "validity", "ensemble", "plot", "doctor", *TABLE_COMMANDS, *MATERIAL_COMMANDS,
+]  # fmt: skip
 POINT = [sys.executable, "-m", "viscoroll", "contact", *PRESET, "--V", "1", "--delta", "0"]
 SMALL = {
     "atlas": AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2)),
@@ -280,19 +285,79 @@ def test_refused_materials(refuse, here):
         assert words in refuse("material", *argv.split()), argv
 
 
-def test_a_scene_of_a_series_reaches_the_commands(run, here):
-    """In place of alpha, until --alpha is given."""
+def test_a_cylinder_of_a_file_is_in_si(run, refuse, here):
+    """As its methods say, with the unit of every column; mu and j alone may be changed."""
     (here / "a.toml").write_text(ROLLER + RUBBER)
     material = vr.Material(3e6, 0.5, vr.Prony([0.5, 1.0], [1.0, 0.01]), T_ref=2.0)
-    scene = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material).scene()
+    cylinder = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material)
     point = ["--scene", "a.toml", "--V", "0.5", "--delta", "0.01", "--fields", "M"]
-    assert f"M = {vr.contact(scene, 0.5, delta=0.01).M:.10g}" in run("contact", *point)
-    paper = scene.replace(alpha=11.0)
-    assert f"M = {vr.contact(paper, 0.5, delta=0.01).M:.10g}" in run("contact", *point, "--alpha", "11")
-    start = ["--V0", "1", "--omega0", "0.5", "--t-end", "1e-4"]
-    assert "alpha = 2.5" in run("roll", "--scene", "a.toml", *start)
-    start[1], start[3] = "uniform:1:2", "0.5"
-    assert "alpha = 2.5" in run("ensemble", "--scene", "a.toml", "-n", "8", *start, "--mu", "uniform:0.1:0.2")
+    assert f"M = {cylinder.contact(0.5, delta=0.01).M:.10g} N m m-1" in run("contact", *point)
+    told = refuse("contact", *point, "--alpha", "11")
+    assert "--alpha cannot change a [cylinder], which is in SI units" in told
+    table = json.loads(run("roll", "--scene", "a.toml", "--V0", "1", "--omega0", "0.5", "--times", "0,0.1", "--format",
+                           "json"))  # fmt: skip
+    m = cylinder.roll(1.0, 0.5, [0.0, 0.1])
+    assert table["columns"]["V"] == m.V.tolist()
+    assert (table["units"]["V"], table["units"]["x"], table["constants"]["R"]) == ("m s-1", "m", 0.1)
+    header = run("contact", *point, "--format", "csv").splitlines()[0]
+    assert header == "R [m],m [kg m-1],mu,load [N m-1],V [m s-1],delta,M [N m m-1]"
+    out = run("steady", "--scene", "a.toml", "--slope", "0.2deg", "--mu", "0.3")
+    assert f"{cylinder.replace(mu=0.3).steady(slope=np.radians(0.2)).V[0]:.10g}" in out
+    start = ["--V0", "uniform:1:2", "--omega0", "0.5", "--t-end", "0.1"]
+    assert "V, m s-1" in run("ensemble", "--scene", "a.toml", "-n", "8", *start, "--mu", "uniform:0.1:0.2")
+
+
+def test_output_for_machines_and_for_eyes(run, here):
+    """-o - is standard output; suffixes in any case; 1e1 motions; a file with a byte order mark; no onset in words."""
+    argv = ["contact", *PRESET, "--V", "1,2", "--delta", "-1e-3"]
+    assert run(*argv, "-o", "-") == run(*argv)
+    run(*argv, "-o", "A.CSV")
+    assert (here / "A.CSV").read_text() == run(*argv, "--format", "csv")
+    table = json.loads(run(*argv, "--format", "json"))
+    assert table["columns"]["Q"] == vr.contact(vr.PAPER_SECTION_5, [1.0, 2.0], delta=-1e-3).Q.tolist()
+    assert "Ensemble of 10 motions" in run("ensemble", *DRAWN, "-n", "1e1", "--t-end", "1e-3")
+    (here / "bom.toml").write_bytes(b"\xef\xbb\xbf" + b'preset = "paper-section-5"\n')
+    assert run("contact", "--scene", "bom.toml", "--V", "1,2", "--delta", "-1e-3") == run(*argv)
+    assert "no onset of partial slip by t = 1e-06" in run("roll", *START, "--times", "1e-6")
+
+
+def test_result_files_and_scenes_are_drawn(run, refuse, here):
+    run("roll", *START, "--times", "0:3e-3:7", "-o", "m.nc")
+    run("ensemble", *DRAWN, "--times", "0:3e-3:7", "-o", "e.nc")
+    run("contact", *PRESET, "--V", "0.1:1:5", "--delta", "-0.01:0.01:3", "-o", "c.nc")
+    (here / "a.toml").write_text(ROLLER + RUBBER)
+    for name in ("m.nc", "e.nc", "c.nc", "a.toml"):
+        run("plot", name, "-o", f"{name}.png")
+        assert (here / f"{name}.png").read_bytes()[1:4] == b"PNG"
+    run("contact", *PRESET, "--V", "1", "--delta", "0", "-o", "one.nc")
+    assert "nothing to draw over" in refuse("plot", "one.nc", "-o", "one.png")
+    (here / "bad.nc").write_text("no")
+    assert "bad.nc: cannot be read" in refuse("plot", "bad.nc", "-o", "b.png")
+
+
+def test_doctor_and_validity(run):
+    out = run("doctor")
+    for words in ("viscoroll", vr.__version__, "numba", "threads", "cache", "Q = "):
+        assert words in out
+    out = run("validity", "--preset", "rubber-roller", "--V", "5", "--omega", "4.99")
+    names = [line.split()[0] for line in out.splitlines()]
+    assert names == list(vr.RUBBER_ROLLER.validity(1.0)._fields)
+    assert "steady  yes" in out
+    assert "steady  no" in run("validity", *PRESET, "--V", "1")
+
+
+def test_a_warning_is_one_line(monkeypatch, capsys):
+    monkeypatch.setattr(warned, "_looked", 0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert main(["roll", *START, "--times", "1e-6"]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("viscoroll: warning: the model is not good for this motion: nu = ")
+
+
+def test_a_closed_standard_output():
+    done = subprocess.run(["sh", "-c", f"{shlex.join(POINT)} >&-"], check=False, capture_output=True)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 # --- contact and stress ---
@@ -726,7 +791,7 @@ def test_plot(run, figures, here):
 
 def test_refused_plot(refuse, figures):
     for argv, words in (
-        ("figure-9 -o f.png", "plot = 'figure-9': must be out of figure-5"), ("figure-5", "-o"),
+        ("figure-9 -o f.png", "'figure-9' is no figure and no file to plot: give figure-5"), ("figure-5", "-o"),
         ("figure-5 -o f.gif", "'f.gif'"),
     ):  # fmt: skip
         assert words in refuse("plot", *argv.split()), argv

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..errors import ParameterError
@@ -86,7 +87,13 @@ class BodySI:
 
 
 def body_of(arguments: Namespace) -> Body | BodySI:
-    """The scene or the cylinder that the options name.
+    """The scene or the cylinder that the options name; errors as :func:`parts_of`, and of its parameters."""
+    parameters, made = parts_of(arguments)
+    return made(parameters)
+
+
+def parts_of(arguments: Namespace) -> tuple[dict[str, Any], Callable[[dict[str, Any]], Body | BodySI]]:
+    """What the options give of a scene, or change of a cylinder, and what makes a body of such parameters.
 
     Raises
     ------
@@ -105,5 +112,5 @@ def body_of(arguments: Namespace) -> Body | BodySI:
         if wrong:
             sentence = f"{', '.join(wrong)} cannot change a [cylinder], which is in SI units: change the file"
             raise ParameterError(wrong[0], "given", "left out", sentence)
-        return BodySI(cylinder.replace(**changed))
-    return Body(Scene(**scene_parameters(arguments)))
+        return changed, lambda values: BodySI(cylinder.replace(**values))
+    return scene_parameters(arguments), lambda values: Body(Scene(**values))

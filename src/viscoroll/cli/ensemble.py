@@ -17,9 +17,9 @@ from .arguments import (
     add_time_options,
     count,
     distribution,
-    scene_parameters,
     whole,
 )
+from .body import parts_of
 from .drive import add_drive_options, drive_of
 
 if TYPE_CHECKING:
@@ -81,34 +81,32 @@ def _ensemble(arguments: Namespace) -> int:
 
 
 def _in_memory(arguments: Namespace) -> int:
-    from ..motion import ensemble
     from ..sampling import sample
-    from ..scene import Scene
-    from .output import deliver
+    from .output import deliver, is_csv
 
-    parameters = scene_parameters(arguments)
+    parameters, made = parts_of(arguments)
     random = {name: value for name, value in parameters.items() if hasattr(value, "ppf")}
     starts = {name: getattr(arguments, name) for name in ("V0", "omega0")}
     drive = drive_of(arguments)
     random |= {f"drive_{name}": value for name, value in drive.items() if hasattr(value, "ppf")}
     drawn = {name: value for name, value in starts.items() if value is not None} | random
     columns = sample(arguments.n, arguments.seed, arguments.design, **drawn)
-    scene = Scene(**{name: columns.columns.get(name, value) for name, value in parameters.items()})
-    result = ensemble(
-        scene, columns.columns.get("V0"), columns.columns.get("omega0"), arguments.t,
+    body = made({name: columns.columns.get(name, value) for name, value in parameters.items()})
+    result = body.ensemble(
+        columns.columns.get("V0"), columns.columns.get("omega0"), arguments.t,
         method=arguments.method, rtol=arguments.rtol, rest=arguments.rest, progress=sys.stderr.isatty(),
         fields=_FIELDS + _ACTING * bool(drive),
         **{name: columns.columns.get(f"drive_{name}", value) for name, value in drive.items()},
     )  # fmt: skip
     record = {"seed": arguments.seed, "design": arguments.design}
     record |= {f"drawn_{name}": _formula(value) for name, value in drawn.items()}
-    path, summary = arguments.output, _summary_sheet(result, record)
+    path, summary = arguments.output, _summary_sheet(result, record, body.units)
     deliver(
-        path,
-        lambda: _motions_sheet(result) if path is not None and path.suffix == ".csv" else summary,
+        arguments,
+        lambda: _motions_sheet(result, body.units) if path is not None and is_csv(path) else summary,
         lambda: result.to_xarray().assign_attrs(record),
     )
-    if path is not None and path.suffix != ".txt":
+    if path is not None and path.suffix.lower() != ".txt":
         print(summary.text(), end="")
     return 0
 
@@ -124,7 +122,7 @@ def _constants(result: Ensemble) -> dict[str, float]:
     return {name: value for name, value in values.items() if isinstance(value, float)}
 
 
-def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
+def _summary_sheet(result: Ensemble, record: dict[str, Any], units: dict[str, str]) -> Sheet:
     import numpy as np
 
     from .output import Sheet
@@ -140,7 +138,8 @@ def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
         heading.append(f"no flow map: {result.flow_problem}")
     names = [name for name in _FIELDS + _ACTING if f"{name}_mean" in summary]
     levels = {f"{level:.0%}": n for n, level in enumerate(summary["quantile"].values)}
-    columns = {"quantity": np.repeat(names, result.t.size), "t": np.tile(result.t, len(names))}
+    shown = [f"{name}, {units[name]}" if name in units else name for name in names]
+    columns = {"quantity": np.repeat(shown, result.t.size), "t": np.tile(result.t, len(names))}
     columns |= {part: np.concatenate([summary[f"{name}_{part}"].values for name in names]) for part in ("mean", "std")}
     for level, n in levels.items():
         columns[level] = np.concatenate([summary[f"{name}_quantiles"].values[n] for name in names])
@@ -149,10 +148,10 @@ def _summary_sheet(result: Ensemble, record: dict[str, Any]) -> Sheet:
             f"{v:.6g} ({level})" for level, v in zip(levels, summary["onset_time_quantiles"].values, strict=True)
         )
         heading.append(f"onset of partial slip: t = {onset}")
-    return Sheet(tuple(heading), _constants(result), columns)
+    return Sheet(tuple(heading), _constants(result), columns, {"t": units["t"]} if units else {})
 
 
-def _motions_sheet(result: Ensemble) -> Sheet:
+def _motions_sheet(result: Ensemble, units: dict[str, str]) -> Sheet:
     """A row per motion and output time."""
     import numpy as np
 
@@ -165,4 +164,4 @@ def _motions_sheet(result: Ensemble) -> Sheet:
     columns["t"] = np.tile(result.t, len(result))
     found = {name: getattr(result, name) for name in _FIELDS + _ACTING}
     columns |= {name: values.ravel() for name, values in found.items() if values is not None}
-    return Sheet((), _constants(result), columns)
+    return Sheet((), _constants(result), columns, units)

@@ -94,7 +94,12 @@ def deliver(arguments: Namespace, sheet: Callable[[], Sheet], dataset: Callable[
     elif path.suffix.lower() == ".nc":
         write_dataset(dataset(), path)
     else:
-        write_text(path, sheet().csv() if path.suffix.lower() == ".csv" else sheet().text())
+        write_text(path, sheet().csv() if is_csv(path) else sheet().text())
+
+
+def is_csv(path: Path) -> bool:
+    """Whether a file of this name holds CSV."""
+    return path.suffix.lower() == ".csv"
 
 
 def as_dataset(

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ..errors import ParameterError
+from ..errors import ParameterError, TableError
 from .arguments import add_output_option
 
 FORMATS = (".png", ".pdf", ".svg")
+#: speeds of a scene's plot, over those of the first and the last extremum of M
+_BEYOND = (1.0 / 30.0, 30.0)
 
 
 def add_commands(commands: Any) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "plot",
-        help="one of the figures, or the results of a run",
-        description="Draw one of the figures of viscoroll.figures (a wrong name gets the list of names), or the\n"
-        "summaries of a results store: quantile bands and histograms.",
-        epilog="example:\n  viscoroll plot figure-5 -o figure-5.png",
+        help="one of the figures, a result file, a scene, or the results of a run",
+        description="Draw one of the figures of viscoroll.figures (a wrong name gets the list of names); the result\n"
+        "in a netCDF file of this program; the contact law over speed of a scene file; or the summaries of a store.",
+        epilog="examples:\n  viscoroll plot figure-5 -o figure-5.png\n  viscoroll plot motion.nc -o motion.png",
     )
-    parser.add_argument("what", metavar="WHAT", help="name of the figure, or STORE.zarr")
+    parser.add_argument("what", metavar="WHAT", help="name of the figure, FILE.nc, SCENE.toml or STORE.zarr")
     add_output_option(parser, *FORMATS, required=True)
     parser.set_defaults(run=_plot)
 
@@ -29,13 +32,48 @@ def add_commands(commands: Any) -> None:
 def _plot(arguments: Namespace) -> int:
     from ..figures import FIGURES, save
 
-    if Path(arguments.what).suffix == ".zarr":
-        from ..figures import run_distributions
-        from ..runs import open_summaries
-
-        save(run_distributions(open_summaries(arguments.what)), arguments.output)
-        return 0
-    if arguments.what not in FIGURES:
-        raise ParameterError("plot", repr(arguments.what), f"out of {', '.join(FIGURES)}, or a store STORE.zarr")
-    save(FIGURES[arguments.what](), arguments.output)
+    kinds: dict[str, Callable[[str], Any]] = {".zarr": _of_store, ".nc": _of_file, ".toml": _of_scene}
+    draw = kinds.get(Path(arguments.what).suffix.lower())
+    if draw is None and arguments.what not in FIGURES:
+        sentence = f"{arguments.what!r} is no figure and no file to plot: give {', '.join(FIGURES)}"
+        raise ParameterError("plot", arguments.what, "a figure", f"{sentence}, FILE.nc, SCENE.toml or STORE.zarr")
+    save(FIGURES[arguments.what]() if draw is None else draw(arguments.what), arguments.output)
     return 0
+
+
+def _of_store(path: str) -> Any:
+    from ..figures import run_distributions
+    from ..runs import open_summaries
+
+    return run_distributions(open_summaries(path))
+
+
+def _of_file(path: str) -> Any:
+    import xarray as xr
+
+    from ..plots import draw
+
+    try:
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
+            return draw(data)
+    except OSError as error:
+        raise TableError(path, f"cannot be read ({error.strerror or error})") from error
+
+
+def _of_scene(path: str) -> Any:
+    """lam, epsilon, M and the others over speeds around the largest M."""
+    import numpy as np
+
+    from ..config import read_body
+    from ..cylinder import Cylinder
+    from ..equilibria import humps
+    from ..rolling_contact import contact
+
+    body = read_body(path)
+    scene = body.scene() if isinstance(body, Cylinder) else body
+    found = humps(scene)
+    low, high = (found.V[0], found.V[-1]) if found.V.size else (1.0, 1.0)
+    V = np.geomspace(_BEYOND[0] * low, _BEYOND[1] * high, 301)
+    if isinstance(body, Cylinder):
+        return body.contact(body.V_to_si(V), delta=0.0).plot()
+    return contact(scene, V, delta=0.0).plot()

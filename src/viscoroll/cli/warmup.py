@@ -49,7 +49,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
 
     scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)
     modes = Prony([1.0, 2.0], [1.0, 0.1])
-    series = Scene(material=modes, kappa=2.91, mu=0.2)
+    series = Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     each = series.replace(material=Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
     start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
@@ -75,7 +75,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "stress", lambda: stress(scene, 0.5, 0.5, delta=0.01)
     yield "roll", lambda: roll(scene, 1.0, 0.0, 1e-3)
     yield "driven motion", lambda: roll(scene, 0.0, 0.0, 1e-3, force=0.01)
-    yield "driven motions of an alpha each", lambda: ensemble(Scene([3.0, 4.0], 2.91, 0.2), **start, force=0.01)
+    yield "driven motions of an alpha each", lambda: ensemble(Scene([3.0, 4.0], 2.91, 0.2, 1.0), **start, force=0.01)
     yield "driven motions of a series each", lambda: ensemble(each, **start, force=0.01)
     yield "motion of two bodies", lambda: roll(pair, 1.0, 0.0, 1e-3)
     yield "ensemble", lambda: ensemble(scene, **start, method="integrate")

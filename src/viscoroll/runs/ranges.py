@@ -36,7 +36,7 @@ SCENE = {
     "alpha": Range(1.0, high=HIGHEST_ALPHA),
     "kappa": positive(),
     "mu": positive(),
-    "gamma": positive(default=1.0),
+    "gamma": positive(),
     "j": positive(default=0.5),
 }
 CYLINDER = {
