@@ -123,7 +123,7 @@ def test_refused_materials(toml):
 
 
 NO_SCENE = [
-    (CYLINDER + RUBBER, ["[cylinder] material, E, nu, T_epsilon, T_sigma given = both"]),
+    (CYLINDER + RUBBER, ["[cylinder] material and E, nu, T_epsilon, T_sigma are both given"]),
     (ROLLER, ["[cylinder]", "E = None"]),
     (ROLLER + RUBBER.replace("0.5", "0.6"), ["[material] nu = 0.6"]),
     (ROLLER + "[material]\nE = inf\nnu = 0.5", ["base = rigid"]),

@@ -34,7 +34,8 @@ EXPORT = ["tables", "export", "--kappa", "2.91", "--mu", "0.2", "--V", "0.1:1:5:
 TABLE_COMMANDS = ["tables build", "tables export", "tables info", "tables validate"]
 MATERIAL_COMMANDS = ["material show", "material plot", "material fit"]
 COMMANDS = [
-    "contact", "stress", "roll", "steady", "validity", "ensemble", "plot", "doctor", *TABLE_COMMANDS, *MATERIAL_COMMANDS,
+    "contact", "stress", "roll", "steady", "validity", "ensemble", "plot", "doctor",
+    *TABLE_COMMANDS, *MATERIAL_COMMANDS,
 ]  # fmt: skip
 POINT = [sys.executable, "-m", "viscoroll", "contact", *PRESET, "--V", "1", "--delta", "0"]
 SMALL = {
