@@ -155,7 +155,7 @@ def contact(
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
-    one = _one_material(scene, material, names)
+    one = one_material(scene, material, names)
     if isinstance(one, PronyArray):
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
@@ -186,7 +186,7 @@ def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ..
     return found
 
 
-def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
+def one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
     """What serves all states: a series or many; bodies that differ, for parts of M; or, None, alphas."""
     if not isinstance(material, Prony | PronyArray):
         return None

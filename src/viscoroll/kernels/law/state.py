@@ -194,11 +194,11 @@ def _moment(V, kappa, solved, material, need_slopes, out):
         out[M], out[DM_DV] = c * V, c
     elif zeta < NEAR:
         out[M], out[DM_DV] = _over_zeta(V, kappa, lam) * fast_limit(zeta, h, material)[1], 0.0
-    elif not need_slopes:
-        out[M] = V * moment_of(zeta, lam, g, h, material)
     else:
-        _, h, _, dh, m, dm, _, _ = at_contact(zeta, material)
-        out[M], out[DM_DV] = V * m, m - zeta * dm / _steepness(lam, zeta, h, dh)
+        out[M] = V * moment_of(zeta, lam, g, h, material)  # the same bits with slopes and without
+        if need_slopes:
+            _, h, _, dh, m, dm, _, _ = at_contact(zeta, material)
+            out[DM_DV] = m - zeta * dm / _steepness(lam, zeta, h, dh)
     _put_parts(V, kappa, solved, material, need_slopes, out)
 
 
