@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from functools import partial
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from .checks import checked
 from .errors import ConvergenceError, ParameterError
@@ -16,7 +17,9 @@ from .material_tables import shared_record
 from .prony_array import PronyArray
 from .rolling_contact import contact, one_material, refuse_overflow
 from .scene import Scene
+from .typed import Numbers
 
+Array: TypeAlias = NDArray[np.float64]
 #: what the law takes as it is; all else goes through :func:`contact`
 _NUMBERS = frozenset({float, int, np.float64})
 _loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__, LoadsAndSlopes)
@@ -40,13 +43,17 @@ class Law:
         self._function, self._at, self._room = self._jitted.function, self._jitted.address, Room
 
     @overload
-    def __call__(self, V: float, omega: float, *, slopes: Literal[False] = False) -> Loads: ...
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[False] = False
+    ) -> Loads[float]: ...
     @overload
-    def __call__(self, V: float, omega: float, *, slopes: Literal[True]) -> LoadsAndSlopes: ...
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[True]
+    ) -> LoadsAndSlopes[float]: ...
     @overload
-    def __call__(self, V: ArrayLike, omega: ArrayLike, *, slopes: Literal[False] = False) -> Loads: ...
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False) -> Loads[Array]: ...
     @overload
-    def __call__(self, V: ArrayLike, omega: ArrayLike, *, slopes: Literal[True]) -> LoadsAndSlopes: ...
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Array]: ...
     def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
         """Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
 
@@ -87,7 +94,7 @@ class Law:
         raise ConvergenceError(f"law: an iteration hit its cap at V = {V!r}, omega = {omega!r}")
 
     @property
-    def jitted(self) -> Any:
+    def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
         """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
         around them.  NaN, and no error, where the law would raise one.
         """

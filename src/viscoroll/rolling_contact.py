@@ -7,10 +7,10 @@ the fields that were named.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Literal
+from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks, solve_blocks
 from .bodies import Bodies
@@ -20,6 +20,7 @@ from .material_tables import inverses, record, series, unsteadiness
 from .prony import Prony
 from .prony_array import PronyArray
 from .scene import Scene
+from .typed import Numbers
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
@@ -70,11 +71,33 @@ class Values:
         return dict(self._values)
 
 
+@overload
 def contact(
     scene: Scene,
-    V: ArrayLike,
-    delta: ArrayLike | None = None,
-    omega: ArrayLike | None = None,
+    V: Numbers,
+    delta: Numbers,
+    omega: None = None,
+    *,
+    fields: Iterable[str] | None = None,
+    slopes: bool = False,
+    method: Literal["table", "direct"] = "table",
+) -> Values: ...
+@overload
+def contact(
+    scene: Scene,
+    V: Numbers,
+    delta: None = None,
+    *,
+    omega: Numbers,
+    fields: Iterable[str] | None = None,
+    slopes: bool = False,
+    method: Literal["table", "direct"] = "table",
+) -> Values: ...
+def contact(
+    scene: Scene,
+    V: Numbers,
+    delta: Numbers | None = None,
+    omega: Numbers | None = None,
     *,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
@@ -304,12 +327,16 @@ def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
     return values if shape else values.item()
 
 
+@overload
+def stress(scene: Scene, x: Numbers, V: Numbers, delta: Numbers, omega: None = None) -> Values: ...
+@overload
+def stress(scene: Scene, x: Numbers, V: Numbers, delta: None = None, *, omega: Numbers) -> Values: ...
 def stress(
     scene: Scene,
-    x: ArrayLike,
-    V: ArrayLike,
-    delta: ArrayLike | None = None,
-    omega: ArrayLike | None = None,
+    x: Numbers,
+    V: Numbers,
+    delta: Numbers | None = None,
+    omega: Numbers | None = None,
 ) -> Values:
     """Pressure and shear stress along the contact, Eqs. (11)-(14).
 
@@ -340,7 +367,8 @@ def stress(
     from .kernels.law.material import Own
     from .kernels.law.stress_loop import Points, stress_loop
 
-    state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
+    creep: Any = {"delta": delta, "omega": omega}  # :func:`contact` refuses both and neither
+    state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
     many = isinstance(scene.material, PronyArray)

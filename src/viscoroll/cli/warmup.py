@@ -52,7 +52,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     series = Scene(material=modes, kappa=2.91, mu=0.2)
     each = series.replace(material=Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
-    start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
+    start: Any = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
     yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
     yield "contact at one alpha", lambda: contact(scene, many, delta=0.01)

@@ -24,12 +24,13 @@ def steady_of(
 ) -> Steady:
     """``Cylinder.steady``."""
     scene, R, T = cylinder.scene(), cylinder.R, cylinder.T_ref
+    angle: Any = slope
     load = np.asarray(cylinder.load * slope_factor(slope)[1])
     found = steady(
         scene,
         force=_over("force", force, load, cylinder),
         torque=_over("torque", torque, load * R, cylinder),
-        slope=slope,
+        slope=angle,
         V=None if V is None else cylinder.V_from_si(V),
     )
     each = load[..., np.newaxis] if load.ndim else load  # beside the axis of equilibria

@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
+from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..prony_array import PronyArray
 from ..rolling_contact import flattened
 from ..scene import Scene
+from ..typed import Driving, Numbers
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest
 from .each import roll_each, to_unit
@@ -126,16 +128,16 @@ class Ensemble:
 
 def ensemble(
     scene: Scene,
-    V0: ArrayLike | None,
-    omega0: ArrayLike | None,
-    t: ArrayLike,
+    V0: Numbers | None,
+    omega0: Numbers | None,
+    t: Numbers,
     *,
-    force: Any = 0.0,
-    torque: Any = 0.0,
-    slope: ArrayLike | None = None,
-    brake: Any = None,
-    omega: Any = None,
-    V: Any = None,
+    force: Driving | Feedback = 0.0,
+    torque: Driving | Feedback = 0.0,
+    slope: Numbers | None = None,
+    brake: Driving | None = None,
+    omega: Driving | None = None,
+    V: Driving | None = None,
     method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,

@@ -15,6 +15,7 @@ from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..rolling_contact import Values, contact
 from ..scene import Scene
+from ..typed import Numbers
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import LOSSES, ROWS, Drive
 from .rolling import Inputs, rolled
@@ -28,7 +29,7 @@ _SWITCHES_KEPT = 1000
 _STEPS = 1000
 _NO_SWITCHES = np.empty((0, 2))
 #: a function of time
-Schedule = float | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
+Schedule = float | tuple[Numbers, Numbers] | Callable[[float], float]
 Acting = Schedule | Feedback
 
 
@@ -189,7 +190,7 @@ def roll(
     scene: Scene,
     V0: float | None,
     omega0: float | None,
-    t: ArrayLike,
+    t: Numbers,
     rtol: float = 1e-8,
     *,
     force: Acting = 0.0,

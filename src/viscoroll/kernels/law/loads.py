@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
+
+#: numbers, or arrays
+T = TypeVar("T")
 
 
-class Loads(NamedTuple):
+class Loads(NamedTuple, Generic[T]):
     """Q over P, and M over P l0 with its parts in half-space and cylinder."""
 
-    Q: float
-    M: float
-    M_half_space: float
-    M_cylinder: float
+    Q: T
+    M: T
+    M_half_space: T
+    M_cylinder: T
 
 
-class LoadsAndSlopes(NamedTuple):
+class LoadsAndSlopes(NamedTuple, Generic[T]):
     """As :class:`Loads`; dQ/dV at fixed omega, dQ/domega at fixed V, and the slopes of the parts of M."""
 
-    Q: float
-    M: float
-    M_half_space: float
-    M_cylinder: float
-    dQ_dV: float
-    dQ_domega: float
-    dM_half_space_dV: float
-    dM_cylinder_dV: float
+    Q: T
+    M: T
+    M_half_space: T
+    M_cylinder: T
+    dQ_dV: T
+    dQ_domega: T
+    dM_half_space_dV: T
+    dM_cylinder_dV: T
