@@ -34,6 +34,8 @@ def test_documented_names():
     """The spellings that the documentation promises."""
     assert parameters(vr.contact)[:4] == ["scene", "V", "delta", "omega"]
     assert {"fields", "slopes", "method"} <= set(parameters(vr.contact))
+    assert parameters(vr.law) == ["scene"]
+    assert parameters(vr.law(vr.PAPER_SECTION_5)) == ["V", "omega", "slopes"]
     assert parameters(vr.steady) == ["scene", "force", "torque", "slope", "V"]
     assert parameters(vr.stress)[:4] == ["scene", "x", "V", "delta"]
     assert parameters(vr.roll)[:5] == ["scene", "V0", "omega0", "t", "rtol"]
@@ -92,7 +94,10 @@ def test_the_table_of_coefficients_ships_small():
 
 @pytest.mark.parametrize(
     "code",
-    ["import viscoroll", "import viscoroll as vr; vr.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.ParameterError"],
+    [
+        "import viscoroll",
+        "import viscoroll as vr; vr.PAPER_SECTION_5; vr.Scene(2, 2, 0.2); dir(vr); vr.law; vr.ParameterError",
+    ],
 )
 def test_import_is_light(code):
     loaded = printed(f"{code}\nimport sys\nprint(*{{name.split('.')[0] for name in sys.modules}})")
@@ -125,6 +130,7 @@ def test_a_wheel_alone_answers(tmp_path):
     assert wheel.stat().st_size < 600_000
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path / "site")
+    assert (tmp_path / "site/viscoroll/__init__.pyi").exists()
     code = "import viscoroll as vr; print(vr.__file__); print(vr.contact(vr.PAPER_SECTION_5, 0.5, delta=1e-3).Q)"
     where, Q = printed(code, PYTHONPATH=str(tmp_path / "site")).split()
     assert where.startswith(str(tmp_path))

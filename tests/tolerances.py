@@ -469,3 +469,15 @@ DRIVE_STEADY = 1e-8
 DRIVE_TURN = 1e-6
 #: Inertia 1e9 in place of an infinite one.
 DRIVE_HEAVY = 1e-7
+
+# --- examples of the bound law (docs/test_examples.py) ---
+#: V and omega by SciPy's Radau at rtol 1e-8 against roll; measured 3.7e-10.
+EXAMPLE_RADAU = 5e-9
+#: A linearly implicit Euler step of 1e-5 over 0.05; measured 2.9e-8.
+EXAMPLE_EULER = 1e-7
+#: and its order: halving the step halves the error; measured 7e-6.
+EXAMPLE_ORDER = 1e-3
+#: What is left of the train's start after 20 s, relative; measured 1.5e-5.
+EXAMPLE_TRAIN = 1e-4
+#: Slopes against central differences of 1e-6.
+EXAMPLE_JACOBIAN = 1e-4

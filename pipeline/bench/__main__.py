@@ -2,8 +2,8 @@
 
     python -m pipeline.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
-Parts: work-precision, own-parameters, fixed-scene, agreement, law, tables, scaling, cold-start, first-calls, skips,
-series, driven; default: all.  Sizes are in [bench] of the configuration, those of --quick in [bench.PART.quick].
+Parts: work-precision, own-parameters, fixed-scene, agreement, law, bound-law, tables, scaling, cold-start, first-calls,
+skips, series, driven; default: all.  Sizes are in [bench] of the configuration, those of --quick in [bench.PART.quick].
 Times are of this machine at this moment, medians of alternating runs on one core: run it with nothing else running.
 A peer that is not installed is skipped with a printed reason (pipeline/peers/README.md).
 """
@@ -30,6 +30,7 @@ PARTS = {
     "fixed-scene": ("fixed_scene", "fixed_scene"),
     "agreement": ("fixed_scene", "agreement"),
     "law": ("law", "law"),
+    "bound-law": ("bound_law", "bound_law"),
     "tables": ("tables", "tables"),
     "scaling": ("scaling", "scaling"),
     "cold-start": ("cold_start", "cold_start"),

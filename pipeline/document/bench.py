@@ -144,6 +144,22 @@ def law(results: Results) -> str:
     return listed(columns, rows)
 
 
+def bound_law(results: Results) -> str:
+    """The law of one scene beside contact()."""
+    columns = {
+        "material": "{material}", "called": "{called}", "a state": _NANOSECONDS, "by `contact`": "{of_contact}",
+        "times faster": "{times:.2g}",
+    }  # fmt: skip
+    rows = (
+        row | {
+            "called": row["way"] + (", slopes" if row["slopes"] else ""),
+            "of_contact": cell(_NANOSECONDS, row["contact"]), "times": row["contact"]["ns"] / row["ns"],
+        }
+        for row in results["bench-bound-law"]["measured"]["rows"]
+    )  # fmt: skip
+    return listed(columns, rows)
+
+
 def scaling(results: Results) -> str:
     """Time and memory by number of motions."""
     columns = {

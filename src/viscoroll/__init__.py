@@ -37,6 +37,8 @@ _HOME = {
     "read_dma": "dma",
     "contact": "rolling_contact",
     "stress": "rolling_contact",
+    "law": "bound_law",
+    "Law": "bound_law",
     "steady": "equilibria",
     "humps": "equilibria",
     "Feedback": "drive",

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,8 @@ class _Kept(threading.local):
 
 
 _kept = _Kept()
+#: tables that lack no bin, of 6 MB: as long as somebody reads them
+_whole: WeakValueDictionary[Prony, NDArray[np.float64]] = WeakValueDictionary()
 
 
 def record(given: float | Prony | Bodies) -> Any:
@@ -45,6 +48,24 @@ def record(given: float | Prony | Bodies) -> Any:
     if isinstance(given, Bodies) and (given.like or given.alpha == 1.0):
         return record(given.total if given.total.E.size else 1.0)
     return _found(_kept.materials, given, _tabulated)
+
+
+def shared_record(given: float | Prony | Bodies) -> Any:
+    """The record of one material, or of two bodies unlike each other, that all threads may read together.
+
+    A table that lacks no bin is never written to.
+    """
+    from .kernels.law.bound import with_every_bin
+    from .kernels.law.standard import standard
+
+    if not isinstance(given, Prony | Bodies):
+        return standard(given)
+    one = _pair_tables(given) if isinstance(given, Bodies) else _series_table(given)
+    series = given.total if isinstance(given, Bodies) else given
+    table = _whole.get(series)
+    if table is None:
+        _whole[series] = table = with_every_bin(_series_table(series)).table
+    return one._replace(table=table)
 
 
 def inverses(given: float | Prony | Bodies) -> Any:

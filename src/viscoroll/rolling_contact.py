@@ -7,10 +7,10 @@ the fields that were named.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Literal
+from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks, solve_blocks
 from .bodies import Bodies
@@ -22,6 +22,7 @@ from .prony import Prony
 from .prony_array import PronyArray
 from .results import Values
 from .scene import Scene, checked_scene
+from .typed import Numbers
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
@@ -45,11 +46,33 @@ _FASTEST = 1e300
 _FASTEST_DIRECT = 1e12
 
 
+@overload
 def contact(
     scene: Scene,
-    V: ArrayLike,
-    delta: ArrayLike | None = None,
-    omega: ArrayLike | None = None,
+    V: Numbers,
+    delta: Numbers,
+    omega: None = None,
+    *,
+    fields: Iterable[str] | None = None,
+    slopes: bool = False,
+    method: Literal["table", "direct"] = "table",
+) -> Values: ...
+@overload
+def contact(
+    scene: Scene,
+    V: Numbers,
+    delta: None = None,
+    *,
+    omega: Numbers,
+    fields: Iterable[str] | None = None,
+    slopes: bool = False,
+    method: Literal["table", "direct"] = "table",
+) -> Values: ...
+def contact(
+    scene: Scene,
+    V: Numbers,
+    delta: Numbers | None = None,
+    omega: Numbers | None = None,
     *,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
@@ -132,7 +155,7 @@ def contact(
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
-    one = _one_material(scene, material, names)
+    one = one_material(scene, material, names)
     if isinstance(one, PronyArray):
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
@@ -164,7 +187,7 @@ def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ..
     return found
 
 
-def _one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
+def one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
     """What serves all states: a series or many; bodies that differ, for parts of M; or, None, alphas."""
     if not isinstance(material, Prony | PronyArray):
         return None
@@ -282,12 +305,16 @@ def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
     return values if shape else values.item()
 
 
+@overload
+def stress(scene: Scene, x: Numbers, V: Numbers, delta: Numbers, omega: None = None) -> Values: ...
+@overload
+def stress(scene: Scene, x: Numbers, V: Numbers, delta: None = None, *, omega: Numbers) -> Values: ...
 def stress(
     scene: Scene,
-    x: ArrayLike,
-    V: ArrayLike,
-    delta: ArrayLike | None = None,
-    omega: ArrayLike | None = None,
+    x: Numbers,
+    V: Numbers,
+    delta: Numbers | None = None,
+    omega: Numbers | None = None,
 ) -> Values:
     """Pressure and shear stress along the contact, Eqs. (11)-(14).
 
@@ -319,7 +346,8 @@ def stress(
     from .kernels.law.stress_loop import Points, stress_loop
 
     checked_scene(scene, "stress")
-    state = contact(scene, V, delta, omega, fields=("lam", "epsilon", "beta", "zeta", "delta"))
+    creep: Any = {"delta": delta, "omega": omega}  # :func:`contact` refuses both and neither
+    state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
     many = isinstance(scene.material, PronyArray)

@@ -69,6 +69,12 @@ def test_law_tables_and_the_rest(folder):
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
 
 
+def test_bound_law(folder):
+    (law,) = measured(folder, "bound-law")
+    assert len(law["rows"]) == 3 * 6
+    assert all(row["ns"] > 0.0 and row["contact"]["ns"] > 0.0 for row in law["rows"])
+
+
 def test_series(folder):
     """Every material has its row, and those of several modes the time of their table."""
     (rows,) = measured(folder, "series")

@@ -56,7 +56,7 @@ def _contact(arguments: Namespace) -> int:
 
     body = body_of(arguments)
     V = np.atleast_1d(arguments.V)
-    creep = {
+    creep: Any = {
         name: np.atleast_1d(value)
         for name, value in (("delta", arguments.delta), ("omega", arguments.omega))
         if value is not None

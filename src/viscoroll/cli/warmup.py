@@ -42,7 +42,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own."""
     import numpy as np
 
-    from .. import PAPER_SECTION_5, Bodies, Feedback, Prony, Scene, contact, ensemble, roll, steady, stress, tables
+    from .. import PAPER_SECTION_5, Bodies, Feedback, Prony, Scene, contact, ensemble, law, roll, steady, stress, tables
     from ..motion import flow
     from ..rolling_contact import WORTHWHILE
     from ..validation.direct_motion import roll_direct
@@ -52,13 +52,16 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     series = Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     each = series.replace(material=Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
-    start = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
+    start: Any = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
     yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
     yield "contact at one alpha", lambda: contact(scene, many, delta=0.01)
     yield "contact by root solves", lambda: contact(scene, 0.5, delta=0.01, method="direct")
     yield "contact of a series", lambda: contact(series, 0.5, delta=0.01)
     yield "contact of a series, many states", lambda: contact(series, many, delta=0.01)
+    yield "bound law", lambda: law(scene)
+    yield "bound law of a series", lambda: law(series)
+    yield "bound law of two bodies", lambda: law(pair)
     yield "stress of a series", lambda: stress(series, 0.5, 0.5, delta=0.01)
     yield "contact of a series each", lambda: contact(each, 0.5, delta=0.01)
     yield "motions of a series each", lambda: ensemble(each, **start)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import number
 from ..errors import ParameterError
 from ..prony import MOST_MODES, WIDEST, Prony
+from ..typed import Numbers
 from ..validity import Assumption
 from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
@@ -118,7 +119,7 @@ class Fit:
 
         return Material(E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density)
 
-    def validity(self, cylinder: Cylinder, V: ArrayLike) -> Assumption:
+    def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
         """Whether the contact of a cylinder of this material sees frequencies that the data hold.
 
         A contact is passed in lam l0/V, which must lie within the times of the data; shifted to another temperature
@@ -184,15 +185,15 @@ class Fit:
 
 
 def fit_prony(
-    omega: ArrayLike,
-    storage: ArrayLike,
-    loss: ArrayLike,
+    omega: Numbers,
+    storage: Numbers,
+    loss: Numbers,
     modes: int | None = None,
     *,
     misfit: float = 0.01,
-    temperature: ArrayLike | None = None,
+    temperature: Numbers | None = None,
     reference: float | None = None,
-    shift: ArrayLike | Callable[[float], float] | None = None,
+    shift: Numbers | Callable[[float], float] | None = None,
 ) -> Fit:
     """Fit a Prony series to storage and loss modulus.
 

@@ -10,11 +10,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..drive import Feedback
 from ..errors import ParameterError
 from ..scene import Scene, checked_scene
+from ..typed import Numbers
 from .loads import Loads, loads_of
 from .reason import reasons_of
 from .resistance import LEAST_LOAD, MOST_LOAD, Law, branches
@@ -26,10 +27,10 @@ from .solve import crossings, lengths, states_at
 def steady(
     scene: Scene,
     *,
-    force: ArrayLike | Feedback | None = None,
-    torque: ArrayLike | Feedback | None = None,
-    slope: ArrayLike | None = None,
-    V: ArrayLike | None = None,
+    force: Numbers | Feedback | None = None,
+    torque: Numbers | Feedback | None = None,
+    slope: Numbers | None = None,
+    V: Numbers | None = None,
 ) -> Steady:
     """Steady rolling: every pair of V and omega that force and torque hold, and whether it is stable.
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
+from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..prony_array import PronyArray
@@ -18,6 +19,7 @@ from ..results import Row, Shown
 from ..rolling_contact import flattened
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..symbols import attributes
+from ..typed import Driving, Numbers
 from ..validity import Validity
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest
@@ -169,16 +171,16 @@ def _unit(described: dict[str, Any]) -> str:
 
 def ensemble(
     scene: Scene,
-    V0: ArrayLike | None,
-    omega0: ArrayLike | None,
-    t: ArrayLike,
+    V0: Numbers | None,
+    omega0: Numbers | None,
+    t: Numbers,
     *,
-    force: Any = 0.0,
-    torque: Any = 0.0,
-    slope: ArrayLike | None = None,
-    brake: Any = None,
-    omega: Any = None,
-    V: Any = None,
+    force: Driving | Feedback = 0.0,
+    torque: Driving | Feedback = 0.0,
+    slope: Numbers | None = None,
+    brake: Driving | None = None,
+    omega: Driving | None = None,
+    V: Driving | None = None,
     method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,

@@ -17,6 +17,7 @@ from ..results import Row, Shown, Values
 from ..rolling_contact import contact
 from ..scene import Scene, checked_scene
 from ..symbols import attributes
+from ..typed import Numbers
 from ..validity import Validity
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import LOSSES, ROWS, Drive
@@ -32,7 +33,7 @@ _SWITCHES_KEPT = 1000
 _STEPS = 1000
 _NO_SWITCHES = np.empty((0, 2))
 #: a function of time
-Schedule = float | tuple[ArrayLike, ArrayLike] | Callable[[float], float]
+Schedule = float | tuple[Numbers, Numbers] | Callable[[float], float]
 Acting = Schedule | Feedback
 
 
@@ -227,7 +228,7 @@ def roll(
     scene: Scene,
     V0: float | None,
     omega0: float | None,
-    t: ArrayLike,
+    t: Numbers,
     rtol: float = 1e-8,
     *,
     force: Acting = 0.0,

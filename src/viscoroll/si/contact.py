@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..checks import checked
 from ..labels import unlabelled
 from ..results import Values
 from ..rolling_contact import OF_BODIES, contact, stress
+from ..typed import Numbers
 from .units import QUANTITIES, Cylinder, Units, over, units_of
 
 
-def contact_of(
-    cylinder: Cylinder, V: ArrayLike, omega: ArrayLike | None, delta: ArrayLike | None, **options: Any
-) -> Values:
+def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Numbers | None, **options: Any) -> Values:
     """``Cylinder.contact``."""
     one = units_of(cylinder)
     plain, labels = unlabelled({"V": V, "omega": omega, "delta": delta})
@@ -40,9 +38,7 @@ def contact_of(
     return Values(values, given, _units(values) | _units(given), "Contact of a cylinder, SI units", labels)
 
 
-def stress_of(
-    cylinder: Cylinder, x: ArrayLike, V: ArrayLike, omega: ArrayLike | None, delta: ArrayLike | None
-) -> Values:
+def stress_of(cylinder: Cylinder, x: Numbers, V: Numbers, omega: Numbers | None, delta: Numbers | None) -> Values:
     """``Cylinder.stress``."""
     one = units_of(cylinder)
     found = stress(

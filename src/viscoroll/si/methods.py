@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Literal
 
-from numpy.typing import ArrayLike
-
 from ..drive import Feedback
 from ..results import Values
+from ..typed import Driving, Numbers
 
 if TYPE_CHECKING:
     from ..equilibria import Steady
@@ -21,10 +20,10 @@ class InSI:
 
     def contact(
         self,
-        V: ArrayLike,
-        omega: ArrayLike | None = None,
+        V: Numbers,
+        omega: Numbers | None = None,
         *,
-        delta: ArrayLike | None = None,
+        delta: Numbers | None = None,
         fields: Iterable[str] | None = None,
         slopes: bool = False,
         method: Literal["table", "direct"] = "table",
@@ -59,9 +58,7 @@ class InSI:
 
         return contact_of(self, V, omega, delta, fields=fields, slopes=slopes, method=method)
 
-    def stress(
-        self, x: ArrayLike, V: ArrayLike, omega: ArrayLike | None = None, *, delta: ArrayLike | None = None
-    ) -> Values:
+    def stress(self, x: Numbers, V: Numbers, omega: Numbers | None = None, *, delta: Numbers | None = None) -> Values:
         """Pressure and shear stress along the contact as :func:`viscoroll.stress`, in Pa.
 
         Parameters
@@ -86,10 +83,10 @@ class InSI:
     def steady(
         self,
         *,
-        force: ArrayLike | Feedback | None = None,
-        torque: ArrayLike | Feedback | None = None,
-        slope: ArrayLike | None = None,
-        V: ArrayLike | None = None,
+        force: Numbers | Feedback | None = None,
+        torque: Numbers | Feedback | None = None,
+        slope: Numbers | None = None,
+        V: Numbers | None = None,
     ) -> Steady:
         """Steady rolling under load as :func:`viscoroll.steady`, in SI units.
 
@@ -118,7 +115,7 @@ class InSI:
         self,
         V0: float | None,
         omega0: float | None,
-        t: ArrayLike,
+        t: Numbers,
         rtol: float = 1e-8,
         *,
         force: Acting = 0.0,
@@ -178,16 +175,16 @@ class InSI:
 
     def ensemble(
         self,
-        V0: ArrayLike | None,
-        omega0: ArrayLike | None,
-        t: ArrayLike,
+        V0: Numbers | None,
+        omega0: Numbers | None,
+        t: Numbers,
         *,
-        force: Any = 0.0,
-        torque: Any = 0.0,
-        slope: ArrayLike | None = None,
-        brake: Any = None,
-        omega: Any = None,
-        V: Any = None,
+        force: Driving | Feedback = 0.0,
+        torque: Driving | Feedback = 0.0,
+        slope: Numbers | None = None,
+        brake: Driving | None = None,
+        omega: Driving | None = None,
+        V: Driving | None = None,
         rest: float | None = None,
         **options: Any,
     ) -> EnsembleSI:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..checks import number
 from ..drive import slope_factor
@@ -20,6 +20,7 @@ from ..motion.single import Motion, Switch, card_of, roll
 from ..motion.warned import look
 from ..results import Row, Shown, Values
 from ..scene import Scene
+from ..typed import Numbers
 from ..validity import Validity
 from .contact import in_si as contact_in_si
 from .units import Cylinder, Units, attributes, in_words, over, to_si, units_of
@@ -131,7 +132,7 @@ class MotionSI(Shown):
         """Which assumptions of the model the motion strains, at each output time, as :meth:`Motion.validity`."""
         return self.cylinder.validity(self.V[self.regime >= 0], omega=self.omega[self.regime >= 0])
 
-    def at(self, t: ArrayLike) -> MotionSI:
+    def at(self, t: Numbers) -> MotionSI:
         """The same motion at other times within [0, end], s, as :meth:`Motion.at`."""
         times = output_times(t)
         return in_si(self.cylinder, self.drive, self.motion.at(times / self.cylinder.T_ref), times)
@@ -206,7 +207,7 @@ def _about(cylinder: Cylinder) -> dict[str, Any]:
     return {name: getattr(cylinder, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
 
 
-def _asked(cylinder: Cylinder, t: ArrayLike, drive: Drive) -> tuple[Scene, Units, NDArray[np.float64], dict[str, Any]]:
+def _asked(cylinder: Cylinder, t: Numbers, drive: Drive) -> tuple[Scene, Units, NDArray[np.float64], dict[str, Any]]:
     """(scene, units, output times in s, the drive's arguments without dimension)."""
     slope_factor(drive.slope)  # refuses one that is too steep
     one = units_of(cylinder, drive.slope)
@@ -216,7 +217,7 @@ def _asked(cylinder: Cylinder, t: ArrayLike, drive: Drive) -> tuple[Scene, Units
 
 
 def roll_of(
-    cylinder: Cylinder, start: tuple[float | None, float | None], t: ArrayLike, drive: Drive, rtol: float,
+    cylinder: Cylinder, start: tuple[float | None, float | None], t: Numbers, drive: Drive, rtol: float,
     rest: float | None, max_steps: int,
 ) -> MotionSI:  # fmt: skip
     """``Cylinder.roll``."""
@@ -258,7 +259,7 @@ def in_si(cylinder: Cylinder, drive: Drive, motion: Motion, times: NDArray[np.fl
 
 
 def ensemble_of(
-    cylinder: Cylinder, start: tuple[Any, Any], t: ArrayLike, drive: Drive, rest: float | None, **options: Any
+    cylinder: Cylinder, start: tuple[Any, Any], t: Numbers, drive: Drive, rest: float | None, **options: Any
 ) -> EnsembleSI:
     """``Cylinder.ensemble``."""
     scene, one, times, given = _asked(cylinder, t, drive)

@@ -5,19 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..drive import Feedback, slope_factor
 from ..equilibria import Loss, Steady, steady
+from ..typed import Numbers
 from .units import Cylinder, attributes, over, units_of
 
 
 def steady_of(
     cylinder: Cylinder,
-    force: ArrayLike | Feedback | None,
-    torque: ArrayLike | Feedback | None,
-    slope: ArrayLike | None,
-    V: ArrayLike | None,
+    force: Numbers | Feedback | None,
+    torque: Numbers | Feedback | None,
+    slope: Numbers | None,
+    V: Numbers | None,
 ) -> Steady:
     """``Cylinder.steady``."""
     slope_factor(slope)  # refuses one that is too steep
@@ -46,7 +47,7 @@ def steady_of(
     )
 
 
-def _beside(unit: ArrayLike) -> NDArray[np.float64]:
+def _beside(unit: Numbers) -> NDArray[np.float64]:
     """A unit beside the axis of equilibria."""
     array = np.asarray(unit, np.float64)
     return array[..., np.newaxis] if array.ndim else array

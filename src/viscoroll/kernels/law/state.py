@@ -31,6 +31,8 @@ FAR = 1e17
 NEAR = 1e-140
 #: below this s = |delta|/delta_star, Q is linear in s to rounding, while zeta - eta may underflow
 _LINEAR = 1e-17
+#: in place of ``at_contact``, where its slopes are not asked for or of no use
+_NOWHERE = (0.0,) * 8
 #: in place of (eta, g and h there, whether it is known) for ``stick``: eta is to be solved for
 UNSOLVED = (0.0, 0.0, 0.0, False)
 
@@ -123,13 +125,19 @@ def stick(speed, delta, mu, solved, delta_star, root, material):
 @kernel
 def traction_slopes(delta, state, solved, stuck, material):
     """(d|Q|/d|V| at fixed delta, d|Q|/d|delta|) in partial slip, from what ``stick`` found."""
+    return _traction_slopes(delta, state, solved, stuck, slope_ratio(solved[1], material), material)
+
+
+@kernel(inline=True)
+def _traction_slopes(delta, state, solved, stuck, ratio, material):
+    """``traction_slopes`` with ``slope_ratio`` at zeta."""
     lam, zeta, _, _, _, _ = solved
     eta, D, beta, share, _ = stuck
     speed = abs(state.V)
     if material.T_mean == 0.0 or not NEAR <= zeta <= FAR:
         return 0.0, 4.0 * state.kappa * beta / lam
     # A = H'/F' is the slope of H over F; H and A stand here over zeta^2 and zeta
-    A, A_eta = slope_ratio(zeta, material) / zeta, slope_ratio(eta, material) / zeta
+    A, A_eta = ratio / zeta, slope_ratio(eta, material) / zeta
     H = 1.0 / (lam * lam)
     d = delta / (state.mu * speed * zeta)
     fall = A - A_eta if D > CLOSE * zeta else slope_ratio_rise(zeta, D, material) / zeta
@@ -152,8 +160,11 @@ def contact_state_at(solved, root, material, state, need, out):
     kappa, mu, V = state.kappa, state.mu, state.V
     lam, zeta, g, h, _, status = solved
     out[LAM], out[ZETA] = lam, zeta
+    here = _NOWHERE
+    if need.slopes and NEAR <= zeta <= FAR:
+        here = at_contact(zeta, material)
     if need.moment:
-        _moment(V, kappa, solved, material, need.slopes, out)
+        _moment(V, kappa, solved, here, material, need.slopes, out)
     if not need.shift:
         return status
     epsilon = g / zeta if zeta >= NEAR else fast_limit(zeta, h, material)[0]
@@ -176,7 +187,9 @@ def contact_state_at(solved, root, material, state, need, out):
     out[BETA] = beta
     out[Q] = sign * mu * share
     if need.slopes:
-        dQ_dV, dQ_ddelta = traction_slopes(abs(delta), state, solved, stuck, material)
+        _, h, dg, dh, _, _, _, _ = here
+        ratio = 2.0 * (zeta + h + zeta * dh) / (1.0 + dg)
+        dQ_dV, dQ_ddelta = _traction_slopes(abs(delta), state, solved, stuck, ratio, material)
         out[DQ_DV] = np.sign(delta) * dQ_dV
         out[DQ_DDELTA] = direction * dQ_ddelta
         out[DQ_DOMEGA] = dQ_ddelta / abs(V)
@@ -186,7 +199,7 @@ def contact_state_at(solved, root, material, state, need, out):
 
 
 @kernel(inline=True)
-def _moment(V, kappa, solved, material, need_slopes, out):
+def _moment(V, kappa, solved, here, material, need_slopes, out):
     """M = V m(zeta) and dM/dV = m - 2 (H/H') m' of Eqs. (16), (18), and the parts of two bodies in them."""
     lam, zeta, g, h, _, _ = solved
     c = material.T_mean
@@ -194,12 +207,12 @@ def _moment(V, kappa, solved, material, need_slopes, out):
         out[M], out[DM_DV] = c * V, c
     elif zeta < NEAR:
         out[M], out[DM_DV] = _over_zeta(V, kappa, lam) * fast_limit(zeta, h, material)[1], 0.0
-    elif not need_slopes:
-        out[M] = V * moment_of(zeta, lam, g, h, material)
     else:
-        _, h, _, dh, m, dm, _, _ = at_contact(zeta, material)
-        out[M], out[DM_DV] = V * m, m - zeta * dm / _steepness(lam, zeta, h, dh)
-    _put_parts(V, kappa, solved, material, need_slopes, out)
+        out[M] = V * moment_of(zeta, lam, g, h, material)  # the same bits with slopes and without
+        if need_slopes:
+            _, h, _, dh, m, dm, _, _ = here
+            out[DM_DV] = m - zeta * dm / _steepness(lam, zeta, h, dh)
+    _put_parts(V, kappa, solved, here, material, need_slopes, out)
 
 
 @kernel(inline=True)
@@ -215,12 +228,12 @@ def _steepness(lam, zeta, h, dh):
 
 
 @kernel(inline=True)
-def _no_parts(V, kappa, solved, material, need_slopes, out):
+def _no_parts(V, kappa, solved, here, material, need_slopes, out):
     """Bodies that are alike take half of M each."""
 
 
 @kernel(inline=True)
-def _parts_of_pair(V, kappa, solved, material, need_slopes, out):
+def _parts_of_pair(V, kappa, solved, here, material, need_slopes, out):
     """What either body has in M and in dM/dV."""
     lam, zeta, _, _, _, _ = solved
     if zeta < NEAR:
@@ -231,9 +244,9 @@ def _parts_of_pair(V, kappa, solved, material, need_slopes, out):
     half_space, cylinder, d_half_space, d_cylinder = parts(zeta, material)
     out[M_HALF_SPACE], out[M_CYLINDER] = V * half_space, V * cylinder
     if need_slopes:
-        _, h, _, dh = generator_slopes(zeta, material)
+        _, h, _, dh, _, _, _, _ = here
         per = zeta / _steepness(lam, zeta, h, dh) if zeta <= FAR else 0.0
         out[DM_HALF_SPACE_DV], out[DM_CYLINDER_DV] = half_space - per * d_half_space, cylinder - per * d_cylinder
 
 
-_put_parts = by_record(3, (Pair, _parts_of_pair), otherwise=_no_parts)
+_put_parts = by_record(4, (Pair, _parts_of_pair), otherwise=_no_parts)

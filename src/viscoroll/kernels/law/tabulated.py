@@ -85,7 +85,7 @@ def _values(z, material):
 
 
 @kernel
-def _make_own(row, z, material):
+def make_own(row, z, material):
     """Make the bin of z; returns its row."""
     if material.ends.known:  # the rows are those of the bins between the ends
         row = quartet.spare_row(material.table)
@@ -99,10 +99,10 @@ def _make_own(row, z, material):
 @kernel
 def _make_met(row, z, material):
     """As the last, of a material that is one of many."""
-    return row if made(row, z, material) else _make_own(row, z, material)
+    return row if made(row, z, material) else make_own(row, z, material)
 
 
-_make = by_record(2, (Filled, _make_met), otherwise=_make_own)
+_make = by_record(2, (Filled, _make_met), otherwise=make_own)
 
 
 @kernel(inline=True)

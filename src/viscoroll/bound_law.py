@@ -1,0 +1,160 @@
+"""The contact law of one scene, for integrators: :func:`law`."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Literal, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import checked
+from .errors import ConvergenceError, ParameterError
+from .kernels.law.loads import Loads, LoadsAndSlopes
+from .material_tables import shared_record
+from .prony_array import PronyArray
+from .rolling_contact import contact, one_material, refuse_overflow
+from .scene import Scene, checked_scene
+from .typed import Numbers
+
+Array: TypeAlias = NDArray[np.float64]
+#: what the law takes as it is; all else goes through :func:`contact`
+_NUMBERS = frozenset({float, int, np.float64})
+_loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__, LoadsAndSlopes)
+
+
+class Law:
+    """A scene's law, bound: what :func:`law` returns.
+
+    Attributes
+    ----------
+    scene : that it is the law of.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        from .kernels.law.jitted import Jitted, Room
+
+        material, unit = scene.in_own_time()
+        given: Any = one_material(scene, material, Loads._fields)
+        self.scene = scene
+        self._jitted = Jitted(shared_record(scene.alpha if given is None else given), scene.kappa, scene.mu, unit)
+        self._function, self._at, self._room = self._jitted.function, self._jitted.address, Room
+
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[False] = False
+    ) -> Loads[float]: ...
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[True]
+    ) -> LoadsAndSlopes[float]: ...
+    @overload
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False) -> Loads[Array]: ...
+    @overload
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Array]: ...
+    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
+        """Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
+
+        Parameters
+        ----------
+        V, omega : numbers, or arrays that broadcast.
+        slopes : also the derivatives.
+
+        Returns
+        -------
+        Loads or LoadsAndSlopes
+            Q, M, M_half_space, M_cylinder, and with slopes dQ_dV at fixed omega, dQ_domega, dM_half_space_dV,
+            dM_cylinder_dV; dimensionless.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
+        ConvergenceError
+            If a solve hits its iteration cap.
+        """
+        if type(V) in _NUMBERS and type(omega) in _NUMBERS:
+            out = self._room()
+            try:
+                status = self._function(V, omega, out, self._at)
+            except ctypes.ArgumentError:  # an integer beyond the doubles
+                status = 1
+            if status:
+                self._refuse(V, omega)
+            return _loads_and_slopes(out) if slopes else _loads(out[:4])
+        kind = LoadsAndSlopes if slopes else Loads
+        found = contact(self.scene, V, omega=omega, fields=kind._fields)
+        return kind(**found.as_dict())
+
+    def _refuse(self, V: Any, omega: Any) -> None:
+        refuse_overflow(np.asarray(self.scene.kappa), checked("V", V))
+        checked("omega", omega)
+        raise ConvergenceError(f"law: an iteration hit its cap at V = {V!r}, omega = {omega!r}")
+
+    @property
+    def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
+        """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
+        around them.  NaN, and no error, where the law would raise one.
+        """
+        return self._jitted
+
+    @property
+    def address(self) -> int:
+        """Address of a C function ``int law(double V, double omega, double out[8], void *)``.
+
+        It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
+        error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
+        there.  The last argument is ignored.
+        """
+        return self._jitted.c_address
+
+    @property
+    def ctypes(self) -> Any:
+        """The function at ``address`` for ctypes and ``scipy.LowLevelCallable``; it keeps what it needs."""
+        return self._jitted.ctypes
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return law, (self.scene,)
+
+    def __repr__(self) -> str:
+        return f"law({self.scene!r})"
+
+
+def law(scene: Scene) -> Law:
+    """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
+
+    ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
+    ``law.jitted`` and ``law.address`` are the same for numba and C.
+
+    Parameters
+    ----------
+    scene : alpha or material, kappa and mu are used: one number each, one material or two bodies.
+
+    Returns
+    -------
+    Law
+        A function of V and omega.  Creep is delta = (omega - V)/V, and at V = 0 < abs(omega) the contact slips as a
+        whole.  Threads may share it; pickled, it binds its scene anew.
+
+    Raises
+    ------
+    ParameterError
+        What is no :class:`Scene`; arrays for alpha, kappa or mu; a material each.
+
+    Notes
+    -----
+    For numbers the digits are those of :func:`contact` to the bit, and for arrays it is :func:`contact` that is called
+    (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
+    a corner in V only; the slopes there are those of full slip.  A material of several relaxation times takes 6 MB,
+    which its laws share.
+    """
+    checked_scene(scene, "law")
+    if isinstance(scene.material, PronyArray):
+        raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
+    for name in ("alpha", "kappa", "mu"):
+        value = np.asarray(getattr(scene, name))
+        if value.ndim:
+            raise ParameterError(name, f"an array of shape {value.shape}", "one number: a law is of one scene")
+    return Law(scene)

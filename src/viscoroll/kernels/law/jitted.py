@@ -1,0 +1,138 @@
+"""A bound scene for machine code: a value that jitted functions call, and a C function that needs nothing beside it.
+
+Both pass the address of the scene's numbers to the function of :mod:`bound`.  All scenes have one numba type, so that a
+user's function that is given a law is compiled once for all of them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+from functools import cached_property
+from typing import Any, NoReturn
+
+from llvmlite import binding, ir
+from numba.core import cgutils, types
+from numba.core.imputils import lower_constant
+from numba.core.typing import signature
+from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
+
+from .bound import OUT, bind, function_of
+from .loads import LoadsAndSlopes
+
+#: room for what the function finds
+Room = ctypes.c_double * OUT
+_C = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p
+_WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
+_DOUBLES = _DOUBLE.as_pointer()
+_FUNCTION = ir.FunctionType(ir.IntType(32), [_DOUBLE, _DOUBLE, _DOUBLES, _DOUBLES])
+_CALL = inspect.signature(lambda V, omega: None)
+#: laws that are constants of somebody's machine code, which nothing else keeps alive
+_in_code: list[Any] = []
+
+
+class LawType(types.Callable):
+    """(V, omega) -> :class:`LoadsAndSlopes`, in jitted code."""
+
+    def __init__(self) -> None:
+        super().__init__("viscoroll.law")
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """Its one signature, for two real numbers."""
+        try:
+            given = _CALL.bind(*args, **kws).args
+        except TypeError:
+            return None
+        if not all(isinstance(types.unliteral(kind), types.Integer | types.Float) for kind in given):
+            return None
+        found = types.NamedUniTuple(types.float64, OUT, LoadsAndSlopes)
+        return signature(found, types.float64, types.float64, recvr=self).replace(pysig=_CALL)
+
+    def get_call_signatures(self) -> tuple[list[Any], bool]:
+        """For numba's messages."""
+        return [signature(types.float64, types.float64, types.float64)], False
+
+    def get_impl_key(self, _: Any) -> type:
+        """What it is lowered by."""
+        return LawType
+
+
+class Jitted:
+    """The law of one scene, for jitted code: ``law.jitted(V, omega)``, NaN where the input is none of its business."""
+
+    _numba_type_ = LawType()
+
+    def __init__(self, material: Any, kappa: float, mu: float, unit: float) -> None:
+        self._material = material  # whose tables the numbers point to
+        self._numbers = bind(material, kappa, mu, unit)
+        self.address = int(self._numbers.ctypes.data)
+        # with the GIL: to release it takes longer than the law
+        self.function = ctypes.PYFUNCTYPE(_C[0], *_C[1:3], ctypes.c_void_p, _C[4])(function_of(self._numbers))
+
+    def __call__(self, V: float, omega: float) -> LoadsAndSlopes:
+        out = Room()
+        self.function(V, omega, out, self.address)
+        return LoadsAndSlopes(*out)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("law.jitted is machine code of this process: pickle the law, or its scene, and bind it there")
+
+    @cached_property
+    def _engine(self) -> Any:
+        """LLVM's, with a function that calls that of :mod:`bound` with the numbers of this scene."""
+        module = ir.Module()
+        whole = ir.Function(module, _FUNCTION, name="law")
+        builder = ir.IRBuilder(whole.append_basic_block())
+        numbers = builder.inttoptr(_WORD(self.address), _DOUBLES)
+        function = builder.inttoptr(_WORD(function_of(self._numbers)), _FUNCTION.as_pointer())
+        builder.ret(builder.call(function, [*whole.args[:3], numbers]))
+        machine = binding.Target.from_default_triple().create_target_machine()
+        engine = binding.create_mcjit_compiler(binding.parse_assembly(str(module)), machine)
+        engine.finalize_object()
+        return engine
+
+    @cached_property
+    def c_address(self) -> int:
+        """Address of ``int law(double V, double omega, double out[8], void *)``, which ignores the last."""
+        return int(self._engine.get_function_address("law"))
+
+    @cached_property
+    def ctypes(self) -> Any:
+        """The same as a function of ctypes."""
+        function: Any = ctypes.CFUNCTYPE(*_C)(self.c_address)
+        function.law = self
+        return function
+
+
+@register_model(LawType)
+class _Model(models.PrimitiveModel):
+    """The address of the scene's numbers."""
+
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _WORD)
+
+
+@unbox(LawType)
+def _unbox(kind: Any, law: Any, c: Any) -> NativeValue:
+    address = c.pyapi.object_getattr_string(law, "address")
+    value = c.pyapi.long_as_ulonglong(address)
+    c.pyapi.decref(address)
+    return NativeValue(value, is_error=c.pyapi.c_api_error())
+
+
+@lower_constant(LawType)
+def _constant(context: Any, builder: Any, kind: Any, law: Any) -> Any:
+    _in_code.append(law)
+    # numba then keeps the code out of its cache: the next process has other addresses
+    return builder.ptrtoint(context.add_dynamic_addr(builder, law.address, info="law"), _WORD)
+
+
+@lower_builtin(LawType, LawType, types.float64, types.float64)
+def _call(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
+    law, V, omega = given
+    numbers = builder.inttoptr(law, _DOUBLES)
+    function = builder.load(builder.bitcast(numbers, _FUNCTION.as_pointer().as_pointer()))
+    out = cgutils.alloca_once(builder, _DOUBLE, size=_WORD(OUT))
+    builder.call(function, [V, omega, out, numbers])
+    found = [builder.load(builder.gep(out, [_WORD(n)])) for n in range(OUT)]
+    return context.make_tuple(builder, kinds.return_type, found)

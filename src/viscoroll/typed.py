@@ -1,0 +1,24 @@
+"""What callers may give, for type checkers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
+
+    class SupportsArray(Protocol):
+        """Arrays and scalars of numpy, arrays of xarray and pandas."""
+
+        def __array__(self) -> Reals: ...
+
+    #: one number, or an array as numpy, xarray, pandas or lists hold it; no text
+    Numbers: TypeAlias = float | SupportsArray | Sequence[float] | Sequence[SupportsArray] | Sequence[Sequence[float]]
+    #: numbers, (times, values), or a function of time
+    Driving: TypeAlias = Numbers | tuple[Numbers, Numbers] | Callable[[float], float]
+else:
+    Numbers = Driving = Any

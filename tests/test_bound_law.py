@@ -1,0 +1,197 @@
+"""The bound law: the digits of contact() to Python, to jitted code and to C, in all regimes and from many threads."""
+
+from __future__ import annotations
+
+import ctypes
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import numba
+import numpy as np
+import pytest
+import scipy
+from processes import printed
+
+import viscoroll as vr
+from viscoroll.kernels.law.loads import Loads, LoadsAndSlopes
+
+SERIES = vr.Prony([1.0, 2.0, 3.0], [1.0, 0.1, 0.01])
+MATERIALS = {
+    "alpha": {"alpha": 11.0},
+    "alpha 1": {"alpha": 1.0},
+    "series": {"material": SERIES},
+    "series in slow time": {"material": SERIES.slower(300.0)},
+    "no modes": {"material": vr.Prony.elastic()},
+    "like bodies": {"material": vr.Bodies(SERIES, SERIES)},
+    "on an elastic base": {"material": vr.Bodies(SERIES, vr.Prony.elastic(), 0.8)},
+    "elastic bodies": {"material": vr.Bodies(vr.Prony.elastic(), vr.Prony.elastic(), 0.3)},
+}
+BAD = [(np.nan, 0.1), (0.1, np.nan), (np.inf, 0.1), (0.1, -np.inf), (1e299, 1e299)]
+
+
+@pytest.fixture(scope="module", params=MATERIALS)
+def law(request):
+    return vr.law(vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[request.param]))
+
+
+def states(scene) -> list[tuple[float, float]]:
+    """(V, omega) of full slip, of slight and of nearly full slip, free rolling and rest, from 1e-200 to 1e200."""
+    V = np.array([1e-200, 1e-20, 1e-6, 3e-3, 0.07, 0.3, 4.0, 1e4, 1e160, 1e200])
+    V = np.concatenate([V, -V])
+    delta_star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    share = np.array([[0.0], [1e-9], [0.02], [0.3], [0.8], [0.9999], [1.0], [3.0]])
+    omega = V * (1.0 + np.concatenate([share, -share]) * delta_star)
+    given = [*zip(np.broadcast_to(V, omega.shape).ravel().tolist(), omega.ravel().tolist(), strict=True)]
+    return [*given, (0.3, 0.0), (-0.3, 0.4), (0.0, 0.2), (0.0, -0.2), (-0.0, 0.2), (0.0, 0.0)]
+
+
+def bits(values) -> list[int]:
+    return np.array(values, dtype=np.float64).view(np.int64).tolist()
+
+
+@numba.njit
+def called(law, V, omega):
+    return law(V, omega)
+
+
+def test_law_is_contact_to_the_bit(law):
+    function, out = law.ctypes, (ctypes.c_double * 8)()
+    for V, omega in states(law.scene):
+        state = vr.contact(law.scene, V, omega=omega, slopes=True, fields=LoadsAndSlopes._fields)
+        expected = bits([getattr(state, name) for name in LoadsAndSlopes._fields])
+        assert bits(law(V, omega, slopes=True)) == expected, (V, omega)
+        assert bits(law(V, omega)) == expected[:4]
+        assert bits(called(law.jitted, V, omega)) == bits(law.jitted(V, omega)) == expected
+        assert function(V, omega, out, None) == 0
+        assert bits(out) == expected
+    assert len(called.signatures) == 1  # a user's function is compiled once for all laws
+
+
+def test_M_has_the_same_bits_with_slopes_and_without(law):
+    for V, omega in states(law.scene):
+        plain, sloped = (vr.contact(law.scene, V, omega=omega, slopes=slopes, fields=("Q", "M")) for slopes in (0, 1))
+        assert bits([plain.Q, plain.M]) == bits([sloped.Q, sloped.M])
+
+
+def test_arrays_are_those_of_contact(law):
+    V, omega = np.array(states(law.scene)).T
+    found = law(V, omega, slopes=True)
+    state = vr.contact(law.scene, V, omega=omega, fields=LoadsAndSlopes._fields)
+    assert isinstance(found, LoadsAndSlopes)
+    assert all(bits(values) == bits(getattr(state, name)) for name, values in found._asdict().items())
+    assert law(V[:2, None], omega[None, :3]).Q.shape == (2, 3)
+    assert isinstance(law(np.array(0.3), 0.3), Loads)
+    assert law(1, np.float64(1.0)) == law(1.0, 1.0) == law(np.float32(1.0), 1.0)
+
+
+def test_what_is_no_number_is_an_error_or_nan(law):
+    out = (ctypes.c_double * 8)()
+    for V, omega in BAD:
+        with pytest.raises(vr.ParameterError):
+            law(V, omega)
+        with pytest.raises(vr.ParameterError):
+            law(np.array([V, V]), omega)
+        out[:] = [0.0] * 8
+        assert law.ctypes(V, omega, out, None) != 0
+        assert np.isnan(out[:]).all()
+        assert np.isnan(called(law.jitted, V, omega)).all()
+    for V in ("fast", None, True, 10**400, [1.0, "x"]):
+        with pytest.raises(vr.ParameterError):
+            law(V, 1.0)
+
+
+@pytest.mark.parametrize("name", ["series", "on an elastic base"])
+def test_threads_share_a_law(name):
+    """Speeds beyond the ends of the table too, where each thread of contact() writes to a table of its own."""
+    law = vr.law(vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name]))
+    V, omega = np.array(states(law.scene)).T
+    expected = bits([law(*state, slopes=True) for state in zip(V, omega, strict=True)])
+    function = law.ctypes
+
+    def work(_):
+        wrong, out = 0, (ctypes.c_double * 8)()
+        for _ in range(30):
+            found = []
+            for state in zip(V, omega, strict=True):
+                function(*state, out, None)
+                found.append(out[:])
+            wrong += bits(found) != expected
+        return wrong
+
+    with ThreadPoolExecutor(4) as pool:
+        assert sum(pool.map(work, range(4))) == 0
+
+
+def test_scipy_takes_the_c_function(law):
+    found = scipy.LowLevelCallable(law.ctypes)
+    assert found.signature == "int (double, double, double *, void *)"
+    assert ctypes.cast(law.ctypes, ctypes.c_void_p).value == law.address
+
+
+def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
+    scene = vr.Scene(kappa=50.0, mu=0.2, material=SERIES.slower(1.7))
+    expected = vr.law(scene)(0.3, 0.3001)
+    function, jitted, out = vr.law(scene).ctypes, vr.law(scene).jitted, (ctypes.c_double * 8)()
+    others = [vr.law(scene.replace(mu=mu, material=SERIES.slower(mu))) for mu in (0.3, 0.4)]
+    function(0.3, 0.3001, out, None)
+    assert tuple(out[:4]) == jitted(0.3, 0.3001)[:4] == expected
+    assert others[0](0.3, 0.3001) != expected
+
+
+def test_a_law_around_a_jitted_function_stays_there():
+    def made():
+        law = vr.law(vr.Scene(alpha=7.0, kappa=50.0, mu=0.2)).jitted
+        return numba.njit(lambda V, omega: law(V, omega=omega).Q), law(0.3, 0.3001).Q
+
+    function, expected = made()
+    assert function(0.3, 0.3001) == expected
+
+
+def test_jitted_code_with_a_law_inside_is_not_cached(tmp_path):
+    """Addresses are those of a process: numba would serve them to the next."""
+    code = f"""
+import warnings; warnings.simplefilter("ignore")
+import sys; sys.path.insert(0, {str(tmp_path)!r})
+import user; print(user.traction(0.3, 0.3001), user.traction.stats.cache_hits)
+"""
+    (tmp_path / "user.py").write_text(
+        "import numba, viscoroll as vr\n"
+        "law = vr.law(vr.Scene(alpha=7.0, kappa=50.0, mu=0.2)).jitted\n"
+        "@numba.njit(cache=True)\n"
+        "def traction(V, omega):\n    return law(V, omega).Q\n"
+    )
+    first, second = printed(code), printed(code)
+    assert first == second
+    assert second.split()[1] == "Counter()"  # no hits
+
+
+def test_jitted_refuses_what_it_cannot_take(law):
+    with pytest.raises(numba.TypingError):
+        called(law.jitted, "fast", 1.0)
+    with pytest.raises(numba.TypingError):
+        numba.njit(lambda law: law(1.0))(law.jitted)
+
+
+def test_a_pickled_law_binds_anew(law):
+    again = pickle.loads(pickle.dumps(law))
+    assert again.scene == law.scene
+    assert again(0.3, 0.3001, slopes=True) == law(0.3, 0.3001, slopes=True)
+    with pytest.raises(TypeError, match="bind it there"):
+        pickle.dumps(law.jitted)
+
+
+@pytest.mark.parametrize(
+    ("scene", "name"),
+    [
+        (vr.Scene([2.0, 3.0], 50.0, 0.2), "alpha"),
+        (vr.Scene(2.0, [50.0], 0.2), "kappa"),
+        (vr.Scene(2.0, 50.0, np.full((2, 2), 0.2)), "mu"),
+        (vr.Scene(kappa=50.0, mu=0.2, material=vr.Prony([[1.0], [2.0]], [1.0])), "material"),
+        (vr.PAPER_CYLINDER, "scene"),
+        (2.0, "scene"),
+    ],
+)
+def test_a_law_is_of_one_scene(scene, name):
+    with pytest.raises(vr.ParameterError) as caught:
+        vr.law(scene)
+    assert caught.value.name == name
