@@ -197,6 +197,7 @@ def test_states_alone_and_in_company(drawn, speed, s):
     for name in ("lam", "epsilon", "delta_star", "Q", "M"):
         assert getattr(many, name)[-1] == pytest.approx(getattr(alone, name), rel=tol.SERIES_STATES)
     material, unit = p.in_own_time()
+    assert p.in_own_time()[0] is material  # every call of contact asks
     table, zeta = record(material), alone.zeta / unit
     g, h = generators(zeta, table)
     g_eta, h_eta = generators(alone.beta * zeta, table)

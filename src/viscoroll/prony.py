@@ -166,6 +166,10 @@ class Prony:
 
     def in_own_time(self) -> tuple[Prony, float]:
         """(The material with its slow time near 1, the time that this is counted in), a power of two: exact."""
+        return self._own
+
+    @cached_property
+    def _own(self) -> tuple[Prony, float]:
         unit = 2.0 ** round(math.log2(self.slow_time))  # of no modes it is 1
         return (self, 1.0) if unit == 1.0 else (self.slower(1.0 / unit), unit)
 

@@ -106,4 +106,5 @@ def test_own_time_of_a_pair():
     slow = vr.Bodies(SOFT.slower(2.0**30), STIFF.slower(2.0**30), 0.3)
     (here, unit), (there, again) = slow.in_own_time(), UNLIKE.in_own_time()
     assert (unit, again) == (2.0**30 * again, UNLIKE.total.in_own_time()[1])
+    assert slow.in_own_time()[0] is here  # made once, not at every call
     np.testing.assert_allclose(rolling(here, PLACES)[4:], rolling(there, PLACES)[4:], rtol=tol.BODIES)
