@@ -2,8 +2,9 @@
 Terminal speeds on a slope
 ==========================
 
-A slope pulls with sin(slope) of the weight.  The roller settles where rolling resistance is as large.  Behind each
-hump there is a second speed of balance, which is unstable: from there the roller either falls back or runs away.
+A slope pulls with sin(slope) of the weight.  The roller settles where rolling resistance
+is as large.  Behind each hump there is a second speed of balance, which is unstable: from
+there the roller either falls back or runs away.
 """
 
 import numpy as np

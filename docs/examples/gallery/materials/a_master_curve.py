@@ -2,8 +2,9 @@
 From a DMA curve to a Prony series
 ==================================
 
-A dynamic mechanical analysis (DMA) measures storage and loss modulus over frequency.  ``fit_prony`` turns them into
-as few relaxation times as the wanted misfit needs, and says what the data leave open.
+A dynamic mechanical analysis (DMA) measures storage and loss modulus over frequency.
+``fit_prony`` turns them into as few relaxation times as the wanted misfit needs, and says
+what the data leave open.
 """
 
 import matplotlib.pyplot as plt
@@ -11,7 +12,10 @@ import numpy as np
 
 import viscoroll as vr
 
-tau, strength = np.logspace(2, -7, 19), 2e6 * np.logspace(-2, 2, 19)  # in place of a measurement
+tau, strength = (
+    np.logspace(2, -7, 19),
+    2e6 * np.logspace(-2, 2, 19),
+)  # in place of a measurement
 omega = np.logspace(-3, 7, 51)  # rad/s
 z = np.multiply.outer(omega, tau)
 noise = 1.0 + 0.005 * np.random.default_rng(1).standard_normal((2, omega.size))
@@ -28,5 +32,9 @@ axes.loglog(omega, storage, "o", color="C0", markersize=3, label="storage modulu
 axes.loglog(omega, loss, "s", color="C1", markersize=3, label="loss modulus")
 for values, color in zip(fit.modulus(fine), ("C0", "C1"), strict=True):
     axes.loglog(fine, values, color=color)
-axes.set(xlabel="frequency, rad/s", ylabel="modulus, Pa", title=f"{fit.prony.E.size} relaxation times")
+axes.set(
+    xlabel="frequency, rad/s",
+    ylabel="modulus, Pa",
+    title=f"{fit.prony.E.size} relaxation times",
+)
 axes.legend(frameon=False)

@@ -2,9 +2,9 @@
 How steady is steady?
 =====================
 
-The law of steady rolling knows the speed, not its past.  Where the speed changes slowly, the next term is known
-too: M = M(V) + N(V) V'.  N acts like an added mass, and its size against (1 + j)/gamma says whether steady rolling
-may drive a motion.
+The law of steady rolling knows the speed, not its past.  Where the speed changes slowly,
+the next term is known too: M = M(V) + N(V) V'.  N acts like an added mass, and its size
+against (1 + j)/gamma says whether steady rolling may drive a motion.
 """
 
 import matplotlib.pyplot as plt
@@ -26,12 +26,23 @@ for slower in (1.0, 3.0, 6.0):
     for inertia, style in ((0.0, "-"), (1.0, ":")):
         rate = (1.0 + scene.j + inertia * scene.gamma * c.N) / (scene.gamma * c.M)
         t = cumulative_trapezoid(rate[:start], rubber.V_from_si(V[:start]), initial=0.0)
-        right.plot(rubber.t_to_si(t[-1] - t), V[:start], style, color=left.lines[-1].get_color())
-    print(f"relaxation times x {slower:g}: {scene.validity(rubber.V_from_si(2.0)).steady.sentence}")
+        right.plot(
+            rubber.t_to_si(t[-1] - t), V[:start], style, color=left.lines[-1].get_color()
+        )
+    print(
+        f"relaxation times x {slower:g}: {scene.validity(rubber.V_from_si(2.0)).steady.sentence}"
+    )
 left.set(xlabel="speed, m/s", ylabel="gamma N/(1 + j)")
 left.legend(title="relaxation times", frameon=False)
-right.set(xlabel="t, s", ylabel="speed, m/s", xlim=(0.0, 60.0), ylim=(0.0, None), title="rolling; dotted: with N")
+right.set(
+    xlabel="t, s",
+    ylabel="speed, m/s",
+    xlim=(0.0, 60.0),
+    ylim=(0.0, None),
+    title="rolling; dotted: with N",
+)
 
 # %%
-# ``validity().steady`` is this number, taken at its largest from rest to the given speed.  Up to 0.4 the motion is
-# within some 10 % of the first speed.  What lies beyond: :doc:`/may_i`.
+# ``validity().steady`` is this number, taken at its largest from rest to the given speed.
+# Up to 0.4 the motion is within some 10 % of the first speed.  What lies beyond:
+# :doc:`/may_i`.

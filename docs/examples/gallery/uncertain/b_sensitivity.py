@@ -2,8 +2,8 @@
 Which uncertain input matters?
 ==============================
 
-Sobol indices share out the variance of a result over the uncertain inputs.  A run file, :doc:`like this one
-</sensitivity>`, names the inputs and their distributions.
+Sobol indices share out the variance of a result over the uncertain inputs.  A run file,
+:doc:`like this one </sensitivity>`, names the inputs and their distributions.
 """
 
 from pathlib import Path
