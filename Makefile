@@ -55,7 +55,7 @@ numbers: setup $(TABLES) ## measure again what README and docs state, and put it
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	$(RUN) -m pipeline.document
 	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
-	for name in rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
+	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)

@@ -33,7 +33,9 @@ def geometry(scene: Scene = _SCENE, V: float = _V, share: float = _SHARE) -> Fig
     scene, V : whose contact is shown.
     share : of the critical creep ratio.
     """
-    figure, (left, right) = new_figure("", 1, 2, (9.4, 3.9), width_ratios=(1.0, 1.35))
+    figure, (left, right) = new_figure(
+        "Cylinder and half-space, and the contact between them, enlarged", 1, 2, (9.4, 4.1), width_ratios=(1.0, 1.35)
+    )
     _body(left)
     _contact(right, scene, V, share * contact(scene, V, delta=0.0).delta_star)
     return figure
@@ -100,6 +102,7 @@ def _contact(axes: Any, scene: Scene, V: float, delta: float) -> None:
     axes.set(xlim=(rear - 0.06, front + 0.34), ylim=(-0.62, 1.4), yticks=[])
     axes.set_xticks(np.arange(np.ceil(5.0 * rear), np.floor(5.0 * front) + 1.0) / 5.0)
     axes.set_xlabel("$x/l_0$, along the motion", x=0.38)
+    axes.set_ylabel("stress", y=0.6)
     axes.legend(frameon=False, loc="upper right")
     for side in ("left", "right", "top"):
         axes.spines[side].set_visible(False)
