@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from processes import made, printed, stage_refused
 
 import viscoroll as vr
 from pipeline import stage as shared
+from pipeline.demo.captions import SECTIONS
 from viscoroll.errors import OutputError
 from viscoroll.figures import (
     FIGURES,
@@ -368,8 +370,12 @@ def test_ensemble_file(demo):
 
 def test_summary_page(demo):
     config, out = demo
-    page = Page()
-    page.feed((out / "index.html").read_text(encoding="utf-8"))
+    page, text = Page(), (out / "index.html").read_text(encoding="utf-8")
+    page.feed(text)
+    assert {name for figures in SECTIONS.values() for name in figures} == NAMES
+    assert all(escape(caption) in text for figures in SECTIONS.values() for caption in figures.values())
+    assert text.index("preset paper-section-5") < text.index("Three throws") < text.index("How long it took")
+    assert "nu = 6.2e+02" in text
     assert page.open == []
     assert page.pictures == len(NAMES)
     assert {"motions.nc", "ensemble.nc", "validation.nc", "validation.txt"} <= set(page.links)
