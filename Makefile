@@ -8,10 +8,10 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := $(addprefix data/tables/,atlas.nc paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools
+.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools docs test-site site-tools release-check
 
 help: ## this list
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-14s %s\n", $$1, $$2}'
 
 setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 .venv/stamp: pyproject.toml constraints.txt
@@ -55,7 +55,7 @@ numbers: setup $(TABLES) ## measure again what README and docs state, and put it
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	$(RUN) -m pipeline.document
 	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
-	for name in rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
+	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
@@ -87,6 +87,22 @@ interop-tools: setup
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[interop]' \
 	  || echo "interop: not installed: compliance-checker"
 
+docs: .venv/docs ## the site, every example of it run: docs/_build/html/index.html (a minute or two)
+	rm -rf docs/_build docs/api docs/gallery docs/tutorial
+	$(RUN) -m sphinx -W --keep-going -n -E -q -b html docs docs/_build/html
+.venv/docs: .venv/stamp
+	$(RUN) -c 'import sphinx_gallery, pydata_sphinx_theme' 2>/dev/null \
+	  || $(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	touch $@
+
+test-site: .venv/docs site-tools ## build the site and open every page of it in a browser, which it installs
+	$(BIN)/pytest -rs tests/docs/test_site.py
+
+site-tools:
+	command -v chromium >/dev/null || { $(SUDO) apt-get update -qq; \
+	  $(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends chromium >/dev/null; } \
+	  || echo "test-site: not installed: chromium"
+
 FUZZ_SECONDS ?= 600
 fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS) and the loaders (a minute each)
 	FUZZ_SECONDS=$(FUZZ_SECONDS) $(BIN)/pytest tests/test_properties.py
@@ -104,9 +120,12 @@ torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes
 matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
 	$(RUN) -m pipeline.matrix
 
+release-check: .venv/docs ## sdist and wheel, their metadata, the README as a package page, licences; what is left to decide
+	$(RUN) -m pipeline.release
+
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
 
-clean: ## remove what was built (tables, out, caches), keep .venv
-	rm -rf data/tables out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+clean: ## remove what was built (tables, out, site, caches), keep .venv
+	rm -rf data/tables out build dist docs/_build docs/api docs/gallery docs/tutorial .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -12,7 +12,11 @@ import viscoroll as vr
 warm = vr.RUBBER_ROLLER
 cold = warm.replace(material=warm.material.slower(10.0))
 laws, gamma, j = [vr.law(scene) for scene in (warm, cold)], warm.gamma, warm.j
-speed, stiffness, damping = 0.5, 0.02, 0.05  # of the tractor; force over P, by distance and by speed
+speed, stiffness, damping = (
+    0.5,
+    0.02,
+    0.05,
+)  # of the tractor; force over P, by distance and by speed
 
 
 def rates(t, y):
@@ -21,8 +25,12 @@ def rates(t, y):
     closing = np.append(speed, V[:-1]) - V
     rope = stiffness * stretch + damping * closing
     pull = rope - np.append(rope[1:], 0.0)  # of the rope ahead less that of the one behind
-    Q, _, M_half_space, M_cylinder = np.transpose([law(*state) for law, *state in zip(laws, V, omega)])
-    return np.concatenate([closing, gamma * (Q - M_half_space + pull), gamma / j * (-Q - M_cylinder)])
+    Q, _, M_half_space, M_cylinder = np.transpose(
+        [law(*state) for law, *state in zip(laws, V, omega)]
+    )
+    return np.concatenate(
+        [closing, gamma * (Q - M_half_space + pull), gamma / j * (-Q - M_cylinder)]
+    )
 
 
 def jacobian(t, y):

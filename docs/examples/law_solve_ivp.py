@@ -29,6 +29,10 @@ def jacobian(t, y):
 
 
 t = np.linspace(0.0, 5.0, 101)
-found = solve_ivp(rates, (0.0, 5.0), [0.5, 0.0], "Radau", t, jac=jacobian, rtol=1e-8, atol=1e-10)
+found = solve_ivp(
+    rates, (0.0, 5.0), [0.5, 0.0], "Radau", t, jac=jacobian, rtol=1e-8, atol=1e-10
+)
 V, omega = found.y
-print(f"V = {V[-1]:.6f}, omega = {omega[-1]:.6f} after {found.nfev} calls of the law and {found.njev} of its slopes")
+print(
+    f"V = {V[-1]:.6f}, omega = {omega[-1]:.6f} after {found.nfev} calls of the law and {found.njev} of its slopes"
+)

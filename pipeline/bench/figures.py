@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
+from viscoroll.figures.style import log_ticks
 
 from viscoroll.files import replacing
 
-from ..document.bench import finished, paper_rows
+from ..document.bench import finished, paper_rows, random_rows
 from ..results import RESULTS, Results
 from ..stage import ROOT
 
@@ -48,6 +49,7 @@ def _work(axes: Any, rows: list[dict[str, Any]], key: str, methods: dict[str, An
     axes.set_xlabel("time of a motion, µs, one core")
     axes.set_ylim(1e-12, 10.0)
     axes.set_title(title, fontsize=9)
+    log_ticks(axes.xaxis)
 
 
 def work_precision(result: dict[str, Any]) -> Figure:
@@ -57,9 +59,9 @@ def work_precision(result: dict[str, Any]) -> Figure:
     panels = figure.subplots(1, 3, sharey=True)
     _work(panels[0], paper_rows(rows), "max", methods, "IC1-IC3, down to a speed of 1e-3: max error")
     panels[0].set_ylabel("relative error of V and ω")
-    random = [row for row in rows if row["group"] == "random"]
+    random = [row | {"p99": row.get("p99_moving")} for row in random_rows(rows)]
     for panel, (key, text) in zip(panels[1:], _ERRORS.items(), strict=True):
-        _work(panel, random, key, methods, f"{result['sizes']['motions']} random starts (peers: fewer): {text}")
+        _work(panel, random, key, methods, f"{result['sizes']['motions']} random starts, down to 1e-3: {text}")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
     return figure
@@ -86,6 +88,7 @@ def tables(result: dict[str, Any]) -> Figure:
             _line(panel, kind, points, kind, lw=1, ms=6)
         panel.grid(True, color="0.9")
         panel.set_xlabel(text)
+        log_ticks(panel.xaxis)
     panels[0].set_ylabel(r"max error of $Q/\mu$")
     panels[0].legend(fontsize=8, frameon=False)
     return figure
@@ -104,7 +107,9 @@ def scaling(result: dict[str, Any]) -> Figure:
             _line(panel, name, points, f"{name}, {threads} thread{'s' * (threads > 1)}", **style)
         panel.set(xlabel="motions", ylabel=text)
         panel.grid(True, color="0.9")
-    panels[0].legend(fontsize=8, frameon=False)
+    panels[0].legend(fontsize=8, frameon=False, loc="center right")
+    panels[1].set_yscale("linear")
+    panels[1].set_ylim(0.0, None)
     return figure
 
 

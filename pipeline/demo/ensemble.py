@@ -56,6 +56,7 @@ def work(settings: Ensemble, out: Path) -> stage.Outcome:
     write_dataset(dataset, path)
     microseconds = 1e6 * seconds / settings.motions
     headline: dict[str, float | int | str] = {
+        "preset": settings.preset,
         "motions": settings.motions,
         f"time on {thread_count()} threads, s": seconds,
         "time per motion, us": microseconds,

@@ -58,7 +58,8 @@ def work(settings: Motions, out: Path) -> stage.Outcome:
     dataset.attrs |= {"title": "Motions of the paper's Sect. 5.1", "preset": settings.preset, "rtol": settings.rtol}
     path = out / "motions.nc"
     write_dataset(dataset, path, stage.plain_encoding(dataset))
-    headline: dict[str, float | int | str] = {
+    headline: dict[str, float | int | str] = {"preset": settings.preset}
+    headline |= {
         f"{name}: onset of stick": f"t = {motion.onset_time:.6g}, V = {motion.at(motion.onset_time).V[0]:.4f}"
         for name, (motion, _) in motions.items()
     }

@@ -20,9 +20,11 @@ import msgspec
 import viscoroll as vr
 from viscoroll.errors import FileProblem
 from viscoroll.files import write_text
+from viscoroll.presets import PRESETS
 from viscoroll.tables import schema
 
 from .. import stage
+from .captions import SECTIONS
 
 STAGES = {
     "tabulate": "Building the tables",
@@ -87,38 +89,61 @@ def link(path: Path, out: Path) -> str:
     return f'<a href="{escape(target)}">{escape(path.name)}</a>'
 
 
-def picture(path: Path, out: Path) -> str:
+def picture(path: Path, out: Path, caption: str) -> str:
     """A figure with its image in the page itself."""
     data = base64.b64encode(path.read_bytes()).decode()
-    source = f"data:image/png;base64,{data}"
-    return f'<figure><img src="{source}" alt="{escape(path.stem)}"><figcaption>{link(path, out)}</figcaption></figure>'
+    image = f'<img src="data:image/png;base64,{data}" alt="{escape(caption)}">'
+    return f"<figure>{image}<figcaption>{escape(caption)} {link(path, out)}</figcaption></figure>"
+
+
+def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
+    """The sections of figures, each with its numbers."""
+    drawn = {Path(file).stem: out / file for file in found["figures"]["files"]}
+    numbers = {"Three throws": "motions", "Random throws": "ensemble"}
+    parts = []
+    for title, captions in SECTIONS.items():
+        parts.append(f"<h2>{escape(title)}</h2>")
+        if title in numbers:
+            parts.append(rows(found[numbers[title]]["headline"]))
+            parts += [f"<p>{link(out / file, out)}</p>" for file in found[numbers[title]]["files"]]
+        parts += [picture(drawn.pop(name), out, caption) for name, caption in captions.items() if name in drawn]
+    return parts + [picture(path, out, name) for name, path in drawn.items()]
+
+
+def introduced(found: dict[str, dict[str, Any]]) -> str:
+    """What rolls on this page, and what that is worth."""
+    names = {found[name]["headline"].get("preset", "") for name in ("motions", "ensemble")} - {""}
+    scenes = " and ".join(f"preset {escape(name)}: {escape(str(PRESETS[name]))}" for name in sorted(names))
+    fastest = max(abs(V0) for V0, _ in vr.PAPER_STARTS.values())
+    worth = "; ".join(PRESETS[name].validity(fastest).steady.sentence for name in sorted(names))
+    return (
+        f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: the example of the paper's "
+        f"Sect. 5, {scenes}.  Everything is dimensionless.</p><p>For motions: {escape(worth)}.</p>"
+    )
 
 
 def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> str:
-    """The whole page."""
+    """The whole page: the physics first, then tables and checks, seconds last."""
     failed = found["validate"]["failed"]
     verdict = '<span class="bad">a stated tolerance is exceeded</span>' if failed else "every check passed"
     parts = [
         "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>viscoroll</title>',
-        f"<style>{_STYLE}</style></head><body>", "<h1>viscoroll: what was computed</h1>",
-        f"<p>viscoroll {escape(vr.__version__)}.  Everything is dimensionless.  Validation: {verdict}.</p>",
-        "<h2>Times, s</h2>", rows({name: record["seconds"] for name, record in found.items()}), "<h2>Tables</h2>",
+        f"<style>{_STYLE}</style></head><body>", "<h1>A viscoelastic cylinder, rolling and sliding</h1>",
+        introduced(found), *pictures(out, found), "<h2>Tables</h2>",
     ]  # fmt: skip
     for path, facts in tables.items():
         parts.append(f"<h3>{link(path, out)} ({facts['MB']:.1f} MB)</h3>")
         parts.append(f"<p>{escape(facts['title'])}.  {escape(facts['grid'])}.</p>")
-        parts.append("<p>Largest interpolation error off the nodes, absolute:</p>" + rows(facts["errors"]))
-    for name, title in STAGES.items():
-        parts.append(f"<h2>{escape(title)}</h2>")
-        files = [out / file for file in found[name]["files"]]
-        if found[name]["headline"]:
-            parts.append(rows(found[name]["headline"]))
-        pictures = [path for path in files if path.suffix == ".png"]
-        others = [link(path, out) for path in files if path not in pictures]
-        parts.append(f"<p>{', '.join(others)}</p>" if others else "")
-        parts += [picture(path, out) for path in pictures]
+        parts.append("<p>Largest error of interpolation between the nodes, absolute:</p>" + rows(facts["errors"]))
     report = (out / "validation.txt").read_text(encoding="utf-8")
-    parts.append(f"<h2>All checks</h2><pre>{escape(report)}</pre></body></html>")
+    parts += [
+        "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
+        rows(found["validate"]["headline"]),
+        f"<p>{', '.join(link(out / file, out) for file in found['validate']['files'])}</p>",
+        f"<pre>{escape(report)}</pre>",
+        f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
+        rows({STAGES[name]: record["seconds"] for name, record in found.items()}), "</body></html>",
+    ]  # fmt: skip
     return "\n".join(part for part in parts if part) + "\n"
 
 

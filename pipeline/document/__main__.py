@@ -26,8 +26,8 @@ from . import bench, ensembles, tables
 #: who measures what a block shows
 STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     "measure": {
-        "headline": tables.headline, "contact": tables.contact, "direct": tables.direct, "stress": tables.stress,
-        "motion": tables.motion, "times": tables.times,
+        "headline": tables.headline, "three": tables.three, "contact": tables.contact, "direct": tables.direct,
+        "stress": tables.stress, "motion": tables.motion, "times": tables.times,
     },
     "measure.large": {"large": tables.large},
     "measure.loading": {"loading": tables.loading, "loading_steps": tables.loading_steps},

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ..results import Results, rows_of, table
 from .cells import cell, listed, stated, two
 
@@ -24,6 +26,11 @@ _HEADLINE = {
     "`ensemble()` of one scene, a motion, from the flow map": "{time[flow_us]!n} µs",
     **_IMPORT,
 }
+_THREE = {
+    "contact state against 50 digits, worst of {sizes[states]}": "{worst_contact!n}",
+    "friction and rolling resistance, one of many states": "{time[contact_one_alpha_ns]!n} ns",
+    "one motion (rtol 1e-8); one of many, looked up": "{time[roll_1e-08_us]!n} µs; {time[flow_us]!n} µs",
+}
 _TIMES = {
     "`contact()`, Q and M, {sizes[timed_states]} states, one alpha": "{time[contact_one_alpha_ns]!n} ns a state",
     "the same, an alpha each": "{time[contact_an_alpha_each_ns]!n} ns a state",
@@ -43,13 +50,19 @@ _MACHINE = (
 )
 
 
-def headline(results: Results) -> str:
+def headline(results: Results, lines: Mapping[str, str] = _HEADLINE) -> str:
+    """What matters most of all that was measured."""
     m = results["measured"]
     own = {
         "worst_contact": max(field["worst"] for field in m["contact_error"].values()),
         "worst_closure": max(m["stress_closure"].values()), "motion": m["motion_error"]["paper"]["1e-08"],
     }  # fmt: skip
-    return stated(("what", "measured"), _HEADLINE, m | own) + cell(_MACHINE, m["machine"])
+    return stated(("what", "measured"), lines, m | own) + cell(_MACHINE, m["machine"])
+
+
+def three(results: Results) -> str:
+    """Of that, three numbers for the README."""
+    return headline(results, _THREE)
 
 
 def times(results: Results) -> str:

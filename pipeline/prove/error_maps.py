@@ -1,11 +1,12 @@
 """Where the contact law is how accurate -> data/results/error-maps.nc and docs/figures/error-maps.png (kept in git).
 
-    python -m pipeline.prove.error_maps [--config FILE] [--quick] [-o FILE] [--figure FILE]
+    python -m pipeline.prove.error_maps [--config FILE] [--quick] [-o FILE] [--figure FILE] [--draw]
 
 Largest relative error in each cell of a grid, over random states in it, against certified enclosures: of lam,
 epsilon, delta_star and M over (kappa V, alpha), of Q and beta over (kappa V, s) at one alpha, where there are
 two ways: state by state, and by the slice of that alpha.  beta's is times 1 - s, over its condition number.
 Grid, states a cell and seed are in [error_maps] of the configuration, those of --quick in [error_maps.quick].
+With --draw nothing is computed: the figure is drawn from the file.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from tqdm import tqdm
 
 from viscoroll.figures import save
 from viscoroll.files import write_dataset
-from viscoroll.plots.style import new_figure, number
+from viscoroll.plots.style import new_figure
 from viscoroll.reference import contact_enclosure
 from viscoroll.symbols import SYMBOLS, label
 
@@ -35,8 +36,10 @@ if TYPE_CHECKING:
 BY_ALPHA = ("lam", "epsilon", "delta_star", "M")
 BY_CREEP = ("Q", "beta")
 WAYS = {"one by one": one_by_one, "slice": by_slice}
-#: darkest shade of the figure: the relative error that the documentation states
-STATED = 1e-13
+#: the figure: half a unit in the last place, and steps of shade in units of it, up to less than 1e-13
+ROUNDING = 2.0**-53
+LEVELS = (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 40.0)
+POOLED = 4
 State = tuple[float, float, float, float, float]
 
 
@@ -110,35 +113,47 @@ def described(name: str) -> dict[str, str]:
 
 
 def drawn(maps: xr.Dataset) -> Figure:
-    """lam, epsilon, delta_star, M above; Q and beta by both ways below; one scale of greys."""
-    from matplotlib.colors import LogNorm
+    """lam, epsilon, delta_star, M above; Q and beta by both ways below; one scale, in roundings."""
+    from matplotlib import colormaps
+    from matplotlib.colors import BoundaryNorm
 
-    figure, panels = new_figure("Largest relative error in a cell, against certified enclosures", 2, 4, (12.0, 6.0))
-    scale = LogNorm(1e-17, STATED)
+    title = f"Largest relative error, in roundings of {ROUNDING:.2g}; {POOLED} by {POOLED} cells of the data together"
+    figure, panels = new_figure(title, 2, 4, (12.0, 6.0), sharex=True)
+    shades = colormaps["YlGnBu"].resampled(len(LEVELS))
+    scale = BoundaryNorm(LEVELS, len(LEVELS), extend="max")
     across = maps["kappa_V_edge"].values
-    for axes, name in zip(panels[0], BY_ALPHA, strict=True):
-        values = np.maximum(maps[name].values, scale.vmin)
-        mesh = axes.pcolormesh(across, maps["alpha_less_1_edge"].values, values, norm=scale, cmap="Greys")
-        axes.set_ylabel(rf"${SYMBOLS['alpha'].latex} - 1$")
-        axes.set_title(f"{label(name)}: largest ${number(float(maps[name].max()), 2)}$", fontsize="small")
     below = [(name, way) for name in BY_CREEP for way in WAYS]
+    for axes, name in zip(panels[0], BY_ALPHA, strict=True):
+        _map(axes, across, maps["alpha_less_1_edge"].values, maps[name].values, norm=scale, cmap=shades)
+        axes.set_title(f"{label(name)}: up to {float(maps[name].max()) / ROUNDING:.2g}", fontsize="medium")
     for axes, (name, way) in zip(panels[1], below, strict=True):
         errors = maps[variable(name, way)]
-        values = np.maximum(errors.values, scale.vmin)
-        axes.pcolormesh(across, maps["s_over_1_less_s_edge"].values, values, norm=scale, cmap="Greys")
-        axes.set_ylabel(r"$s/(1 - s)$")
+        mesh = _map(axes, across, maps["s_over_1_less_s_edge"].values, errors.values, norm=scale, cmap=shades)
         shown = label(name) + (" times $1 - s$" if name == "beta" else "")
-        axes.set_title(f"{shown}, {way}: largest ${number(float(errors.max()), 2)}$", fontsize="small")
-    for axes in panels.flat:
-        axes.set(xscale="log", yscale="log", xlabel=label("kappa_V"))
-    figure.colorbar(mesh, ax=panels, extend="max").set_label(f"relative error; black: above {STATED:g}")
+        axes.set_title(f"{shown}, {way}: up to {float(errors.max()) / ROUNDING:.2g}", fontsize="medium")
+        axes.set_xlabel(label("kappa_V"))
+    panels[0, 0].set_ylabel(rf"${SYMBOLS['alpha'].latex} - 1$")
+    panels[1, 0].set_ylabel(r"$s/(1 - s)$")
+    figure.colorbar(mesh, ax=panels, ticks=LEVELS).set_label("roundings")
     return figure
+
+
+def _map(axes: Any, across: NDArray, up: NDArray, errors: NDArray, **style: Any) -> Any:
+    """Errors in roundings, the largest of POOLED by POOLED cells: single cells of few states are noise."""
+    kept = [(n // POOLED) * POOLED for n in errors.shape]
+    blocks = errors[: kept[0], : kept[1]].reshape(kept[0] // POOLED, POOLED, kept[1] // POOLED, POOLED)
+    values = blocks.max(axis=(1, 3)) / ROUNDING
+    axes.set(xscale="log", yscale="log")
+    return axes.pcolormesh(across[: kept[1] + 1 : POOLED], up[: kept[0] + 1 : POOLED], values, **style)
 
 
 def main() -> int:
     options = parser(__doc__, RESULTS / "error-maps.nc")
     options.add_argument("--figure", type=Path, default=ROOT / "docs/figures/error-maps.png")
+    options.add_argument("--draw", action="store_true", help="draw the figure from the file alone")
     arguments = options.parse_args()
+    if arguments.draw:
+        return told("error_maps", lambda: save(drawn(xr.load_dataset(arguments.output)), arguments.figure))
     return told("error_maps", lambda: make(arguments.config, arguments.quick, arguments.output, arguments.figure))
 
 

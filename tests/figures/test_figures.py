@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from processes import made, printed, stage_refused
 
 import viscoroll as vr
 from pipeline import stage as shared
+from pipeline.demo.captions import SECTIONS
 from viscoroll.errors import OutputError
 from viscoroll.figures import (
     FIGURES,
@@ -42,7 +44,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {
     "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble",
     "rolling-resistance", "rolling-equilibria", "law-of-modes", "law-of-pairs", "broad-stresses",
-    "wheel-spin", "reversal", "slope",
+    "wheel-spin", "reversal", "slope", "geometry",
 }  # fmt: skip
 
 
@@ -67,7 +69,7 @@ def test_names():
 def test_titled_and_labelled(drawn):
     for name, figure in drawn.items():
         assert figure.get_suptitle(), name
-        panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+        panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>" and axes.axison]
         assert any("$" in axes.get_xlabel() for axes in panels), name
         for axes in panels:
             shared_below = axes.get_shared_x_axes().get_siblings(axes) != [axes]
@@ -368,8 +370,12 @@ def test_ensemble_file(demo):
 
 def test_summary_page(demo):
     config, out = demo
-    page = Page()
-    page.feed((out / "index.html").read_text(encoding="utf-8"))
+    page, text = Page(), (out / "index.html").read_text(encoding="utf-8")
+    page.feed(text)
+    assert {name for figures in SECTIONS.values() for name in figures} == NAMES
+    assert all(escape(caption) in text for figures in SECTIONS.values() for caption in figures.values())
+    assert text.index("preset paper-section-5") < text.index("Three throws") < text.index("How long it took")
+    assert "nu = 6.2e+02" in text
     assert page.open == []
     assert page.pictures == len(NAMES)
     assert {"motions.nc", "ensemble.nc", "validation.nc", "validation.txt"} <= set(page.links)

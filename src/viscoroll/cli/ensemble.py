@@ -32,7 +32,7 @@ def add_commands(commands: Any) -> None:
     parser = commands.add_parser(
         "ensemble",
         help="many motions with random starts and parameters",
-        description="By a run file, into a store that outlives any end:\n"
+        description="By a run file, into a store that an interrupted run can be continued from:\n"
         "  viscoroll ensemble RUN.toml -o STORE.zarr   roll what is missing in the store, and summarise\n"
         "  viscoroll ensemble verify STORE.zarr        every file against its SHA-256; exit code 1 if one differs\n"
         "  viscoroll ensemble export STORE.zarr -o FILE.nc\n"

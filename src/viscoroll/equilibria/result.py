@@ -27,6 +27,8 @@ _FIELDS = (
 class Loss:
     """Where the power goes, over P R/T_ref (W per m of length where the call was in SI units).
 
+    Attributes
+    ----------
     slip : in the contact, (omega - V) Q.
     half_space, cylinder : in rolling, V M_half_space and omega M_cylinder; their sum with ``slip`` is what force and
         torque put in.

@@ -14,6 +14,7 @@ from ..plots.style import save
 from .deceleration import figure_5, figure_6, figure_7
 from .distribution import ensemble_distribution
 from .drive import reversal, wheel_spin
+from .geometry import geometry
 from .law import figure_2, figure_3
 from .maps import atlas_errors
 from .material import rolling_resistance
@@ -29,11 +30,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FIGURES", "atlas_errors", "broad_stresses", "ensemble_distribution", "figure_2", "figure_3", "figure_5",
-    "figure_6", "figure_7", "law_of_materials", "law_of_pairs", "phase_portrait", "reversal", "rolling_equilibria",
-    "rolling_resistance", "run_distributions", "save", "slope_portrait", "sobol_bars", "wheel_spin",
+    "figure_6", "figure_7", "geometry", "law_of_materials", "law_of_pairs", "phase_portrait", "reversal",
+    "rolling_equilibria", "rolling_resistance", "run_distributions", "save", "slope_portrait", "sobol_bars",
+    "wheel_spin",
 ]  # fmt: skip
 
 FIGURES: dict[str, Callable[..., Figure]] = {
+    "geometry": geometry,
     "figure-2": figure_2,
     "figure-3": figure_3,
     "figure-5": figure_5,

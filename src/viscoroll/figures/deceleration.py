@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..motion import Motion, roll
-from ..plots.style import LINES, MARKERS, THIN, describe, new_figure, number, scaled
+from ..plots.style import LINES, MARKERS, THIN, caveat, describe, new_figure, number, scaled
 from ..presets import PAPER_SECTION_5, PAPER_STARTS
 from ..rolling_contact import stress
 from ..scene import Scene
@@ -22,6 +23,8 @@ _SCENE = ("alpha", "kappa", "mu", "gamma")
 _END, _TIMES = 4e-3, 2001
 #: Times are shown in units of 1e-4.
 _EXPONENT, _UNIT = 4, 1e4
+#: Fig. 7: points of 801 that make the front edge, and how much of x/l0 its inset shows
+_FRONT, _NEAR = 30, 0.02
 
 
 def _rolled(scene: Scene, start: tuple[float, float]) -> Motion:
@@ -35,7 +38,9 @@ def _rolled(scene: Scene, start: tuple[float, float]) -> Motion:
 
 def figure_5(scene: Scene = PAPER_SECTION_5, starts: dict[str, tuple[float, float]] = PAPER_STARTS) -> Figure:
     """V and omega over time for each start (at most three); the inset shows the onset of stick of the first."""
-    figure, axes = new_figure(f"Deceleration, Eq. (22), for {describe(scene, *_SCENE)}", size=(7.6, 5.4))
+    fastest = max(abs(start[0]) for start in starts.values())
+    title = f"Deceleration, Eq. (22), for {describe(scene, *_SCENE)}" + caveat(scene, fastest)
+    figure, axes = new_figure(title, size=(7.6, 5.4))
     motions = {name: _rolled(scene, start) for name, start in starts.items()}
     first = next(iter(motions.values()))
     inset = _inset(axes, (0.42, 0.69, 0.55, 0.28), first, (0.96, 1.06))
@@ -76,23 +81,27 @@ def figure_6(
     start: tuple[float, float] = PAPER_STARTS["IC1"],
     times: tuple[float, ...] = PAPER_TIMES,
 ) -> Figure:
-    """delta, lam, epsilon and beta over time; circles at ``times``, the inset around the onset of stick."""
-    title = f"Contact during deceleration from {_start(start)}\nfor {describe(scene, *_SCENE)}"
-    figure, axes = new_figure(title, size=(7.6, 5.2))
+    """delta, lam, epsilon and beta over time (b), and around the onset of stick (a); circles at ``times``."""
+    title = f"Contact during deceleration from {_start(start)} for {describe(scene, *_SCENE)}" + caveat(scene, start[0])
     motion, marked = _rolled(scene, start), roll(scene, *start, times)
-    inset = _inset(axes, (0.3, 0.07, 0.47, 0.36), motion, (0.97, 1.12))
-    for box in (axes, inset) if inset is not None else (axes,):
-        for name, line in zip(("delta", "lam", "epsilon", "beta"), LINES, strict=True):
-            along, at_times = (m.delta if name == "delta" else getattr(m.contact(name), name) for m in (motion, marked))
-            box.plot(_UNIT * motion.t, along, label=label(name), **line)
-            box.plot(_UNIT * marked.t, at_times, "o", color=line["color"], markerfacecolor="none", markersize=5.5)
-    if inset is not None:
-        inset.set_ylim(-0.08, 1.04)
-        axes.indicate_inset_zoom(inset, edgecolor="0.3")
-    axes.axhline(0.0, **THIN)
-    axes.set(xlim=(0.0, _UNIT * _END), ylim=(-1.0, 1.1), xlabel=scaled("t", _EXPONENT))
-    axes.set_ylabel(", ".join(label(name) for name in ("delta", "lam", "epsilon", "beta")))
-    axes.legend(frameon=False, loc="lower right")
+    onset = _UNIT * motion.onset_time
+    if np.isnan(onset):
+        figure, axes = new_figure(title, size=(7.6, 4.4))
+        panels = [(axes, "", _UNIT * _END)]
+    else:
+        figure, (near, whole) = new_figure(title, 1, 2, (9.6, 4.4), sharey=True, width_ratios=(1.0, 1.6))
+        panels = [(near, "a) around the onset of stick", 1.25 * onset), (whole, "b) to rest", _UNIT * _END)]
+    for axes, name, end in panels:
+        for quantity, line in zip(("delta", "lam", "epsilon", "beta"), LINES, strict=True):
+            along, at_times = (
+                m.delta if quantity == "delta" else getattr(m.contact(quantity), quantity) for m in (motion, marked)
+            )
+            axes.plot(_UNIT * motion.t, along, label=label(quantity), **line)
+            axes.plot(_UNIT * marked.t, at_times, "o", color=line["color"], markerfacecolor="none", markersize=5.5)
+        axes.axhline(0.0, **THIN)
+        axes.set(xlim=(0.0, end), ylim=(-0.75, 1.1), xlabel=scaled("t", _EXPONENT), title=name)
+    panels[0][0].set_ylabel(", ".join(label(name) for name in ("delta", "lam", "epsilon", "beta")))
+    panels[-1][0].legend(frameon=False, loc="lower right")
     return figure
 
 
@@ -102,7 +111,10 @@ def figure_7(
     times: tuple[float, ...] = PAPER_TIMES,
 ) -> Figure:
     """Shear stress and mu p along the contact at four times of a motion."""
-    title = f"Stresses, Eqs. (11)-(13), during deceleration from {_start(start)}\nfor {describe(scene, *_SCENE)}"
+    title = (
+        f"Stresses, Eqs. (11)-(13), during deceleration from {_start(start)}\nfor {describe(scene, *_SCENE)}"
+        + caveat(scene, start[0])
+    )
     figure, panels = new_figure(title, 2, 2, (8.4, 6.0), sharex=True, sharey=True)
     motion = roll(scene, *start, times)
     state = motion.contact(("lam", "epsilon", "beta"))
@@ -116,12 +128,26 @@ def figure_7(
         axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
         text = f"{label('delta')} = ${number(motion.delta[n], 2)}$, {label('beta')} = {state.beta[n]:.3f}"
         axes.set_title(rf"{label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
+        if found.p[-_FRONT:].max() > found.p[-2 * _FRONT]:  # pressure rises towards the front edge
+            _front_edge(axes, x, found, scene.mu)
     for axes in panels[1]:
         axes.set_xlabel("$x/l_0$")
     for axes in panels[:, 0]:
         axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
     panels[0, 0].legend(frameon=False, loc="upper left")
     return figure
+
+
+def _front_edge(axes: Any, x: NDArray, found: Any, mu: float) -> None:
+    """An inset of the front edge: material that has not relaxed yet makes a narrow peak there."""
+    inset = axes.inset_axes((0.52, 0.5, 0.4, 0.42))
+    inset.plot(x, 1e3 * mu * found.p, **LINES[1])
+    inset.plot(x, 1e3 * np.abs(found.tau), **LINES[0])
+    near = x > x[-1] - _NEAR
+    inset.set(xlim=(x[-1] - _NEAR, x[-1] + 0.15 * _NEAR), ylim=(0.0, 1.3e3 * mu * float(found.p[near].max())))
+    inset.set_title("front edge", fontsize="small")
+    inset.locator_params(nbins=3)
+    inset.tick_params(labelsize="small")
 
 
 def _start(start: tuple[float, float]) -> str:

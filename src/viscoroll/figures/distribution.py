@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..plots.style import THIN, new_figure, number, scaled
-from ..presets import PAPER_SECTION_5_ROUNDED
+from ..presets import PAPER_SECTION_5
 from ..symbols import label
 
 if TYPE_CHECKING:
@@ -58,5 +58,5 @@ def _small_ensemble() -> tuple[xr.Dataset, xr.Dataset]:
     from ..sampling import sample
 
     starts = sample(2048, 0, "sobol", V0=uniform(-2, 4), omega0=uniform(-2, 4))
-    result = ensemble(PAPER_SECTION_5_ROUNDED, starts["V0"], starts["omega0"], np.linspace(0.0, 4e-3, 41), rtol=1e-6)
+    result = ensemble(PAPER_SECTION_5, starts["V0"], starts["omega0"], np.linspace(0.0, 4e-3, 41), rtol=1e-6)
     return result.summary(), result.to_xarray()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, roll
-from ..plots.style import LINES, SHADES, THIN, describe, new_figure, scaled
+from ..plots.style import LINES, SHADES, THIN, caveat, describe, new_figure, scaled
 from ..presets import PAPER_SECTION_5
 from ..scene import Scene
 from ..symbols import label
@@ -32,7 +32,7 @@ def wheel_spin(scene: Scene = PAPER_SECTION_5) -> Figure:
     times, torque = np.array(_RAMP[0]) / scene.gamma, np.array(_RAMP[1]) * grip
     t = np.unique(np.concatenate([np.linspace(0.0, _END / scene.gamma, 801), times]))
     motion = roll(scene, 0.0, 0.0, t, torque=(times, torque))
-    title = f"A start with wheel spin for {describe(scene, *_SCENE)}"
+    title = f"A start with wheel spin for {describe(scene, *_SCENE)}" + caveat(scene, float(motion.V.max()))
     figure, (top, bottom) = new_figure(title, 2, 1, (7.2, 5.6), sharex=True)
     _speeds(top, motion)
     Q = motion.contact("Q").Q
@@ -75,6 +75,7 @@ def reversal(scene: Scene = PAPER_SECTION_5, V0: float = 0.5) -> Figure:
     motion = roll(scene, V0, V0, t, torque=torque)
     Q = motion.contact("Q").Q
     title = f"Braked through V = 0 by a torque of {torque:.3g} over load times radius\nfor {describe(scene, *_SCENE)}"
+    title += caveat(scene, V0)
     figure, (left, right) = new_figure(title, 1, 2, (9.6, 4.2))
     _speeds(left, motion)
     left.axvline(_UNIT * turn, **THIN)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..motion import Motion, roll
-from ..plots.style import SHADES, describe, new_figure
+from ..plots.style import SHADES, caveat, describe, new_figure
 from ..presets import PAPER_SECTION_5
 from ..rolling_contact import contact
 from ..scene import Scene
@@ -25,7 +25,7 @@ _SLOW = {"color": "black", "linewidth": 1.6}
 
 def phase_portrait(scene: Scene = PAPER_SECTION_5) -> Figure:
     """Left: the plane; right: the same over V with omega - V stretched, where partial slip has room."""
-    title = f"Phase portrait of Eq. (22) for {describe(scene, 'alpha', 'kappa', 'mu', 'j')}"
+    title = f"Phase portrait of Eq. (22) for {describe(scene, 'alpha', 'kappa', 'mu', 'j')}" + caveat(scene, _RADIUS)
     figure, (left, right) = new_figure(title, 1, 2, (10.0, 5.4))
     V = np.linspace(-1.25 * _RADIUS, 1.25 * _RADIUS, 801)
     half = contact(scene, V, delta=0.0, fields="delta_star").delta_star * np.abs(V)

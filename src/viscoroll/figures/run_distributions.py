@@ -35,6 +35,9 @@ def run_distributions(summaries: xr.Dataset) -> Figure:
         else:
             _levels(left, summaries, name)
         _bars(right, summaries, name)
+        for axes in (left, right):
+            axes.locator_params(nbins=6)
+            axes.ticklabel_format(style="sci", scilimits=(-2, 5))
     return figure
 
 
@@ -71,7 +74,7 @@ def _bars(axes: Any, summaries: xr.Dataset, name: str) -> None:
     counts = counts[:, -1] if counts.ndim == 2 else counts
     low, high = summaries[f"{name}_bin_low"].values, summaries[f"{name}_bin_high"].values
     t = summaries["t"]
-    at = with_unit(f" at t = {t.values[-1]:g}", t.attrs["units"]) if summaries[f"{name}_mean"].ndim else ""
+    at = with_unit(f", at t = {t.values[-1]:g}", t.attrs["units"]) if summaries[f"{name}_mean"].ndim else ""
     axes.set(xlabel=_label(summaries, name) + at, ylabel=f"motions, of {counts.sum()}")
     if not counts.any():
         axes.set_title("no values", fontsize="small")

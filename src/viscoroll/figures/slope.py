@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..equilibria import steady
 from ..motion import Motion, ensemble, roll
-from ..plots.style import LINES, SHADES, describe, new_figure
+from ..plots.style import LINES, SHADES, caveat, describe, new_figure
 from ..presets import PAPER_SECTION_5
 from ..rolling_contact import contact
 from ..scene import Scene
@@ -46,7 +46,7 @@ def slope_portrait(scene: Scene = PAPER_SECTION_5, slope: float = np.radians(3.0
     border = separatrix(scene, slope, across)
     motions, slow = _motions(scene, slope, plane), _slow_manifold(scene, slope, saddle, plane)
     angle = f"${np.degrees(slope):.3g}^\\circ$"
-    title = f"A slope of {angle} for {describe(scene, 'alpha', 'kappa', 'mu', 'j')}"
+    title = f"A slope of {angle} for {describe(scene, 'alpha', 'kappa', 'mu', 'j')}" + caveat(scene, saddle)
     figure, (left, right) = new_figure(title, 1, 2, (10.0, 5.4))
     for axes, diagonal, unit in ((left, 1.0, 1.0), (right, 0.0, _STRETCH)):
         # the height over V: omega itself, or omega - V stretched

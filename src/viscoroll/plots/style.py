@@ -38,6 +38,24 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
+def log_ticks(axis: Any) -> None:
+    """Labels of a logarithmic axis that do not meet: 1, 2, 5 in plain digits below two decades, else powers of ten."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    if high < 100.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def caveat(scene: Any, V: float) -> str:
+    """A line for the title of a motion that the law of steady rolling may not drive; else nothing."""
+    steady = scene.validity(V).steady
+    nu = f"{float(f'{steady.value:.1g}'):g}"
+    return "" if steady.holds else f"\n(nu = {nu}: Eq. (22) solved, not how such a cylinder would move)"
+
+
 def describe(scene: Any, *names: str) -> str:
     """The named parameters of a scene, for a title line."""
     return ", ".join(f"${SYMBOLS[name].latex} = {number(getattr(scene, name))}$" for name in names)

@@ -1,4 +1,4 @@
-"""Ensembles from a run file: uncertain inputs -> blocks -> a results store that survives any end.
+"""Ensembles from a run file: uncertain inputs -> blocks -> a results store that an interrupted run continues.
 
 Read in this order: :mod:`runfile` (with :mod:`sources`, :mod:`inputs` and :mod:`units`), :mod:`draws`,
 :mod:`evaluate`, :mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and

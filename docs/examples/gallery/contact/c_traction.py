@@ -1,0 +1,28 @@
+"""
+Traction over creep
+===================
+
+How much friction does a given creep raise?  At rest and for an elastic material the answer
+is Carter's parabola. Viscosity changes its scale: a fast contact is shorter and stiffer.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import viscoroll as vr
+
+scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3)
+creep = np.linspace(-0.02, 0.02, 401)
+figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
+for V in (1e-4, 0.03, 0.1, 1.0):
+    axes.plot(
+        100.0 * creep, vr.contact(scene, V, delta=creep, fields="Q").Q, label=f"V = {V:g}"
+    )
+axes.plot(
+    100.0 * creep,
+    vr.contact(scene.replace(alpha=1.0), 1.0, delta=creep).Q,
+    "k:",
+    label="elastic (Carter)",
+)
+axes.set(xlabel="creep (omega - V)/V, %", ylabel="traction Q, over load")
+axes.legend(frameon=False)

@@ -1,0 +1,32 @@
+"""
+Rolling resistance at three temperatures
+========================================
+
+Temperature multiplies all relaxation times of a rubber by one factor (here that of
+Williams, Landel and Ferry).  So the curve of rolling resistance keeps its shape and slides
+along the speed axis: in the cold it peaks at a snail's pace, in the heat beyond any speed
+of rollers.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import viscoroll as vr
+
+rubber = vr.Material(
+    E=3e6,
+    nu=0.5,
+    prony=vr.Prony(E=[0.3, 0.5, 0.9, 1.6, 3.0], tau=[1e-1, 1e-2, 1e-3, 1e-4, 1e-5]),
+    name="rubber",
+)
+shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+speed = np.geomspace(1e-3, 1e3, 300)  # m/s
+figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
+for temperature in (-10.0, 20.0, 60.0):
+    roller = vr.Cylinder(
+        R=0.05, m=9.0, material=rubber.at(temperature, shift=shift), mu=0.6, load=2000.0
+    )
+    M = vr.contact(roller.scene(), roller.V_from_si(speed), delta=0.0, fields="M").M
+    axes.semilogx(speed, 100.0 * M, label=f"{temperature:g} °C")
+axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
+axes.legend(frameon=False)

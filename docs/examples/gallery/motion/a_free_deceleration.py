@@ -1,0 +1,34 @@
+"""
+A rubber roller slows down
+==========================
+
+A rubber roller is thrown at 2 m/s without spin.  It slides first: friction spins it up
+within a quarter of a second. Then it rolls, and rolling resistance alone slows it down,
+for most of a minute.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import viscoroll as vr
+
+roller = vr.RUBBER_CYLINDER
+t = np.unique(
+    np.concatenate([np.linspace(0.0, 0.5, 201), np.linspace(0.5, 60.0, 201)])
+)  # s
+m = roller.roll(V0=2.0, omega0=0.0, t=t)
+figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.8), layout="constrained")
+for axes, end in ((left, 0.5), (right, 60.0)):
+    axes.plot(m.t, m.V, label="V")
+    axes.plot(m.t, roller.R * m.omega, "--", label="omega R")
+    axes.set(xlabel="t, s", ylabel="speed, m/s", xlim=(0.0, end), ylim=(0.0, None))
+left.axvline(m.onset_time, color="0.6", linewidth=0.8)
+left.annotate("stick begins", (m.onset_time, 0.3), (6, 0), textcoords="offset points")
+right.legend(frameon=False)
+print(
+    f"stick begins at {m.onset_time:.3f} s; after {m.t[-1]:g} s it has rolled {m.x[-1]:.1f} m"
+)
+
+# %%
+# May this motion be computed from the law of steady rolling?  For this roller, yes:
+print(vr.RUBBER_ROLLER.validity(roller.V_from_si(2.0)).steady.sentence)

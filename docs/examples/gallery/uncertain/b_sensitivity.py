@@ -1,0 +1,33 @@
+"""
+Which uncertain input matters?
+==============================
+
+Sobol indices share out the variance of a result over the uncertain inputs.  A run file,
+:doc:`like this one </sensitivity>`, names the inputs and their distributions.
+"""
+
+from pathlib import Path
+
+from viscoroll.figures import sobol_bars
+from viscoroll.runs import read_run
+from viscoroll.runs.sensitivity import sobol_indices
+
+Path("throw.toml").write_text(
+    """
+preset = "rubber-roller"
+[scene]
+mu = { distribution = "norm", loc = 0.3, scale = 0.03, truncate = [0.2, 0.4] }
+j = { distribution = "uniform", loc = 0.45, scale = 0.1 }
+[start]
+V0 = { distribution = "uniform", loc = 18.0, scale = 4.0 }
+omega0 = 0.0
+[run]
+n = 1
+t = [0.1, 0.5, 10.0]
+rtol = 1e-6
+summaries = ["V", "onset_time"]
+"""
+)
+indices = sobol_indices(read_run("throw.toml"), n=512)
+figure = sobol_bars(indices)
+Path("throw.toml").unlink()

@@ -1,0 +1,72 @@
+"""
+1. From a measured rubber to rolling resistance
+===============================================
+
+A rubber was measured in a dynamic test (DMA): storage and loss modulus at 25 frequencies
+from 0.01 to 100 Hz.  The file has three columns, and its heading names their units.
+"""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import viscoroll as vr
+
+data = Path("../dma.csv")  # docs/examples/dma.csv of the source tree
+print("\n".join(data.read_text().splitlines()[:5]))
+omega, storage, loss = vr.read_dma(data)  # rad/s, Pa, Pa
+
+# %%
+# The contact law wants relaxation times and strengths, a Prony series.  ``fit_prony``
+# takes as few of them as the data need, here to 1 %.
+fit = vr.fit_prony(omega, storage, loss)
+print(fit)
+
+# %%
+# Read the report before you go on.  The misfit was reached.  The loss modulus fits the
+# slope of the storage modulus, so the two curves belong to one material.  And modes
+# outside the measured frequencies would move rolling resistance by 2 % at most, at speeds
+# that the data cover.
+fine = np.geomspace(omega[0], omega[-1], 300)
+figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
+axes.loglog(omega, storage, "C0o", omega, loss, "C1o", markersize=4)
+for fitted, name, color in zip(
+    fit.modulus(fine), ("storage", "loss"), ("C0", "C1"), strict=True
+):
+    axes.loglog(fine, fitted, color=color, label=name)
+axes.set(xlabel="frequency, rad/s", ylabel="modulus, Pa")
+axes.legend(frameon=False)
+
+# %%
+# Now the roller: solid steel, 20 cm thick, on this rubber.  All in SI units; mass and load
+# count per metre of length.
+rubber = fit.material(nu=0.49, name="rubber", density=1100.0)
+steel = vr.Material.elastic(E=2.1e11, nu=0.3, density=7850.0)
+roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
+print(f"contact length at rest: {1e3 * roller.l0:.1f} mm")
+
+# %%
+# Rolling resistance over speed, at three temperatures.  Temperature multiplies all
+# relaxation times by one factor; here it is that of Williams, Landel and Ferry, which such
+# a test gives too.
+shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+speed = np.geomspace(1e-4, 1e3, 300)  # m/s
+figure_2, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
+for temperature in (20.0, 40.0, 60.0):
+    warm = vr.Cylinder(
+        R=0.1, m=247.0, material=steel, base=rubber.at(temperature, shift=shift), mu=0.5
+    )
+    M = vr.contact(warm.scene(), warm.V_from_si(speed), delta=0.0, fields="M").M
+    axes.semilogx(speed, 100.0 * M, label=f"{temperature:g} °C")
+axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
+axes.legend(frameon=False)
+
+# %%
+# The bumps are the four relaxation times of the fit; the measured rubber has a smooth
+# curve through them.
+#
+# Which part of the curve rests on data?  Rolling at V shakes the rubber at about V over
+# half the contact length.
+low, high = 0.5 * roller.l0 * omega[[0, -1]]
+print(f"at 20 °C the data cover {low:.1g} to {high:.1g} m/s")

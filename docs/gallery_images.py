@@ -1,0 +1,23 @@
+"""Which pictures an example shows: every figure that it gave a name, in that order."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.figure import Figure
+from sphinx_gallery.scrapers import figure_rst
+
+_SHOWN: set[int] = set()
+_KEPT: list[Figure] = []  # so that no identity is given twice
+
+
+def shown(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:
+    """Save the figures that are new since the last block, as sphinx-gallery wants it."""
+    new = [v for v in block_vars["example_globals"].values() if isinstance(v, Figure) and id(v) not in _SHOWN]
+    paths = []
+    for figure, path in zip(new, block_vars["image_path_iterator"], strict=False):
+        figure.savefig(path, dpi=150)
+        _SHOWN.add(id(figure))
+        _KEPT.append(figure)
+        paths.append(path)
+    return figure_rst(paths, gallery_conf["src_dir"])

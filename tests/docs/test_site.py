@@ -1,0 +1,200 @@
+"""The site as a reader meets it: built without a warning, no link to nowhere, and open in a real browser."""
+
+from __future__ import annotations
+
+import functools
+import html
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import threading
+from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+from places import ROOT
+
+import viscoroll as vr
+
+SITE = ROOT / "docs/_build/html"
+NEEDED = (
+    "myst_parser", "numpydoc", "pydata_sphinx_theme", "sphinx", "sphinx_copybutton", "sphinx_design", "sphinx_gallery",
+)  # fmt: skip
+BUILD = "-W --keep-going -n -E -q -b html docs docs/_build/html"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+FEWEST_GALLERY_PAGES = 12
+#: pages that a browser holds open at once
+AT_ONCE = 12
+#: what the theme says of itself
+REMARKS = ("[PST]", "Got invalid theme mode")
+
+
+@pytest.fixture(scope="module")
+def site() -> Path:
+    """The site as `make docs` builds it: any warning is an error."""
+    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if missing:
+        pytest.skip(f"not installed (make docs): {', '.join(missing)}")
+    for made in ("_build", "api", "gallery", "tutorial"):  # of examples and names that may be gone
+        shutil.rmtree(ROOT / "docs" / made, ignore_errors=True)
+    command = [sys.executable, "-m", "sphinx", *BUILD.split()]
+    built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert built.returncode == 0, built.stderr
+    return SITE
+
+
+class Page(HTMLParser):
+    """Ids of a page, what it links to, and what it loads."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.ids: set[str] = set()
+        self.links: list[str] = []
+        self.loaded: list[str] = []
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = {name: value for name, value in attrs if value is not None}
+        self.ids |= {given[name] for name in ("id", "name") if name in given}
+        if tag == "a" and "href" in given:
+            self.links.append(given["href"])
+        elif tag in ("img", "script") and "src" in given:
+            self.loaded.append(given["src"])
+        elif tag == "link" and given.get("rel") in ("stylesheet", "icon", "preload"):
+            self.loaded.append(given.get("href", ""))
+
+
+@pytest.fixture(scope="module")
+def pages(site) -> dict[Path, Page]:
+    return {path: Page(path) for path in sorted(site.rglob("*.html")) if "_static" not in path.parts}
+
+
+def test_every_internal_link_leads_somewhere(pages):
+    dead = []
+    for path, page in pages.items():
+        for target in {*page.links, *page.loaded}:
+            parts = urlsplit(target)
+            if parts.scheme or parts.netloc:
+                continue
+            found = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            anchor = unquote(parts.fragment)
+            if not found.exists() or (anchor and found in pages and anchor not in pages[found].ids):
+                dead.append(f"{path.relative_to(SITE)}: {target}")
+    assert not dead, "\n".join(dead)
+
+
+def test_nothing_is_fetched_from_elsewhere(pages):
+    away = {(path.name, name) for path, page in pages.items() for name in page.loaded if urlsplit(name).netloc}
+    assert not away
+
+
+def test_every_public_name_has_its_entry(site):
+    from sphinx.util.inventory import InventoryFile
+
+    held = InventoryFile.loads((site / "objects.inv").read_bytes(), uri="").data
+    names = {name for kind, entries in held.items() if kind.startswith("py:") for name in entries}
+    home = {name: f"viscoroll.{module}.{name}" for name, module in vr._HOME.items()}
+    public = set(vr.__all__) - {"__version__", "tables", "sampling"}
+    assert {name for name in public if not {f"viscoroll.{name}", home.get(name)} & names} == set()
+    assert {name for name in vr.tables.__all__ if f"viscoroll.tables.{name}" not in names} == set()
+
+
+def test_every_gallery_page_shows_a_picture(site):
+    written = sorted((ROOT / "docs/examples/gallery").rglob("*.py"))
+    assert len(written) >= FEWEST_GALLERY_PAGES
+    for path in written:
+        name = path.relative_to(ROOT / "docs/examples").with_suffix(".html")
+        text = (site / name).read_text(encoding="utf-8")
+        assert "_images/sphx_glr_" in text, name
+        assert "Traceback" not in text, name
+
+
+@pytest.fixture(scope="module")
+def browse(site, tmp_path_factory):
+    """A browser on a server of the site: a function from a path to the page as it stands, and what went wrong.
+
+    ``probe.html`` may be written into the folder that it gives; all names but the server's are unknown to the browser.
+    """
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        pytest.skip(f"not installed (make site-tools): {' or '.join(BROWSERS)}")
+    missing: list[str] = []
+    profile = tmp_path_factory.mktemp("browser")
+    probe = profile / "probe.html"
+
+    class Handler(SimpleHTTPRequestHandler):
+        def translate_path(self, path: str) -> str:
+            return str(probe) if urlsplit(path).path == "/probe.html" else super().translate_path(path)
+
+        def log_error(self, format: str, *args: object) -> None:
+            missing.append(f"{self.path}: {format % args}")
+
+        def log_message(self, format: str, *args: object) -> None:
+            pass
+
+    def open_page(path: str, milliseconds: int = 10_000) -> tuple[str, list[str]]:
+        missing.clear()
+        done = subprocess.run(
+            [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-extensions",
+             "--enable-logging=stderr", "--v=0", f"--user-data-dir={profile / 'profile'}",
+             "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", f"--virtual-time-budget={milliseconds}",
+             "--dump-dom", f"http://127.0.0.1:{server.server_port}/{path}"],
+            capture_output=True, text=True, check=True, env=os.environ | {"HOME": str(profile)},
+        )  # fmt: skip
+        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line and not any(r in line for r in REMARKS)]
+        return done.stdout, missing + said
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(site))) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        open_page.probe = probe
+        yield open_page
+        server.shutdown()
+
+
+#: frames of pages, and in the end, for each, its title and first heading as text
+FRAMES = """<!DOCTYPE html><link rel="icon" href="/_static/mark.svg"><title>probe</title><pre id="found"></pre>
+{frames}
+<script>
+addEventListener("load", () => {{
+  document.getElementById("found").textContent = [...document.querySelectorAll("iframe")].map((frame) => {{
+    const page = frame.contentDocument, heading = page.querySelector("h1");
+    return [frame.getAttribute("src"), page.title, heading ? heading.textContent : ""].join("\\t");
+  }}).join("\\n");
+}});
+</script>
+"""
+
+
+def test_the_browser_tells_what_is_wrong(browse):
+    browse.probe.write_text('<img src="no.png"><script>throw new Error("planted")</script>', encoding="utf-8")
+    said = "\n".join(browse("probe.html")[1])
+    assert "/no.png: code 404" in said
+    assert "planted" in said
+
+
+def test_pages_load_in_a_browser(browse, pages):
+    paths = [path.relative_to(SITE).as_posix() for path in pages]
+    found: dict[str, tuple[str, str]] = {}
+    for first in range(0, len(paths), AT_ONCE):
+        frames = "\n".join(f'<iframe src="/{html.escape(path)}"></iframe>' for path in paths[first : first + AT_ONCE])
+        browse.probe.write_text(FRAMES.format(frames=frames), encoding="utf-8")
+        page, wrong = browse("probe.html")
+        assert not wrong, "\n".join(wrong)
+        report = html.unescape(re.search(r'<pre id="found">(.*?)</pre>', page, re.S)[1])
+        found |= {line.split("\t")[0][1:]: tuple(line.split("\t")[1:]) for line in report.splitlines()}
+    assert found.keys() == set(paths)
+    for path, (title, heading) in found.items():
+        assert "viscoroll" in title, path
+        assert heading, path
+
+
+def test_search_finds_roll(browse):
+    page, wrong = browse("search.html?q=roll")
+    assert not wrong, "\n".join(wrong)
+    results = re.search(r'id="search-results">.*', page, re.S)[0]
+    assert re.search(r'href="api/viscoroll\.roll\.html', results)

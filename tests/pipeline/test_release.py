@@ -1,0 +1,36 @@
+"""`make release-check`: sound packages pass, and each planted fault is told."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("readme_renderer", reason="not installed (make docs): readme_renderer")
+
+from pipeline import release
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory):
+    return release.built(tmp_path_factory.mktemp("release"))
+
+
+def problems(check: str, packages: release.Packages) -> str:
+    return "; ".join(release.CHECKS[check](packages))
+
+
+def test_the_packages_of_this_tree_pass(packages):
+    assert {name: problems(name, packages) for name in release.CHECKS} == dict.fromkeys(release.CHECKS, "")
+
+
+def test_planted_faults_are_told(packages):
+    texts = packages.texts | {"CITATION.cff": "version: 0.0.1\n", "data/materials/README.md": ""}
+    wrong = packages._replace(
+        texts=texts,
+        wheel=[name for name in packages.wheel if not name.endswith("viscoroll/scene.py")] + ["viscoroll/x.tmp"],
+        sdist=packages.sdist | {"docs/_build/html/index.html": 1, "big.csv": 10**8},
+    )
+    assert "CITATION.cff" in problems("metadata", wrong)
+    told = problems("contents", wrong)
+    for each in ("lacks viscoroll/scene.py", "ships viscoroll/x.tmp", "ships docs/_build/html/index.html", "100.0 MB"):
+        assert each in told
+    assert "has no licence" in problems("licences", wrong)
