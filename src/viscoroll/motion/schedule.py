@@ -20,6 +20,8 @@ from ..errors import ParameterError
 TERMS, _HALVINGS = 14, 40
 #: share of the tolerance of the motion that a fit may be off, of the largest value so far
 _SHARE = 0.1
+#: roundings of a time that may show in a fit
+_BLUR = 8.0
 #: where a callable is compared with its fit, between the nodes
 _NODES = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)[::-1]
 _BETWEEN = np.cos(np.pi * np.arange(TERMS + 1) / TERMS)[::-1]
@@ -103,9 +105,13 @@ def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
         values, between = sample(middle + half * _NODES), sample(middle + half * _BETWEEN)
         largest = max(largest, float(np.abs(values).max()), float(np.abs(between).max()))
-        terms = _FIT @ values
+        # what is fitted varies about 0: terms are large and of both signs, and would magnify its rounding
+        terms = _FIT @ (values - values[0])
+        terms[0] += values[0]
         off = float(np.abs(np.polynomial.polynomial.polyval(_BETWEEN, terms) - between).max())
-        if off <= _SHARE * rtol * largest or half == 0.0:
+        # what the rounding of t makes of the values is none of the fit's
+        blurred = _BLUR * np.spacing(stop) / half * np.ptp(values) if half > 0.0 else 0.0
+        if off <= max(_SHARE * rtol * largest, blurred) or half == 0.0:
             done.append((start, stop, terms))
             worst = max(worst, off)
         elif depth == _HALVINGS:
