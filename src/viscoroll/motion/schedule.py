@@ -28,7 +28,10 @@ _BETWEEN = np.cos(np.pi * np.arange(TERMS + 1) / TERMS)[::-1]
 _TO_TERMS = np.zeros((TERMS, TERMS))
 for _n in range(TERMS):
     _TO_TERMS[_n, : _n + 1] = chebyshev.cheb2poly(np.eye(TERMS)[_n, : _n + 1])
-_FIT = _TO_TERMS.T @ np.linalg.inv(chebyshev.chebvander(_NODES, TERMS - 1))
+_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, TERMS - 1))
+_POWERS = _BETWEEN ** np.arange(TERMS)[:, None]
+#: where the last terms of Chebyshev's series are this much larger than what is allowed, the fit is not even looked at
+_ROUGH = 1e3
 
 
 class Curve(NamedTuple):
@@ -96,33 +99,46 @@ def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float
     """A callable by polynomials, halving pieces until each is within the tolerance between its nodes."""
 
     def sample(at: NDArray[np.float64]) -> NDArray[np.float64]:
-        values = np.array([function(t) for t in at.tolist()])
+        values = np.array([function(t) for t in at.ravel().tolist()])
         return checked(f"{name}(t)", values.reshape(at.shape) if values.size == at.size else values, low=low)
 
-    open_pieces, done, largest, worst = [(0.0, end, 0)], [], 0.0, 0.0
-    while open_pieces:
-        start, stop, depth = open_pieces.pop()
-        middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
-        values, between = sample(middle + half * _NODES), sample(middle + half * _BETWEEN)
-        largest = max(largest, float(np.abs(values).max()), float(np.abs(between).max()))
+    starts, stops, done = np.zeros(1), np.array([end]), np.zeros((0, 4 + TERMS))
+    for _ in range(_HALVINGS + 1):
+        middle, half = 0.5 * (starts + stops), 0.5 * (stops - starts)
+        values = sample(middle[:, None] + half[:, None] * _NODES)
         # what is fitted varies about 0: terms are large and of both signs, and would magnify its rounding
-        terms = _FIT @ (values - values[0])
-        terms[0] += values[0]
-        off = float(np.abs(np.polynomial.polynomial.polyval(_BETWEEN, terms) - between).max())
+        series = (values - values[:, :1]) @ _SERIES.T
+        largest = np.abs(values).max(axis=1)
+        allowed = _SHARE * rtol * _so_far(starts, largest, done)
         # what the rounding of t makes of the values is none of the fit's
-        blurred = _BLUR * np.spacing(stop) / half * np.ptp(values) if half > 0.0 else 0.0
-        if off <= max(_SHARE * rtol * largest, blurred) or half == 0.0:
-            done.append((start, stop, terms))
-            worst = max(worst, off)
-        elif depth == _HALVINGS:
-            where = f"a callable that jumps near t = {middle:.6g}"
-            raise ParameterError(name, where, "smooth; give jumps as (times, values)")
-        else:
-            open_pieces += [(middle, stop, depth + 1), (start, middle, depth + 1)]
-    last = np.zeros(TERMS)
-    last[0] = done[-1][2].sum()
-    starts, ends = np.array([piece[0] for piece in done] + [end]), np.array([piece[1] for piece in done] + [np.inf])
-    return Curve(starts, ends, np.array([piece[2] for piece in done] + [last])[None], worst)
+        blur = _BLUR * np.spacing(stops) / np.maximum(half, np.spacing(stops)) * np.ptp(values, axis=1)
+        allowed = np.maximum(allowed, blur)
+        good = np.flatnonzero(np.abs(series[:, -2:]).max(axis=1) <= _ROUGH * allowed)
+        terms = series[good] @ _TO_TERMS
+        terms[:, 0] += values[good, 0]
+        off = np.abs(terms @ _POWERS - sample(middle[good, None] + half[good, None] * _BETWEEN)).max(axis=1, initial=0.0)
+        fits = off <= allowed[good]
+        good, off, terms = good[fits], off[fits], terms[fits]
+        done = np.concatenate([done, np.column_stack([starts[good], stops[good], off, largest[good], terms])])
+        left = np.setdiff1d(np.arange(starts.size), good)
+        if not left.size:
+            break
+        starts, stops = np.stack([starts, middle], 1)[left].ravel(), np.stack([middle, stops], 1)[left].ravel()
+    else:
+        where = f"a callable that jumps near t = {starts[0]:.6g}"
+        raise ParameterError(name, where, "smooth; give jumps as (times, values)")
+    done = done[np.argsort(done[:, 0])]
+    last = np.zeros((1, TERMS))
+    last[0, 0] = done[-1, 4:].sum()
+    starts, ends = np.append(done[:, 0], end), np.append(done[:, 1], np.inf)
+    return Curve(starts, ends, np.concatenate([done[:, 4:], last])[None], float(done[:, 2].max()))
+
+
+def _so_far(starts: NDArray[np.float64], largest: NDArray[np.float64], done: NDArray) -> NDArray[np.float64]:
+    """The largest value until the ends of pieces, those ``done`` among them."""
+    at, values = np.append(done[:, 0], starts), np.append(done[:, 3], largest)
+    order = np.argsort(at)
+    return np.maximum.accumulate(values[order])[np.searchsorted(at[order], starts)]
 
 
 def slope_of(name: str, speed: Curve) -> Curve:
@@ -170,6 +186,8 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
 
 def _restricted(each: Curve, starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
     """Terms of a curve over other pieces, each within one of its own."""
+    if each.starts.size == 1:  # it stays as it is
+        return np.repeat(each.terms, starts.size, axis=1)
     own = np.searchsorted(each.starts, starts, side="right") - 1
     terms, first, last = each.terms[:, own], each.starts[own], each.ends[own]
     if (first == starts).all() and (last == ends).all():

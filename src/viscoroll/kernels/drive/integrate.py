@@ -241,15 +241,16 @@ def follow(moving, state, frame, clock, case):
 def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
 
-    ``sink`` : room for the outputs, (OUTPUTS, n), for the changes of regime, and for the ends of panels (Notes).
+    ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, room for the changes of regime
+    and for the ends of panels (Notes).
     """
-    out, switches, ends = sink
+    out, paths, switches, ends = sink
     tau = np.empty(t.size)
     for i in range(tau.size):
         tau[i] = t[i] * gamma
     matrix, right = np.empty((2 * N, 2 * N)), np.empty(2 * N)
     work = Work(np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), matrix, right, np.zeros(PATHS))
-    case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
+    case = Case(scene, drive, limits, tau, out, gamma, paths, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False
     if V0 != 0.0 or omega0 != 0.0:

@@ -14,7 +14,16 @@ from .nodes import OF_PATH, OF_S, OF_SECOND, PATH, PATHS, SECOND, S, risen
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
-FORCE, WORK = 6, 8
+PATH_FROM, FORCE, WORK = 2, 6, 8
+
+
+@kernel
+def paths_in(rows):
+    """How many of what adds up are among these rows: all, or none."""
+    for row in rows:
+        if PATH_FROM <= row < PATH_FROM + 2 or row >= WORK:
+            return PATHS
+    return 0
 
 
 @kernel
@@ -27,7 +36,7 @@ def regime_of(frame):
 def _put_path(column, n, value, case):
     """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
     if n < 2:
-        case.out[2 + n, column] = value / case.gamma
+        case.out[PATH_FROM + n, column] = value / case.gamma
     else:
         case.out[WORK + n - 2, column] = value
 
@@ -76,7 +85,7 @@ def _put(column, v, panel, frame, case):
     s = nodes[S, 0] + rise_at(v, powers, OF_S)
     second = nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND)
     _put_state(column, s, second, panel.piece, frame, case)
-    for n in range(PATHS):
+    for n in range(case.paths):
         way = rise_at(v, powers, OF_PATH + n)
         _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
 
@@ -91,7 +100,7 @@ def pass_panel(end, v, panel, frame, clock, case):
     closed = end == tau[tau.size - 1]
     outputs = at < tau.size and (tau[at] < end or closed)
     if outputs or v < 2.0:
-        for n in range(PATHS):
+        for n in range(case.paths):
             integral_terms(case.work.nodes[PATH + n], 0.5 * panel.length, case.work.powers, OF_PATH + n)
     if outputs:
         while at < tau.size and (tau[at] < end or closed):
@@ -100,7 +109,7 @@ def pass_panel(end, v, panel, frame, clock, case):
             at += 1
     if clock.ends < case.notes.ends.size:
         case.notes.ends[clock.ends] = end / case.gamma
-    for n in range(PATHS):
+    for n in range(case.paths):
         way = rise_at(v, case.work.powers, OF_PATH + n) if v < 2.0 else risen(PATH + n, panel, case.work.nodes)
         case.work.totals[n] += frame.direction * way if n < 2 else way
     return Clock(end, at, clock.piece, clock.steps, clock.ends + 1, clock.length)

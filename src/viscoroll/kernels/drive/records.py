@@ -107,7 +107,10 @@ class Notes(NamedTuple):
 
 
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion; times in tau."""
+    """All that stays the same from start to end of a motion; times in tau.
+
+    paths : how many of what adds up along the way are asked for: all, or none
+    """
 
     scene: Any
     drive: Drive
@@ -115,5 +118,6 @@ class Case(NamedTuple):
     tau: Any
     out: Any
     gamma: float
+    paths: int
     notes: Notes
     work: Work

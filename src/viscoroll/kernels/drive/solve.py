@@ -39,6 +39,8 @@ _NEWTON, _LEAST = 0.01, 1e-14
 _STEP = 1e-7
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02
+#: the last term's share of the error: the next one over this one, and the coefficient of a power over that
+_LAST = 0.1 / (_OVERSTATED * 2.0 ** (N - 1))
 
 
 @kernel
@@ -50,14 +52,14 @@ def _put_matrix(i, half, weight, slopes, frame, case):
     s_s = (weight * at.s_rate - nodes[S_RATE, i]) / step
     rate_s = (weight * at.rate - nodes[RATE, i]) / step
     weight_s = (at.weight - slopes.weight) / step
-    row = 2 * (i - 1)
+    n = i - 1
     for k in range(N):
-        matrix[row, 2 * k], matrix[row, 2 * k + 1] = SLOPES[i - 1, k + 1], 0.0
-        matrix[row + 1, 2 * k], matrix[row + 1, 2 * k + 1] = 0.0, slopes.weight * SLOPES[i - 1, k + 1]
-    matrix[row, row] -= half * s_s
-    matrix[row, row + 1] -= half * slopes.s
-    matrix[row + 1, row] += weight_s * slope_at(i, SECOND, nodes) - half * rate_s
-    matrix[row + 1, row + 1] -= half * slopes.rate
+        matrix[n, k], matrix[n, N + k] = SLOPES[n, k + 1], 0.0
+        matrix[N + n, k], matrix[N + n, N + k] = 0.0, slopes.weight * SLOPES[n, k + 1]
+    matrix[n, n] -= half * s_s
+    matrix[n, N + n] -= half * slopes.s
+    matrix[N + n, n] += weight_s * slope_at(i, SECOND, nodes) - half * rate_s
+    matrix[N + n, N + n] -= half * slopes.rate
 
 
 @kernel
@@ -90,17 +92,17 @@ def solve(panel, slopes, track, frame, case):
             here = put_node(i, weight, load_there(i, frame, case), frame, case)
             if anew:
                 _put_matrix(i, half, weight, here, frame, case)
-            right[2 * i - 2] = half * nodes[S_RATE, i] - slope_at(i, S, nodes)
-            right[2 * i - 1] = half * nodes[RATE, i] - here.weight * slope_at(i, SECOND, nodes)
+            right[i - 1] = half * nodes[S_RATE, i] - slope_at(i, S, nodes)
+            right[N + i - 1] = half * nodes[RATE, i] - here.weight * slope_at(i, SECOND, nodes)
         if anew:
             factorize(work.matrix, 2 * N)
         substitute(work.matrix, right, 2 * N)
         per_s, per_second = scales(frame, case)
-        change = 0.0 * (right[0] + right[1])  # a NaN is in all of them, and lost in any other argument of max
+        change = 0.0 * (right[0] + right[N])  # a NaN is in all of them, and lost in any other argument of max
         for i in range(N):
-            change = max(change, abs(right[2 * i]) / per_s, abs(right[2 * i + 1]) / per_second)
-            nodes[S, i + 1] += right[2 * i]
-            nodes[SECOND, i + 1] += right[2 * i + 1]
+            change = max(change, abs(right[i]) / per_s, abs(right[N + i]) / per_second)
+            nodes[S, i + 1] += right[i]
+            nodes[SECOND, i + 1] += right[N + i]
         first = before == np.inf
         gain = 1.0 if first else change / before
         if not (change < 1e6 and gain < 2.0):
@@ -147,9 +149,13 @@ def panel_error(panel, slopes, frame, case):
     """Error of the interpolants over their tolerance; of b only what its relaxation leaves of it counts."""
     nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
     per_s, per_second = scales(frame, case)
-    error = _mismatch(S_RATE, nodes[S_RATE, 0] if smooth else 0.0, half, nodes) / per_s
+    # a mismatch may happen to be small where the last of Chebyshev's terms is not
+    error = _mismatch(S_RATE, nodes[S_RATE, 0] if smooth else 0.0, half, nodes)
+    error = max(error, _LAST * abs(case.work.powers[OF_S, N - 1])) / per_s
     if nodes[SPEED, 0] == 0.0:
         error /= _least(panel, case)
+    else:  # early on speeds are to be right beside those so far
+        error *= np.sqrt(max(nodes[SPEED, N] / nodes[SPEED, 0], 1.0))
     if panel.free:
         off = nodes[RATE, 0] / slopes.weight * half if smooth else 0.0
         for i in range(N):
