@@ -116,7 +116,9 @@ def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float
         good = np.flatnonzero(np.abs(series[:, -2:]).max(axis=1) <= _ROUGH * allowed)
         terms = series[good] @ _TO_TERMS
         terms[:, 0] += values[good, 0]
-        off = np.abs(terms @ _POWERS - sample(middle[good, None] + half[good, None] * _BETWEEN)).max(axis=1, initial=0.0)
+        off = np.abs(terms @ _POWERS - sample(middle[good, None] + half[good, None] * _BETWEEN)).max(
+            axis=1, initial=0.0
+        )
         fits = off <= allowed[good]
         good, off, terms = good[fits], off[fits], terms[fits]
         done = np.concatenate([done, np.column_stack([starts[good], stops[good], off, largest[good], terms])])

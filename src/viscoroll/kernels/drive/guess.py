@@ -17,8 +17,8 @@ _REACH = 1.5
 
 @kernel
 def guess(panel, slopes, track, frame, case):
-    """Fill the unknowns at the nodes: by the interpolants of the panel ``track`` where they reach, of the last one or of
-    one that was too long."""
+    """Fill the unknowns at the nodes, where they reach by the interpolants of the panel ``track``: of the last one, or
+    of one that was too long."""
     if panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
         _follow(panel, track, frame, case.work)
     elif panel.free:

@@ -241,8 +241,8 @@ def follow(moving, state, frame, clock, case):
 def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
 
-    ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, room for the changes of regime
-    and for the ends of panels (Notes).
+    ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, and room for the changes of
+    regime and for the ends of panels (Notes).
     """
     out, paths, switches, ends = sink
     tau = np.empty(t.size)

@@ -1,5 +1,5 @@
-"""What a panel of time holds at its nodes: the unknowns, the integrands of the path, and the functions whose zeros end a
-regime."""
+"""What a panel of time holds at its nodes: the unknowns, the integrands of the path, the functions whose zeros end a
+regime, and the drive."""
 
 from __future__ import annotations
 

@@ -8,9 +8,9 @@ from ..compile.jit import kernel
 from ..motion.collocation import integral_terms, rise_at
 from ..motion.records import FULL, PARTIAL, REST
 from .load import load_at, needed
+from .nodes import OF_PATH, OF_S, OF_SECOND, PATH, PATHS, SECOND, S, risen
 from .rates import rates_at
 from .records import LOCKED, Clock, Frame
-from .nodes import OF_PATH, OF_S, OF_SECOND, PATH, PATHS, SECOND, S, risen
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
@@ -92,7 +92,7 @@ def _put(column, v, panel, frame, case):
 
 @kernel
 def pass_panel(end, v, panel, frame, clock, case):
-    """Outputs before the ``end`` of a panel, or the event at ``v`` on it, and what adds up until then; the clock behind.
+    """Outputs before the ``end`` of a panel or of what ends at ``v`` on it, and what adds up until then; the clock.
 
     At its end, where the drive may jump, what follows tells; but the last of the outputs is there.
     """

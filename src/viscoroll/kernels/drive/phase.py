@@ -17,7 +17,7 @@ from .records import NO_EVENT, STUCK, TURN, Clock, Frame, State
 from .solve import panel_error, solve
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
-_FIRST, _RELAXED = 0.1, 3.0
+_FIRST, _RELAXED = 0.4, 3.0
 #: in full slip s may change by this, 1/zeta that divides slow from fast rolling being 1
 _SMOOTH = 2.0
 #: behind the onset of stick the law bends on the scale tau: nodes of the first panel lie as this power
@@ -182,7 +182,9 @@ def phase(fresh, state, frame, clock, case):
                 return STUCK, state, frame, clock
             continue
         whole = v == 2.0 and panel.length == left
-        clock = pass_panel(end if whole else panel.tau + panel.length * (0.5 * v) ** power, v, panel, frame, clock, case)
+        clock = pass_panel(
+            end if whole else panel.tau + panel.length * (0.5 * v) ** power, v, panel, frame, clock, case
+        )
         state = State(nodes[S, N], nodes[SECOND, N])
         if v < 2.0:
             state = State(nodes[S, 0] + rise_at(v, powers, OF_S), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND))

@@ -77,8 +77,8 @@ class State(NamedTuple):
 
 
 class Clock(NamedTuple):
-    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted, length of a panel
-    to try (0: not known)."""
+    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted, length of a
+    panel to try (0: not known)."""
 
     tau: float
     at: int
