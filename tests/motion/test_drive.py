@@ -194,6 +194,15 @@ def test_turns_around_at_a_loose_tolerance():
     assert off(vr.roll(scene, *start, t, 1e-4, force=force), best) <= 30.0 * 1e-4
 
 
+def test_sets_out_one_way_and_turns_at_once():
+    """From rest against a drive that soon turns: no panel may pass V = 0 unseen, or through it."""
+    t = np.linspace(0.0, 27.08849314641842, 30)
+    scene = vr.Scene(alpha=4.3537615533663345, kappa=59.20469191841254, mu=0.5214345, gamma=1.0, j=0.5590328124623358)
+    drive = {"force": ([0.0, t[-1]], [0.14711194, 0.99913926]), "torque": ([0.0, t[-1]], [-0.14718376, 0.28562003])}
+    best = vr.roll(scene, 0.0, 0.0, t, 1e-11, **drive)
+    assert off(vr.roll(scene, 0.0, 0.0, t, 1e-8, **drive), best) <= 30.0 * 1e-8
+
+
 def test_settles_where_steady_says():
     slope = math.radians(1.0)
     s = vr.steady(ROLLER, slope=slope)

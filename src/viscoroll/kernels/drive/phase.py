@@ -24,6 +24,8 @@ _SMOOTH = 2.0
 _GRADED, _BEND = 3, 50.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
+#: v from which on an event counts as at the end
+_AT_THE_END = 1.95
 #: s at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
 #: V that stands for 0
@@ -111,6 +113,8 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if not size <= _CUTTABLE:
             break
         found, node = first_event(nodes)
+        if found == NO_EVENT and not frame.slips and nodes[S, N] < 0.0:
+            break
         if found != NO_EVENT:
             event = found
         elif event == NO_EVENT and aimed and size <= 1.0 and nodes[S, N] < _NEARLY * nodes[S, 0]:
@@ -118,7 +122,8 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
         v = place_of(event, node if found != NO_EVENT else 0, case.work)
-        if found != NO_EVENT and size <= 1.0:
+        # partial slip does not go on beyond V = 0
+        if found != NO_EVENT and size <= 1.0 and (frame.slips or found != TURN or v > _AT_THE_END):
             return event, v, panel, size, track
         if found == NO_EVENT and v >= NOWHERE:  # nowhere near
             return NO_EVENT, 2.0, panel, size, track
