@@ -7,11 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.collocation import N, rise_at
 from ..motion.control import next_length
-<<<<<<< HEAD
-from .events import ends_on, first_event, place_of
-=======
 from .events import NOWHERE, ends_on, first_event, place_of
->>>>>>> speed
 from .load import load_at, piece_end
 from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_node
 from .origin import departing
@@ -36,13 +32,8 @@ _NEARLY = 0.2
 _NO_SPEED = 1e-90
 #: error over the tolerance up to which a panel shows where its regime ends
 _CUTTABLE = 1e6
-<<<<<<< HEAD
-#: panels solved at most until one ends on the event
-_CUTS = 8
-=======
 #: panels solved at most until one ends on the event, and the error over the tolerance given to one that does not
 _CUTS, _HOPELESS = 8, 10.0
->>>>>>> speed
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
 _FASTER, _TINY = 2.5, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
@@ -122,11 +113,8 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if not size <= _CUTTABLE:
             break
         found, node = first_event(nodes)
-<<<<<<< HEAD
-=======
         if found == NO_EVENT and not frame.slips and nodes[S, N] < 0.0:
             break
->>>>>>> speed
         if found != NO_EVENT:
             event = found
         elif event == NO_EVENT and aimed and size <= 1.0 and nodes[S, N] < _NEARLY * nodes[S, 0]:
@@ -134,16 +122,6 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
         v = place_of(event, node if found != NO_EVENT else 0, case.work)
-<<<<<<< HEAD
-        if found != NO_EVENT and size <= 1.0:
-            return event, v, panel, size, track
-        length = min(panel.length * (0.5 * v) ** panel.power, longest)
-        if not (size <= 1.0 or longest == left) or not 0.0 < length < np.inf or length == panel.length:
-            break
-        longest = panel.length if found != NO_EVENT else longest
-        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.free)
-    return NO_EVENT, 2.0, panel, size, track
-=======
         # partial slip does not go on beyond V = 0
         if found != NO_EVENT and size <= 1.0 and (frame.slips or found != TURN or v > _AT_THE_END):
             return event, v, panel, size, track
@@ -155,7 +133,6 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         longest = panel.length if found != NO_EVENT else longest
         panel = Panel(panel.tau, length, panel.power, panel.piece, panel.free)
     return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
->>>>>>> speed
 
 
 @kernel
