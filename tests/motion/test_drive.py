@@ -178,6 +178,29 @@ def test_a_sine():
     table = vr.roll(ROLLER, 0.0, 0.0, t, torque=(grid, 0.1 * np.sin(2.0 * np.pi * grid)))
     assert np.abs(m.V - table.V).max() <= tol.DRIVE_TABLE * np.abs(m.V).max()
     assert m.reversals.size >= 1
+    # rounding of the fit once passed for a jump
+    tight = vr.roll(ROLLER, 0.0, 0.0, t, 1e-12, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
+    assert tight.drive_error <= 1e-14
+    assert off(m, tight) <= 30.0 * 1e-8
+
+
+def test_turns_around_at_a_loose_tolerance():
+    """A panel that is made longer to end at V = 0 must not go on as if V stayed there."""
+    scene = vr.Scene(alpha=48.13772620017825, kappa=90.46053309892399, mu=0.5475806672456264, gamma=1.0, j=1.0573948265)
+    t = np.linspace(0.0, 2.858292491604207, 30)
+    start, force = (0.061956087832416976, -0.00038067276168524643), ([0.0, t[-1]], [-0.02347072, -0.0358855])
+    best = vr.roll(scene, *start, t, 1e-10, force=force)
+    assert best.reversals.size == 1
+    assert off(vr.roll(scene, *start, t, 1e-4, force=force), best) <= 30.0 * 1e-4
+
+
+def test_sets_out_one_way_and_turns_at_once():
+    """From rest against a drive that soon turns: no panel may pass V = 0 unseen, or through it."""
+    t = np.linspace(0.0, 27.08849314641842, 30)
+    scene = vr.Scene(alpha=4.3537615533663345, kappa=59.20469191841254, mu=0.5214345, gamma=1.0, j=0.5590328124623358)
+    drive = {"force": ([0.0, t[-1]], [0.14711194, 0.99913926]), "torque": ([0.0, t[-1]], [-0.14718376, 0.28562003])}
+    best = vr.roll(scene, 0.0, 0.0, t, 1e-11, **drive)
+    assert off(vr.roll(scene, 0.0, 0.0, t, 1e-8, **drive), best) <= 30.0 * 1e-8
 
 
 def test_settles_where_steady_says():

@@ -14,8 +14,9 @@ _ON, _LEAST = 1e-2, 4e-15
 _HALVINGS = 60
 #: an edge that a panel starts on, to rounding, is not met there
 _ROUNDING = 1e-14
-#: v up to which the interpolant is followed beyond the panel
+#: v up to which the interpolant is followed beyond the panel, and from which on nothing was found there
 _BEYOND = 3.0
+NOWHERE = 2.99
 
 
 @kernel

@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.collocation import N, rise_at
 from ..motion.control import next_length
-from .events import ends_on, first_event, place_of
+from .events import NOWHERE, ends_on, first_event, place_of
 from .load import load_at, piece_end
 from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_node
 from .origin import departing
@@ -24,14 +24,16 @@ _SMOOTH = 2.0
 _GRADED, _BEND = 3, 50.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
+#: v from which on an event counts as at the end
+_AT_THE_END = 1.95
 #: s at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
 #: V that stands for 0
 _NO_SPEED = 1e-90
 #: error over the tolerance up to which a panel shows where its regime ends
 _CUTTABLE = 1e6
-#: panels solved at most until one ends on the event
-_CUTS = 8
+#: panels solved at most until one ends on the event, and the error over the tolerance given to one that does not
+_CUTS, _HOPELESS = 8, 10.0
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
 _FASTER, _TINY = 2.5, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
@@ -111,6 +113,8 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if not size <= _CUTTABLE:
             break
         found, node = first_event(nodes)
+        if found == NO_EVENT and not frame.slips and nodes[S, N] < 0.0:
+            break
         if found != NO_EVENT:
             event = found
         elif event == NO_EVENT and aimed and size <= 1.0 and nodes[S, N] < _NEARLY * nodes[S, 0]:
@@ -118,14 +122,17 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
         v = place_of(event, node if found != NO_EVENT else 0, case.work)
-        if found != NO_EVENT and size <= 1.0:
+        # partial slip does not go on beyond V = 0
+        if found != NO_EVENT and size <= 1.0 and (frame.slips or found != TURN or v > _AT_THE_END):
             return event, v, panel, size, track
+        if found == NO_EVENT and v >= NOWHERE:  # nowhere near
+            return NO_EVENT, 2.0, panel, size, track
         length = min(panel.length * (0.5 * v) ** panel.power, longest)
         if not (size <= 1.0 or longest == left) or not 0.0 < length < np.inf or length == panel.length:
-            break
+            return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
         longest = panel.length if found != NO_EVENT else longest
         panel = Panel(panel.tau, length, panel.power, panel.piece, panel.free)
-    return NO_EVENT, 2.0, panel, size, track
+    return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
 
 
 @kernel
