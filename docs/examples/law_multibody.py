@@ -12,11 +12,8 @@ import viscoroll as vr
 warm = vr.RUBBER_ROLLER
 cold = warm.replace(material=warm.material.slower(10.0))
 laws, gamma, j = [vr.law(scene) for scene in (warm, cold)], warm.gamma, warm.j
-speed, stiffness, damping = (
-    0.5,
-    0.02,
-    0.05,
-)  # of the tractor; force over P, by distance and by speed
+speed = 0.5  # of the tractor
+stiffness, damping = 0.02, 0.05  # force over P, by distance and by speed
 
 
 def rates(t, y):

@@ -17,10 +17,8 @@ def rolled(law, gamma, j, V, omega, force, h):
     for n in range(force.size):
         f = law(V, omega)
         a, b = gamma * h, gamma * h / j
-        rise_V, rise_omega = (
-            a * (f.Q - f.M_half_space + force[n]),
-            b * (-f.Q - f.M_cylinder),
-        )
+        rise_V = a * (f.Q - f.M_half_space + force[n])
+        rise_omega = b * (-f.Q - f.M_cylinder)
         # 1 - h J, solved by Cramer's rule
         p, q = 1.0 - a * (f.dQ_dV - f.dM_half_space_dV), -a * f.dQ_domega
         r, s = b * (f.dQ_dV + f.dM_cylinder_dV), 1.0 + b * f.dQ_domega

@@ -17,6 +17,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from filelock import FileLock
 from places import ROOT
 
 import viscoroll as vr
@@ -35,16 +36,21 @@ REMARKS = ("[PST]", "Got invalid theme mode")
 
 
 @pytest.fixture(scope="module")
-def site() -> Path:
-    """The site as `make docs` builds it: any warning is an error."""
+def site(tmp_path_factory) -> Path:
+    """The site as `make docs` builds it: any warning is an error.  Of several workers one builds, the others wait."""
     missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if missing:
         pytest.skip(f"not installed (make docs): {', '.join(missing)}")
-    for made in ("_build", "api", "gallery", "tutorial"):  # of examples and names that may be gone
-        shutil.rmtree(ROOT / "docs" / made, ignore_errors=True)
-    command = [sys.executable, "-m", "sphinx", *BUILD.split()]
-    built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert built.returncode == 0, built.stderr
+    folder = tmp_path_factory.getbasetemp()
+    folder = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
+    with FileLock(folder / "site.lock"):
+        if not (folder / "site.built").exists():
+            for made in ("_build", "api", "gallery", "tutorial"):  # of examples and names that may be gone
+                shutil.rmtree(ROOT / "docs" / made, ignore_errors=True)
+            command = [sys.executable, "-m", "sphinx", *BUILD.split()]
+            built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+            assert built.returncode == 0, built.stderr
+            (folder / "site.built").touch()
     return SITE
 
 

@@ -2,7 +2,7 @@
 The law in an integrator of your own
 ====================================
 
-A roller is towed by a spring.  It swings behind the tractor, until the force of the spring
+A roller is towed by a spring.  It swings behind the tractor until the force of the spring
 is that of rolling resistance.  ``vr.law`` binds the contact law to a scene: a call costs
 microseconds, and gives the slopes that an implicit method wants.
 """
@@ -15,10 +15,8 @@ import viscoroll as vr
 
 scene = vr.RUBBER_ROLLER  # times over 1 s, lengths over R = 0.1 m, forces over the load
 law, gamma, j = vr.law(scene), scene.gamma, scene.j
-speed, stiffness = (
-    5.0,
-    0.02,
-)  # of the tractor, radii a second; of the spring, load per radius
+speed = 0.5  # of the tractor, radii a second
+stiffness = 0.02  # of the spring, load per radius
 
 
 def rates(t, y):
@@ -42,9 +40,9 @@ def jacobian(t, y):
     ]
 
 
-t = np.linspace(0.0, 60.0, 1201)
-start = [0.0, 2.5, 2.5]
-found = solve_ivp(rates, (0.0, 60.0), start, "Radau", t, jac=jacobian, rtol=1e-6, atol=1e-8)
+t = np.linspace(0.0, 40.0, 801)
+start = [0.0, 0.25, 0.25]
+found = solve_ivp(rates, (0.0, 40.0), start, "Radau", t, jac=jacobian, rtol=1e-6, atol=1e-8)
 figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(6.4, 4.6), sharex=True, layout="constrained"
 )

@@ -12,10 +12,8 @@ import numpy as np
 
 import viscoroll as vr
 
-tau, strength = (
-    np.logspace(2, -7, 19),
-    2e6 * np.logspace(-2, 2, 19),
-)  # in place of a measurement
+tau = np.logspace(2, -7, 19)  # a rubber made up, in place of a measurement
+strength = 2e6 * np.logspace(-2, 2, 19)
 omega = np.logspace(-3, 7, 51)  # rad/s
 z = np.multiply.outer(omega, tau)
 noise = 1.0 + 0.005 * np.random.default_rng(1).standard_normal((2, omega.size))
