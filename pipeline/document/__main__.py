@@ -21,7 +21,7 @@ from viscoroll.files import write_text
 
 from ..results import RESULTS, Results
 from ..stage import ROOT, told
-from . import bench, ensembles, tables
+from . import bench, ensembles, symbols, tables
 
 #: who measures what a block shows
 STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
@@ -29,6 +29,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
         "headline": tables.headline, "three": tables.three, "contact": tables.contact, "direct": tables.direct,
         "stress": tables.stress, "motion": tables.motion, "times": tables.times,
     },
+    "document": {"symbols": symbols.symbols},
     "measure.large": {"large": tables.large},
     "measure.loading": {"loading": tables.loading, "loading_steps": tables.loading_steps},
     "measure.ensembles": {
