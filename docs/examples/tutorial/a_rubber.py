@@ -54,11 +54,10 @@ shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-4, 1e3, 300)  # m/s
 figure_2, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 for temperature in (20.0, 40.0, 60.0):
-    warm = vr.Cylinder(
-        R=0.1, m=247.0, material=steel, base=rubber.at(temperature, shift=shift), mu=0.5
-    )
-    M = vr.contact(warm.scene(), warm.V_from_si(speed), delta=0.0, fields="M").M
-    axes.semilogx(speed, 100.0 * M, label=f"{temperature:g} °C")
+    warm = roller.replace(base=rubber.at(temperature, shift=shift))
+    M = warm.contact(speed, delta=0.0, fields="M").M  # N m per m of length
+    share = M / (roller.R * roller.load)
+    axes.semilogx(speed, 100.0 * share, label=f"{temperature:g} °C")
 axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
 axes.legend(frameon=False)
 

@@ -26,7 +26,7 @@ for temperature in (-10.0, 20.0, 60.0):
     roller = vr.Cylinder(
         R=0.05, m=9.0, material=rubber.at(temperature, shift=shift), mu=0.6, load=2000.0
     )
-    M = vr.contact(roller.scene(), roller.V_from_si(speed), delta=0.0, fields="M").M
-    axes.semilogx(speed, 100.0 * M, label=f"{temperature:g} °C")
+    M = roller.contact(speed, delta=0.0, fields="M").M  # N m per m of length
+    axes.semilogx(speed, 100.0 * M / (roller.R * roller.load), label=f"{temperature:g} °C")
 axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
 axes.legend(frameon=False)

@@ -19,15 +19,17 @@ speed = np.geomspace(1e-3, 1e3, 300)  # m/s
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 for name, base in {"rubber on rubber": rubber, "rubber on steel": steel}.items():
     roller = vr.Cylinder(R=0.05, m=9.0, material=rubber, base=base, mu=0.6, load=2000.0)
-    c = vr.contact(
-        roller.scene(), roller.V_from_si(speed), delta=0.0, fields=("M", "M_half_space")
-    )
+    c = roller.contact(
+        speed, delta=0.0, fields=("M", "M_half_space")
+    )  # N m per m of length
     (line,) = axes.semilogx(
-        speed, 100.0 * c.M, label=f"{name}: contact {1e3 * roller.l0:.1f} mm at rest"
+        speed,
+        100.0 * c.M / (roller.R * roller.load),
+        label=f"{name}: contact {1e3 * roller.l0:.1f} mm at rest",
     )
     axes.semilogx(
         speed,
-        100.0 * c.M_half_space,
+        100.0 * c.M_half_space / (roller.R * roller.load),
         "--",
         color=line.get_color(),
         label="   of it in the base",

@@ -31,4 +31,4 @@ print(
 
 # %%
 # May this motion be computed from the law of steady rolling?  For this roller, yes:
-print(vr.RUBBER_ROLLER.validity(roller.V_from_si(2.0)).steady.sentence)
+print(m.validity().steady.sentence)

@@ -16,22 +16,15 @@ roller = vr.RUBBER_CYLINDER
 draw = vr.sampling.sample(
     10_000, seed=1, design="sobol", mu=stats.norm(0.3, 0.03), V0=stats.uniform(1.8, 0.4)
 )  # V0 in m/s, from 1.8 to 2.2
-scene = vr.RUBBER_ROLLER.replace(mu=draw["mu"])
-e = vr.ensemble(
-    scene,
-    roller.V_from_si(draw["V0"]),
-    0.0,
-    roller.t_from_si([0.1, 10.0]),
-    rtol=1e-6,
-    fields="V",
-)
+rollers = roller.replace(mu=draw["mu"])  # one for each draw
+e = rollers.ensemble(draw["V0"], 0.0, [0.1, 10.0], rtol=1e-6, fields="V")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.6), layout="constrained")
-left.hist(roller.t_to_si(e.onset_time), bins=60, color="0.6")
+left.hist(e.onset_time, bins=60, color="0.6")
 left.set(xlabel="sliding ends at, s", ylabel="throws")
-right.plot(draw["mu"][:2000], roller.V_to_si(e.V[:2000, -1]), ".", markersize=2)
+right.plot(draw["mu"][:2000], e.V[:2000, -1], ".", markersize=2)
 right.set(xlabel="coefficient of friction", ylabel="speed after 10 s, m/s")
-print(np.quantile(roller.t_to_si(e.onset_time), [0.05, 0.5, 0.95]))
+print(np.quantile(e.onset_time, [0.05, 0.5, 0.95]))
 
 # %%
 # Friction decides how long the roller slides, but not how fast it is afterwards: sliding

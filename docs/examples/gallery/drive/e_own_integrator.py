@@ -1,0 +1,60 @@
+"""
+The law in an integrator of your own
+====================================
+
+A roller is towed by a spring.  It swings behind the tractor, until the force of the spring
+is that of rolling resistance.  ``vr.law`` binds the contact law to a scene: a call costs
+microseconds, and gives the slopes that an implicit method wants.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import viscoroll as vr
+
+scene = vr.RUBBER_ROLLER  # times over 1 s, lengths over R = 0.1 m, forces over the load
+law, gamma, j = vr.law(scene), scene.gamma, scene.j
+speed, stiffness = (
+    5.0,
+    0.02,
+)  # of the tractor, radii a second; of the spring, load per radius
+
+
+def rates(t, y):
+    stretch, V, omega = y
+    f = law(V, omega)
+    pull = stiffness * stretch
+    return (
+        speed - V,
+        gamma * (f.Q - f.M_half_space + pull),
+        gamma / j * (-f.Q - f.M_cylinder),
+    )
+
+
+def jacobian(t, y):
+    f = law(*y[1:], slopes=True)
+    a, b = f.dQ_dV - f.dM_half_space_dV, f.dQ_dV + f.dM_cylinder_dV
+    return [
+        [0.0, -1.0, 0.0],
+        [gamma * stiffness, gamma * a, gamma * f.dQ_domega],
+        [0.0, -gamma / j * b, -gamma / j * f.dQ_domega],
+    ]
+
+
+t = np.linspace(0.0, 60.0, 1201)
+start = [0.0, 2.5, 2.5]
+found = solve_ivp(rates, (0.0, 60.0), start, "Radau", t, jac=jacobian, rtol=1e-6, atol=1e-8)
+figure, (top, bottom) = plt.subplots(
+    2, 1, figsize=(6.4, 4.6), sharex=True, layout="constrained"
+)
+top.plot(t, 0.1 * found.y[1])
+top.set(ylabel="speed, m/s")
+bottom.plot(t, 100.0 * stiffness * found.y[0])
+bottom.axhline(100.0 * law(speed, speed).M, color="0.6", linewidth=0.8)
+bottom.set(xlabel="t, s", ylabel="pull, % of the load")
+print(f"{found.nfev} calls of the law, {found.njev} of its slopes")
+
+# %%
+# Grey: rolling resistance at the speed of the tractor.  The same law serves numba
+# (``law.jitted``) and C (``law.address``): :doc:`/howto`.
