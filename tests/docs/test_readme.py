@@ -111,6 +111,8 @@ def test_relative_links_exist():
             if target.startswith(("http://", "https://", "#viscoroll.")):  # the last: names, which Sphinx looks up
                 continue
             name, _, anchor = target.partition("#")
+            # pages of the gallery are made from its examples
+            name = re.sub(r"^(gallery|tutorial)/(.+)\.rst$", r"examples/\1/\2.py", name)
             found = (page.parent / name).resolve() if name else page
             assert found.exists(), (page, target)
             if anchor:
