@@ -15,6 +15,8 @@ from processes import printed
 import viscoroll as vr
 from viscoroll.kernels.law.loads import Loads, LoadsAndSlopes
 
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
+
 SERIES = vr.Prony([1.0, 2.0, 3.0], [1.0, 0.1, 0.01])
 MATERIALS = {
     "alpha": {"alpha": 11.0},
@@ -145,6 +147,20 @@ def test_a_law_around_a_jitted_function_stays_there():
 
     function, expected = made()
     assert function(0.3, 0.3001) == expected
+
+
+def test_jitted_code_takes_a_tuple_of_laws():
+    scenes = [vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name]) for name in ("alpha", "series", "on an elastic base")]
+    laws = tuple(vr.law(scene).jitted for scene in scenes)
+
+    @numba.njit
+    def total(laws, V):
+        moment = 0.0
+        for law in laws:
+            moment += law(V, V).M
+        return moment
+
+    assert total(laws, 0.3) == sum(law(0.3, 0.3).M for law in laws)
 
 
 def test_jitted_code_with_a_law_inside_is_not_cached(tmp_path):

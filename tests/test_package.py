@@ -35,7 +35,7 @@ def test_documented_names():
     assert parameters(vr.contact)[:4] == ["scene", "V", "delta", "omega"]
     assert {"fields", "slopes", "method"} <= set(parameters(vr.contact))
     assert parameters(vr.law) == ["scene"]
-    assert parameters(vr.law(vr.PAPER_SECTION_5)) == ["V", "omega", "slopes"]
+    assert parameters(vr.Law.__call__) == ["self", "V", "omega", "slopes"]
     assert parameters(vr.steady) == ["scene", "force", "torque", "slope", "V"]
     assert parameters(vr.stress)[:4] == ["scene", "x", "V", "delta"]
     assert parameters(vr.roll)[:5] == ["scene", "V0", "omega0", "t", "rtol"]

@@ -9,9 +9,10 @@ work alone, so results do not depend on the number of threads.
 from __future__ import annotations
 
 import os
+import threading
 from collections import deque
 from collections.abc import Callable, Iterable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -75,6 +76,14 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+_heeded = threading.local()
+
+
+def heed(event: threading.Event) -> None:
+    """From now on :func:`run_blocks` of this thread ends with CancelledError where the event is set."""
+    _heeded.event = event
+
+
 def run_blocks(
     work: Callable[[int, int], None],
     count: int,
@@ -91,7 +100,10 @@ def run_blocks(
     blocks = -(-count // block)
     workers = min(thread_count(threads), blocks)
     if workers <= 1 and progress is None:
+        ended = getattr(_heeded, "event", None)
         for start, stop in edges:
+            if ended is not None and ended.is_set():
+                raise CancelledError
             work(start, stop)
         return
     if progress is not None:

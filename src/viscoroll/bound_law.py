@@ -34,8 +34,10 @@ class Law:
     """
 
     def __init__(self, scene: Scene) -> None:
-        from .kernels.law.jitted import Jitted, Room
+        from .kernels.law.jitted import SWITCHED_OFF, Jitted, Room
 
+        if SWITCHED_OFF:
+            raise ParameterError("NUMBA_DISABLE_JIT", 1, "0: a bound law is machine code")
         material, unit = scene.in_own_time()
         given: Any = one_material(scene, material, Loads._fields)
         self.scene = scene
@@ -141,7 +143,7 @@ def law(scene: Scene) -> Law:
     Raises
     ------
     ParameterError
-        What is no :class:`Scene`; arrays for alpha, kappa or mu; a material each.
+        What is no :class:`Scene`; arrays for alpha, kappa or mu; a material each; numba that is switched off.
 
     Notes
     -----

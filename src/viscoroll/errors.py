@@ -75,6 +75,10 @@ class ConfigError(FileProblem):
     """The TOML file cannot be read as what was asked for."""
 
 
+class Interrupted(KeyboardInterrupt):
+    """The user ended a run of blocks; what is done is kept, and the message says how to go on."""
+
+
 class MissingDependencyError(ViscorollError):
     """A ``package`` that belongs to an ``extra`` of the installation is not there."""
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import runpy
 
+import numba
 import numpy as np
 import pytest
 import tolerances as tol
 from places import ROOT
 
 import viscoroll as vr
+
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
 
 
 def example(name: str) -> dict:

@@ -22,7 +22,7 @@ from refusals import refused
 import viscoroll as vr
 from viscoroll import files
 from viscoroll.cli import main
-from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
+from viscoroll.runs import engine, export_netcdf, open_summaries, read_run, run_ensemble, verify
 from viscoroll.runs.evaluate import roll_block
 from viscoroll.runs.store import Store, locked
 
@@ -42,6 +42,9 @@ rest = 1e-3
 block = 100
 keep = "all"
 """
+
+#: an interrupt is answered within a second; a process that starves among others takes longer
+INTERRUPT_SECONDS = 20.0
 
 
 @pytest.fixture
@@ -115,7 +118,7 @@ FULL = """
 import resource, sys
 from pathlib import Path
 from viscoroll import OutputError
-from viscoroll.runs import export_netcdf
+from viscoroll.runs import engine, export_netcdf
 store, path = sys.argv[1], Path(sys.argv[2])
 export_netcdf(store, path)
 before = path.read_bytes()
@@ -354,3 +357,28 @@ def test_refused_commands(run_file, tmp_path, monkeypatch, capsys):
         shown = capsys.readouterr().err
         assert words in shown
         assert shown.count("\n") == 1
+
+
+def test_an_interrupt_answers_at_once(tmp_path, whole):
+    """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to go on."""
+    long = RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000").replace('"all"', '"summaries"')
+    (tmp_path / "long.toml").write_text(long, encoding="utf-8")
+    command = [sys.executable, "-m", "viscoroll", "ensemble", "long.toml", "-o", "long.zarr", "--threads", "2"]
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while not (tmp_path / "long.zarr/records/start").exists():
+        time.sleep(0.05)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=INTERRUPT_SECONDS)
+    assert process.returncode == 130
+    kept = "interrupted: 0 of 4 blocks were made and are kept in long.zarr; the same call goes on"
+    assert told.splitlines()[-1] == f"viscoroll: {kept}"
+
+
+def test_progress_in_a_log(run_file, tmp_path, monkeypatch, capsys):
+    """Without a terminal a line now and then, here after every block."""
+    monkeypatch.setattr(engine, "LINE_EVERY", 0.0)
+    run_ensemble(read_run(run_file), tmp_path / "store.zarr", threads=1, progress="lines")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0].startswith("viscoroll: 100 of 1200 motions, 8 %, ")
+    assert lines[-1].startswith("viscoroll: 1200 of 1200 motions, 100 %, 0.0 min left")

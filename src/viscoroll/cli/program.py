@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from .. import __version__
-from ..errors import ViscorollError
+from ..errors import Interrupted, ViscorollError
 from . import contact, doctor, ensemble, material, motion, plot, sensitivity, steady, tables, validity, warmup
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
@@ -61,7 +61,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _failed(error)
     except MemoryError as error:
         return _failed(f"not enough memory ({error})")
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as end:
+        if isinstance(end, Interrupted) and sys.stderr is not None:
+            print("viscoroll:", end, file=sys.stderr, flush=True)
         return _INTERRUPTED
     except OSError as error:  # files raise OutputError and the like: this is standard output
         # whatever is still buffered goes nowhere, or the interpreter would complain at its end

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -71,8 +72,9 @@ def _run(path: str, arguments: Namespace) -> int:
     if arguments.output is None or arguments.output.suffix != ".zarr":
         raise ParameterError("-o", arguments.output, "a folder STORE.zarr for the results (or give --dry-run)")
     made = run_ensemble(
-        asked, arguments.output, cluster=arguments.cluster, threads=arguments.threads, progress=sys.stderr.isatty()
-    )
+        asked, arguments.output, cluster=arguments.cluster, threads=arguments.threads,
+        progress=sys.stderr.isatty() or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
+    )  # fmt: skip
     if made < asked.blocks:
         print(f"{asked.blocks - made} of {asked.blocks} blocks were there and whole")
     print(_sheet(open_summaries(arguments.output)).text(), end="")

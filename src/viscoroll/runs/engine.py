@@ -7,16 +7,19 @@ nor a scheduler holds more than a few, however many blocks there are.
 from __future__ import annotations
 
 import logging
+import sys
+import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import urlsplit
 
-from ..blocks import thread_count
-from ..errors import OutputError, ParameterError, ViscorollError
+from ..blocks import heed, thread_count
+from ..errors import Interrupted, OutputError, ParameterError, ViscorollError
 from ..extras import imported
 from .runfile import Run
 from .store import Store, locked
@@ -25,6 +28,8 @@ from .store import Store, locked
 _AHEAD = 2
 #: how often dask gives a task to another worker when one dies
 _RETRIES = 3
+#: seconds between lines of progress where there is no terminal
+LINE_EVERY = 30.0
 #: dask's workers give every freed array back to the system, which costs a block time, and watch
 #: themselves a hundred times a second; glibc takes no larger second value
 _CALM = {
@@ -37,7 +42,7 @@ _CALM = {
 
 def run_ensemble(
     run: Run, path: str | PathLike[str], *, cluster: str | None = None, threads: int | None = None,
-    progress: bool = False,
+    progress: bool | Literal["lines"] = False,
 ) -> int:  # fmt: skip
     """Work on all blocks that the store does not hold yet, then write the summaries.
 
@@ -51,7 +56,7 @@ def run_ensemble(
     cluster : None: threads of this process.  "local": processes of this machine, or
         "tcp://host:port": a running dask scheduler, whose workers see ``path`` on a shared disk.
     threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the cores available.
-    progress : draw a bar with rate and time left.
+    progress : draw a bar with rate and time left; "lines": say so in a line every half minute, for a log.
 
     Returns
     -------
@@ -67,6 +72,9 @@ def run_ensemble(
         An unknown cluster, or inputs that a motion does not allow.
     MissingDependencyError
         If zarr, or dask for a cluster, is not installed.
+    Interrupted
+        At Ctrl-C (a KeyboardInterrupt), within a second: the blocks that are done stay, and the message says how many
+        they are.
 
     Notes
     -----
@@ -80,9 +88,13 @@ def run_ensemble(
         store.begin()
         with _executor(cluster, threads) as (pool, workers, given), _bar(run, progress) as advance:
             made = 0
-            for motions in _results(store, pool, workers, given, advance):
-                made += 1
-                advance(motions)
+            try:
+                for motions in _results(store, pool, workers, given, advance):
+                    made += 1
+                    advance(motions)
+            except KeyboardInterrupt:
+                kept = f"{made} of {run.blocks} blocks were made and are kept in {path}"
+                raise Interrupted(f"interrupted: {kept}; the same call goes on") from None
         store.end()
     return made
 
@@ -120,8 +132,15 @@ def work_block(store: Store, block: int) -> int:
 def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Callable[[Store], Any]]]:
     """(executor, workers, how a store is handed to tasks)."""
     if cluster is None:
-        with ThreadPoolExecutor(thread_count(threads)) as pool:
+        ended = threading.Event()
+        pool = ThreadPoolExecutor(thread_count(threads), initializer=heed, initargs=(ended,))
+        try:
             yield pool, thread_count(threads), lambda store: store
+        except BaseException:
+            ended.set()  # blocks that are being made are given up
+            raise
+        finally:
+            pool.shutdown(wait=not ended.is_set(), cancel_futures=True)
         return
     if cluster != "local" and not _is_address(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
@@ -175,8 +194,11 @@ def _silent(*names: str) -> Iterator[None]:
 
 
 @contextmanager
-def _bar(run: Run, progress: bool) -> Iterator[Callable[..., Any]]:
+def _bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
     """A function to call with numbers of motions; those found done (``old``) do not count in the rate."""
+    if progress == "lines":
+        yield _Lines(run.settings.n).advance
+        return
     from tqdm import tqdm
 
     with tqdm(total=run.settings.n, unit=" motions", unit_scale=True, disable=not progress, smoothing=0.05) as bar:
@@ -187,3 +209,23 @@ def _bar(run: Run, progress: bool) -> Iterator[Callable[..., Any]]:
             bar.update(motions)
 
         yield advance
+
+
+class _Lines:
+    """Progress for a log: a line on standard error every half minute."""
+
+    def __init__(self, count: int) -> None:
+        self._count, self._done, self._made = count, 0, 0
+        self._began = self._told = time.monotonic()
+
+    def advance(self, motions: int, old: bool = False) -> None:
+        """Count motions; say so if half a minute has passed."""
+        self._done += motions
+        self._made += 0 if old else motions
+        now = time.monotonic()
+        if now - self._told < LINE_EVERY or sys.stderr is None:
+            return
+        self._told = now
+        left = (self._count - self._done) * (now - self._began) / max(self._made, 1)
+        share = f"{self._done} of {self._count} motions, {100.0 * self._done / self._count:.0f} %"
+        print(f"viscoroll: {share}, {left / 60.0:.1f} min left", file=sys.stderr, flush=True)

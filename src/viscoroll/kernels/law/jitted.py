@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Any, NoReturn
 
 from llvmlite import binding, ir
+from numba import config
 from numba.core import cgutils, types
 from numba.core.imputils import lower_constant
 from numba.core.typing import signature
@@ -20,6 +21,8 @@ from numba.extending import NativeValue, lower_builtin, models, register_model, 
 from .bound import OUT, bind, function_of
 from .loads import LoadsAndSlopes
 
+#: whether numba compiles nothing
+SWITCHED_OFF = bool(config.DISABLE_JIT)
 #: room for what the function finds
 Room = ctypes.c_double * OUT
 _C = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p
