@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
-from viscoroll.figures.style import log_ticks
 
 from viscoroll.files import replacing
+from viscoroll.plots.style import log_ticks
 
 from ..document.bench import finished, paper_rows, random_rows
 from ..results import RESULTS, Results
