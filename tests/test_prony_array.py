@@ -161,7 +161,7 @@ def test_refused():
         (lambda: vr.roll(scene, 1.0, 1.0, T), ("scene", "one motion")),
         (lambda: vr.ensemble(scene, 1.0, 1.0, T, method="flow"), ("method = 'flow'",)),
         (lambda: vr.contact(scene, 1.0, delta=0.0, method="direct"), ("method = 'direct'",)),
-        (lambda: vr.Bodies(many, many), ("cylinder", "a Prony series")),
+        (lambda: vr.Bodies(many, many), ("cylinder", "one Prony series", "one by one")),
         (lambda: vr.Material(1e6, 0.5, many), ("prony", "a Prony series")),
     ):
         refused(call, *words)

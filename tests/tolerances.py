@@ -292,6 +292,17 @@ PRECISE_RATE = 1e-20
 #: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20.
 PRECISE_MOTION = 1e-17
 
+#: Driven ones likewise (test_reference_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
+PRECISE_DRIVEN = 1e-17
+
+# --- boundary elements (reference/test_boundary.py) ---
+#: Errors of twice the elements fall to an eighth, once layers are resolved; measured 7.9 to 8.6.
+ELEMENTS_FALL = 6.5
+#: Errors of 100 elements a zone, of one mode; measured 3e-5 (g, which is small beside z).
+ELEMENTS = 1e-4
+#: What 50 and 100 leave when extrapolated, of three modes; and of parts of M, whose work is a sum over elements.
+ELEMENTS_FURTHER, ELEMENTS_PARTS = 1e-4, 1e-4
+
 # --- sensitivity (test_sensitivity.py) ---
 #: Sobol index of an input that a motion does not feel: sums of a thousand differences that round; measured 8e-17.
 SENSITIVITY_NONE = 1e-13

@@ -112,7 +112,8 @@ def proofs(results: Results) -> str:
     """One table a proof."""
     titles = {
         "ratios": "Bessel ratios", "contact": "Contact states", "shape": "Shape", "slopes": "Slopes and stress",
-        "motion": "Motion", "series": "Series and pairs", "driven": "Driven motion",
+        "motion": "Motion", "series": "Series and pairs", "boundary": "Boundary elements",
+        "driven": "Driven motion", "check_driven": "Driven motion, extended precision",
     }  # fmt: skip
     columns = {
         "claim": "{claim}", "domain": "{domain}", "points": "{points:,}", "bound": "{bound!n}", "worst": "{worst!n}",

@@ -5,6 +5,7 @@ The other method is SciPy's Radau on (V, omega) and the contact law: it knows of
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 
+from ..reference.check_driven import PATHS, motion_of
+from ..reference.check_driven import TARGET as CHECK_DRIVEN
 from .claim import Claim, at
 
 #: errors are over rtol: of all motions, and of 99 in 100; and where neighbours part by more than this, over that too
@@ -91,6 +94,38 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     many.add(beyond / count)
     parting.add(grown / count)
     return [claim.row for claim in [*worst.values(), many, parting, energy, *other_method(random, sizes)]]
+
+
+def precise_rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """The motions of data/reference/check_driven.json, all at every tolerance."""
+    content = json.loads(CHECK_DRIVEN.read_text(encoding="utf-8"))["motions"]
+    file, claims = "data/reference/check_driven.json", []
+    for rtol in sizes["precise_rtol"]:
+        speeds = Claim(f"V and omega over the largest speed so far, rtol {rtol:.0e}, over rtol", file, WORST)
+        paths = Claim(f"x, angle, works and losses over the largest so far, rtol {rtol:.0e}, over rtol", file, WORST)
+        times = Claim(
+            f"times of switches and reversals over the last output time, rtol {rtol:.0e}, over rtol", file, WORST
+        )
+        for row in content:
+            case = motion_of(row)
+            m = vr.roll(case.scene, case.V0, case.omega0, row["t"], rtol, **case.drive)
+            fastest = np.maximum.accumulate(np.maximum(np.abs(row["V"]), np.abs(row["omega"])))
+            here = fastest > 0.0
+            for name in ("V", "omega"):
+                error = np.abs(getattr(m, name) - row[name])[here] / fastest[here]
+                speeds.add(error / rtol, f"{case.name}, {name}")
+            for name in PATHS:
+                best = np.array(row[name])
+                largest = np.abs(best).max()
+                if largest > 0.0:
+                    paths.add(np.abs(getattr(m, name) - best).max() / largest / rtol, f"{case.name}, {name}")
+            found = [*(switch.t for switch in m.switches), *m.reversals.tolist()]
+            best = [*(when for when, _ in row["switches"]), *row["reversals"]]
+            same = [switch.regime for switch in m.switches] == [regime for _, regime in row["switches"]]
+            off = np.abs(np.array(found) - best) if same and len(found) == len(best) else np.array([np.inf])
+            times.add(off / row["t"][-1] / rtol, case.name)
+        claims += [speeds, paths, times]
+    return [claim.row for claim in claims]
 
 
 def other_method(random: np.random.Generator, sizes: dict[str, Any]) -> list[Claim]:

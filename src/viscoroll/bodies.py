@@ -45,7 +45,8 @@ class Bodies:
     def __post_init__(self) -> None:
         for name in ("cylinder", "half_space"):
             if not isinstance(getattr(self, name), Prony):
-                raise ParameterError(name, f"{getattr(self, name)!r:.60}", "a Prony series")
+                allowed = "one Prony series; of many pairs make the Bodies, and roll them, one by one"
+                raise ParameterError(name, f"{getattr(self, name)!r:.60}", allowed)
         share = number("share", self.share, low=0.0)
         if share > 1.0:
             raise ParameterError("share", share, "in [0, 1]")

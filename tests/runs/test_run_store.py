@@ -361,9 +361,8 @@ def test_refused_commands(run_file, tmp_path, monkeypatch, capsys):
 
 def test_an_interrupt_answers_at_once(tmp_path, whole):
     """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to go on."""
-    long = (
-        RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000").replace('"all"', '"summaries"')
-    )
+    long = RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000")
+    long = long.replace('"all"', '"summaries"')
     (tmp_path / "long.toml").write_text(long, encoding="utf-8")
     command = [sys.executable, "-m", "viscoroll", "ensemble", "long.toml", "-o", "long.zarr", "--threads", "2"]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

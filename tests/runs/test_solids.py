@@ -140,6 +140,31 @@ def test_sobol_indices_of_a_material(read):
     assert total.sel(input="tau_1") > total.sel(input="V0")
 
 
+def test_uncertain_rubber_on_a_base(read, tmp_path):
+    """Every motion is that of the cylinder of its own rubber on the other body."""
+    base = "[base]\nE = 3e6\nnu = 0.5\nprony = { E = [0.5], tau = [0.02] }\n"
+    text = EXAMPLE.replace("n = 60", "n = 6").replace("rtol =", 'keep = "all"\nrtol =') + base
+    run = read(text)
+    values, motions = roll_block(run, 0)
+    columns = columns_of(run, values, motions)
+    other = vr.Material(E=3e6, nu=0.5, prony=vr.Prony(E=[0.5], tau=[0.02]))
+    for i in range(6):
+        one = {name: values[name][i] if np.ndim(values[name]) else values[name] for name in values}
+        series = vr.Prony(E=[one[f"E_{k}"] for k in (1, 2, 3)], tau=[one[f"tau_{k}"] for k in (1, 2, 3)])
+        rubber = vr.Material(E=one["E"], nu=one["nu"], prony=series, T_ref=one["T_ref"])
+        roller = vr.Cylinder(
+            R=one["R"], m=one["m"], material=rubber, base=other, mu=one["mu"], j=one["j"], load=one.get("load")
+        )
+        m = roller.roll(one["V0"], one["omega0"], run.t, rtol=run.settings.rtol)
+        for name in ("V", "omega", "x"):
+            expected = getattr(m, name)
+            assert columns[name][i] == pytest.approx(expected, rel=tol.RUN_SI, abs=tol.RUN_SI * np.abs(expected).max())
+    run_ensemble(run, tmp_path / "s.zarr", threads=1)
+    export_netcdf(tmp_path / "s.zarr", tmp_path / "s.nc")
+    with xr.open_dataset(tmp_path / "s.nc", group="motions", engine="h5netcdf", decode_times=False) as kept:
+        assert np.array_equal(kept["V"].values, columns["V"])
+
+
 def test_refused(read):
     spread = '{ distribution = "lognorm", s = 0.2, scale = 0.3 }'
     for text, words in (
@@ -152,7 +177,7 @@ def test_refused(read):
         (EXAMPLE.replace("nu = 0.5", "nu = 0.6"), ["line 9", "nu = 0.6"]),
         (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nEE = 2"), ["line 10", "unknown key 'EE'"]),
         (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nT_sigma = 0.1"), ["T_epsilon and T_sigma"]),
-        (EXAMPLE + "[base]\nE = 2e11\nnu = 0.3\n", ["[base] goes with a [material] of numbers"]),
+        (EXAMPLE + f"[base]\nE = {spread}\nnu = 0.3\n", ["[base] must be of numbers"]),
         (SCENE.replace("mu =", "alpha = 3.0\nmu ="), ["line 5", "alpha and a series"]),
         (SCENE.replace("prony", "pony"), ["line 3", "did you mean 'prony'?"]),
         (SCENE.replace("prony =", "# prony ="), ["needs alpha, prony or creep"]),

@@ -14,7 +14,7 @@ from typing import Any
 from ..errors import ConvergenceError, ParameterError
 from ..extras import imported
 from ..scene import Scene
-from .collocation import Radau, radau
+from .collocation import Radau, radau, zero_between
 from .phases import Sliding, Sticking, begin
 from .zones import Law
 
@@ -23,9 +23,8 @@ _SHORTEST_SHARE = 1e-30
 _GROWTH, _SHRINK, _SAFETY = 3.0, 0.2, 0.8
 #: least error that step sizes are chosen by
 _LEAST_ERROR = 1e-60
-#: an event is found to this share of a step on its polynomial, and its slope over that
-_LOCATED, _DIFFERENCE = 1e-25, 1e-8
-_MOST_BISECTIONS = 200
+#: the slope of an event's function is taken over this share of a step
+_DIFFERENCE = 1e-8
 
 
 @dataclass
@@ -171,7 +170,7 @@ def _first_event(phase: Any, h: Any, values: Any, method: Radau) -> tuple[str | 
             return function(method.at(start, values, theta), h * theta)
 
         before = (method.nodes[beyond - 1], found[beyond - 1]) if beyond else (0 * h, function(start, 0 * h))
-        theta = _zero(along, *before, method.nodes[beyond], found[beyond])
+        theta = zero_between(along, *before, method.nodes[beyond], found[beyond])
         if theta < first[1]:
             near = theta * (1 - _DIFFERENCE)
             first = event, theta, (along(theta) - along(near)) / (theta - near)
@@ -191,22 +190,3 @@ def _step_to(
         if correct:
             length, guess = (length - function(found[-1], length) * h / slope).mid(), found
     return length, found
-
-
-def _zero(function: Callable[[Any], Any], low: Any, at_low: Any, high: Any, at_high: Any) -> Any:
-    """Where a function that is not negative at ``low`` and negative at ``high`` is zero (Illinois)."""
-    side = 0
-    for _ in range(_MOST_BISECTIONS):
-        if high - low < _LOCATED:
-            break
-        middle = ((at_low * high - at_high * low) / (at_low - at_high)).mid()
-        if not low < middle < high:
-            middle = ((low + high) / 2).mid()
-        value = function(middle)
-        if value > 0:
-            low, at_low, at_high, side = middle, value, at_high / 2 if side == 1 else at_high, 1
-        else:
-            high, at_high, at_low, side = middle, value, at_low / 2 if side == -1 else at_low, -1
-        if abs(value) < _LOCATED * abs(at_low - at_high):
-            return middle
-    return high

@@ -103,11 +103,11 @@ def shares(mp: Any, known: Rates, z: Any, found: Functions) -> list[Any]:
     lam2 = 1 / (1 + 2 * found.h / z)
     return [
         strength * sum(X[i] * a[i] / (a[i] - b) * (r[i] * ratio_k(mp, b * z) + lam2 * u[i]) for i in range(len(a)))
-        for strength, b in zip(_creep_strengths(mp, known), known.b, strict=True)
+        for strength, b in zip(creep_strengths(mp, known), known.b, strict=True)
     ]
 
 
-def _creep_strengths(mp: Any, known: Rates) -> list[Any]:
+def creep_strengths(mp: Any, known: Rates) -> list[Any]:
     """J_j = prod_i (a_i - b_j)/prod_{i != j} (b_i - b_j)/(alpha b_j), signs dropped."""
     strengths = []
     for j, b in enumerate(known.b):

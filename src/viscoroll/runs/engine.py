@@ -223,7 +223,7 @@ class _Lines:
         self._done += motions
         self._made += 0 if old else motions
         now = time.monotonic()
-        if now - self._told < LINE_EVERY or sys.stderr is None:
+        if old or now - self._told < LINE_EVERY or sys.stderr is None:
             return
         self._told = now
         left = (self._count - self._done) * (now - self._began) / max(self._made, 1)

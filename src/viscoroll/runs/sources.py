@@ -195,9 +195,12 @@ def read_inputs(
         if plane not in _PLANES:
             raise reader.fault("plane", f"plane = {plane!r}: must be 'strain' or 'stress'")
         reader.fixed["plane"] = plane
+        if is_uncertain(materials.get("base")):
+            raise fault(path, "", "base", "[base] must be of numbers: of two bodies only [material] may be uncertain")
         if is_uncertain(materials.get("material")):
-            _refuse_base(path, materials)
             read_material(reader, materials["material"])
+            if "base" in materials:
+                reader.fixed["base"] = materials_of(path, {"base": materials["base"]})["base"]
         elif materials:
             pair = _pair(path, materials_of(path, materials), plane)
             reader.fixed |= {"pair": pair, "T_ref": pair.T_ref}
@@ -220,11 +223,6 @@ def _series(reader: Reader, section: str, given: dict[str, Any], base: dict[str,
             raise fault(reader.path, section, "alpha", "alpha and a series: must be one of the two")
         reader.fixed["series"] = series
     return series
-
-
-def _refuse_base(path: Path, materials: dict[str, Any]) -> None:
-    if "base" in materials:
-        raise fault(path, "", "base", "[base] goes with a [material] of numbers: an uncertain one rolls on its like")
 
 
 def _pair(path: Path, materials: dict[str, Material], plane: Plane) -> Pair:
