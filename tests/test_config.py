@@ -142,7 +142,7 @@ NO_SCENE = [
     (SCENE.replace("11", "nan"), ["alpha = nan", "finite and >= 1"]),
     (SCENE.replace("11", "0.5"), ["alpha = 0.5", "finite and >= 1"]),
     (SCENE.replace("11", "1" + "0" * 400), ["alpha"]),
-    (CYLINDER.replace("0.49", "0.7"), ["nu = 0.7", "(-1, 0.5]"]),
+    (CYLINDER.replace("0.49", "0.7"), ["nu = 0.7", "> -1, <= 0.5"]),
     (CYLINDER + 'plane = "sideways"', ["[cylinder]", "'sideways'", "plane"]),
     ('preset = "paper"', ["preset = 'paper'", "paper-section-5"]),
     ("preset = [1]", ["preset = [1]", "paper-section-5"]),

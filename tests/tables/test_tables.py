@@ -252,7 +252,7 @@ def test_only_tables_are_interpolated_and_saved(tmp_path: Path) -> None:
 
 def test_bad_grids_are_refused() -> None:
     for arguments, *words in (
-        ({"alpha": (0.5, 100.0)}, "alpha = 0.5: must be finite and >= 1"),
+        ({"alpha": (0.5, 100.0)}, "alpha = 0.5 at row 0: must be finite and >= 1"),
         ({"alpha": (5.0, 5.0)}, "high = 5.0: must be > low = 5"),
         ({"kappa_V": (0.0, 1.0)}, "low = 0.0: must be finite and > 0"),
         ({"kappa_V": (1.0, np.inf)}, "high = inf: must be a finite number"),

@@ -16,13 +16,13 @@ from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED
 #: little stiffness: omega - V relaxes hardly faster than V decays
-SOFT = vr.Scene(alpha=7.1, kappa=0.54, mu=0.08, j=1.67)
+SOFT = vr.Scene(alpha=7.1, kappa=0.54, mu=0.08, gamma=1.0, j=1.67)
 
 
 @pytest.mark.parametrize("start", [0.9, 0.5])
 def test_creep_at_alpha_1(start):
     """Partial slip without rolling resistance against one quadrature."""
-    scene = vr.Scene(alpha=1.0, kappa=2.0, mu=0.4, j=0.7)
+    scene = vr.Scene(alpha=1.0, kappa=2.0, mu=0.4, gamma=1.0, j=0.7)
     widest = scene.mu / (2.0 * scene.kappa)
     V0 = 1.3
     momentum = V0 * (1.0 + scene.j + scene.j * widest * start)
@@ -86,7 +86,7 @@ def test_rest_of_a_motion_that_is_hardly_stiff(rtol):
 def test_the_layer_ends_on_the_manifold(parameters, start):
     """At a tight tolerance, too, one leads to the other: steps between the two took 15 to 40 more."""
     alpha, kappa, mu, j = parameters
-    scene = vr.Scene(alpha=alpha, kappa=kappa, mu=mu, j=j)
+    scene = vr.Scene(alpha=alpha, kappa=kappa, mu=mu, gamma=1.0, j=j)
     loose, tight = (vr.roll(scene, *start, [50.0], rtol=rtol).steps for rtol in (1e-6, 1e-10))
     assert tight <= loose + 25
 
