@@ -398,3 +398,13 @@ def test_small_beginnings():
     balanced = vr.roll(ROLLER, 0.0, 0.0, T, force=-0.1, torque=0.1)
     assert not balanced.V.any()
     assert (balanced.regime == 2).all()
+
+
+def test_a_ramp_whose_start_is_rounding():
+    """A start of 1e-18 of what the ramp reaches is 0: the motion does not set out the other way and turn at once."""
+    plain = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=([0.0, 1e-3], [0.0, 0.2]))
+    for first in (-1e-18, 1e-18, -1e-15):
+        m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=lambda t, first=first: first + 200.0 * t)
+        assert m.status == vr.MotionStatus.DONE
+        assert m.steps <= 2 * plain.steps
+        assert m.V[-1] == pytest.approx(plain.V[-1], rel=30e-8)

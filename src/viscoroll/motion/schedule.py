@@ -20,6 +20,8 @@ from ..errors import ParameterError
 TERMS, _HALVINGS = 14, 40
 #: share of the tolerance of the motion that a fit may be off, of the largest value so far
 _SHARE = 0.1
+#: of the values of a piece, its first one where that is rounding
+_ROUNDING = 1e-14
 #: roundings of a time that may show in a fit
 _BLUR = 8.0
 #: where a callable is compared with its fit, between the nodes
@@ -28,7 +30,9 @@ _BETWEEN = np.cos(np.pi * np.arange(TERMS + 1) / TERMS)[::-1]
 _TO_TERMS = np.zeros((TERMS, TERMS))
 for _n in range(TERMS):
     _TO_TERMS[_n, : _n + 1] = chebyshev.cheb2poly(np.eye(TERMS)[_n, : _n + 1])
-_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, TERMS - 1))
+#: of values at the nodes, by the orthogonality of the polynomials there
+_SERIES = chebyshev.chebvander(_NODES, TERMS - 1).T * (2.0 / TERMS)
+_SERIES[0] *= 0.5
 _POWERS = _BETWEEN ** np.arange(TERMS)[:, None]
 #: where the last terms of Chebyshev's series are this much larger than what is allowed, the fit is not even looked at
 _ROUGH = 1e3
@@ -121,16 +125,16 @@ def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float
         middle, half = 0.5 * (starts + stops), 0.5 * (stops - starts)
         values = sample(middle[:, None] + half[:, None] * _NODES)
         # what is fitted varies about 0: terms are large and of both signs, and would magnify its rounding
-        series = (values - values[:, :1]) @ _SERIES.T
+        series = _product(values - values[:, :1], _SERIES.T)
         largest = np.abs(values).max(axis=1)
         allowed = _SHARE * rtol * _so_far(starts, largest, done)
         # what the rounding of t makes of the values is none of the fit's
         blur = _BLUR * np.spacing(stops) / np.maximum(half, np.spacing(stops)) * np.ptp(values, axis=1)
         allowed = np.maximum(allowed, blur)
         good = np.flatnonzero(np.abs(series[:, -2:]).max(axis=1) <= _ROUGH * allowed)
-        terms = series[good] @ _TO_TERMS
+        terms = _product(series[good], _TO_TERMS)
         terms[:, 0] += values[good, 0]
-        off = np.abs(terms @ _POWERS - sample(middle[good, None] + half[good, None] * _BETWEEN)).max(
+        off = np.abs(_product(terms, _POWERS) - sample(middle[good, None] + half[good, None] * _BETWEEN)).max(
             axis=1, initial=0.0
         )
         fits = off <= allowed[good]
@@ -182,9 +186,23 @@ def _at_start(terms: NDArray[np.float64]) -> NDArray[np.float64]:
     return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
 
 
+def _product(one: NDArray[Any], other: NDArray[Any]) -> NDArray[np.float64]:
+    """The product of two matrices, of the same bits whatever library of linear algebra numpy has."""
+    found: NDArray[np.float64] = np.einsum("ij,jk->ik", one, other)
+    return found
+
+
 def start_value(speed: Curve) -> NDArray[np.float64]:
     """Value of a curve at t = 0."""
     return _at_start(speed.terms[:, 0])
+
+
+def _from_zero(terms: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Pieces that begin at 0 where their first value is rounding: by that a motion from rest would set out."""
+    first, size = _at_start(terms), np.abs(terms).sum(axis=-1)
+    found = terms.copy()
+    found[..., 0] -= np.where(np.abs(first) < _ROUNDING * size, first, 0.0)
+    return found
 
 
 def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
@@ -205,7 +223,7 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     for n, each in enumerate(curves):
         part = _restricted(each, starts, ends)
         first = FIRST + n * terms
-        rows[..., first : first + part.shape[-1]] = part
+        rows[..., first : first + part.shape[-1]] = _from_zero(part)
     return rows
 
 
@@ -230,7 +248,7 @@ def _pieces_each(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
         )
         begin = np.take_along_axis(first, which, axis=1)
         at = FIRST + n * terms
-        rows[..., at : at + whole.shape[-1]] = _moved(whole, begin, last, starts, ends)
+        rows[..., at : at + whole.shape[-1]] = _from_zero(_moved(whole, begin, last, starts, ends))
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
     acting = rows[np.arange(count), at_end, FIRST:]
