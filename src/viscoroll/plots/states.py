@@ -79,13 +79,15 @@ def equilibria(data: xr.Dataset) -> Figure:
     for which, face, text in ((stable, colour, "stable"), (~stable, "white", "not stable")):
         held = which & np.isfinite(V)
         box.plot(load[held], V[held], "o", color=colour, markerfacecolor=face, markersize=4, label=text)
-    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]))
+    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale=_scale(_finite(data["V"])))
     box.legend(frameon=False)
     return figure
 
 
 def _shown(data: xr.Dataset) -> list[str]:
-    return [name for name in _FIELDS if name in data.data_vars and data[name].ndim]
+    """Fields that vary; all of them where none does."""
+    names = [name for name in _FIELDS if name in data.data_vars and data[name].ndim]
+    return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
 
 def _finite(values: xr.DataArray) -> NDArray[Any]:
