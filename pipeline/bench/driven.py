@@ -39,7 +39,7 @@ class Motion(NamedTuple):
 
 
 def motions(random: np.random.Generator, kind: str, count: int, times: int) -> list[Motion]:
-    """Random scenes; "constant": any start and constant drive; "ramp": from rest, both drives from 0 on."""
+    """Random scenes; "constant": any start and constant drive; "rest": the same from rest; "ramp": from rest and 0 on."""
     found = []
     for _ in range(count):
         scene = vr.Scene(
@@ -48,8 +48,7 @@ def motions(random: np.random.Generator, kind: str, count: int, times: int) -> l
         )  # fmt: skip
         end, drive = 10.0 ** random.uniform(0.0, 2.0), random.normal(size=2) * scene.mu * 0.5
         start = random.normal(size=2) if kind == "constant" else np.zeros(2)
-        slopes = np.zeros(2) if kind == "constant" else drive / end
-        first = drive if kind == "constant" else np.zeros(2)
+        slopes, first = (drive / end, np.zeros(2)) if kind == "ramp" else (np.zeros(2), drive)
         pairs = list(zip(first.tolist(), slopes.tolist(), strict=True))
         found.append(Motion(scene, start, pairs[0], pairs[1], np.linspace(0.0, end, times)))
     return found
@@ -58,7 +57,7 @@ def motions(random: np.random.Generator, kind: str, count: int, times: int) -> l
 def driven(sizes: dict[str, Any]) -> dict[str, Any]:
     """Kind -> method -> microseconds a motion (median, 95th percentile, mean) and errors, a row each."""
     random, rows = np.random.default_rng(sizes["seed"]), []
-    for kind in ("constant", "ramp"):
+    for kind in ("constant", "rest", "ramp"):
         some = motions(random, kind, sizes["motions"], sizes["times"])
         # from rest the peer takes seconds a motion and more: its steps shrink with V
         tolerances = sizes["peer_rtol"] if kind == "constant" else sizes["peer_rtol"][:1]
