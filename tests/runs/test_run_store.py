@@ -359,13 +359,20 @@ def test_refused_commands(run_file, tmp_path, monkeypatch, capsys):
         assert shown.count("\n") == 1
 
 
+def _heeding() -> None:
+    """Ctrl-C ends what a shell started in the background too, which is made to ignore it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_an_interrupt_answers_at_once(tmp_path, whole):
     """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to go on."""
     long = RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000")
     long = long.replace('"all"', '"summaries"')
     (tmp_path / "long.toml").write_text(long, encoding="utf-8")
     command = [sys.executable, "-m", "viscoroll", "ensemble", "long.toml", "-o", "long.zarr", "--threads", "2"]
-    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=_heeding
+    )
     while not (tmp_path / "long.zarr/records/start").exists():
         time.sleep(0.05)
     time.sleep(1.0)
