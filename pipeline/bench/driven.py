@@ -39,7 +39,7 @@ class Motion(NamedTuple):
 
 
 def motions(random: np.random.Generator, kind: str, count: int, times: int) -> list[Motion]:
-    """Random scenes; "constant": any start and constant drive; "rest": the same from rest; "ramp": from rest and 0 on."""
+    """Random scenes; "constant": any start and a drive that stays; "rest": from rest; "ramp": from rest and 0."""
     found = []
     for _ in range(count):
         scene = vr.Scene(

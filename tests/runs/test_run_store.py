@@ -371,8 +371,9 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
     (tmp_path / "long.toml").write_text(long, encoding="utf-8")
     command = [sys.executable, "-m", "viscoroll", "ensemble", "long.toml", "-o", "long.zarr", "--threads", "2"]
     process = subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=_heeding
-    )
+        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        preexec_fn=_heeding,  # noqa: PLW1509 (nothing else runs in this process)
+    )  # fmt: skip
     while not (tmp_path / "long.zarr/records/start").exists():
         time.sleep(0.05)
     time.sleep(1.0)
