@@ -77,15 +77,13 @@ class State(NamedTuple):
 
 
 class Clock(NamedTuple):
-    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted, length of a
-    panel to try (0: not known)."""
+    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted."""
 
     tau: float
     at: int
     piece: int
     steps: int
     ends: int
-    length: float
 
 
 class Work(NamedTuple):
@@ -107,10 +105,7 @@ class Notes(NamedTuple):
 
 
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion; times in tau.
-
-    paths : how many of what adds up along the way are asked for: all, or none
-    """
+    """All that stays the same from start to end of a motion; times in tau."""
 
     scene: Any
     drive: Drive
@@ -118,6 +113,5 @@ class Case(NamedTuple):
     tau: Any
     out: Any
     gamma: float
-    paths: int
     notes: Notes
     work: Work
