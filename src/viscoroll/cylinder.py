@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,9 +20,6 @@ from .si.conversions import Conversions
 from .si.methods import InSI
 from .si.scaling import contact_length, scene_from_si, scene_of_pair
 from .validity import Validity, coupling, inertia
-
-if TYPE_CHECKING:
-    pass
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
@@ -103,8 +100,7 @@ class Cylinder(InSI, Conversions):
         for name, value in given.items():
             object.__setattr__(self, name, value)
         if material is None:
-            given["T_epsilon"] = number("T_epsilon", given["T_epsilon"])
-            refuse_short_retardation(given["T_epsilon"], given["T_sigma"])
+            refuse_short_retardation(number("T_epsilon", given["T_epsilon"]), given["T_sigma"])
         if material is not None or base is not None:
             _ = self.pair  # refuses what the materials do not allow
 
@@ -150,9 +146,8 @@ class Cylinder(InSI, Conversions):
         return hash((*parts, self.plane, self.material, self.base))
 
     def _card(self) -> tuple[str, list[Row]]:
-        given = {name: getattr(self, name) for name in _NUMBERS if getattr(self, name) is not None}
-        given |= {"load": self.load, "plane": self.plane}
-        given.pop("pressed", None)
+        names = (*(name for name in _NUMBERS if name != "pressed"), "load", "plane")
+        given = {name: value for name in names if (value := getattr(self, name)) is not None}
         rows = [Row(name, short(value), _UNITS.get(name, "")) for name, value in given.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:

@@ -69,6 +69,11 @@ class Shown:
         return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 
 
+def unit_of(described: dict[str, Any]) -> str:
+    """The unit among the attributes of a quantity, "" of a number."""
+    return "" if described["units"] == "1" else str(described["units"])
+
+
 def short(value: Any) -> str:
     """A number, or what an array holds, in few words."""
     if not isinstance(value, np.ndarray):

@@ -122,17 +122,21 @@ class Scene:
             changes["alpha"] = None
         return replace(self, **changes)
 
+    @property
+    def series(self) -> Prony | None:
+        """The series of the material, or of both bodies together; None of an alpha and of a material each."""
+        if isinstance(self.material, Bodies):
+            return self.material.total
+        return self.material if isinstance(self.material, Prony) else None
+
     def in_own_time(self) -> tuple[Any, float]:
         """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
 
         Of a material each as they are: a block finds the own time of each (:func:`.material_tables.records`).
         """
-        if self.material is None:
-            return self.alpha, 1.0
-        if isinstance(self.material, PronyArray):
-            return self.material, 1.0
-        series = self.material.total if isinstance(self.material, Bodies) else self.material
-        return series.in_own_time() if series.E.size else (1.0, 1.0)
+        if self.series is None:
+            return self.alpha if self.material is None else self.material, 1.0
+        return self.series.in_own_time() if self.series.E.size else (1.0, 1.0)
 
     @property
     def kernel_material(self) -> Any:

@@ -124,6 +124,14 @@ SYMBOLS = {
 }
 
 
+#: of what has no symbol
+_MEANINGS = {
+    "full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die",
+    "rest_time": "time at which the rest threshold was crossed", "loss_slip": "power lost: slip",
+    "loss_half_space": "power lost: half space", "loss_cylinder": "power lost: cylinder",
+}  # fmt: skip
+
+
 def attributes(name: str) -> dict[str, str]:
     """long_name, units, symbol and equation of a quantity; of a partial derivative its meaning."""
     if name not in SYMBOLS:
@@ -139,7 +147,7 @@ def meaning(name: str) -> str:
     if name.startswith("d") and "_d" in name:
         upper, _, lower = name[1:].partition("_d")
         return f"partial derivative of {upper} with respect to {lower}"
-    return {"full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die"}.get(name, "")
+    return _MEANINGS.get(name, "")
 
 
 def label(name: str) -> str:

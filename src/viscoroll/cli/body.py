@@ -75,7 +75,7 @@ class BodySI:
 
         self.cylinder = cylinder
         self.units = {name: quantity.units for name, quantity in QUANTITIES.items()}
-        self.units |= {"rate_fast": "s-1", "rate_slow": "s-1", "R": "m", "m": "kg m-1", "load": "N m-1"}
+        self.units |= {"R": "m", "m": "kg m-1", "load": "N m-1"}
 
     @property
     def constants(self) -> dict[str, float]:

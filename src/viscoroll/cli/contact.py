@@ -85,12 +85,12 @@ def _stress(arguments: Namespace) -> int:
 
     body = body_of(arguments)
     speeds = {"V": arguments.V, "delta": arguments.delta, "omega": arguments.omega}
-    names = ("lam", "epsilon", "delta", "beta", *(("length",) if body.units else ()))
-    state = body.contact(**speeds, fields=names)
+    length = "length" if body.units else "lam"
+    state = body.contact(**speeds, fields=dict.fromkeys(("lam", "epsilon", "delta", "beta", length)))
     if arguments.x is None:
         # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
         ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
-        x = 0.5 * getattr(state, names[-1] if body.units else "lam") * (ahead if arguments.V >= 0.0 else -ahead[::-1])
+        x = 0.5 * getattr(state, length) * (ahead if arguments.V >= 0.0 else -ahead[::-1])
     else:
         x = np.atleast_1d(arguments.x)
     values = body.stress(x, **speeds).as_dict()

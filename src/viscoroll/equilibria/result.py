@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..results import Row, Shown, short
+from ..results import Row, Shown, short, unit_of
 from ..symbols import attributes
 from .loads import Loads
 from .reason import Reasons
@@ -102,8 +102,7 @@ class Steady(Shown):
         return "Steady rolling", rows
 
     def _unit(self, name: str) -> str:
-        units = str(self.described(name)["units"])
-        return "" if units == "1" else units
+        return unit_of(self.described(name))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over loads and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
@@ -115,12 +114,9 @@ class Steady(Shown):
         data = {name: xr.Variable(over, getattr(self, name), self.described(name)) for name in _FIELDS}
         data["stable"] = xr.Variable(over, self.stable.astype(np.int8), self.described("stable"))
         for n, name in enumerate(("rate_fast", "rate_slow")):
-            units = {} if self.described is attributes else {"units": "s-1", "long_name": f"{name}, of disturbances"}
-            data[name] = xr.Variable(over, self.eigenvalues[..., n].real, attributes(name) | units)
-        power = {"long_name": "power lost", "units": "1" if self.described is attributes else "W m-1"}
+            data[name] = xr.Variable(over, self.eigenvalues[..., n].real, self.described(name))
         for name in ("slip", "half_space", "cylinder"):
-            about = power | {"long_name": f"power lost: {name.replace('_', ' ')}"}
-            data[f"loss_{name}"] = xr.Variable(over, getattr(self.loss, name), about)
+            data[f"loss_{name}"] = xr.Variable(over, getattr(self.loss, name), self.described(f"loss_{name}"))
         for name, words in (("coefficient", "rolling resistance over load"), ("efficiency", "power out over power in")):
             data[name] = xr.Variable(over, getattr(self.loss, name), {"long_name": words, "units": "1"})
         data["count"] = xr.Variable(dims, self.count, {"long_name": "number of equilibria", "units": "1"})

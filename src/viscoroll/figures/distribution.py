@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..plots.style import THIN, new_figure, number, scaled
+from ..plots.style import new_figure, number, quantile_bands, scaled
 from ..presets import PAPER_SECTION_5
 from ..symbols import label
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _UNIT, _EXPONENT = 1e4, 4
-_GREYS = ("0.85", "0.65", "0.45")
 
 
 def ensemble_distribution(summary: xr.Dataset | None = None, sample: xr.Dataset | None = None) -> Figure:
@@ -35,13 +34,8 @@ def ensemble_distribution(summary: xr.Dataset | None = None, sample: xr.Dataset 
     title = f"{count} motions from random starts" + (f" for {scene}" if scene else "")
     figure, (left, right) = new_figure(title, 1, 2, (9.6, 4.2))
     t, quantile, V = _UNIT * summary["t"].values, summary["quantile"].values, summary["V_quantiles"].values
-    for n in range(quantile.size // 2):
-        text = f"{100 * quantile[n]:g} % to {100 * quantile[-1 - n]:g} %"
-        left.fill_between(t, V[n], V[-1 - n], color=_GREYS[min(n, len(_GREYS) - 1)], linewidth=0.0, label=text)
-    left.plot(t, V[quantile.size // 2], ".-", color="black", label="median")
-    left.axhline(0.0, **THIN)
+    quantile_bands(left, t, quantile, V, "median")
     left.set(xlabel=scaled("t", _EXPONENT), ylabel=label("V"), xlim=(t[0], t[-1]))
-    left.legend(frameon=False, loc="upper right")
     onset = sample["onset_time"].values
     stuck = np.isfinite(onset)
     right.hist(_UNIT * onset[stuck], bins=60, color="0.6", edgecolor="black", linewidth=0.3)

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..plots.style import THIN, labelled, new_figure, with_unit
+from ..plots.style import labelled, new_figure, quantile_bands, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_GREYS = ("0.85", "0.65", "0.45")
 _BARS = 80
 #: what a plot can tell apart, and how far it reaches
 _FINEST, _FARTHEST = 1e-280, 1e300
@@ -47,18 +46,9 @@ def _label(summaries: xr.Dataset, name: str) -> str:
 
 def _bands(axes: Any, summaries: xr.Dataset, name: str) -> None:
     """Quantiles over time, pairs of them as bands, a middle one as a line."""
-    t, levels, values = summaries["t"].values, summaries["quantile"].values, summaries[f"{name}_quantiles"].values
-    for n in range(levels.size // 2):
-        text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
-        grey = _GREYS[min(n, len(_GREYS) - 1)]
-        axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
-    if levels.size % 2:
-        middle = levels.size // 2
-        axes.plot(t, values[middle], ".-", color="black", label=f"{100 * levels[middle]:g} %")
-    axes.axhline(0.0, **THIN)
+    t = summaries["t"].values
+    quantile_bands(axes, t, summaries["quantile"].values, summaries[f"{name}_quantiles"].values)
     axes.set(xlabel=labelled("t", summaries["t"].attrs["units"]), ylabel=_label(summaries, name), xlim=(t[0], t[-1]))
-    if levels.size:
-        axes.legend(frameon=False, fontsize="small")
 
 
 def _levels(axes: Any, summaries: xr.Dataset, name: str) -> None:

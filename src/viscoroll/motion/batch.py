@@ -15,7 +15,7 @@ from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..material_tables import record
 from ..prony_array import PronyArray
-from ..results import Row, Shown
+from ..results import Row, Shown, unit_of
 from ..rolling_contact import flattened
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..symbols import attributes
@@ -151,22 +151,18 @@ class Ensemble(Shown):
 def card_of(result: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
     """What an ensemble says of itself, in either units; ``described``: attributes of a quantity."""
     ends = [Row("ended", f"{count}: {message}") for message, count in result.messages().items()]
-    rows = [Row("t", f"{result.t.size} times to {result.t[-1]:.6g}", _unit(described("t")))]
+    rows = [Row("t", f"{result.t.size} times to {result.t[-1]:.6g}", unit_of(described("t")))]
     for name in ("V", "omega", "x"):
         if (values := getattr(result, name)) is not None and values.size:
             last = values[:, -1][np.isfinite(values[:, -1])]
             low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
             text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
-            rows.append(Row(name, text, _unit(described(name))))
+            rows.append(Row(name, text, unit_of(described(name))))
     stuck = np.isfinite(result.onset_time).sum()
     rows.append(Row("onset of partial slip", f"in {stuck}"))
     if result.flow.any():
         rows.append(Row("by the flow map", f"{result.flow.sum()}, stated error {result.flow_error:.2g}"))
     return f"Ensemble of {len(result)} motions", rows + ends
-
-
-def _unit(described: dict[str, Any]) -> str:
-    return "" if described["units"] == "1" else str(described["units"])
 
 
 def ensemble(

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..bodies import Bodies
 from ..errors import MOTION_STATUS, ParameterError
 from ..prony_array import PronyArray
 from ..scene import PARAMETERS
@@ -25,7 +24,6 @@ _REGIME = {
 }
 _OWN: dict[str, dict[str, Any]] = {
     "regime": _REGIME,
-    "rest_time": {"long_name": "time at which the rest threshold was crossed", "units": "1"},
     "status": {
         "long_name": "how the motion ended",
         "flag_values": np.array([int(s) for s in MOTION_STATUS], dtype=np.int8),
@@ -42,8 +40,6 @@ _STARTS = {"V0": "V", "omega0": "omega"}
 
 def column_attributes(name: str, described: Callable[[str], dict[str, Any]] = attributes) -> dict[str, Any]:
     """Attributes of a field, a start or another column of an ensemble."""
-    if name == "rest_time" and described is not attributes:
-        return described(name)
     if name in _OWN:
         return dict(_OWN[name])
     if name in _STARTS:
@@ -56,16 +52,11 @@ def _globals(title: str) -> dict[str, str]:
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
 
 
-def _numbers(scene: Any) -> dict[str, Any]:
-    return {name: value for name in PARAMETERS if (value := getattr(scene, name)) is not None}
-
-
 def _material(scene: Any) -> dict[str, Any]:
     """The series that a scene counts time by; nothing where it has an alpha."""
-    if scene.material is None or isinstance(scene.material, PronyArray):
-        return {}
-    series = scene.material.total if isinstance(scene.material, Bodies) else scene.material
-    return {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+    return (
+        {} if scene.series is None else {"relaxation_strengths": scene.series.E, "relaxation_times": scene.series.tau}
+    )
 
 
 def _series(materials: PronyArray) -> dict[str, tuple[Any, dict[str, str]]]:
@@ -94,7 +85,7 @@ def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = att
         data,
         coords={"t": xr.Variable(("t",), motion.t, described("t"))},
         attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
-        | _numbers(motion.scene)
+        | motion.scene.numbers
         | _material(motion.scene)
         | driven
         | {

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
-from ..results import Row, Shown, Values
+from ..results import Row, Shown, Values, unit_of
 from ..rolling_contact import contact
 from ..scene import Scene, checked_scene
 from ..symbols import attributes
@@ -199,8 +199,7 @@ def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[st
     """What a motion says of itself, in either units; ``described``: attributes of a quantity."""
 
     def unit(name: str) -> str:
-        found = str(described(name)["units"])
-        return "" if found == "1" else found
+        return unit_of(described(name))
 
     rows = [Row("t", f"{motion.t.size} times to {motion.t[-1]:.6g}", unit("t"))]
     for name in ("V", "omega", "x"):

@@ -7,10 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..bodies import Bodies
 from ..errors import ModelWarning
 from ..kernels.compile.notice import is_worker
-from ..prony_array import PronyArray
 from ..scene import Scene
 from ..validity import NOT_THIS_MOTION, WAVE_LIMIT
 
@@ -34,7 +32,7 @@ def look(scene: Scene, V0: Any, omega0: Any, *, waves: float = 0.0) -> None:
     waves : the largest speed over that of shear waves, where it is known.
     """
     global _looked
-    if _looked >= _CALLS or is_worker():
+    if not is_looking():
         return
     _looked += 1
     faults = [*_of_scene(scene), *_of_start(scene, V0, omega0)]
@@ -44,6 +42,11 @@ def look(scene: Scene, V0: Any, omega0: Any, *, waves: float = 0.0) -> None:
         _looked = _CALLS
         text = "the model is not good for this motion: " + "; ".join(faults) + ".  See validity() of scene or result"
         warnings.warn(text, ModelWarning, stacklevel=_outside())
+
+
+def is_looking() -> bool:
+    """Whether the next motion is looked at."""
+    return _looked < _CALLS and not is_worker()
 
 
 def _of_scene(scene: Scene) -> list[str]:
@@ -64,12 +67,10 @@ def _of_scene(scene: Scene) -> list[str]:
 
 def _slow_N(scene: Scene) -> Any:
     """|N| of slow rolling, sum E_i tau_i^2 over T_ref^2; of one relaxation time (alpha - 1)/alpha^2."""
-    material = scene.material
-    if material is None or isinstance(material, PronyArray):
-        alpha = np.asarray(scene.alpha)
-        return (alpha - 1.0) / alpha**2 if material is None else np.zeros(alpha.shape)
-    series = material.total if isinstance(material, Bodies) else material
-    return series.second_moments[0]
+    if scene.series is not None:
+        return scene.series.second_moments[0]
+    alpha = np.asarray(scene.alpha)
+    return (alpha - 1.0) / alpha**2 if scene.material is None else np.zeros(alpha.shape)
 
 
 def _of_start(scene: Scene, V0: Any, omega0: Any) -> list[str]:

@@ -27,24 +27,20 @@ def master_curve(material: Any) -> Figure:
     """
     if material.is_rigid:
         raise ParameterError("material", "rigid", "one of a finite modulus")
-    from matplotlib.figure import Figure
-
     times = material.T_ref * np.concatenate([material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]])
     ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
     t = np.logspace(*ends, _POINTS)
     omega = 1.0 / t[::-1]
-    figure = Figure(figsize=(9.0, 4.0), dpi=150, layout="constrained")
-    figure.suptitle(material.name or "Material", fontsize="medium")
-    left, right = figure.subplots(1, 2)
-    lines = left.loglog(omega, material.storage(omega), color="black", label="E'")
+    figure, (left, right) = new_figure(material.name or "Material", 1, 2, (9.0, 4.0))
+    lines = left.loglog(omega, material.storage(omega), **LINES[0], label="E'")
     if material.prony.E.size:  # an elastic material has none, and no logarithm of it
-        lines += left.loglog(omega, material.loss(omega), color="#1f5fa8", linestyle="--", label="E''")
+        lines += left.loglog(omega, material.loss(omega), **LINES[1], label="E''")
         factor = left.twinx()
-        lines += factor.semilogx(omega, material.tan_delta(omega), color="#c8642a", linestyle="-.", label="tan delta")
+        lines += factor.semilogx(omega, material.tan_delta(omega), **LINES[2], label="tan delta")
         factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
     left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
     left.legend(handles=lines, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize="small")
-    right.loglog(t, material.relaxation(t), color="black")
+    right.loglog(t, material.relaxation(t), **LINES[0])
     right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa")
     return figure
 

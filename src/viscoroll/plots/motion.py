@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import LINES, SHADES, THIN, axis, new_figure
+from .style import LINES, SHADES, THIN, axis, new_figure, quantile_bands
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_GREYS = ("0.85", "0.65", "0.45")
 _FULL_SLIP = 0
 #: a histogram needs some
 _FEWEST = 8
@@ -41,7 +40,7 @@ def one(data: xr.Dataset) -> Figure:
 
 
 def ensemble(data: xr.Dataset) -> Figure:
-    """A row a quantity: quantile bands over time; beside the first the onset of partial slip."""
+    """A row a quantity: quantile bands over time, and a histogram at the end."""
     names = [name for name in ("V", "omega", "x", "angle") if name in data and data[name].ndim == 2]
     figure, rows = new_figure(
         f"{data.sizes['motion']} motions", max(len(names), 1), 2, (9.6, 2.8 * max(len(names), 1)), squeeze=False
@@ -52,7 +51,7 @@ def ensemble(data: xr.Dataset) -> Figure:
         reached = np.isfinite(values).any(axis=0)
         levels = np.full((len(_LEVELS), t.size), np.nan)
         levels[:, reached] = np.nanquantile(values[:, reached], _LEVELS, axis=0)
-        _bands(left, t, np.array(_LEVELS), levels)
+        quantile_bands(left, t, np.array(_LEVELS), levels)
         left.set(xlabel=axis(data["t"]), ylabel=axis(data[name]))
         last = values[:, -1][np.isfinite(values[:, -1])]
         _bars(right, last, f"{axis(data[name])} at the end", values.shape[0])
@@ -68,20 +67,9 @@ def bands(data: xr.Dataset) -> Figure:
     )
     for name, box in zip(names, axes.ravel(), strict=True):
         found = data[f"{name}_quantiles"]
-        _bands(box, data["t"].values, data["quantile"].values, found.values)
+        quantile_bands(box, data["t"].values, data["quantile"].values, found.values)
         box.set(xlabel=axis(data["t"]), ylabel=axis(found))
     return figure
-
-
-def _bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
-    """Quantiles over time: pairs of them as bands, a middle one as a line."""
-    for n in range(levels.size // 2):
-        text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
-        axes.fill_between(t, values[n], values[-1 - n], color=_GREYS[n % len(_GREYS)], linewidth=0.0, label=text)
-    if levels.size % 2:
-        axes.plot(t, values[levels.size // 2], ".-", color="black", label=f"{100 * levels[levels.size // 2]:g} %")
-    axes.axhline(0.0, **THIN)
-    axes.legend(frameon=False, fontsize="small")
 
 
 def _bars(axes: Any, values: NDArray, label: str, count: int) -> None:

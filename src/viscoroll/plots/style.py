@@ -7,6 +7,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from numpy.typing import NDArray
+
 from ..errors import OutputError
 from ..files import replacing
 from ..symbols import SYMBOLS, label
@@ -24,6 +26,8 @@ LINES: tuple[dict[str, Any], ...] = (
 MARKERS = ("o", "s", "^")
 #: Greys of the regimes in a phase portrait.
 SHADES = {"full slip": "0.87", "partial slip": "1.0"}
+#: Of quantile bands, from the widest.
+_GREYS = ("0.85", "0.65", "0.45")
 THIN = {"color": "0.7", "linewidth": 0.6}
 
 
@@ -54,6 +58,20 @@ def caveat(scene: Any, V: float) -> str:
     steady = scene.validity(V).steady
     nu = f"{float(f'{steady.value:.1g}'):g}"
     return "" if steady.holds else f"\n(nu = {nu}: Eq. (22) solved, not how such a cylinder would move)"
+
+
+def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray, middle: str | None = None) -> None:
+    """Quantiles over t, a row a level: pairs of them as bands, a middle one as a line with the label ``middle``."""
+    for n in range(levels.size // 2):
+        text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
+        grey = _GREYS[min(n, len(_GREYS) - 1)]
+        axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
+    if levels.size % 2:
+        n = levels.size // 2
+        axes.plot(t, values[n], ".-", color="black", label=middle or f"{100 * levels[n]:g} %")
+    axes.axhline(0.0, **THIN)
+    if levels.size:
+        axes.legend(frameon=False, fontsize="small")
 
 
 def describe(scene: Any, *names: str) -> str:

@@ -132,6 +132,7 @@ def root(rising: Any, low: Any, high: Any) -> Any:
 
 
 def positive(s: Any) -> Any:
+    """1/zeta, or what stands for 0: the contact of V = 0 is that of the least."""
     least = type(s)(10) ** -_LEAST
     return s if s > least else least
 

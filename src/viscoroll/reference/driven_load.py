@@ -6,7 +6,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from ..drive import Feedback
-from ..errors import ParameterError
+from ..errors import one_of
 
 Course = list[tuple[Any, Any]]
 
@@ -59,7 +59,7 @@ def pieces_of(drive: dict[str, Any], gamma: Any, tangent: Any, end: Any) -> list
     """
     arb, prescribed = type(gamma), [name for name in ("V", "omega") if drive.get(name) is not None]
     if len(prescribed) > 1:
-        raise ParameterError("V, omega given", "both", "one prescribed speed")
+        raise one_of(prescribed[0], prescribed[1], both=True)
     names = ("force", "torque", "brake", *prescribed)
     courses = {name: course_of(arb, drive.get(name) or 0.0, gamma) for name in names}
     courses["force"] = [(tau, value + tangent) for tau, value in courses["force"]]

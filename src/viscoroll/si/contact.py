@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
-
-import numpy as np
 
 from ..checks import checked
 from ..labels import unlabelled
 from ..results import Values
 from ..rolling_contact import OF_BODIES, contact, stress
 from ..typed import Numbers
-from .units import QUANTITIES, Cylinder, Units, over, units_of
+from .units import QUANTITIES, Cylinder, Units, over, to_si, units_of
 
 
 def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Numbers | None, **options: Any) -> Values:
@@ -33,9 +32,8 @@ def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Num
         names += [name for name in OF_BODIES if name not in names]
     if options.get("slopes"):
         names += [name for name in found if name not in names and name != "lam"]
-    values = {name: _in_si(name, found["lam" if name == "length" else name], one) for name in names}
     given = {"V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    return Values(values, given, _units(values) | _units(given), "Contact of a cylinder, SI units", labels)
+    return in_si({name: found["lam" if name == "length" else name] for name in names}, one, given, labels=labels)
 
 
 def stress_of(cylinder: Cylinder, x: Numbers, V: Numbers, omega: Numbers | None, delta: Numbers | None) -> Values:
@@ -45,22 +43,14 @@ def stress_of(cylinder: Cylinder, x: Numbers, V: Numbers, omega: Numbers | None,
         cylinder.scene(), checked("x", x) / one.l0, over("V", V, one), omega=over("omega", omega, one), delta=delta
     ).as_dict()
     given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    values = {name: _in_si(name, value, one) for name, value in found.items()}
-    return Values(values, given, _units(values) | _units(given), "Stresses in the contact of a cylinder, SI units")
+    return in_si(found, one, given, "Stresses in the contact of a cylinder, SI units")
 
 
-def in_si(found: Values, one: Units, given: dict[str, Any]) -> Values:
-    """A dimensionless contact state in SI units."""
-    values = {name: _in_si(name, value, one) for name, value in found.as_dict().items()}
-    return Values(values, given, _units(values) | _units(given), "Contact of a cylinder, SI units")
-
-
-def _in_si(name: str, value: Any, one: Any) -> Any:
-    if name not in QUANTITIES:
-        return value
-    found = np.asarray(value) * QUANTITIES[name].of(one)
-    return found if found.ndim else float(found)
-
-
-def _units(names: Any) -> dict[str, str]:
-    return {name: QUANTITIES[name].units for name in names if name in QUANTITIES}
+def in_si(
+    found: dict[str, Any], one: Units, given: dict[str, Any], title: str = "Contact of a cylinder, SI units",
+    labels: Callable[[str, Any], Any] | None = None,
+) -> Values:  # fmt: skip
+    """Dimensionless results by name in SI units; ``given``: what they are over, in SI units already."""
+    values = {name: to_si(name, value, one) for name, value in found.items()}
+    units = {name: QUANTITIES[name].units for name in (*values, *given) if name in QUANTITIES}
+    return Values(values, given, units, title, labels)

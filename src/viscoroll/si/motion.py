@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import number
-from ..drive import slope_factor
 from ..errors import MotionStatus, ParameterError
 from ..motion.batch import Ensemble, ensemble
 from ..motion.batch import card_of as ensemble_card
 from ..motion.checks import output_times
 from ..motion.driven import Drive
 from ..motion.single import Motion, Switch, card_of, roll
-from ..motion.warned import look
+from ..motion.warned import is_looking, look
 from ..results import Row, Shown, Values
 from ..scene import Scene
 from ..typed import Numbers
@@ -126,7 +125,7 @@ class MotionSI(Shown):
 
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
         """Contact state along the motion as of :meth:`Motion.contact`, in SI units: Q in N/m, M in N m/m."""
-        return contact_in_si(self.motion.contact(fields, **options), self._units, {"t": self.t})
+        return contact_in_si(self.motion.contact(fields, **options).as_dict(), self._units, {"t": self.t})
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motion strains, at each output time, as :meth:`Motion.validity`."""
@@ -173,7 +172,8 @@ class EnsembleSI(Shown):
         value = getattr(self.ensemble, name)
         if value is None or name not in _SCALED:
             return value
-        return to_si(name, value, units_of(self.cylinder, self.drive.slope))
+        # over (n, times), where units may be (n,)
+        return to_si(name, value.T, units_of(self.cylinder, self.drive.slope)).T
 
     def __dir__(self) -> Iterable[str]:
         return sorted({*super().__dir__(), *Ensemble.__dataclass_fields__})
@@ -209,7 +209,6 @@ def _about(cylinder: Cylinder) -> dict[str, Any]:
 
 def _asked(cylinder: Cylinder, t: Numbers, drive: Drive) -> tuple[Scene, Units, NDArray[np.float64], dict[str, Any]]:
     """(scene, units, output times in s, the drive's arguments without dimension)."""
-    slope_factor(drive.slope)  # refuses one that is too steep
     one = units_of(cylinder, drive.slope)
     times = output_times(t) if np.ndim(t) else np.array([number("t", t, low=0.0)])
     given = {name: over(name, value, one) for name, value in drive._asdict().items() if name != "slope"}
@@ -243,9 +242,13 @@ def roll_of(
 
 def _look_at_waves(cylinder: Cylinder, scene: Scene, start: tuple[Any, Any], bare: tuple[Any, Any]) -> None:
     """As ``look``, with the start's speeds over that of shear waves where a density is known."""
+    if not is_looking():
+        return
     V, omega = (0.0 if speed is None else np.abs(np.asarray(speed, np.float64)) for speed in start)
     ratio = cylinder._slowness(np.maximum(V, omega * cylinder.R), None)[0]
-    look(scene, *bare, waves=0.0 if ratio is None else float(np.max(ratio, initial=0.0)))
+    fastest = 0.0 if ratio is None else float(np.max(ratio, initial=0.0))
+    if fastest > 1.0:  # else ``roll`` and ``ensemble`` look themselves
+        look(scene, *bare, waves=fastest)
 
 
 def in_si(cylinder: Cylinder, drive: Drive, motion: Motion, times: NDArray[np.float64]) -> MotionSI:

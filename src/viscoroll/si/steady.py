@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..drive import Feedback, slope_factor
+from ..drive import Feedback
 from ..equilibria import Loss, Steady, steady
 from ..typed import Numbers
 from .units import Cylinder, attributes, over, units_of
@@ -21,7 +21,6 @@ def steady_of(
     V: Numbers | None,
 ) -> Steady:
     """``Cylinder.steady``."""
-    slope_factor(slope)  # refuses one that is too steep
     scene, one = cylinder.scene(), units_of(cylinder, slope)
     given = {name: over(name, value, one) for name, value in (("force", force), ("torque", torque), ("V", V))}
     found = steady(scene, **given, slope=slope)

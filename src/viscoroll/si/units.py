@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..checks import checked
-from ..drive import Feedback
+from ..drive import Feedback, slope_factor
 from ..errors import ParameterError
 from ..symbols import attributes as dimensionless
 
@@ -58,6 +58,10 @@ def _moment(long_name: str) -> Quantity:
     return Quantity(f"{long_name}, per length of the cylinder", "N m m-1", lambda one: one.torque)
 
 
+def _power(long_name: str) -> Quantity:
+    return Quantity(long_name, "W m-1", lambda one: one.P * one.speed)
+
+
 QUANTITIES = {
     "t": Quantity("time", "s", lambda one: one.T),
     "V0": Quantity("initial velocity of the axis", "m s-1", lambda one: one.speed),
@@ -91,7 +95,11 @@ QUANTITIES = {
     "dM_cylinder_dV": Quantity("dM_cylinder/dV", "N s m-1", lambda one: one.P * one.T),
     "p": Quantity("contact pressure", "Pa", lambda one: one.E_prime),
     "tau": Quantity("shear stress on the cylinder", "Pa", lambda one: one.E_prime),
-    "power": Quantity("power, per length of the cylinder", "W m-1", lambda one: one.P * one.speed),
+    "rate_fast": Quantity("rate_fast, of disturbances", "s-1", lambda one: 1.0 / one.T),
+    "rate_slow": Quantity("rate_slow, of disturbances", "s-1", lambda one: 1.0 / one.T),
+    "loss_slip": _power("power lost: slip"),
+    "loss_half_space": _power("power lost: half space"),
+    "loss_cylinder": _power("power lost: cylinder"),
 }
 
 
@@ -103,17 +111,24 @@ def attributes(name: str) -> dict[str, Any]:
 
 
 def units_of(cylinder: Cylinder, slope: Any = None) -> Units:
-    """Those of a cylinder; on a slope the load is P cos(slope), over which kappa and l0 are too."""
-    share = np.cos(0.0 if slope is None else slope)
+    """Those of a cylinder; on a slope the load is P cos(slope), over which kappa and l0 are too.
+
+    Raises
+    ------
+    ParameterError
+        A slope that is too steep.
+    """
+    _, share = slope_factor(slope)
     load, l0 = cylinder.load * share, cylinder.l0 * np.sqrt(share)
     return Units(cylinder.R, cylinder.T_ref, load, cylinder.m, l0, cylinder.E_prime)
 
 
 def to_si(name: str, value: Any, one: Units) -> Any:
-    """A dimensionless quantity in its SI unit; over (n, times) where units are (n,)."""
-    unit = np.asarray(QUANTITIES[name].of(one)) if name in QUANTITIES else np.asarray(1.0)
-    array = np.asarray(value)
-    return array * (unit[:, np.newaxis] if unit.ndim == 1 and array.ndim == 2 else unit)
+    """A dimensionless quantity in its SI unit; what has none, as ratios, as it is."""
+    if name not in QUANTITIES:
+        return value
+    found = np.asarray(value) * QUANTITIES[name].of(one)
+    return found if found.ndim else float(found)
 
 
 def over(name: str, given: Any, one: Units) -> Any:
