@@ -25,6 +25,8 @@ from numba.core.compiler import Compiler
 from .notice import tell
 
 _deferring = True
+#: passes of numba that look through all of a kernel for what kernels do not have: closures, overloads to be inlined
+_NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "WithLift")
 
 
 class EntryPipeline:
@@ -45,7 +47,8 @@ class EntryPipeline:
         if not _deferring:
             return Compiler(*self._given).compile_extra(function)
         try:
-            return _pipelines()[1](*self._given).compile_extra(function)
+            with _types_kept(self._given[0]):
+                return _pipelines()[1](*self._given).compile_extra(function)
         except Exception as error:
             reason = error
         _deferring = False
@@ -62,6 +65,29 @@ class EntryPipeline:
             stacklevel=2,
         )
         return compiled
+
+
+@contextmanager
+def _types_kept(typing: Any) -> Iterator[None]:
+    """numba asks every candidate anew at each sum of two floats: here the first answer is kept."""
+    if "resolve_function_type" in vars(typing):  # compiled for a function that is being compiled
+        yield
+        return
+    known: dict[Any, Any] = {}
+    plain = typing.resolve_function_type
+
+    def resolve_function_type(function: Any, given: tuple, named: dict[str, Any]) -> Any:
+        if named or not all(isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in given):
+            return plain(function, given, named)
+        if (function, given) not in known:
+            known[function, given] = plain(function, given, named)
+        return known[function, given]
+
+    typing.resolve_function_type = resolve_function_type
+    try:
+        yield
+    finally:
+        del typing.resolve_function_type
 
 
 @contextmanager
@@ -118,6 +144,10 @@ def _pipelines() -> tuple[type, type]:
 
         def set_env(self, name: str, environment: Any) -> None:
             """Nothing to set before there is code."""
+
+        def _optimize_functions(self, module: Any) -> None:
+            """Nothing: LLVM works on the whole alone."""
+            module.data_layout = self._codegen._data_layout
 
         def _get_module_for_linking(self) -> Any:
             """For an ordinary jitted function between two kernels, which LLVM compiles by itself: all below."""
@@ -189,7 +219,8 @@ def _pipeline(library_class: type) -> type:
 
         def define_pipelines(self) -> list[Any]:
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-            passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in passes.passes]
+            steps = [(step, why) for step, why in passes.passes if step.__name__ not in _NOT_NEEDED]
+            passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in steps]
             passes.finalize()
             return [passes]
 
