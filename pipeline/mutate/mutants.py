@@ -94,8 +94,30 @@ MOTION = [
     ("motion/integrate.py", "D *= sigma\n", "D *= 1.0\n", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),
 ]  # fmt: skip
+_PRONY, _PAIR, _UNSTEADY = "tests/test_prony.py", "tests/kernels/law/test_pair.py", "tests/kernels/law/test_unsteady.py"
+_STEADY, _BOUND = "tests/test_steady.py", "tests/test_bound_law.py"
+SERIES = [
+    ("law/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _PRONY),
+    ("law/series.py", "square = 1.0 + 2.0 * h_c / z  # 1/lam^2\n        m =", "square = 1.0 + h_c / z\n        m =", _PRONY),
+    ("law/series.py", "dh = add(dh, subtract(rise,", "dh = add(dh, add(rise,", _PRONY),
+    ("law/series.py", "u = add(u, multiply(divide(weighted, spread(a + parts.a[n])), apart))", "u = add(u, multiply(divide(weighted, spread(a)), apart))", _PAIR),
+    ("law/series.py", "share = multiply(spread(parts.t[j]), multiply(spread(parts.Q[j, i]), pressed))", "share = multiply(spread(parts.Q[j, i]), pressed)", _PAIR),
+    ("law/pair.py", "moment_at_an_end(z, other.T_mean, other.ends, material)", "moment_at_an_end(z, one.T_mean, other.ends, material)", _PAIR),
+    ("law/pair.py", "return half_space, cylinder, d_half_space * per, d_cylinder * per", "return half_space, cylinder, d_half_space, d_cylinder * per", _PRONY),
+    ("law/each.py", "    each.held[0] = row\n    _empty(each.table)\n", "    each.held[0] = row\n", "tests/test_prony_array.py"),
+    ("law/each.py", "    if _take(row, each):\n        _empty(each.parts)\n", "    _take(row, each)\n", "tests/test_bodies_array.py"),
+    ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
+    ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
+    ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),
+    ("law/bound.py", "out[n] *= unit\n", "out[n] *= 1.0\n", _BOUND),
+    ("law/bound.py", "out[2] = out[3] = 0.5 * state[M]", "out[2] = out[3] = state[M]", _BOUND),
+    ("law/bound.py", "state[DM_HALF_SPACE_DV], state[DM_CYLINDER_DV]", "state[DM_CYLINDER_DV], state[DM_HALF_SPACE_DV]", _BOUND),
+    ("law/steady_loop.py", "turned = -d_share / fall * m", "turned = d_share / fall * m", _STEADY),
+    ("law/steady_loop.py", "share * torque - (1.0 - share) * force", "(1.0 - share) * torque - share * force", _STEADY),
+    ("law/steady_loop.py", "D + more, rise_F + more * (1.0 + dg)", "D + more, rise_F + more", _STEADY),
+]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
 COEFFICIENTS = [
     ("bessel/ratios.npy", str(n), "1e-9 of it more", _RATIOS) for n in (0, 1, 302, 1203, 2104, 3005, 4006, 5007)
 ]
-MUTANTS = [Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *COEFFICIENTS)]
+MUTANTS = [Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *SERIES, *COEFFICIENTS)]
