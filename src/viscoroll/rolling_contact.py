@@ -346,6 +346,8 @@ def stress(
     from .kernels.law.stress_loop import Points, stress_loop
 
     checked_scene(scene, "stress")
+    plain, labels = unlabelled({"x": x, "V": V, "delta": delta, "omega": omega})
+    x, V, delta, omega = plain.values()
     creep: Any = {"delta": delta, "omega": omega}  # :func:`contact` refuses both and neither
     state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
@@ -374,7 +376,8 @@ def stress(
 
     run_blocks(work, count, _BLOCK)
     given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)}, given, title="Stresses")
+    found = {"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)}
+    return Values(found, given, title="Stresses", labels=labels)
 
 
 def _stresses(materials: PronyArray) -> Callable:

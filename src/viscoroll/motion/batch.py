@@ -13,6 +13,7 @@ from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..labels import Labels
 from ..material_tables import record
 from ..prony_array import PronyArray
 from ..results import Row, Shown, unit_of
@@ -22,7 +23,7 @@ from ..symbols import attributes
 from ..typed import Driving, Numbers
 from ..validity import Validity
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
-from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest
+from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
 from .each import roll_each, to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .warned import look
@@ -63,6 +64,7 @@ class Ensemble(Shown):
     flow_problem : why a map that was tried could not be used, or "".
     drive_error : as of a :class:`Motion`.
     drive : what was given to drive them.
+    labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
     """
 
     scene: Scene
@@ -92,6 +94,7 @@ class Ensemble(Shown):
     flow_problem: str
     drive_error: float
     drive: Drive
+    labels: Labels | None = None
 
     def __len__(self) -> int:
         return self.status.size
@@ -191,7 +194,7 @@ def ensemble(
     Parameters
     ----------
     scene : its fields may be arrays of n too: every motion can have a scene of its own.
-    V0, omega0 : start speeds, scalars or arrays (n,).
+    V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
     t : output times, ascending, common to all; one number: the final state only.
     force, torque, slope, brake, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays of n,
         times and values of (times, values) of shape (n, k).
@@ -243,7 +246,8 @@ def ensemble(
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    drive, ready = Drive(force, torque, slope, brake, omega, V), None
+    (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
+    ready = None
     look(scene, V0, omega0)
     if drive.acts or not scene.like_bodies:
         ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
@@ -292,7 +296,7 @@ def ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
         onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
-        drive_error=ready.error if ready else 0.0, drive=drive,
+        drive_error=ready.error if ready else 0.0, drive=drive, labels=labels,
     )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from ..errors import MotionStatus, ParameterError
 from ..motion.batch import Ensemble, ensemble
 from ..motion.batch import card_of as ensemble_card
 from ..motion.checks import output_times
-from ..motion.driven import Drive
+from ..motion.driven import Drive, bare
 from ..motion.single import Motion, Switch, card_of, roll
 from ..motion.warned import is_looking, look
 from ..results import Row, Shown, Values
@@ -265,6 +265,7 @@ def ensemble_of(
     cylinder: Cylinder, start: tuple[Any, Any], t: Numbers, drive: Drive, rest: float | None, **options: Any
 ) -> EnsembleSI:
     """``Cylinder.ensemble``."""
+    start, drive, labels = bare(start, drive)
     scene, one, times, given = _asked(cylinder, t, drive)
     V0, omega0 = (over(name, speed, one) for name, speed in zip(("V0", "omega0"), start, strict=True))
     if rest is not None and np.ndim(one.speed):
@@ -277,4 +278,4 @@ def ensemble_of(
         found = ensemble(scene, V0, omega0, times / one.T, rest=rest, **given, **options)
     except ParameterError as error:
         raise in_words(error, one) from error
-    return EnsembleSI(cylinder, drive, found, times)
+    return EnsembleSI(cylinder, drive, replace(found, labels=labels), times)
