@@ -210,7 +210,8 @@ def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[st
     if not np.isnan(motion.onset_time):
         rows.append(Row("onset of partial slip", f"t = {motion.onset_time:.6g}", unit("t")))
     if motion.switches:
-        rows.append(Row("changes of regime", f"{len(motion.switches)}, the last to {motion.switches[-1].regime}"))
+        last = motion.switches[-1]
+        rows.append(Row("changes of regime", f"{len(motion.switches)}, the last to {last.regime} at t = {last.t:.6g}"))
     if motion.reversals.size:
         rows.append(Row("reversals of V", str(motion.reversals.size)))
     return "Motion", [*rows, Row("ended", f"{motion.message} ({motion.steps} steps)")]
