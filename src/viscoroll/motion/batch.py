@@ -132,14 +132,19 @@ class Ensemble(Shown):
 
         See :meth:`Scene.validity`; arrays over the motions, of more than 256 over that many of them, evenly picked.
         """
+        some, V, omega = self.judged()
+        parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
+        scene = self.scene.replace(**parts) if parts and not isinstance(self.scene.material, PronyArray) else self.scene
+        return scene.validity(V, omega=omega)
+
+    def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
         fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, found in fastest.items():
             if (values := getattr(self, name)) is not None:
                 fastest[name] = np.fmax(found, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
-        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(int))
-        parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
-        scene = self.scene if self.scene.material is not None or not parts else self.scene.replace(**parts)
-        return scene.validity(fastest["V"][some], omega=np.copysign(fastest["omega"], self.V0 * self.omega0)[some])
+        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(np.int64))
+        return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
 
     def _card(self) -> tuple[str, list[Row]]:
         return card_of(self, attributes)

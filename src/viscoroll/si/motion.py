@@ -179,8 +179,15 @@ class EnsembleSI(Shown):
         return sorted({*super().__dir__(), *Ensemble.__dataclass_fields__})
 
     def validity(self) -> Validity:
-        """Which assumptions of the model the motions strain, as :meth:`Ensemble.validity`."""
-        return self.ensemble.validity()
+        """Which assumptions of the model the motions strain, as :meth:`Ensemble.validity`.
+
+        With the speed of waves where a density is known, and the bodies, as :meth:`Cylinder.validity`.
+        """
+        found = self.ensemble.validity()
+        some, V, omega = self.ensemble.judged()
+        cylinders, T = self.cylinder._some(some, len(self)), self.cylinder.T_ref
+        own = cylinders.validity(V * cylinders.R / T, omega=omega / T)
+        return found._replace(quasistatic=own.quasistatic, bodies=own.bodies, plane=own.plane)
 
     def messages(self) -> dict[str, int]:
         """How many motions ended in which way, in words."""
