@@ -160,7 +160,7 @@ def test_validity_of_many_compares_with_waves():
     assert found.bodies == alone.bodies
     assert found.plane == alone.plane
     many = vr.RUBBER_CYLINDER.replace(mu=np.linspace(0.2, 0.3, 300)).ensemble(1.0, 0.0, 0.1).validity()
-    assert many.quasistatic.holds is None
+    assert many.quasistatic.value.shape == (256,)
     assert many.steady.value.shape == (256,)
 
 
