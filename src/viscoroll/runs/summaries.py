@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.batch import Ensemble
+from ..motion.many import Ensemble
 from .quantities import QUANTITIES, valued
 from .units import attributes
 

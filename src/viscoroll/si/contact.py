@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from ..checks import checked
+from ..contact_fields import OF_BODIES
+from ..contact_stress import stress
 from ..labels import Labels, unlabelled
 from ..results import Values
-from ..rolling_contact import OF_BODIES, contact, stress
+from ..rolling_contact import contact
 from ..typed import Numbers
 from .units import QUANTITIES, Cylinder, Units, over, to_si, units_of
 

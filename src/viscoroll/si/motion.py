@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from ..checks import number
 from ..errors import MotionStatus, ParameterError
-from ..motion.batch import Ensemble, ensemble
-from ..motion.batch import card_of as ensemble_card
+from ..motion.batch import ensemble
 from ..motion.checks import output_times
 from ..motion.driven import Drive, bare
-from ..motion.single import Motion, Switch, card_of, roll
+from ..motion.many import Ensemble
+from ..motion.many import card_of as ensemble_card
+from ..motion.one import Motion, Switch, card_of
+from ..motion.single import roll
 from ..motion.warned import is_looking, look
 from ..results import Row, Shown, Values
 from ..scene import Scene
@@ -148,7 +150,7 @@ class MotionSI(Shown):
 
 @dataclass(frozen=True, repr=False)
 class EnsembleSI(Shown):
-    """Motions of cylinders in SI units; as :class:`viscoroll.motion.batch.Ensemble`, with its names.
+    """Motions of cylinders in SI units; as :class:`viscoroll.motion.Ensemble`, with its names.
 
     Attributes
     ----------
