@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
+from viscoroll.contact_fields import FIELDS, SLOPES
 from viscoroll.kernels.law.material import standard
 from viscoroll.kernels.law.stick import differences
 from viscoroll.reference import contact_enclosure
-from viscoroll.rolling_contact import FIELDS, SLOPES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu

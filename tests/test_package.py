@@ -16,7 +16,7 @@ from places import ROOT
 from processes import printed
 
 import viscoroll as vr
-from viscoroll.rolling_contact import FIELDS
+from viscoroll.contact_fields import FIELDS
 from viscoroll.symbols import SYMBOLS
 
 PACKAGE = Path(vr.__file__).parent

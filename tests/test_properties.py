@@ -15,9 +15,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
+from viscoroll.contact_fields import FIELDS as CONTACT_FIELDS
 from viscoroll.errors import MotionStatus
 from viscoroll.motion.batch import FIELDS
-from viscoroll.rolling_contact import FIELDS as CONTACT_FIELDS
 from viscoroll.tables import schema
 
 #: seconds for each of the five tests; 0: the short profile

@@ -1,4 +1,4 @@
-"""What results say of themselves: short text, HTML, xarray, pandas, figures; labels and warnings."""
+"""What results say of themselves: short text, HTML, xarray, pandas, figures; and warnings."""
 
 from __future__ import annotations
 
@@ -80,24 +80,6 @@ def test_scenes_hash_and_are_short():
     assert eval(repr(SCENE), {"Scene": vr.Scene}) == SCENE
 
 
-def test_labels_are_kept():
-    """xarray and pandas in, the same out; unlike labels are not mixed."""
-    import pandas as pd
-    import xarray as xr
-
-    V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]}, name="speed")
-    creep = xr.DataArray([0.0, 0.01, 0.02], dims="creep")
-    found = vr.contact(SCENE, V, delta=creep)
-    assert found.Q.dims == ("run", "creep")
-    assert found.Q.sel(run="b").values == pytest.approx(vr.contact(SCENE, 0.2, delta=creep.values).Q)
-    table = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"])
-    Q = vr.contact(SCENE, table["V"], delta=table["delta"]).Q
-    assert list(Q.index) == ["x", "y"]
-    assert Q["y"] == vr.contact(SCENE, 0.2, delta=0.01).Q
-    refused(lambda: vr.contact(SCENE, table["V"], delta=table["delta"].iloc[::-1]), "index")
-    refused(lambda: vr.contact(SCENE, V, delta=np.array([0.0, 0.1])), "labels")
-
-
 def test_no_gamma_no_motion():
     """What moves asks for gamma by name; what does not, does not."""
     still = SCENE.replace(gamma=None)
@@ -159,3 +141,25 @@ def test_validity_of_motions(results):
 def test_figures_are_not_loaded_until_drawn():
     code = "import sys, viscoroll as vr; repr(vr.PAPER_SECTION_5); vr.contact; print('matplotlib' in sys.modules)"
     assert printed(code).split()[-1] == "False"
+
+
+def test_plot_writes_where_it_is_told(results, tmp_path):
+    results["motion in SI"].plot(tmp_path / "motion.png")
+    assert (tmp_path / "motion.png").stat().st_size > 1000
+    with pytest.raises(vr.OutputError, match="suffix"):
+        results["motion in SI"].plot(tmp_path / "motion.word")
+
+
+def test_a_table_of_pandas_knows_its_units(results):
+    units = results["motion in SI"].to_pandas().attrs["units"]
+    assert units["t"] == "s"
+    assert units["V"] == "m s-1"
+    assert "delta" not in units
+
+
+def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
+    t = np.linspace(0.0, 4.0, 5)
+    braked = vr.RUBBER_CYLINDER.roll(2.0, 20.0, t, brake=5.0)
+    assert len(braked.plot().axes) == 3
+    assert "held at t = " in repr(braked)
+    assert len(vr.RUBBER_CYLINDER.roll(2.0, 20.0, t, torque=0.5).plot().axes) == 4

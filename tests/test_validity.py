@@ -74,7 +74,7 @@ def test_scenes_beyond_all_bounds():
 
 def test_a_sentence_each():
     lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
-    assert [line.split(":")[0] for line in lines] == list(SCENE.validity(1.0)._fields)
+    assert [line.split()[0] for line in lines] == list(SCENE.validity(1.0)._fields)
     assert "plane strain" in lines[-1]
     assert SCENE.validity(1.0).bodies.holds is None
 
@@ -184,3 +184,13 @@ def test_waves_of_a_pair():
         assert "not known" not in found.sentence
     found = pair(RUBBER, vr.Material.elastic(2e11, 0.3)).validity(1.0).quasistatic
     assert found.sentence.endswith("the density of the base is not known")
+
+
+def test_print_says_whether_each_holds_and_failed_names_what_does_not():
+    found = vr.PAPER_SECTION_5.validity(np.array([0.0, 1.0]))
+    assert found.failed == ("steady",)
+    words = {line.split()[0]: line.split()[1] for line in str(found).splitlines()}
+    assert words["steady"] == "no"
+    assert words["small_contact"] == "yes"
+    assert words["plane"] == "?"
+    assert vr.RUBBER_CYLINDER.validity(2.0).failed == ()

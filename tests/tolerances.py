@@ -21,7 +21,7 @@ DIRECT_CARTER = 4e-13
 #: alpha/(kappa V) ln; measured 8e-10.
 DIRECT_EXTREME = 1e-8
 
-# --- stress.py (test_stress.py) ---
+# --- contact_stress.py (test_stress.py) ---
 #: Stress against Eqs. (11) and (13) as printed at 160 digits, relative to the peak: a few roundings; measured 2.4e-15.
 STRESS_PRINTED = 2e-14
 #: Closures Int p, Int tau, Int x p, relative to Int p: 26 Gauss-Legendre panels in the test; measured 1.3e-14.
@@ -492,3 +492,9 @@ EXAMPLE_ORDER = 1e-3
 EXAMPLE_TRAIN = 1e-4
 #: Slopes against central differences of 1e-6.
 EXAMPLE_JACOBIAN = 1e-4
+
+# --- a transient solver (pipeline/test_transient.py) ---
+#: Rolling moment on cells of 0.04 of half a contact; measured 6.6e-4.
+TRANSIENT_M = 2e-3
+#: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
+TRANSIENT_ERROR = 6e-3

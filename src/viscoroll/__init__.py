@@ -36,7 +36,7 @@ _HOME = {
     "Fit": "dma",
     "read_dma": "dma",
     "contact": "rolling_contact",
-    "stress": "rolling_contact",
+    "stress": "contact_stress",
     "law": "bound_law",
     "Law": "bound_law",
     "steady": "equilibria",

@@ -5,6 +5,7 @@ from . import tables as tables
 from .bodies import Bodies as Bodies
 from .bound_law import Law as Law
 from .bound_law import law as law
+from .contact_stress import stress as stress
 from .cylinder import Cylinder as Cylinder
 from .dma import Fit as Fit
 from .dma import fit_prony as fit_prony
@@ -35,7 +36,6 @@ from .presets import RUBBER_CYLINDER as RUBBER_CYLINDER
 from .presets import RUBBER_ROLLER as RUBBER_ROLLER
 from .prony import Prony as Prony
 from .rolling_contact import contact as contact
-from .rolling_contact import stress as stress
 from .scene import Scene as Scene
 from .shift import WLF as WLF
 from .shift import Arrhenius as Arrhenius

@@ -18,7 +18,7 @@ from .results import Row, Shown, short
 from .scene import Scene, frozen, same
 from .si.conversions import Conversions
 from .si.methods import InSI
-from .si.scaling import contact_length, scene_from_si, scene_of_pair
+from .si.scaling import contact_length, scene_from_si, scene_of_pair, scene_of_solids
 from .validity import Validity, coupling, inertia
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
@@ -35,11 +35,12 @@ class Cylinder(InSI, Conversions):
 
     Parameters
     ----------
-    R : radius, m; this and every other number but T_epsilon may be an array, one value a cylinder.
+    R : radius, m; this and every other number may be an array, one value a cylinder.
     m : mass per unit length, kg/m.
     E : long-time Young's modulus, Pa; with the next three, of both bodies, in place of ``material``.
     nu : Poisson's ratio, in (-1, 0.5].
-    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.
+    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.  Of a T_epsilon each, (n,), every
+        cylinder has a series of its own, and T_ref is the longest of them.
     mu : coefficient of friction.
     j : J/(m R^2); 1/2 for a solid cylinder.
     g : gravitational acceleration, m/s^2.
@@ -64,7 +65,7 @@ class Cylinder(InSI, Conversions):
     m: Any
     E: Any
     nu: Any
-    T_epsilon: float | None
+    T_epsilon: Any
     T_sigma: Any
     mu: Any
     j: Any
@@ -77,7 +78,7 @@ class Cylinder(InSI, Conversions):
 
     def __init__(
         self, R: ArrayLike, m: ArrayLike, E: ArrayLike | None = None, nu: ArrayLike | None = None,
-        T_epsilon: float | None = None, T_sigma: ArrayLike | None = None, mu: ArrayLike | None = None,
+        T_epsilon: ArrayLike | None = None, T_sigma: ArrayLike | None = None, mu: ArrayLike | None = None,
         j: ArrayLike = 0.5, g: ArrayLike = 9.81, plane: Plane = "strain", *, material: Material | None = None,
         base: Material | None = None, load: ArrayLike | None = None, pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
@@ -100,7 +101,9 @@ class Cylinder(InSI, Conversions):
         for name, value in given.items():
             object.__setattr__(self, name, value)
         if material is None:
-            refuse_short_retardation(number("T_epsilon", given["T_epsilon"]), given["T_sigma"])
+            if np.ndim(given["T_epsilon"]) > 1:
+                raise ParameterError("T_epsilon", f"of shape {given['T_epsilon'].shape}", "a number or a vector (n,)")
+            refuse_short_retardation(given["T_epsilon"], given["T_sigma"])
         if material is not None or base is not None:
             _ = self.pair  # refuses what the materials do not allow
 
@@ -120,7 +123,9 @@ class Cylinder(InSI, Conversions):
     @property
     def T_ref(self) -> float:
         """What dimensionless times are counted in, s: T_epsilon, or T_ref of the materials."""
-        return self.T_epsilon if self.T_epsilon is not None and self._papers else self.pair.T_ref
+        if self.T_epsilon is None or not self._papers:
+            return self.pair.T_ref
+        return float(np.max(self.T_epsilon, initial=0.0)) if np.ndim(self.T_epsilon) else self.T_epsilon
 
     def replace(self, **changes: Any) -> Cylinder:
         """A copy with some parameters changed; ``material`` takes the place of E to T_sigma, and the reverse.
@@ -134,6 +139,12 @@ class Cylinder(InSI, Conversions):
         elif changes.keys() & set(_SOLID):
             given["material"] = None
         return Cylinder(**(given | changes))
+
+    def _some(self, which: NDArray[np.int64], count: int) -> Cylinder:
+        """Some of ``count`` cylinders, by their numbers."""
+        arrays = {name: value for name in _NUMBERS if np.shape(value := getattr(self, name)) == (count,)}
+        picked = {"load" if name == "pressed" else name: value[which] for name, value in arrays.items()}
+        return self.replace(**picked) if picked else self
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Cylinder):
@@ -176,6 +187,11 @@ class Cylinder(InSI, Conversions):
 
     def scene(self) -> Scene:
         """The dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4)."""
+        if self._papers and np.ndim(self.T_epsilon):
+            return scene_of_solids(
+                self.R, self.m, self.E, self.nu, self.T_ref, (self.T_epsilon, self.T_sigma), self.mu, self.j, self.g,
+                self.plane, self.pressed,
+            )  # fmt: skip
         if self._papers:
             solid: dict[str, Any] = {name: getattr(self, name) for name in (*_SOLID, "R", "m", "mu", "j", "g", "plane")}
             return scene_from_si(**solid, load=self.pressed)

@@ -54,6 +54,6 @@ def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[
     theta = checked("slope", 0.0 if slope is None else slope)
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
-        allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2)"
+        allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"
         raise ParameterError("slope", f"{theta[steep].flat[0]:g}", allowed)
     return np.tan(theta), np.cos(theta)

@@ -4,16 +4,50 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .errors import ParameterError
 
-_Wrap = Callable[[str, Any], Any]
+
+class Labels(NamedTuple):
+    """What the labelled arguments of a call have in common.
+
+    Attributes
+    ----------
+    shape : of the arguments, broadcast.
+    wrap : (name, values, names of axes behind those of ``shape``) -> the values with their labels.
+    dims, coords : as xarray takes them, of pandas too; a coordinate as its dims and its values.
+    """
+
+    shape: tuple[int, ...]
+    wrap: Callable[[str, Any, tuple[str, ...]], Any]
+    dims: tuple[str, ...]
+    coords: dict[str, Any]
+
+    def of(self, name: str, values: Any, *behind: str) -> Any:
+        """``values`` with labels; as they are where their shape is another than that of the arguments."""
+        found = np.shape(values)
+        fits = found[: len(self.shape)] == self.shape and len(found) == len(self.shape) + len(behind)
+        return self.wrap(name, values, behind) if fits else values
+
+    def beside(self, names: tuple[str, ...], what: str) -> tuple[tuple[str, ...], dict[str, Any]]:
+        """Axes and coordinates beside variables of these names: one that is called so is ``what`` before its name."""
+        new = {name: f"{what}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
+        coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}
+        return tuple(new[dim] for dim in self.dims), coords
+
+    def along(self, dim: str) -> dict[str, Any]:
+        """The coordinates of a single axis for an axis that has the name ``dim``; those of its own name come first."""
+        own, *_ = self.dims
+        return {
+            dim if name == own else name: (dim, values, {"long_name": name})
+            for name, (_, values) in self.coords.items()
+        }
 
 
-def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], _Wrap | None]:
+def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], Labels | None]:
     """Plain arrays in place of labelled ones, and what gives a result their labels; None where nothing has any.
 
     Raises
@@ -26,35 +60,52 @@ def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], _Wrap | None]:
     series = {name: value for name, value in given.items() if pandas and isinstance(value, pandas.Series)}
     if not arrays and not series:
         return given, None
-    plain = [name for name, value in given.items() if name not in arrays | series and np.ndim(value)]
+    others = {name: value for name, value in given.items() if name not in arrays | series}
+    # a schedule is (times, values), of its own length
+    plain = [name for name, value in others.items() if not isinstance(value, tuple) and np.ndim(value)]
     if plain or (arrays and series):
         names = ", ".join((*arrays, *series, *plain))
         raise ParameterError(names, "some labelled", "alike", f"{names}: give labels to all of them, or to none")
-    plain_values, wrap = _of_xarray(arrays) if arrays else _of_pandas(series)
-    return given | plain_values, wrap
+    plain_values, labels = _of_xarray(arrays) if arrays else _of_pandas(series)
+    return given | plain_values, labels
 
 
-def _of_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], _Wrap]:
+def _of_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     import xarray as xr
 
-    whole = dict(zip(arrays, xr.broadcast(*xr.align(*arrays.values(), join="exact")), strict=True))
-    like = next(iter(whole.values()))
+    try:
+        whole = dict(zip(arrays, xr.broadcast(*xr.align(*arrays.values(), join="exact")), strict=True))
+    except ValueError as error:
+        names = " and ".join(arrays)
+        sentence = f"{names} have unlike coordinates: align them first ({str(error).splitlines()[0]:.120})"
+        raise ParameterError(names, "unlike coordinates", "aligned", sentence) from error
+    like = next(iter(whole.values())).drop_attrs()
+    dims = tuple(map(str, like.dims))
 
-    def wrap(name: str, values: Any) -> Any:
-        return like.copy(data=values).rename(name).drop_attrs() if np.shape(values) == like.shape else values
+    def wrap(name: str, values: Any, behind: tuple[str, ...]) -> Any:
+        return xr.DataArray(values, dims=(*like.dims, *behind), coords=like.coords, name=name)
 
-    return {name: array.values for name, array in whole.items()}, wrap
+    coords = {str(name): (tuple(map(str, one.dims)), one.values) for name, one in like.coords.items() if one.dims}
+    return {name: array.values for name, array in whole.items()}, Labels(like.shape, wrap, dims, coords)
 
 
-def _of_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], _Wrap]:
+def _of_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     import pandas as pd
 
     first, *others = series.values()
-    if not all(first.index.equals(other.index) for other in others):
+    index = first.index
+    if not all(index.equals(other.index) for other in others):
         names = " and ".join(series)
         raise ParameterError(names, "unlike indices", "of one index", f"{names} are of unlike index: align them first")
 
-    def wrap(name: str, values: Any) -> Any:
-        return pd.Series(values, index=first.index, name=name) if np.shape(values) == first.shape else values
+    def wrap(name: str, values: Any, behind: tuple[str, ...]) -> Any:
+        if not behind:
+            return pd.Series(values, index=index, name=name)
+        if len(behind) > 1:
+            return values
+        return pd.DataFrame(values, index=index, columns=pd.RangeIndex(np.shape(values)[1], name=behind[0]))
 
-    return {name: each.to_numpy() for name, each in series.items()}, wrap
+    levels = [str(name or ("index" if index.nlevels == 1 else f"level_{n}")) for n, name in enumerate(index.names)]
+    dim = levels[0] if index.nlevels == 1 else "state"
+    coords = {name: ((dim,), index.get_level_values(n).to_numpy()) for n, name in enumerate(levels)}
+    return {name: each.to_numpy() for name, each in series.items()}, Labels(first.shape, wrap, (dim,), coords)

@@ -270,8 +270,10 @@ class Material(FromPrograms):
             return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)
 
 
-def refuse_short_retardation(T_epsilon: float, T_sigma: ArrayLike) -> None:
-    """Raise ParameterError where T_epsilon < T_sigma."""
-    longest = np.max(T_sigma, initial=0.0)
-    if longest > T_epsilon:
-        raise ParameterError("T_epsilon", T_epsilon, f">= T_sigma = {longest}")
+def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
+    """Raise ParameterError where T_epsilon < T_sigma; of arrays naming the longest T_sigma that is too long."""
+    slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
+    short = fast > slow
+    if short.any():
+        at = int(np.argmax(np.where(short, fast, 0.0)))
+        raise ParameterError("T_epsilon", slow.flat[at], f">= T_sigma = {fast.flat[at]}")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .labels import Labels
 from .symbols import attributes
 
 if TYPE_CHECKING:
@@ -40,20 +42,38 @@ class Shown:
         raise NotImplementedError
 
     def to_pandas(self) -> pd.DataFrame:
-        """The dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state."""
-        return self.to_xarray().to_dataframe()
+        """The dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
 
-    def plot(self) -> Figure:
-        """Draw it; a figure of matplotlib, with ``savefig``.
+        ``attrs["units"]`` holds the unit of each column and level of the index that has one.
+        """
+        data = self.to_xarray()
+        table = data.to_dataframe()
+        names = [name for name in (*table.index.names, *table.columns) if name in data.variables]
+        units = {str(name): str(data[name].attrs.get("units", "1")) for name in names}
+        table.attrs["units"] = {name: unit for name, unit in units.items() if unit != "1"}
+        return table
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+        """Draw it; a figure of matplotlib.
+
+        Parameters
+        ----------
+        path : a file to save it in, of a suffix that matplotlib knows; default: none is written.
 
         Raises
         ------
         ParameterError
             Where there is nothing to draw over, as of a single state.
+        OutputError
+            If the file cannot be written, or its suffix names no format.
         """
         from .plots import draw
+        from .plots.style import save
 
-        return draw(self.to_xarray())
+        figure = draw(self.to_xarray())
+        if path is not None:
+            save(figure, path)
+        return figure
 
     def __repr__(self) -> str:
         title, rows = self._card()
@@ -91,7 +111,7 @@ class Values(Shown):
     """Named results of one call; a name that was not asked for is an AttributeError.
 
     given : the arguments over which they were computed, by name.
-    units : unit of each that has one; title : what they are; labels : gives a result those of its arguments.
+    units : unit of each that has one; title : what they are; labels : those of the arguments.
     """
 
     def __init__(
@@ -100,10 +120,10 @@ class Values(Shown):
         given: dict[str, Any] | None = None,
         units: dict[str, str] | None = None,
         title: str = "Contact",
-        labels: Callable[[str, Any], Any] | None = None,
+        labels: Labels | None = None,
     ) -> None:
-        self._values = values if labels is None else {name: labels(name, value) for name, value in values.items()}
-        self._given, self._units, self._title = given or {}, units or {}, title
+        self._values = values if labels is None else {name: labels.of(name, value) for name, value in values.items()}
+        self._given, self._units, self._title, self._labels = given or {}, units or {}, title, labels
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -130,13 +150,15 @@ class Values(Shown):
         """Dataset over the arguments that vary, with names and units.
 
         An axis along which one argument alone varies has its name and its values; others are called ``state``.
+        Arguments with labels of xarray or pandas give theirs.
         """
         import xarray as xr
 
         plain = {name: np.asarray(value) for name, value in self._values.items()}
         given = {name: np.asarray(value) for name, value in self._given.items()}
         shape = np.broadcast_shapes(*(array.shape for array in (*plain.values(), *given.values())))
-        dims, coordinates = _axes(given, shape)
+        labels = self._labels if self._labels and self._labels.shape == shape else None
+        dims, coordinates = (labels.dims, labels.coords) if labels else _axes(given, shape)
         data = {}
         for name, array in (given | plain).items():
             if name in coordinates:
@@ -144,15 +166,16 @@ class Values(Shown):
             whole = np.broadcast_to(array, shape) if array.ndim else array
             kept = whole.astype(np.int8) if whole.dtype == bool else whole
             data[name] = xr.Variable(dims if array.ndim else (), kept, self._attributes(name))
-        coords = {name: xr.Variable((name,), values, self._attributes(name)) for name, values in coordinates.items()}
-        return xr.Dataset(data, coords, attrs={"title": self._title})
+        if not labels:
+            coordinates = {name: ((name,), values, self._attributes(name)) for name, values in coordinates.items()}
+        return xr.Dataset(data, coordinates, attrs={"title": self._title})
 
     def _attributes(self, name: str) -> dict[str, Any]:
         found = attributes(name)
         return found | {"units": self._units[name]} if name in self._units else found
 
 
-def _axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, NDArray]]:
+def _axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Names of the axes, and the coordinates of those that one argument alone varies along."""
     dims, coordinates = [], {}
     for axis in range(len(shape)):

@@ -1,4 +1,4 @@
-"""The public contact law: :func:`contact` and :func:`stress`.
+"""The public contact law: :func:`contact`.
 
 Checks and broadcasts the input, chooses the method, and asks the kernels for no more than
 the fields that were named.
@@ -14,26 +14,21 @@ from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks, solve_blocks
 from .bodies import Bodies
-from .checks import broadcast_shape, checked, checked_extent
+from .checks import broadcast_shape, checked_extent
+from .contact_fields import OF_BODIES, SLOPES, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .errors import ParameterError, one_of
 from .labels import unlabelled
-from .material_tables import inverses, record, series, unsteadiness
+from .material_tables import inverses, record, unsteadiness
 from .prony import Prony
 from .prony_array import PronyArray
 from .results import Values
 from .scene import Scene, checked_scene
 from .typed import Numbers
 
-FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
-OF_BODIES = ("M_half_space", "M_cylinder")
-SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
-SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: of bodies that are alike, half of each
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
 _NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
-#: on request alone
-UNSTEADY = "N"
 #: slopes over a speed, which follows the unit of time
 _PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
@@ -135,7 +130,7 @@ def contact(
     checked_scene(scene, "contact")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
-    names = _field_names(fields, scene.like_bodies, slopes, method)
+    names = field_names(fields, scene.like_bodies, slopes, method)
     plain, labels = unlabelled({"V": V, "delta": delta, "omega": omega})
     V, delta, omega = plain["V"], plain["delta"], plain["omega"]
     creep_name = "omega" if delta is None else "delta"
@@ -172,7 +167,7 @@ def contact(
     for name in _PER_SPEED & rows.keys():
         rows[name] *= unit
     given = {"V": V, creep_name: omega if delta is None else delta}
-    return Values({name: _shaped(name, rows[name], shape) for name in names}, given, labels=labels)
+    return Values({name: shaped(name, rows[name], shape) for name in names}, given, labels=labels)
 
 
 def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ...]) -> NDArray:
@@ -203,24 +198,6 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
-
-
-def _field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: str) -> tuple[str, ...]:
-    if method not in ("table", "direct"):
-        raise ParameterError("method", repr(method), "'table' or 'direct'")
-    default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
-    names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-    known = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
-    for name in names:
-        if name not in known:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
-    if slopes:
-        names += tuple(name for name in default_slopes if name not in names)
-    if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
-        raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
-    if method == "direct" and UNSTEADY in names:
-        raise ParameterError("fields", repr(UNSTEADY), "computed by method='table' alone: it is not in the paper")
-    return names
 
 
 def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
@@ -298,86 +275,9 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
     return lambda alphas, *rest: loop(Own(alphas), *rest)
 
 
-def _shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
+def shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
+    """A row of a kernel in the shape of the call; a number where that is ()."""
     values = np.reshape(row, shape)
     if name == "full_slip":
         values = values != 0.0
     return values if shape else values.item()
-
-
-@overload
-def stress(scene: Scene, x: Numbers, V: Numbers, delta: Numbers, omega: None = None) -> Values: ...
-@overload
-def stress(scene: Scene, x: Numbers, V: Numbers, delta: None = None, *, omega: Numbers) -> Values: ...
-def stress(
-    scene: Scene,
-    x: Numbers,
-    V: Numbers,
-    delta: Numbers | None = None,
-    omega: Numbers | None = None,
-) -> Values:
-    """Pressure and shear stress along the contact, Eqs. (11)-(14).
-
-    Parameters
-    ----------
-    scene : alpha, kappa and mu are used.
-    x : position over l0, from the foot of the axis, positive along the axis of V; any
-        value, the stresses are 0 outside the contact.
-    V, delta, omega : as for :func:`contact`; all arguments broadcast.
-
-    Returns
-    -------
-    Values
-        ``p``: p/E' >= 0.  ``tau``: shear stress on the cylinder over E', of the sign of
-        omega - V, |tau| <= mu p.
-
-    Raises
-    ------
-    ParameterError, ConvergenceError
-        As for :func:`contact`.
-
-    Notes
-    -----
-    Relative to the peak the error is below 1e-11 for alpha zeta from 1e-8 to 1e8
-    (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
-    held beside the result: 56 bytes an element of theirs.
-    """
-    from .kernels.law.material import Own
-    from .kernels.law.stress_loop import Points, stress_loop
-
-    checked_scene(scene, "stress")
-    creep: Any = {"delta": delta, "omega": omega}  # :func:`contact` refuses both and neither
-    state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
-    # for V < 0 everything is mirrored, tau once more
-    mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
-    many = isinstance(scene.material, PronyArray)
-    material, unit = scene.in_own_time()
-    given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
-    given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta")}
-    given |= {"zeta": np.asarray(state.zeta) / unit}
-    given |= {"alpha": np.arange(len(material), dtype=np.float64) if many else scene.alpha}
-    given |= {"mirror": mirror, "sign": np.sign(state.delta) * mirror}
-    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
-    shape = broadcast_shape(**arrays)
-    x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
-    modes = series(material) if isinstance(material, Prony) else None
-    loop = _stresses(material) if many else lambda alphas, *rest: stress_loop(modes or Own(alphas), *rest)
-    count = int(np.prod(shape))
-    p, tau = np.empty(count), np.empty(count)
-
-    def work(start: int, stop: int) -> None:
-        mirrored = mirror_of(start, stop) * x_of(start, stop)
-        mirrored.flags.writeable = False  # as all that a kernel reads, see elements
-        points = Points(mirrored, *(part(start, stop) for part in others))
-        loop(alpha_of(start, stop), points, p[start:stop], tau[start:stop], 0, stop - start)
-        tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
-
-    run_blocks(work, count, _BLOCK)
-    given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    return Values({"p": _shaped("p", p, shape), "tau": _shaped("tau", tau, shape)}, given, title="Stresses")
-
-
-def _stresses(materials: PronyArray) -> Callable:
-    from .contact_each import stresses_each
-
-    return stresses_each(materials)

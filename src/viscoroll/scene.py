@@ -219,7 +219,8 @@ def checked_scene(given: Any, call: str, *, moves: bool = False) -> Scene:
     if not isinstance(given, Scene):
         kind = type(given).__name__
         if hasattr(given, "scene"):
-            sentence = f"{call} takes a Scene, not a {kind}: give its .scene(), or call .{call}(...) of it in SI units"
+            own = f", or call .{call}(...) of it in SI units" if hasattr(given, call) else "; it is dimensionless"
+            sentence = f"{call} takes a Scene, not a {kind}: give its .scene(){own}"
         else:
             sentence = f"{call} takes a Scene, not {given!r:.60}"
         raise ParameterError("scene", kind, "a Scene", sentence)

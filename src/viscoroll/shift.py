@@ -47,7 +47,8 @@ class WLF:
         """a_T at a temperature in degrees Celsius."""
         above = number("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
-            raise ParameterError("temperature", temperature, f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF")
+            allowed = f"> T0 - C2 = {self.T0 - self.C2:g}, the pole of WLF, in degrees Celsius"
+            raise ParameterError("temperature", temperature, allowed)
         return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
 
 

@@ -57,6 +57,14 @@ class Validity(NamedTuple):
         moment is that of the axis' speed for both.  Needs omega.
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
     plane : not to be seen from V.
+
+    Examples
+    --------
+    Printed, each line says yes, no or, where no number can tell, "?".
+
+    >>> import viscoroll as vr
+    >>> vr.RUBBER_CYLINDER.validity(2.0).failed
+    ()
     """
 
     small_contact: Assumption
@@ -67,8 +75,18 @@ class Validity(NamedTuple):
     bodies: Assumption
     plane: Assumption
 
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the assumptions that do not hold, of arrays somewhere; empty where none is known to fail."""
+        return tuple(name for name, each in self._asdict().items() if each.holds is not None and not np.all(each.holds))
+
     def __str__(self) -> str:
-        return "\n".join(f"{name}: {assumption.sentence}" for name, assumption in self._asdict().items())
+        def line(name: str, each: Assumption) -> str:
+            word = "?" if each.holds is None else "no" if name in failed else "yes"
+            return f"{name:>{width}}  {word:<4} {each.sentence}"
+
+        width, failed = max(map(len, self._fields)), self.failed
+        return "\n".join(line(name, each) for name, each in self._asdict().items())
 
 
 class Strained(NamedTuple):

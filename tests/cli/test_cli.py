@@ -792,7 +792,9 @@ def test_plot(run, figures, here):
 
 def test_refused_plot(refuse, figures):
     for argv, words in (
-        ("figure-9 -o f.png", "'figure-9' is no figure and no file to plot: give figure-5"), ("figure-5", "-o"),
+        ("figure-9 -o f.png", "'figure-9' is no figure and no file to plot: give figure-5"),
+        ("figure-5", "-o"),
+        ("missing.nc -o f.png", "missing.nc: there is no such file"),
         ("figure-5 -o f.gif", "'f.gif'"),
     ):  # fmt: skip
         assert words in refuse("plot", *argv.split()), argv

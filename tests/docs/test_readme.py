@@ -43,7 +43,7 @@ def test_readme_block_runs(capsys):
 def test_first_pages_run(page, capsys):
     for code in blocks(ROOT / f"docs/{page}.md", "python"):
         exec(compile(code, page, "exec"), {})
-    assert "small_contact: " in capsys.readouterr().out
+    assert "small_contact  yes " in capsys.readouterr().out
 
 
 def test_howto_blocks_run(tmp_path, monkeypatch):

@@ -119,3 +119,4 @@ def test_arrays_replace_and_refusals():
         arguments = {vr.contact: (0.1, 0.0), vr.stress: (0.0, 0.1, 0.0), vr.steady: (), vr.humps: ()}
         told = refused(partial(call, ROLLER, *arguments.get(call, (0.1, 0.1, 1.0))))
         assert told.startswith(f"{call.__name__} takes a Scene, not a Cylinder")
+        assert (f"or call .{call.__name__}(...) of it" in told) == hasattr(ROLLER, call.__name__), told

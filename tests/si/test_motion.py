@@ -144,3 +144,42 @@ def test_refusals():
     for given, words in REFUSED:
         call = {"V0": 0.0, "omega0": 0.0, "t": 1.0} | given
         refused(lambda call=call: ROLLER.roll(**call), words)
+
+
+def test_validity_of_many_compares_with_waves():
+    """As of each cylinder at its highest speeds; of many motions over some of them."""
+    rubber = vr.Material(E=3e6, nu=0.5, prony=vr.Prony(E=[0.3], tau=[1e-3]), density=1130.0)
+    mu, load = np.array([0.2, 0.3]), np.array([300.0, 400.0])
+    rollers = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=mu, load=load)
+    found = rollers.ensemble([1.0, 2.0], 0.0, [0.1, 0.2]).validity()
+    assert found.quasistatic.value == pytest.approx(np.array([1.0, 2.0]) / np.sqrt(rubber.G / 1130.0))
+    for n in range(2):
+        one = rollers.replace(mu=mu[n], load=load[n])
+        alone = one.validity(1.0 + n, omega=0.0)
+        assert found.small_contact.value[n] == pytest.approx(alone.small_contact.value)
+    assert found.bodies == alone.bodies
+    assert found.plane == alone.plane
+    many = vr.RUBBER_CYLINDER.replace(mu=np.linspace(0.2, 0.3, 300)).ensemble(1.0, 0.0, 0.1).validity()
+    assert many.quasistatic.value.shape == (256,)
+    assert many.steady.value.shape == (256,)
+
+
+def test_retardation_times_of_each():
+    """Cylinders of a T_epsilon each are what they are alone."""
+    slow, fast = np.array([1e-3, 1e-2, 2e-2]), np.array([1e-3, 1e-3, 5e-3])
+    solid = {"R": 0.1, "m": 35.5, "E": 2.3e6, "nu": 0.49, "mu": 0.3}
+    many = vr.Cylinder(**solid, T_epsilon=slow, T_sigma=fast)
+    assert many.T_ref == 2e-2
+    state, e = many.contact(1.0, delta=0.01), many.ensemble(1.0, 0.0, [0.1, 1.0], slope=1e-3)
+    for n, (T_epsilon, T_sigma) in enumerate(zip(slow, fast, strict=True)):
+        one = vr.Cylinder(**solid, T_epsilon=T_epsilon, T_sigma=T_sigma)
+        alone = one.contact(1.0, delta=0.01)
+        for name in ("M", "Q", "length", "beta"):
+            assert getattr(state, name)[n] == pytest.approx(getattr(alone, name), rel=tol.SI_MOTION, abs=1e-300), name
+        m = one.roll(1.0, 0.0, [0.1, 1.0], slope=1e-3)
+        np.testing.assert_allclose(e.V[n], m.V, rtol=tol.SI_ENSEMBLE)
+        assert e.onset_time[n] == pytest.approx(m.onset_time, rel=tol.SI_ENSEMBLE)
+    assert many == many.replace(T_epsilon=slow.copy())
+    refused(lambda: many.replace(T_sigma=5e-3), "T_epsilon = 0.001: must be >= T_sigma = 0.005")
+    refused(lambda: many.replace(T_epsilon=slow[:, np.newaxis]), "T_epsilon", "a vector (n,)")
+    refused(lambda: many.replace(base=vr.Material.rigid()).scene(), "T_epsilon", "single number")

@@ -117,7 +117,9 @@ def count(text: str) -> int:
 def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = number) -> None:
     """Options that name a scene; each parameter is parsed by ``value``."""
     group = parser.add_argument_group(
-        "scene", "a preset or a file, changed by any of the parameters; or --alpha, --kappa and --mu alone"
+        "scene",
+        "a preset or a file, changed by any of the parameters; or --alpha, --kappa and --mu alone.\n"
+        "With a [cylinder] in the file all that is given and told is in SI units: m/s, rad/s, s, N/m, N m/m",
     )
     base = group.add_mutually_exclusive_group()
     base.add_argument(

@@ -40,7 +40,7 @@ class Body(NamedTuple):
 
     def stress(self, x: Any, V: Any, **options: Any) -> Any:
         """As :func:`viscoroll.stress`."""
-        from ..rolling_contact import stress
+        from ..contact_stress import stress
 
         return stress(self.scene, x, V, **options)
 

@@ -121,7 +121,7 @@ def _motion_sheet(
 ) -> Sheet:
     import numpy as np
 
-    from ..motion.single import REGIMES
+    from ..motion.one import REGIMES
     from .output import Sheet
 
     columns = {name: getattr(motion, name)[rows] for name in names}

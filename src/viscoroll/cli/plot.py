@@ -57,7 +57,8 @@ def _of_file(path: str) -> Any:
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
             return draw(data)
     except OSError as error:
-        raise TableError(path, f"cannot be read ({error.strerror or error})") from error
+        missing = "there is no such file" if not Path(path).exists() else f"cannot be read ({error.strerror or error})"
+        raise TableError(path, missing) from error
 
 
 def _of_scene(path: str) -> Any:

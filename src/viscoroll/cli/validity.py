@@ -24,8 +24,5 @@ def add_commands(commands: Any) -> None:
 
 
 def _validity(arguments: Namespace) -> int:
-    found = body_of(arguments).validity(arguments.V, omega=arguments.omega)
-    for name, assumption in found._asdict().items():
-        holds = "?" if assumption.holds is None else "yes" if assumption.holds else "no"
-        print(f"{name:>13}  {holds:<4} {assumption.sentence}")
+    print(body_of(arguments).validity(arguments.V, omega=arguments.omega))
     return 0

@@ -6,6 +6,7 @@ import html
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -154,11 +155,25 @@ class Fit:
             f"the data reach from {low:.2g} to {high:.2g} rad/s",
         )  # fmt: skip
 
-    def plot(self) -> Figure:
-        """Storage and loss modulus of the data with those of the fit, in a figure of matplotlib."""
-        from ..plots.material import fitted
+    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+        """Storage and loss modulus of the data with those of the fit, in a figure of matplotlib.
 
-        return fitted(self)
+        Parameters
+        ----------
+        path : also write it there, in the format of the suffix.
+
+        Raises
+        ------
+        OutputError
+            If it cannot be written there.
+        """
+        from ..plots.material import fitted
+        from ..plots.style import save
+
+        figure = fitted(self)
+        if path is not None:
+            save(figure, path)
+        return figure
 
     def to_xarray(self) -> xr.Dataset:
         """Data and fit over omega, the series over ``mode``, and the constants as attributes."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..labels import Labels
 from ..results import Row, Shown, short, unit_of
 from ..symbols import attributes
 from .loads import Loads
@@ -81,6 +82,19 @@ class Steady(Shown):
     reasons: Reasons
     #: attributes of a quantity: without dimension, or in SI units
     described: Callable[[str], dict[str, Any]] = attributes
+    #: of the loads, where they came as arrays of xarray or pandas: all above but ``reasons`` have them then
+    labels: Labels | None = None
+
+    def labelled(self, labels: Labels | None) -> Steady:
+        """The same with the labels of its loads."""
+        if labels is None or labels.shape != np.shape(self.count):
+            return self
+        names = (*_FIELDS, "stable")
+        found = {name: labels.of(name, getattr(self, name), "equilibrium") for name in names}
+        found["eigenvalues"] = labels.of("eigenvalues", self.eigenvalues, "equilibrium", "rate")
+        found["count"] = labels.of("count", self.count)
+        loss = Loss(*(labels.of(f.name, getattr(self.loss, f.name), "equilibrium") for f in fields(Loss)))
+        return replace(self, **found, loss=loss, labels=labels)
 
     @property
     def reason(self) -> Any:
@@ -90,8 +104,9 @@ class Steady(Shown):
     def _card(self) -> tuple[str, list[Row]]:
         if np.ndim(self.count):
             loads = f"{np.size(self.count)} loads"
-            found = f"{int(np.sum(self.count))}, {int(np.sum(self.stable))} of them stable"
-            return f"Steady rolling under {loads}", [Row("equilibria", found), Row("V", short(self.V), self._unit("V"))]
+            found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
+            speeds = Row("V", short(np.asarray(self.V)), self._unit("V"))
+            return f"Steady rolling under {loads}", [Row("equilibria", found), speeds]
         if not self.count:
             return "Steady rolling: no equilibrium", [Row("reason", str(self.reason))]
         rows = []
@@ -110,17 +125,24 @@ class Steady(Shown):
 
         shape = np.shape(self.count)
         dims = ("load",) if len(shape) == 1 else tuple(f"load_{n}" for n in range(len(shape)))
+        dims, coords = self.labels.beside((*_FIELDS, "count"), "load") if self.labels else (dims, {})
         over = (*dims, "equilibrium")
-        data = {name: xr.Variable(over, getattr(self, name), self.described(name)) for name in _FIELDS}
-        data["stable"] = xr.Variable(over, self.stable.astype(np.int8), self.described("stable"))
+
+        def variable(values: Any, about: dict[str, Any]) -> xr.Variable:
+            return xr.Variable(over, np.asarray(values), about)
+
+        data = {name: variable(getattr(self, name), self.described(name)) for name in _FIELDS}
+        data["stable"] = variable(np.asarray(self.stable).astype(np.int8), self.described("stable"))
         for n, name in enumerate(("rate_fast", "rate_slow")):
-            data[name] = xr.Variable(over, self.eigenvalues[..., n].real, self.described(name))
+            data[name] = variable(np.asarray(self.eigenvalues)[..., n].real, self.described(name))
         for name in ("slip", "half_space", "cylinder"):
-            data[f"loss_{name}"] = xr.Variable(over, getattr(self.loss, name), self.described(f"loss_{name}"))
+            data[f"loss_{name}"] = variable(getattr(self.loss, name), self.described(f"loss_{name}"))
         for name, words in (("coefficient", "rolling resistance over load"), ("efficiency", "power out over power in")):
-            data[name] = xr.Variable(over, getattr(self.loss, name), {"long_name": words, "units": "1"})
-        data["count"] = xr.Variable(dims, self.count, {"long_name": "number of equilibria", "units": "1"})
-        return xr.Dataset(data, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
+            data[name] = variable(getattr(self.loss, name), {"long_name": words, "units": "1"})
+        about = {"long_name": "number of equilibria", "units": "1"}
+        data["count"] = xr.Variable(dims, np.asarray(self.count), about)
+        apart = {name: values for name, values in coords.items() if name not in data}
+        return xr.Dataset(data, apart, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
 
 
 @dataclass(frozen=True)

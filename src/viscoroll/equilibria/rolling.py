@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ..drive import Feedback
 from ..errors import ParameterError
+from ..labels import unlabelled
 from ..scene import Scene, checked_scene
 from ..typed import Numbers
 from .loads import Loads, loads_of
@@ -48,7 +49,8 @@ def steady(
     -------
     Steady
         Of one load exactly its equilibria by rising |V|, none to many.  Of arrays of loads a last axis in
-        addition, padded with NaN, and their ``count``.  ``reason`` says why there is none.
+        addition, padded with NaN, and their ``count``; arrays of xarray and series of pandas give their labels
+        (series: data frames, a column an equilibrium).  ``reason`` says why there is none.
 
     Raises
     ------
@@ -73,6 +75,8 @@ def steady(
     to that over ``grip`` (``tests/test_steady.py``).
     """
     checked_scene(scene, "steady")
+    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
+    force, torque, slope, V = plain.values()
     loads = loads_of(scene, force, torque, slope, V)
     law = Law.of(scene)
     gained = bool(loads.gains.V or loads.gains.omega)
@@ -87,7 +91,7 @@ def steady(
     held = states.held()
     number = np.bincount(held.load, minlength=loads.mu.size)
     top = (math.nan, math.nan) if gained or law.elastic else _top(law)
-    return packed(loads, held, number, reasons_of(loads, number, states, top, neutral))
+    return packed(loads, held, number, reasons_of(loads, number, states, top, neutral)).labelled(labels)
 
 
 def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact_stress import stress
 from ..motion import Motion, roll
 from ..plots.style import LINES, MARKERS, THIN, caveat, describe, new_figure, number, scaled
 from ..presets import PAPER_SECTION_5, PAPER_STARTS
-from ..rolling_contact import stress
 from ..scene import Scene
 from ..symbols import label
 

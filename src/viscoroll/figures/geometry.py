@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..contact_stress import stress
 from ..plots.style import LINES, THIN, new_figure
-from ..rolling_contact import contact, stress
+from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label
 

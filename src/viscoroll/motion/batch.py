@@ -1,9 +1,8 @@
-"""Many motions at once: :func:`ensemble` and its result."""
+"""Many motions at once: :func:`ensemble`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -12,157 +11,28 @@ from numpy.typing import NDArray
 from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
-from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..errors import ParameterError
 from ..material_tables import record
 from ..prony_array import PronyArray
-from ..results import Row, Shown, unit_of
 from ..rolling_contact import flattened
 from ..scene import PARAMETERS, Scene, checked_scene
-from ..symbols import attributes
 from ..typed import Driving, Numbers
-from ..validity import Validity
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
-from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest
+from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
 from .each import roll_each, to_unit
 from .flow import Answer, FlowMap, ask, flow_map
+from .many import Ensemble
 from .warned import look
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 FIELDS = STATES + LOSSES + ACTING
 #: motions a block: where all are integrated, and where most come from a map
 _BLOCK, _MAPPED_BLOCK = 64, 1 << 14
-#: motions that validity looks at
-_JUDGED = 256
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
 #: thousand (docs/benchmark.md, "One scene")
 FLOW_PAYS = 4096
-
-
-@dataclass(frozen=True, repr=False)
-class Ensemble(Shown):
-    """Motions 0 ... n - 1 at common output times; everything dimensionless.
-
-    Attributes
-    ----------
-    t : output times.
-    V, omega, x, angle, delta, regime : shape (n, len(t)); those not asked for are None.
-    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2: the integrals of
-        gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
-        (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
-    force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
-    onset_time : (n,), first change from full to partial slip; NaN if there is none.
-    rest_time : (n,), when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
-    status : (n,), a :class:`MotionStatus` each; outputs a motion did not reach are NaN.
-    switches, steps : (n,), changes of regime, and integration steps taken.
-    flow : (n,), whether the flow map gave this motion; the others were integrated.
-    flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
-        ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
-        relative to the energy at the start if larger; NaN without a map.
-    flow_problem : why a map that was tried could not be used, or "".
-    drive_error : as of a :class:`Motion`.
-    drive : what was given to drive them.
-    """
-
-    scene: Scene
-    V0: NDArray[np.float64]
-    omega0: NDArray[np.float64]
-    t: NDArray[np.float64]
-    V: NDArray[np.float64] | None
-    omega: NDArray[np.float64] | None
-    x: NDArray[np.float64] | None
-    angle: NDArray[np.float64] | None
-    delta: NDArray[np.float64] | None
-    regime: NDArray[np.float64] | None
-    slip_loss: NDArray[np.float64] | None
-    rolling_loss: NDArray[np.float64] | None
-    force: NDArray[np.float64] | None
-    torque: NDArray[np.float64] | None
-    work_force: NDArray[np.float64] | None
-    work_torque: NDArray[np.float64] | None
-    brake_loss: NDArray[np.float64] | None
-    onset_time: NDArray[np.float64]
-    rest_time: NDArray[np.float64]
-    status: NDArray[np.int8]
-    switches: NDArray[np.int64]
-    steps: NDArray[np.int64]
-    flow: NDArray[np.bool_]
-    flow_error: float
-    flow_problem: str
-    drive_error: float
-    drive: Drive
-
-    def __len__(self) -> int:
-        return self.status.size
-
-    def messages(self) -> dict[str, int]:
-        """How many motions ended in which way, in words."""
-        codes, counts = np.unique(self.status, return_counts=True)
-        return {MOTION_STATUS[MotionStatus(code)]: int(n) for code, n in zip(codes, counts, strict=True)}
-
-    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
-        """Mean, standard deviation and quantiles over the motions, per output time.
-
-        Parameters
-        ----------
-        quantiles : in [0, 1].
-
-        Returns
-        -------
-        xarray.Dataset
-            Over (quantile, t), of every field kept but delta and regime, and of onset_time; numpy's
-            values (``tests/motion/test_ensemble.py``).  Outputs that a motion did not reach do not count;
-            the attributes say how many motions ended in which way.
-
-        Raises
-        ------
-        ParameterError
-            If there are no motions.
-        """
-        from .export import summary_dataset
-
-        return summary_dataset(self, tuple(quantiles))
-
-    def validity(self) -> Validity:
-        """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
-
-        See :meth:`Scene.validity`; arrays over the motions, of more than 256 over that many of them, evenly picked.
-        """
-        fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
-        for name, found in fastest.items():
-            if (values := getattr(self, name)) is not None:
-                fastest[name] = np.fmax(found, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
-        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(int))
-        parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
-        scene = self.scene if self.scene.material is not None or not parts else self.scene.replace(**parts)
-        return scene.validity(fastest["V"][some], omega=np.copysign(fastest["omega"], self.V0 * self.omega0)[some])
-
-    def _card(self) -> tuple[str, list[Row]]:
-        return card_of(self, attributes)
-
-    def to_xarray(self) -> xr.Dataset:
-        """Dataset over (motion, t) with starts, outputs, onset and status."""
-        from .export import ensemble_dataset
-
-        return ensemble_dataset(self)
-
-
-def card_of(result: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
-    """What an ensemble says of itself, in either units; ``described``: attributes of a quantity."""
-    ends = [Row("ended", f"{count}: {message}") for message, count in result.messages().items()]
-    rows = [Row("t", f"{result.t.size} times to {result.t[-1]:.6g}", unit_of(described("t")))]
-    for name in ("V", "omega", "x"):
-        if (values := getattr(result, name)) is not None and values.size:
-            last = values[:, -1][np.isfinite(values[:, -1])]
-            low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
-            text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
-            rows.append(Row(name, text, unit_of(described(name))))
-    stuck = np.isfinite(result.onset_time).sum()
-    rows.append(Row("onset of partial slip", f"in {stuck}"))
-    if result.flow.any():
-        rows.append(Row("by the flow map", f"{result.flow.sum()}, stated error {result.flow_error:.2g}"))
-    return f"Ensemble of {len(result)} motions", rows + ends
 
 
 def ensemble(
@@ -191,7 +61,7 @@ def ensemble(
     Parameters
     ----------
     scene : its fields may be arrays of n too: every motion can have a scene of its own.
-    V0, omega0 : start speeds, scalars or arrays (n,).
+    V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
     t : output times, ascending, common to all; one number: the final state only.
     force, torque, slope, brake, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays of n,
         times and values of (times, values) of shape (n, k).
@@ -243,7 +113,8 @@ def ensemble(
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    drive, ready = Drive(force, torque, slope, brake, omega, V), None
+    (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
+    ready = None
     look(scene, V0, omega0)
     if drive.acts or not scene.like_bodies:
         ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
@@ -292,7 +163,7 @@ def ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
         onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
-        drive_error=ready.error if ready else 0.0, drive=drive,
+        drive_error=ready.error if ready else 0.0, drive=drive, labels=labels,
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..checks import checked
 from ..drive import Feedback, slope_factor
 from ..errors import ParameterError, one_of
+from ..labels import Labels, unlabelled
 from ..scene import Scene
 from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
@@ -50,6 +51,12 @@ class Drive(NamedTuple):
     def prescribes(self) -> bool:
         """Whether a speed is prescribed."""
         return self.V is not None or self.omega is not None
+
+
+def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, Labels | None]:
+    """Start speeds and drive of many motions without labels of xarray and pandas, and these."""
+    plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()})
+    return (plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels
 
 
 class Prepared(NamedTuple):
@@ -166,4 +173,5 @@ def refuse_rest(rest: float, drives: Prepared) -> None:
     acting = drives.prescribed or drives.gains.any() or drives.pieces[:, -1, 2:].any()
     if rest > 0.0 and acting:
         sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
+        sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
         raise ParameterError("rest", rest, "None", sentence)

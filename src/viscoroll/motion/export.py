@@ -128,7 +128,9 @@ def ensemble_dataset(result: Any, described: Callable[[str], dict[str, Any]] = a
         | {"drive_error": result.drive_error}
         | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     )
-    return xr.Dataset(data, coords={"t": xr.Variable(("t",), result.t, described("t"))}, attrs=attrs)
+    own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
+    coords = {name: values for name, values in own.items() if name not in data}
+    return xr.Dataset(data, coords | {"t": xr.Variable(("t",), result.t, described("t"))}, attrs)
 
 
 def summary_dataset(

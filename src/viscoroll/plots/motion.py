@@ -21,7 +21,7 @@ _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 def one(data: xr.Dataset) -> Figure:
     """V and omega, what acts, and the path over time; full slip is shaded."""
-    driven = [name for name in ("force", "torque") if name in data]
+    driven = [name for name in ("force", "torque") if name in data and data[name].values.any()]
     rows: list[tuple[str, ...]] = [("V",), ("omega",), ("x",)] if _units(data, "V") else [("V", "omega"), ("x",)]
     if driven:
         rows += [(name,) for name in driven] if _units(data, "force") else [tuple(driven)]

@@ -2,14 +2,26 @@
 
 Read in this order: :mod:`runfile` (with :mod:`sources`, :mod:`inputs` and :mod:`units`), :mod:`draws`,
 :mod:`evaluate`, :mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and
-:mod:`zarr_files`), :mod:`engine`, then :mod:`estimate`, :mod:`verify` and :mod:`export`.
+:mod:`zarr_files`), :mod:`engine`, then :mod:`estimate`, :mod:`verify`, :mod:`results` and :mod:`export`.
 """
 
 from .engine import run_ensemble
 from .estimate import estimate
 from .evaluate import roll_inputs
 from .export import export_netcdf
+from .results import RunResults, open_run
 from .runfile import Run, read_run
 from .verify import open_summaries, verify
 
-__all__ = ["Run", "estimate", "export_netcdf", "open_summaries", "read_run", "roll_inputs", "run_ensemble", "verify"]
+__all__ = [
+    "Run",
+    "RunResults",
+    "estimate",
+    "export_netcdf",
+    "open_run",
+    "open_summaries",
+    "read_run",
+    "roll_inputs",
+    "run_ensemble",
+    "verify",
+]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..errors import ParameterError
 from ..material import Material
 from ..motion import ensemble
-from ..motion.batch import Ensemble
+from ..motion.many import Ensemble
 from ..pair import Pair
 from ..scene import Scene
 from ..si.scaling import scene_from_si, scene_of_pair, scene_of_series

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.batch import Ensemble
+from ..motion.many import Ensemble
 from ..si.units import attributes
 
 

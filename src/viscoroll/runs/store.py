@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..errors import OutputError
-from ..motion.batch import Ensemble
+from ..motion.many import Ensemble
 from . import zarr_files
 from .evaluate import roll_block, roll_inputs
 from .records import Record, damaged, make_folder, put, read_record, write_record

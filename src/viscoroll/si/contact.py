@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from ..checks import checked
-from ..labels import unlabelled
+from ..contact_fields import OF_BODIES
+from ..contact_stress import stress
+from ..labels import Labels, unlabelled
 from ..results import Values
-from ..rolling_contact import OF_BODIES, contact, stress
+from ..rolling_contact import contact
 from ..typed import Numbers
 from .units import QUANTITIES, Cylinder, Units, over, to_si, units_of
 
@@ -39,16 +40,18 @@ def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Num
 def stress_of(cylinder: Cylinder, x: Numbers, V: Numbers, omega: Numbers | None, delta: Numbers | None) -> Values:
     """``Cylinder.stress``."""
     one = units_of(cylinder)
+    plain, labels = unlabelled({"x": x, "V": V, "omega": omega, "delta": delta})
+    x, V, omega, delta = plain.values()
     found = stress(
         cylinder.scene(), checked("x", x) / one.l0, over("V", V, one), omega=over("omega", omega, one), delta=delta
     ).as_dict()
     given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    return in_si(found, one, given, "Stresses in the contact of a cylinder, SI units")
+    return in_si(found, one, given, "Stresses in the contact of a cylinder, SI units", labels)
 
 
 def in_si(
     found: dict[str, Any], one: Units, given: dict[str, Any], title: str = "Contact of a cylinder, SI units",
-    labels: Callable[[str, Any], Any] | None = None,
+    labels: Labels | None = None,
 ) -> Values:  # fmt: skip
     """Dimensionless results by name in SI units; ``given``: what they are over, in SI units already."""
     values = {name: to_si(name, value, one) for name, value in found.items()}

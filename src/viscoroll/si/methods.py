@@ -193,6 +193,7 @@ class InSI:
         Parameters
         ----------
         V0, omega0 : start speeds, m/s and rad/s, numbers or arrays (n,); the cylinder's numbers may be arrays too.
+            Labels of xarray and pandas come back in ``to_xarray`` and ``to_pandas``.
         t : output times, s, common to all; one number: the final state only.
         force, torque, slope, brake, omega, V : as for :meth:`roll`; numbers may be arrays of n, values of
             (times, values) of shape (n, k).

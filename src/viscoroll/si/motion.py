@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from ..checks import number
 from ..errors import MotionStatus, ParameterError
-from ..motion.batch import Ensemble, ensemble
-from ..motion.batch import card_of as ensemble_card
+from ..motion.batch import ensemble
 from ..motion.checks import output_times
-from ..motion.driven import Drive
-from ..motion.single import Motion, Switch, card_of, roll
+from ..motion.driven import Drive, bare
+from ..motion.many import Ensemble
+from ..motion.many import card_of as ensemble_card
+from ..motion.one import Motion, Switch, card_of
+from ..motion.single import roll
 from ..motion.warned import is_looking, look
 from ..results import Row, Shown, Values
 from ..scene import Scene
@@ -148,7 +150,7 @@ class MotionSI(Shown):
 
 @dataclass(frozen=True, repr=False)
 class EnsembleSI(Shown):
-    """Motions of cylinders in SI units; as :class:`viscoroll.motion.batch.Ensemble`, with its names.
+    """Motions of cylinders in SI units; as :class:`viscoroll.motion.Ensemble`, with its names.
 
     Attributes
     ----------
@@ -179,8 +181,15 @@ class EnsembleSI(Shown):
         return sorted({*super().__dir__(), *Ensemble.__dataclass_fields__})
 
     def validity(self) -> Validity:
-        """Which assumptions of the model the motions strain, as :meth:`Ensemble.validity`."""
-        return self.ensemble.validity()
+        """Which assumptions of the model the motions strain, as :meth:`Ensemble.validity`.
+
+        With the speed of waves where a density is known, and the bodies, as :meth:`Cylinder.validity`.
+        """
+        found = self.ensemble.validity()
+        some, V, omega = self.ensemble.judged()
+        cylinders, T = self.cylinder._some(some, len(self)), self.cylinder.T_ref
+        own = cylinders.validity(V * cylinders.R / T, omega=omega / T)
+        return found._replace(quasistatic=own.quasistatic, bodies=own.bodies, plane=own.plane)
 
     def messages(self) -> dict[str, int]:
         """How many motions ended in which way, in words."""
@@ -265,6 +274,7 @@ def ensemble_of(
     cylinder: Cylinder, start: tuple[Any, Any], t: Numbers, drive: Drive, rest: float | None, **options: Any
 ) -> EnsembleSI:
     """``Cylinder.ensemble``."""
+    start, drive, labels = bare(start, drive)
     scene, one, times, given = _asked(cylinder, t, drive)
     V0, omega0 = (over(name, speed, one) for name, speed in zip(("V0", "omega0"), start, strict=True))
     if rest is not None and np.ndim(one.speed):
@@ -277,4 +287,4 @@ def ensemble_of(
         found = ensemble(scene, V0, omega0, times / one.T, rest=rest, **given, **options)
     except ParameterError as error:
         raise in_words(error, one) from error
-    return EnsembleSI(cylinder, drive, found, times)
+    return EnsembleSI(cylinder, drive, replace(found, labels=labels), times)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..pair import Pair, effective_modulus
+from ..prony import Prony
 from ..scene import Scene
 
 
@@ -38,6 +39,16 @@ def scene_of_series(
     """As :func:`scene_from_si`, of a series, or of one each, with the long-time modulus E; times over T_ref."""
     kappa, mu, gamma = _scaled(R, m, g, load, effective_modulus(E, nu, plane), np.float64(T_ref), mu)
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=series)
+
+
+def scene_of_solids(
+    R: Any, m: Any, E: Any, nu: Any, T_ref: float, times: tuple[Any, Any], mu: Any, j: Any, g: Any, plane: str,
+    load: Any = None,
+) -> Scene:  # fmt: skip
+    """As :func:`scene_from_si`, of retardation and relaxation times (n,), a series each; times over T_ref."""
+    slow, fast = np.broadcast_arrays(*(np.asarray(value, np.float64) for value in times))
+    series = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / T_ref)[:, np.newaxis], alpha=slow / fast)
+    return scene_of_series(R, m, E, nu, T_ref, series, mu, j, g, plane, load)
 
 
 def _scaled(R: Any, m: Any, g: Any, load: Any, E_prime: Any, T: Any, mu: Any) -> tuple[Any, Any, Any]:

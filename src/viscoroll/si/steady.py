@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..drive import Feedback
 from ..equilibria import Loss, Steady, steady
+from ..labels import unlabelled
 from ..typed import Numbers
 from .units import Cylinder, attributes, over, units_of
 
@@ -21,6 +22,8 @@ def steady_of(
     V: Numbers | None,
 ) -> Steady:
     """``Cylinder.steady``."""
+    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
+    force, torque, slope, V = plain.values()
     scene, one = cylinder.scene(), units_of(cylinder, slope)
     given = {name: over(name, value, one) for name, value in (("force", force), ("torque", torque), ("V", V))}
     found = steady(scene, **given, slope=slope)
@@ -43,7 +46,7 @@ def steady_of(
         loss=Loss(loss.slip * power, loss.half_space * power, loss.cylinder * power, loss.coefficient, loss.efficiency),
         reasons=replace(found.reasons, words=words, factors=factors),
         described=attributes,
-    )
+    ).labelled(labels)
 
 
 def _beside(unit: Numbers) -> NDArray[np.float64]:

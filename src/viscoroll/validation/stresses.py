@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rolling_contact import contact, stress
+from ..contact_stress import stress
+from ..rolling_contact import contact
 from ..scene import Scene
 from .report import Check
 from .states import random_states

@@ -1,0 +1,39 @@
+"""What a contact state holds, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .errors import ParameterError
+
+FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
+OF_BODIES = ("M_half_space", "M_cylinder")
+SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
+#: on request alone
+UNSTEADY = "N"
+
+
+def field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: str) -> tuple[str, ...]:
+    """The fields and slopes of a call by name.
+
+    Raises
+    ------
+    ParameterError
+        A name or a method that there is not, or one that the other does not give.
+    """
+    if method not in ("table", "direct"):
+        raise ParameterError("method", repr(method), "'table' or 'direct'")
+    default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
+    names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    known = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
+    for name in names:
+        if name not in known:
+            raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
+    if slopes:
+        names += tuple(name for name in default_slopes if name not in names)
+    if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
+        raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
+    if method == "direct" and UNSTEADY in names:
+        raise ParameterError("fields", repr(UNSTEADY), "computed by method='table' alone: it is not in the paper")
+    return names

@@ -1,0 +1,157 @@
+"""Many motions as they are given back: :class:`Ensemble`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import MOTION_STATUS, MotionStatus
+from ..labels import Labels
+from ..prony_array import PronyArray
+from ..results import Row, Shown, unit_of
+from ..scene import Scene
+from ..symbols import attributes
+from ..validity import Validity
+from .driven import Drive
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: motions that validity looks at
+_JUDGED = 256
+
+
+@dataclass(frozen=True, repr=False)
+class Ensemble(Shown):
+    """Motions 0 ... n - 1 at common output times; everything dimensionless.
+
+    Attributes
+    ----------
+    t : output times.
+    V, omega, x, angle, delta, regime : shape (n, len(t)); those not asked for are None.
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2: the integrals of
+        gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
+        (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
+    force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
+    onset_time : (n,), first change from full to partial slip; NaN if there is none.
+    rest_time : (n,), when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
+    status : (n,), a :class:`MotionStatus` each; outputs a motion did not reach are NaN.
+    switches, steps : (n,), changes of regime, and integration steps taken.
+    flow : (n,), whether the flow map gave this motion; the others were integrated.
+    flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
+        ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
+        relative to the energy at the start if larger; NaN without a map.
+    flow_problem : why a map that was tried could not be used, or "".
+    drive_error : as of a :class:`Motion`.
+    drive : what was given to drive them.
+    labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
+    """
+
+    scene: Scene
+    V0: NDArray[np.float64]
+    omega0: NDArray[np.float64]
+    t: NDArray[np.float64]
+    V: NDArray[np.float64] | None
+    omega: NDArray[np.float64] | None
+    x: NDArray[np.float64] | None
+    angle: NDArray[np.float64] | None
+    delta: NDArray[np.float64] | None
+    regime: NDArray[np.float64] | None
+    slip_loss: NDArray[np.float64] | None
+    rolling_loss: NDArray[np.float64] | None
+    force: NDArray[np.float64] | None
+    torque: NDArray[np.float64] | None
+    work_force: NDArray[np.float64] | None
+    work_torque: NDArray[np.float64] | None
+    brake_loss: NDArray[np.float64] | None
+    onset_time: NDArray[np.float64]
+    rest_time: NDArray[np.float64]
+    status: NDArray[np.int8]
+    switches: NDArray[np.int64]
+    steps: NDArray[np.int64]
+    flow: NDArray[np.bool_]
+    flow_error: float
+    flow_problem: str
+    drive_error: float
+    drive: Drive
+    labels: Labels | None = None
+
+    def __len__(self) -> int:
+        return self.status.size
+
+    def messages(self) -> dict[str, int]:
+        """How many motions ended in which way, in words."""
+        codes, counts = np.unique(self.status, return_counts=True)
+        return {MOTION_STATUS[MotionStatus(code)]: int(n) for code, n in zip(codes, counts, strict=True)}
+
+    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
+        """Mean, standard deviation and quantiles over the motions, per output time.
+
+        Parameters
+        ----------
+        quantiles : in [0, 1].
+
+        Returns
+        -------
+        xarray.Dataset
+            Over (quantile, t), of every field kept but delta and regime, and of onset_time; numpy's
+            values (``tests/motion/test_ensemble.py``).  Outputs that a motion did not reach do not count;
+            the attributes say how many motions ended in which way.
+
+        Raises
+        ------
+        ParameterError
+            If there are no motions.
+        """
+        from .export import summary_dataset
+
+        return summary_dataset(self, tuple(quantiles))
+
+    def validity(self) -> Validity:
+        """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
+
+        See :meth:`Scene.validity`; arrays over the motions, of more than 256 over that many of them, evenly picked.
+        """
+        some, V, omega = self.judged()
+        parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
+        scene = self.scene.replace(**parts) if parts and not isinstance(self.scene.material, PronyArray) else self.scene
+        return scene.validity(V, omega=omega)
+
+    def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
+        fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        for name, found in fastest.items():
+            if (values := getattr(self, name)) is not None:
+                fastest[name] = np.fmax(found, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values)))
+        some = np.unique(np.linspace(0, len(self) - 1, min(len(self), _JUDGED)).astype(np.int64))
+        return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
+
+    def _card(self) -> tuple[str, list[Row]]:
+        return card_of(self, attributes)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Dataset over (motion, t) with starts, outputs, onset and status."""
+        from .export import ensemble_dataset
+
+        return ensemble_dataset(self)
+
+
+def card_of(result: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
+    """What an ensemble says of itself, in either units; ``described``: attributes of a quantity."""
+    ends = [Row("ended", f"{count}: {message}") for message, count in result.messages().items()]
+    rows = [Row("t", f"{result.t.size} times to {result.t[-1]:.6g}", unit_of(described("t")))]
+    for name in ("V", "omega", "x"):
+        if (values := getattr(result, name)) is not None and values.size:
+            last = values[:, -1][np.isfinite(values[:, -1])]
+            low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
+            text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
+            rows.append(Row(name, text, unit_of(described(name))))
+    stuck = np.isfinite(result.onset_time).sum()
+    rows.append(Row("onset of partial slip", f"in {stuck}"))
+    if result.flow.any():
+        rows.append(Row("by the flow map", f"{result.flow.sum()}, stated error {result.flow_error:.2g}"))
+    return f"Ensemble of {len(result)} motions", rows + ends

@@ -1,0 +1,50 @@
+"""The transient solver behind "may I use this law?": contact at rest and run in, and the errors of that page."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+import tolerances as tol
+from places import DOCS, RESULTS
+
+import viscoroll as vr
+from pipeline.prove import transient
+
+
+def test_run_in_it_is_the_steady_contact():
+    imprint = transient.steadily(transient.Imprint(0.04), transient.V0)
+    c = vr.contact(transient.scene_of(1.0), transient.V0, delta=0.0)
+    assert imprint.M == pytest.approx(c.M, rel=tol.TRANSIENT_M)
+    assert 0.5 * imprint.p.size * imprint.h == pytest.approx(c.lam, abs=imprint.h)
+    assert imprint.p.sum() * imprint.h == pytest.approx(0.5 * np.pi)
+
+
+def test_at_rest_it_is_hertz():
+    imprint = transient.Imprint(0.04)
+    x = (imprint.first + np.arange(imprint.low, imprint.high)) * imprint.h
+    assert imprint.M == pytest.approx(0.0, abs=1e-12)
+    assert imprint.p == pytest.approx(np.sqrt(np.maximum(1.0 - x * x, 0.0)), abs=imprint.h)
+
+
+def test_errors_are_those_of_finer_cells():
+    """gamma 10.7 by cells of half the size: 0.092 and 0.100 were found with 0.01."""
+    found = transient.rows_of(transient.curves(0.04, (10.7,)))[0]
+    assert found["nu"] == pytest.approx(0.59, abs=0.005)
+    assert found["steady"] == pytest.approx(0.092, abs=tol.TRANSIENT_ERROR)
+    assert found["rest"] == pytest.approx(0.100, abs=tol.TRANSIENT_ERROR)
+
+
+def test_the_page_states_what_is_kept():
+    page = (DOCS / "may_i.md").read_text(encoding="utf-8")
+    row_of = r"^\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) %.*?\| ([\d.]+) %"
+    stated = {float(gamma): list(map(float, rest)) for gamma, *rest in re.findall(row_of, page, re.M)}
+    rows = json.loads((RESULTS / "transient.json").read_text(encoding="utf-8"))["rows"]
+    assert [row["gamma"] for row in rows] == list(stated)
+    for row in rows:
+        nu, steady, rest = stated[row["gamma"]]
+        assert row["nu"] == pytest.approx(nu, rel=0.05), row
+        assert 100.0 * row["steady"] == pytest.approx(steady, rel=0.1), row
+        assert 100.0 * row["rest"] == pytest.approx(rest, rel=0.1), row

@@ -1,0 +1,73 @@
+"""A finished run as a result: text, HTML, datasets, a table, a figure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.runs import open_run, open_summaries, read_run, run_ensemble
+
+RUN = """
+[cylinder]
+R = 0.1
+m = 35.5
+mu = { distribution = "uniform", loc = 0.2, scale = 0.2 }
+[material]
+E = 3e6
+nu = 0.5
+prony = { E = [0.3, 0.6], tau = [2e-2, 1e-3] }
+[start]
+V0 = 2.0
+omega0 = 0.0
+[run]
+n = 40
+t = [0.1, 1.0]
+rtol = 1e-6
+keep = "KEEP"
+summaries = ["V", "onset_time"]
+quantiles = [0.1, 0.5, 0.9]
+"""
+
+
+@pytest.fixture(scope="module", params=["all", "summaries"])
+def store(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run")
+    (folder / "run.toml").write_text(RUN.replace("KEEP", request.param), encoding="utf-8")
+    run_ensemble(read_run(folder / "run.toml"), folder / "s.zarr", threads=1)
+    return request.param, folder / "s.zarr"
+
+
+def test_a_store_shows_itself(store, tmp_path):
+    keep, path = store
+    found = open_run(path)
+    assert len(found) == 40
+    assert found.names == ("V", "onset_time")
+    assert "40 motions" in repr(found)
+    assert "m s-1" in repr(found)
+    assert "40: reached" in repr(found)
+    assert len(repr(found).splitlines()) < 12
+    assert found._repr_html_().startswith("<div>")
+    assert "loc = 0.2" in found.run_file
+    assert found.to_xarray().identical(open_summaries(path))
+    assert len(found.plot(tmp_path / "run.png").axes) == 4
+    assert (tmp_path / "run.png").exists()
+    if keep == "all":
+        assert found.motions().V.shape == (40, 2)
+    else:
+        refused(found.motions, "keep", error=vr.TableError)
+
+
+def test_a_table_of_a_store(store):
+    found = open_run(store[1])
+    table, data = found.to_pandas(), found.summaries
+    assert table.attrs["units"] == {"V": "m s-1", "onset_time": "s", "t": "s"}
+    assert table.loc[("V", 1.0), "mean"] == data.V_mean.values[1]
+    assert table.loc[("V", 0.1), 0.5] == data.V_quantiles.values[1, 0]
+    assert list(table.columns) == ["mean", "std", "min", "max", 0.1, 0.5, 0.9]
+    assert np.isfinite(table.loc["onset_time", "mean"].item())
+
+
+def test_no_store(tmp_path):
+    refused(lambda: open_run(tmp_path), "no results store", error=vr.TableError)

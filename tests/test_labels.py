@@ -1,0 +1,87 @@
+"""Labels of xarray and pandas: what comes in with them goes out with them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from refusals import refused
+
+import viscoroll as vr
+
+SCENE = vr.PAPER_SECTION_5_ROUNDED
+ROLLER = vr.RUBBER_CYLINDER
+V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")
+TABLE = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller"))
+
+
+@pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
+def test_contact_states(body):
+    own = body.contact if body is ROLLER else lambda *given, **named: vr.contact(SCENE, *given, **named)
+    creep = xr.DataArray([0.0, 0.01, 0.02], dims="creep")
+    found = own(V, delta=creep)
+    assert found.M.dims == found.to_xarray()["M"].dims == ("run", "creep")
+    assert found.M.sel(run="b").values == pytest.approx(own(0.2, delta=creep.values).M)
+    assert list(found.to_xarray()["run"]) == ["a", "b"]
+    found = own(TABLE["V"], delta=TABLE["delta"])
+    assert found.M["y"] == own(0.2, delta=0.01).M
+    assert found.to_pandas().index.name == "roller"
+    assert found.to_pandas()["M"]["y"] == found.M["y"]
+    over_itself = own(V.rename(run="V").assign_coords(V=V.values), delta=0.0).to_xarray()
+    assert over_itself["M"].dims == ("V",)
+
+
+@pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
+def test_stresses(body):
+    own = body.stress if body is ROLLER else lambda *given, **named: vr.stress(SCENE, *given, **named)
+    x = xr.DataArray(np.linspace(-1e-3, 1e-3, 5), dims="place")
+    found = own(x, V, delta=0.01)
+    assert found.p.dims == ("place", "run")
+    assert found.tau.sel(run="b").values == pytest.approx(own(x.values, 0.2, delta=0.01).tau)
+    series = pd.Series(x.values, index=list("abcde"))
+    assert own(series, 0.2, delta=0.01).p["c"] == own(0.0, 0.2, delta=0.01).p
+
+
+@pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
+def test_equilibria(body):
+    own = body.steady if body is ROLLER else lambda **named: vr.steady(SCENE, **named)
+    slope = xr.DataArray(np.radians([0.01, 0.02, 40.0]), dims="place", coords={"place": ["a", "b", "c"]})
+    found, plain = own(slope=slope), own(slope=slope.values)
+    assert found.V.dims == ("place", "equilibrium")
+    assert found.V.sel(place="b").values == pytest.approx(plain.V[1], nan_ok=True)
+    assert found.loss.slip.dims == found.V.dims
+    assert found.eigenvalues.dims == ("place", "equilibrium", "rate")
+    assert found.count.sel(place="c") == 0
+    assert list(found.to_xarray()["place"]) == ["a", "b", "c"]
+    assert "3 loads" in repr(found)
+    assert found.to_xarray()["V"].identical(found.to_xarray()["V"])
+    series = pd.Series(slope.values, index=["a", "b", "c"])
+    assert own(slope=series).V.loc["b", 0] == plain.V[1, 0]
+    force = xr.DataArray([0.001, 0.002], dims="force", coords={"force": [0.001, 0.002]})
+    assert own(force=force).to_xarray()["V"].dims == ("load_force", "equilibrium")
+
+
+@pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
+def test_ensembles(body):
+    own = body.ensemble if body is ROLLER else lambda *given, **named: vr.ensemble(SCENE, *given, **named)
+    found, plain = own(TABLE["V"], TABLE["V"], [1e-3, 2e-3]), own(TABLE["V"].values, TABLE["V"].values, [1e-3, 2e-3])
+    assert np.array_equal(found.V, plain.V)
+    data = found.to_xarray()
+    assert data.V.sel(motion="y", t=2e-3) == plain.V[1, 1]
+    assert data["motion"].attrs["long_name"] == "roller"
+    assert found.to_pandas().loc[("y", 2e-3), "V"] == plain.V[1, 1]
+    by_array = own(V, 0.0, [1e-3], slope=0.01 * V, force=([0.0, 1.0], [0.0, 0.0])).to_xarray()
+    assert list(by_array["motion"]) == ["a", "b"]
+    assert "motion" not in plain.to_xarray().coords
+    levels = pd.MultiIndex.from_tuples([("p", 1), ("q", 2)], names=["maker", "batch"])
+    assert list(own(TABLE["V"].set_axis(levels), 0.0, 1e-3).to_xarray()["maker"]) == ["p", "q"]
+
+
+def test_unlike_labels_are_refused():
+    refused(lambda: vr.contact(SCENE, V, delta=np.array([0.0, 0.1])), "labels")
+    refused(lambda: vr.stress(SCENE, np.zeros(2), V, delta=0.0), "labels")
+    refused(lambda: vr.steady(SCENE, slope=TABLE["V"], torque=TABLE["delta"].iloc[::-1]), "index")
+    refused(lambda: vr.ensemble(SCENE, V, np.zeros(2), 1.0), "labels")
+    refused(lambda: vr.ensemble(SCENE, V, V.assign_coords(run=["a", "c"]), 1.0), "coordinates")
+    refused(lambda: ROLLER.ensemble(V, V.rename(run="walk"), 1.0), "vectors")
