@@ -177,7 +177,6 @@ def test_refused(read):
         (EXAMPLE.replace("nu = 0.5", "nu = 0.6"), ["line 9", "nu = 0.6"]),
         (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nEE = 2"), ["line 10", "unknown key 'EE'"]),
         (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nT_sigma = 0.1"), ["T_epsilon and T_sigma"]),
-        (EXAMPLE + f"[base]\nE = {spread}\nnu = 0.3\n", ["[base] must be of numbers"]),
         (SCENE.replace("mu =", "alpha = 3.0\nmu ="), ["line 5", "alpha and a series"]),
         (SCENE.replace("prony", "pony"), ["line 3", "did you mean 'prony'?"]),
         (SCENE.replace("prony =", "# prony ="), ["needs alpha, prony or creep"]),
