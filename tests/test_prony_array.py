@@ -41,10 +41,10 @@ def test_they_are_what_single_ones_are(creep):
             own, time = one.in_own_time()
             assert (many.alpha[i], unit[i]) == (one.alpha, time)
             assert one == many[i] == many[i : i + 2][0]
-            count, alone = record.count[i], series(own)
-            for name in ("a", "b", "e", "t"):
-                assert np.array_equal(getattr(record.series, name)[i][:count], getattr(alone, name))
-            assert np.array_equal(record.series.Q[i][:count, :count], alone.Q)
+            count, alone = record.bins[i, 2], series(own)
+            *vectors, Q = map(np.ravel, alone)
+            packed = np.concatenate([*vectors, np.ones(count), Q])
+            assert np.array_equal(record.packed[i, : packed.size], packed)
             if count:
                 table: Tabulated = _series_table(own)
                 known = (table.alpha, table.T_mean, table.tau, *table.ends[1:])
@@ -161,7 +161,6 @@ def test_refused():
         (lambda: vr.roll(scene, 1.0, 1.0, T), ("scene", "one motion")),
         (lambda: vr.ensemble(scene, 1.0, 1.0, T, method="flow"), ("method = 'flow'",)),
         (lambda: vr.contact(scene, 1.0, delta=0.0, method="direct"), ("method = 'direct'",)),
-        (lambda: vr.Bodies(many, many), ("cylinder", "one Prony series", "one by one")),
         (lambda: vr.Material(1e6, 0.5, many), ("prony", "a Prony series")),
     ):
         refused(call, *words)

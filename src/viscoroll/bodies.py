@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from .checks import number
 from .errors import ParameterError
 from .prony import Prony
+from .prony_array import PronyArray
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,8 @@ class Bodies:
     cylinder, half_space : their series, times over one T_ref.
     share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), in [0, 1]; 0: the cylinder is
         rigid, 1: the half-space is.
+        Where a body is n series (a :class:`PronyArray`), or ``share`` is an array (n,), these are n pairs, a
+        :class:`BodiesArray`; what is single is that of all.
 
     Raises
     ------
@@ -42,11 +46,17 @@ class Bodies:
     half_space: Prony
     share: float = 0.5
 
+    def __new__(cls, cylinder: Any = None, half_space: Any = None, share: Any = 0.5) -> Any:
+        if not any(isinstance(body, PronyArray) for body in (cylinder, half_space)) and not np.ndim(share):
+            return super().__new__(cls)
+        from .bodies_array import BodiesArray
+
+        return BodiesArray(cylinder, half_space, share)
+
     def __post_init__(self) -> None:
         for name in ("cylinder", "half_space"):
             if not isinstance(getattr(self, name), Prony):
-                allowed = "one Prony series; of many pairs make the Bodies, and roll them, one by one"
-                raise ParameterError(name, f"{getattr(self, name)!r:.60}", allowed)
+                raise ParameterError(name, f"{getattr(self, name)!r:.60}", "a Prony series, or one for each pair")
         share = number("share", self.share, low=0.0)
         if share > 1.0:
             raise ParameterError("share", share, "in [0, 1]")

@@ -14,7 +14,7 @@ from .checks import checked
 from .errors import ConvergenceError, ParameterError
 from .kernels.law.loads import Loads, LoadsAndSlopes
 from .material_tables import shared_record
-from .prony_array import PronyArray
+from .prony_array import MaterialArray
 from .rolling_contact import contact, one_material, refuse_overflow
 from .scene import Scene, checked_scene
 from .typed import Numbers
@@ -153,7 +153,7 @@ def law(scene: Scene) -> Law:
     which its laws share.
     """
     checked_scene(scene, "law")
-    if isinstance(scene.material, PronyArray):
+    if isinstance(scene.material, MaterialArray):
         raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
     for name in ("alpha", "kappa", "mu"):
         value = np.asarray(getattr(scene, name))

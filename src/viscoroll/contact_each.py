@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .bodies import Bodies
 from .material_tables import records, series
-from .prony_array import PronyArray
+from .prony_array import MaterialArray
 from .rolling_contact import flattened
 
 
-def states_each(materials: PronyArray, per_speed: set[str]) -> Callable:
+def states_each(materials: MaterialArray, per_speed: set[str]) -> Callable:
     """``state_loop`` of states with a material each, each in its own time; it takes their numbers for the material."""
     from .kernels.law.contact_loop import state_loop
     from .kernels.law.state import ROWS
@@ -37,7 +38,7 @@ def _times(values: NDArray, unit: NDArray) -> NDArray:
     return flattened(values * unit, np.broadcast_shapes(values.shape, unit.shape))
 
 
-def stresses_each(materials: PronyArray) -> Callable:
+def stresses_each(materials: MaterialArray) -> Callable:
     """``stress_loop`` over points with a material each, which lie together where they share one."""
     from .kernels.law.material import Own
     from .kernels.law.stress_loop import stress_loop
@@ -45,6 +46,7 @@ def stresses_each(materials: PronyArray) -> Callable:
     def loop(numbers: NDArray, points: Any, p: NDArray, tau: NDArray, start: int, stop: int) -> None:
         for first, last in pairwise([start, *(1 + np.flatnonzero(np.diff(numbers))), stop]):
             own, unit = materials[int(numbers[min(first, numbers.size - 1)])].in_own_time()
+            own = own.total if isinstance(own, Bodies) else own
             some = points._make(part[first:last] if part.size > 1 else part for part in points)
             some = some._replace(zeta=flattened(some.zeta / unit, some.zeta.shape))
             given = series(own) if own.E.size else Own(flattened(np.ones(1), (1,)))

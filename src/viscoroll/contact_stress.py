@@ -12,7 +12,7 @@ from .checks import broadcast_shape, checked
 from .labels import unlabelled
 from .material_tables import series
 from .prony import Prony
-from .prony_array import PronyArray
+from .prony_array import MaterialArray
 from .results import Values
 from .rolling_contact import contact, shaped
 from .scene import Scene, checked_scene
@@ -68,7 +68,7 @@ def stress(
     state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
-    many = isinstance(scene.material, PronyArray)
+    many = isinstance(scene.material, MaterialArray)
     material, unit = scene.in_own_time()
     given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
     given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta")}
@@ -96,7 +96,7 @@ def stress(
     return Values(found, given, title="Stresses", labels=labels)
 
 
-def _stresses(materials: PronyArray) -> Callable:
+def _stresses(materials: MaterialArray) -> Callable:
     from .contact_each import stresses_each
 
     return stresses_each(materials)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from . import stored
 from .bodies import Bodies
 from .prony import Prony
-from .prony_array import PronyArray
+from .prony_array import MaterialArray
 from .prony_forms import Modes
 
 #: materials that a thread keeps, of each kind
@@ -161,39 +161,51 @@ def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any, Any]:
 
 def _ends(modes: Modes, share: Any, squares: float) -> Any:
     """The numbers of the ends of a table, for this share of every creep mode."""
-    from .kernels.law.tabulated import Ends
+    from .kernels.law.each import Ends
 
     rise, weight, log_weight = map(float, _weights(modes, share))
     return Ends(True, rise, weight, log_weight, squares)
 
 
-def records(materials: PronyArray, which: NDArray[np.int64]) -> tuple[Any, NDArray[np.float64]]:
+def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, NDArray[np.float64]]:
     """(The record of states or motions that have the materials ``which``, what times of each material are counted in).
 
-    For one thread and one call: it holds the table of one of them at a time.
+    For one thread and one call: it holds the tables of one of them at a time.
     """
-    from .kernels.law.each import Each, Room, Series
+    from .kernels.law.each import Each, EachPair
+    from .kernels.law.series import packed_size, working_size
     from .kernels.numerics.quartet import empty_table
 
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
+    pairs = any(block.weights is not None for block in blocks)
     count, most = some.size, max((block.modes.a.shape[-1] for block in blocks), default=0)
-    numbers, bins, modes_of = np.empty((count, 7)), np.zeros((count, 2), np.int64), np.empty(count, np.int64)
-    arrays = Series._make(np.zeros((count, most, most)[: 3 if name == "Q" else 2]) for name in Series._fields)
-    unit = np.empty(count)
+    numbers, bins = np.zeros((count, 17 if pairs else 7)), np.zeros((count, 3), np.int64)
+    packed, unit = np.zeros((count, packed_size(most))), np.empty(count)
     for block in blocks:
         modes, rows, N = block.modes, block.rows, block.modes.a.shape[-1]
-        unit[rows], modes_of[rows] = block.unit, N
-        tau = 1.0 / modes.a[:, -1] if N else 1.0
-        columns = modes.alpha, block.T_mean, tau, *_weights(modes), block.squares
-        numbers[rows] = np.stack(np.broadcast_arrays(*columns), axis=1)
+        unit[rows], bins[rows, 2] = block.unit, N
+        columns = modes.alpha, block.T_mean, 1.0 / modes.a[:, -1] if N else 1.0, *_weights(modes), block.squares
+        numbers[rows, :7] = np.stack(np.broadcast_arrays(*columns), axis=1)
         if N:
-            bins[rows] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
-        for array, values in zip(arrays, _series_of(modes), strict=True):
-            array[(rows, *(slice(size) for size in values.shape[1:]))] = values
-    room = Room._make(np.empty((most, most)[: 2 if name == "matrix" else 1]) for name in Room._fields)
+            bins[rows, :2] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
+        *vectors, Q = _series_of(modes)
+        weights = np.ones(modes.b.shape) if block.weights is None else block.weights
+        packed[rows, : packed_size(N)] = np.concatenate([*vectors, weights, Q.reshape(rows.size, -1)], axis=1)
+        if block.weights is not None:
+            numbers[rows, 7:] = _of_bodies(modes, block.weights)
     own = np.ascontiguousarray(of, dtype=np.int64)
-    return Each(own, numbers, bins, modes_of, arrays, empty_table(), np.full(1, -1), room), unit[own]
+    whole = Each(own, numbers, bins, packed, empty_table(), np.full(1, -1), np.empty(working_size(most)))
+    return EachPair(*whole, empty_table()) if pairs else whole, unit[own]
+
+
+def _of_bodies(modes: Modes, weights: NDArray) -> NDArray[np.float64]:
+    """The numbers of half-space and cylinder of pairs behind a leading axis, 10 of each pair."""
+    found = np.empty((len(weights), 10))
+    for n, share in enumerate(weights):
+        one = Modes(modes.alpha[n], modes.a[n], modes.b[n], modes.E[n], modes.J[n], modes.gap[n])
+        found[n] = [value for body in _bodies(one, share) for value in (body.T_mean, *body.ends[1:])]
+    return found
 
 
 @lru_cache(maxsize=_KEPT)
@@ -209,18 +221,25 @@ def _series_table(prony: Prony) -> Any:
 @lru_cache(maxsize=_KEPT)
 def _pair_tables(bodies: Bodies) -> Any:
     """The tables of two bodies that deform unlike each other."""
-    from .kernels.law.pair import Body, Pair
+    from .kernels.law.pair import Pair
     from .kernels.law.series import Parts
 
     whole, modes, weights = bodies.total, bodies.total.modes, bodies.half_space_weights
-    # m_j = J_j T_j - c_j/z as z -> infinity
-    rises = modes.J * ((modes.E / modes.gap) @ (1.0 / modes.a + (modes.E / (modes.a[:, None] + modes.a)).sum(axis=1)))
-    half_space, cylinder = (
-        Body(math.fsum(share * modes.J / modes.b), _ends(modes, share, 2.0 * math.fsum(share * rises)))
-        for share in (weights, 1.0 - weights)
-    )
+    half_space, cylinder = _bodies(modes, weights)
     parts = _table(Parts(**series(whole)._asdict(), weights=weights), modes)
     return Pair(**_series_table(whole)._asdict(), parts=parts, half_space=half_space, cylinder=cylinder)
+
+
+def _bodies(modes: Modes, weights: NDArray) -> list[Any]:
+    """Half-space and cylinder, by the half-space's share of every creep mode."""
+    from .kernels.law.each import Body
+
+    # m_j = J_j T_j - c_j/z as z -> infinity
+    rises = modes.J * ((modes.E / modes.gap) @ (1.0 / modes.a + (modes.E / (modes.a[:, None] + modes.a)).sum(axis=1)))
+    return [
+        Body(math.fsum(share * modes.J / modes.b), _ends(modes, share, 2.0 * math.fsum(share * rises)))
+        for share in (weights, 1.0 - weights)
+    ]
 
 
 def _found(kept: OrderedDict[Any, Any], given: float | Prony | Bodies, make: Callable[[Any], Any]) -> Any:

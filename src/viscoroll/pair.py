@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+import numpy as np
+
 from .bodies import Bodies
 from .errors import ParameterError
 from .material import Material
@@ -63,13 +65,13 @@ class Pair:
     def E_prime(self) -> float:
         """E' of the pair, Pa, of long times: 2 E'_1 on a rigid base."""
         one, other = (effective_modulus(body.E, body.nu, self.plane) for body in (self.cylinder, self.half_space))
-        return one if self.like else 2.0 * min(one, other) / (1.0 + min(one, other) / max(one, other))
+        return one if self.like else float(joint_modulus(one, other))
 
     @cached_property
     def share(self) -> float:
         """The cylinder's part of the long-time compliance: 0 where it is rigid, 1 on a rigid base."""
         one, other = (effective_modulus(body.E, body.nu, self.plane) for body in (self.cylinder, self.half_space))
-        return 1.0 / (1.0 + one / other) if math.isfinite(one) else 0.0
+        return cylinders_share(one, other)
 
     @property
     def T_ref(self) -> float:
@@ -96,6 +98,17 @@ class Pair:
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
     """E' of Sect. 3.1, Pa."""
     return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
+
+
+def joint_modulus(one: Any, other: Any) -> Any:
+    """E' of a pair from E' of the cylinder and of the base, of which one may be infinite."""
+    softer, stiffer = np.minimum(one, other), np.maximum(one, other)
+    return 2.0 * softer / (1.0 + softer / stiffer)
+
+
+def cylinders_share(one: Any, other: Any) -> Any:
+    """The cylinder's part of the long-time compliance, likewise."""
+    return 1.0 / (1.0 + one / other)
 
 
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:

@@ -1,8 +1,12 @@
-"""Materials, one for each state or motion: :class:`PronyArray`, which :class:`Prony` makes of arrays (n, N)."""
+"""Materials, one for each state or motion: :class:`PronyArray`, which :class:`Prony` makes of arrays (n, N).
+
+Pairs of them: :mod:`bodies_array`.
+"""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -21,6 +25,7 @@ class Block(NamedTuple):
 
     rows : which they are; unit : what their times are counted in
     T_mean, squares : sum J_j T_j, and sum E_i tau_i^2 + sum J_j T_j^2
+    weights : of pairs, what of the strength of each creep mode is the half-space's
     """
 
     rows: NDArray[np.int64]
@@ -28,9 +33,36 @@ class Block(NamedTuple):
     unit: NDArray[np.float64]
     T_mean: NDArray[np.float64]
     squares: NDArray[np.float64]
+    weights: NDArray[np.float64] | None = None
 
 
-class PronyArray:
+class MaterialArray(ABC):
+    """Materials 0 ... n - 1: what states and motions ask of them, be they series or pairs."""
+
+    #: (n,), instantaneous over long-time modulus
+    alpha: Any
+
+    @property
+    @abstractmethod
+    def shape(self) -> tuple[int]:
+        """(n,)."""
+
+    @abstractmethod
+    def __getitem__(self, which: Any) -> Any:
+        """A single one by its number, or those of a slice."""
+
+    @abstractmethod
+    def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
+        """The materials ``which`` in their own times, those of as many modes together."""
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[i] for i in range(len(self)))
+
+
+class PronyArray(MaterialArray):
     """Materials 0 ... n - 1, a :class:`Prony` series each.
 
     Made by ``Prony(E, tau)`` and ``Prony.creep(J, T, alpha=...)`` of arrays (n, N), one of which may be (N,), shared by
@@ -84,11 +116,8 @@ class PronyArray:
         """(n,)."""
         return (self._whole[0].shape[0],)
 
-    def __len__(self) -> int:
-        return self.shape[0]
-
     def __getitem__(self, which: Any) -> Any:
-        if isinstance(which, slice):
+        if isinstance(which, slice | np.ndarray):
             each = self._alpha if self._alpha is None or self._alpha.ndim == 0 else self._alpha[which]
             return PronyArray(self._whole[0][which], self._whole[1][which], each, creep=self._creep)
         strengths, times = (array[which] for array in self._whole)
@@ -97,16 +126,13 @@ class PronyArray:
         given = None if self._alpha is None else float(np.broadcast_to(self._alpha, self.shape)[which])
         return Prony.creep(strengths, times, alpha=given)
 
-    def __iter__(self) -> Iterator[Prony]:
-        return (self[i] for i in range(len(self)))
-
     @cached_property
     def alpha(self) -> NDArray[np.float64]:
         """Instantaneous over long-time modulus, of each."""
         found = np.empty(len(self))
         for i, strengths in enumerate(self._whole[0]):
             # the two spare the search for equal times
-            plain = not self._creep and not self._unlike[i]
+            plain = not self._creep and not self.unlike[i]
             found[i] = 1.0 + math.fsum(strengths) if plain else self[i].alpha
         if found.size and found.max() > HIGHEST_ALPHA:
             raise ParameterError("E", f"of a sum of {found.max() - 1.0:g}", f"of a sum up to {HIGHEST_ALPHA:g}")
@@ -120,27 +146,26 @@ class PronyArray:
 
     def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
         """The materials ``which`` in their own times: those with all their modes together, and the others."""
-        whole = ~self._unlike[which]
+        whole = ~self.unlike[which]
         if whole.any():
-            rows = which[whole]
-            order = np.argsort(-self._whole[1][rows], axis=1, kind="stable")
-            strengths, times = (np.take_along_axis(array[rows], order, axis=1) for array in self._whole)
-            yield self._block(np.flatnonzero(whole), strengths, times, self.alpha[rows])
+            yield self._block(np.flatnonzero(whole), *self.ordered(which[whole]))
         for place in np.flatnonzero(~whole):
             one = self[which[place]]
             strengths, times = (one.J, one.T) if self._creep else (one.E, one.tau)
             yield self._block(np.array([place]), strengths[None], times[None], np.array([one.alpha]))
 
     def _block(self, rows: NDArray, strengths: NDArray, times: NDArray, alpha: NDArray) -> Block:
-        convert = of_creep if self._creep else of_relaxation
-        sums = _sums(convert(strengths, times, alpha), times, self._creep)
-        unit = np.array([2.0 ** round(math.log2(slow)) for slow in sums[:, 1] / sums[:, 0]]) if times.size else 1.0
-        times = times * (1.0 / np.broadcast_to(unit, alpha.shape))[:, None]
-        modes = convert(strengths, times, alpha)
-        return Block(rows, modes, np.broadcast_to(unit, alpha.shape), *_sums(modes, times, self._creep).T)
+        unit = own_unit(*moments(strengths, times, creep=self._creep))
+        return block_of(rows, strengths, times * (1.0 / unit)[:, None], alpha, unit, creep=self._creep)
+
+    def ordered(self, which: NDArray[np.int64]) -> tuple[NDArray, NDArray, NDArray]:
+        """(Strengths, times, alpha) of some, the longest time first."""
+        order = np.argsort(-self._whole[1][which], axis=1, kind="stable")
+        strengths, times = (np.take_along_axis(array[which], order, axis=1) for array in self._whole)
+        return strengths, times, self.alpha[which]
 
     @cached_property
-    def _unlike(self) -> NDArray[np.bool_]:
+    def unlike(self) -> NDArray[np.bool_]:
         """Which have strengths of 0 or times that are equal: fewer modes than the others."""
         strengths = self._whole[0]
         ordered = np.sort(self._times, axis=-1)
@@ -169,6 +194,24 @@ class PronyArray:
     def __repr__(self) -> str:
         n, modes = self._whole[0].shape
         return f"<{n} series of {modes} modes, by {'creep' if self._creep else 'relaxation'}>"
+
+
+def block_of(rows: NDArray, strengths: NDArray, times: NDArray, alpha: NDArray, unit: NDArray, *, creep: bool) -> Block:
+    """Series of equal numbers of modes; times descending, counted in ``unit``."""
+    modes = (of_creep if creep else of_relaxation)(strengths, times, alpha)
+    return Block(rows, modes, unit, *_sums(modes, times, creep).T)
+
+
+def moments(strengths: NDArray, times: NDArray, *, creep: bool) -> tuple[NDArray, NDArray]:
+    """(sum J_j T_j, sum J_j T_j^2) of each, from either form: sum J_j T_j^2 = sum E_i tau_i^2 + (sum E_i tau_i)^2."""
+    first, second = (strengths * times).sum(axis=-1), (strengths * times**2).sum(axis=-1)
+    return first, second if creep else second + first**2
+
+
+def own_unit(first: NDArray, second: NDArray) -> NDArray[np.float64]:
+    """What times of each are counted in (``Prony.in_own_time``), from its ``moments``: 1 of no modes."""
+    slow = np.where(first > 0.0, 2.0 * second - first**2, 1.0) / np.where(first > 0.0, first, 1.0)
+    return np.exp2(np.round(np.log2(slow)))
 
 
 def _kept(array: NDArray[np.float64]) -> NDArray[np.float64]:

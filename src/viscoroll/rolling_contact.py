@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks, solve_blocks
 from .bodies import Bodies
+from .bodies_array import BodiesArray
 from .checks import broadcast_shape, checked_extent
 from .contact_fields import OF_BODIES, SLOPES, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .errors import ParameterError, one_of
 from .labels import unlabelled
 from .material_tables import inverses, record, unsteadiness
 from .prony import Prony
-from .prony_array import PronyArray
+from .prony_array import MaterialArray
 from .results import Values
 from .scene import Scene, checked_scene
 from .typed import Numbers
@@ -151,17 +152,17 @@ def contact(
     if unit != 1.0:
         arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
     one = one_material(scene, material, names)
-    if isinstance(one, PronyArray):
+    if isinstance(one, MaterialArray):
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
-    halved = {} if isinstance(one, Bodies) else {name: _HALVES[name] for name in names if name in _HALVES}
+    halved = {} if isinstance(one, Bodies | BodiesArray) else {name: _HALVES[name] for name in names if name in _HALVES}
     asked = ("zeta" if name == UNSTEADY else halved.get(name, name) for name in names)
     solved = tuple(dict.fromkeys(asked))
     found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
     rows = dict(zip(solved, found, strict=True))
     rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
     if UNSTEADY in names:
-        if isinstance(one, PronyArray):
+        if isinstance(one, MaterialArray):
             raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
         rows[UNSTEADY] = _unsteady(material, arrays["alpha"], rows["zeta"], shape) * unit**2
     for name in _PER_SPEED & rows.keys():
@@ -182,9 +183,11 @@ def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ..
     return found
 
 
-def one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | PronyArray | Bodies | None:
-    """What serves all states: a series or many; bodies that differ, for parts of M; or, None, alphas."""
-    if not isinstance(material, Prony | PronyArray):
+def one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | MaterialArray | Bodies | None:
+    """What serves all states: a series; many series or pairs; bodies that differ, for parts of M; or, None, alphas."""
+    if isinstance(material, MaterialArray):
+        return material
+    if not isinstance(material, Prony):
         return None
     if scene.like_bodies or not _HALVES.keys() & set(names):
         return material
@@ -221,7 +224,7 @@ def _compute(
 ) -> NDArray:
     """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
 
-    ``material``: a series or bodies in place of the alphas, or None; or many series, with their numbers in place of
+    ``material``: a series or bodies in place of the alphas, or None; or many of them, with their numbers in place of
     the alphas.
     """
     from .kernels.law.state import ROWS, Need, States
@@ -245,7 +248,7 @@ def _compute(
         out[:, start:stop] = found
         return status
 
-    block = _BLOCK_EACH if isinstance(material, PronyArray) else _BLOCK
+    block = _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
     solve_blocks(solve, count, block, f"contact: an iteration hit its cap near element {{}} (method {method!r})")
     return out
 
@@ -256,7 +259,7 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
     from .kernels.law.lockstep import TOGETHER
     from .kernels.law.material import Own
 
-    if isinstance(material, PronyArray):
+    if isinstance(material, MaterialArray):
         from .contact_each import states_each
 
         return states_each(material, _PER_SPEED)

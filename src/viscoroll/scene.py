@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .bodies import Bodies
+from .bodies_array import BodiesArray
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError, one_of
 from .prony import HIGHEST_ALPHA, Prony
-from .prony_array import PronyArray
+from .prony_array import MaterialArray
 from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained, unlike_speeds
 
 
@@ -61,7 +62,7 @@ class Scene:
     mu : coefficient of friction, > 0.
     gamma : P T_epsilon^2/(m R), > 0; only scales time.  What moves needs it: roll and ensemble.
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
-    material : a :class:`Prony` series, or two (:class:`Bodies`), or n series, an array parameter
+    material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
         counts its times.
 
@@ -77,13 +78,13 @@ class Scene:
     mu: Any = None
     gamma: Any = None
     j: Any = 0.5
-    material: Prony | PronyArray | Bodies | None = None
+    material: Prony | Bodies | MaterialArray | None = None
 
     def __post_init__(self) -> None:
         if self.material is not None:
             if self.alpha is not None:
                 raise one_of("alpha", "material", both=True)
-            if not isinstance(self.material, Prony | PronyArray | Bodies):
+            if not isinstance(self.material, Prony | Bodies | MaterialArray):
                 raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
             object.__setattr__(self, "alpha", self.material.alpha)
         if self.alpha is None:
@@ -135,6 +136,8 @@ class Scene:
         Of a material each as they are: a block finds the own time of each (:func:`.material_tables.records`).
         """
         if self.series is None:
+            if isinstance(self.material, BodiesArray) and self.material.like:
+                return self.material.cylinder, 1.0
             return self.alpha if self.material is None else self.material, 1.0
         return self.series.in_own_time() if self.series.E.size else (1.0, 1.0)
 
@@ -148,7 +151,7 @@ class Scene:
     @property
     def like_bodies(self) -> bool:
         """Whether cylinder and half-space deform alike, each taking half of M."""
-        return not isinstance(self.material, Bodies) or self.material.like
+        return not isinstance(self.material, Bodies | BodiesArray) or self.material.like
 
     def validity(self, V: ArrayLike, omega: ArrayLike | None = None) -> Validity:
         """Which assumptions of the model the contact at speed V strains.
@@ -176,7 +179,7 @@ class Scene:
     ) -> Validity:
         given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
         broadcast_shape(**given, **{name: np.asarray(value) for name, value in self.numbers.items()})
-        if isinstance(self.material, PronyArray):
+        if isinstance(self.material, MaterialArray):
             raise ParameterError("material", repr(self.material), "one material, as material[i]")
         material, unit = self.in_own_time()
         found = strained(material, self.kappa, given["V"] * unit)

@@ -17,6 +17,7 @@ from viscoroll.runs import export_netcdf, read_run, run_ensemble, verify
 from viscoroll.runs.evaluate import roll_block, scene_of
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.store import columns_of
+from viscoroll.runs.units import attributes
 
 EXAMPLE = (ROOT / "docs/examples/rubber-sensitivity.toml").read_text(encoding="utf-8").replace("20_000", "60")
 SCENE = """
@@ -165,6 +166,73 @@ def test_uncertain_rubber_on_a_base(read, tmp_path):
         assert np.array_equal(kept["V"].values, columns["V"])
 
 
+UNCERTAIN_BASE = """
+[base]
+E = { distribution = "lognorm", s = 0.2, scale = 3e6 }
+nu = 0.5
+prony = { E = [{ distribution = "lognorm", s = 0.3, scale = 0.5 }], tau = [{ distribution = "uniform", loc = 1.0, scale = 1.0 }] }
+T_ref = 0.02
+"""
+ELASTIC_BASE = '[base]\nE = { distribution = "lognorm", s = 0.2, scale = 3e7 }\nnu = { distribution = "uniform", loc = 0.3, scale = 0.2 }\n'
+CERTAIN = "[material]\nE = 3e6\nnu = 0.5\nprony = { E = [0.3, 1.5], tau = [2e-2, 1e-3] }\n"
+CERTAIN = EXAMPLE[: EXAMPLE.index("[material]")] + CERTAIN + EXAMPLE[EXAMPLE.index("[start]") :]
+RIGID = CERTAIN.replace(CERTAIN[CERTAIN.index("E = 3e6") : CERTAIN.index("[start]")], "E = inf\nnu = 0.5\n")
+
+
+def body(values: dict, prefix: str, fixed: vr.Material) -> vr.Material:
+    """The material of one motion of a run."""
+    modes = [(values.get(f"{prefix}E_{n}"), values.get(f"{prefix}tau_{n}")) for n in range(1, 4)]
+    if f"{prefix}E" not in values:
+        return fixed
+    series = vr.Prony(*zip(*(mode for mode in modes if mode[0] is not None), strict=True)) if modes[0][0] else None
+    return vr.Material(values[f"{prefix}E"], values[f"{prefix}nu"], series or vr.Prony.elastic(), fixed.T_ref)
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (EXAMPLE + UNCERTAIN_BASE, {"E", "E_1", "base_E", "base_E_1", "base_tau_1"}),
+        (EXAMPLE + ELASTIC_BASE, {"E", "E_1", "base_E", "base_nu"}),
+        (CERTAIN + UNCERTAIN_BASE, {"base_E", "base_E_1", "base_tau_1"}),
+        (RIGID + UNCERTAIN_BASE, {"base_E", "base_E_1", "base_tau_1"}),
+        (EXAMPLE + "[base]\nE = inf\nnu = 0.5\n", {"E", "E_1", "tau_1"}),
+    ],
+)
+def test_an_uncertain_base(read, text, names):
+    """Every motion is that of the cylinder of its own pair, over seconds."""
+    run = read(text.replace("rtol =", 'keep = "all"\nrtol ='))
+    assert names <= set(run.inputs.uncertain)
+    values, motions = roll_block(run, 0)
+    columns = columns_of(run, values, motions)
+    fixed = {
+        "": vr.Material(3e6, 0.5, vr.Prony([0.3, 1.5], [2e-2, 1e-3])),
+        "base_": vr.Material(np.inf, 0.5) if "base_E" not in names else vr.Material(3e6, 0.5, T_ref=0.02),
+    }
+    if "E = inf\nnu = 0.5\n[start]" in text:
+        fixed[""] = vr.Material.rigid()
+    for i in (0, 31, 59):
+        one = {name: values[name][i] if np.ndim(values[name]) else values[name] for name in values}
+        cylinder, base = (body(one, prefix, given) for prefix, given in fixed.items())
+        roller = vr.Cylinder(R=0.1, m=35.5, mu=one["mu"], material=cylinder, base=base)
+        motion = roller.roll(one["V0"], 0.0, run.t, rtol=run.settings.rtol)
+        for name in ("V", "omega", "x"):
+            expected = getattr(motion, name)
+            assert columns[name][i] == pytest.approx(expected, rel=tol.RUN_SI, abs=tol.RUN_SI * np.abs(expected).max())
+
+
+def test_names_of_a_base():
+    about = attributes("base_tau_1", si=True)
+    assert about == {"long_name": "base: relaxation time 1 over T_ref", "units": "1"}
+    assert attributes("base_E", si=True)["units"] == "Pa"
+
+
+def test_sobol_indices_of_a_base(read):
+    """A base as soft as the roller takes its part of the resistance."""
+    found = sobol_indices(read(EXAMPLE + UNCERTAIN_BASE), n=32)
+    total = found.rolling_loss_ST.isel(t=-1)
+    assert total.sel(input="base_E_1") > total.sel(input="V0")
+
+
 def test_refused(read):
     spread = '{ distribution = "lognorm", s = 0.2, scale = 0.3 }'
     for text, words in (
@@ -177,7 +245,10 @@ def test_refused(read):
         (EXAMPLE.replace("nu = 0.5", "nu = 0.6"), ["line 9", "nu = 0.6"]),
         (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nEE = 2"), ["line 10", "unknown key 'EE'"]),
         (EXAMPLE.replace("nu = 0.5", "nu = 0.5\nT_sigma = 0.1"), ["T_epsilon and T_sigma"]),
-        (EXAMPLE + f"[base]\nE = {spread}\nnu = 0.3\n", ["[base] must be of numbers"]),
+        (EXAMPLE + f"[base]\nE = {spread}\nnu = 0.6\n", ["[base]", "nu = 0.6"]),
+        (EXAMPLE + UNCERTAIN_BASE.replace("loc = 1.0", "loc = -1.0"), ["base_tau_1: reaches from -1"]),
+        (EXAMPLE + UNCERTAIN_BASE.replace("nu =", "mu ="), ["[base]", "unknown key 'mu'"]),
+        (EXAMPLE + UNCERTAIN_BASE.replace("3e6", "'3 MPa'"), ["base_E", "scale"]),
         (SCENE.replace("mu =", "alpha = 3.0\nmu ="), ["line 5", "alpha and a series"]),
         (SCENE.replace("prony", "pony"), ["line 3", "did you mean 'prony'?"]),
         (SCENE.replace("prony =", "# prony ="), ["needs alpha, prony or creep"]),

@@ -13,7 +13,7 @@ from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
 from ..errors import ParameterError
 from ..material_tables import record
-from ..prony_array import PronyArray
+from ..prony_array import MaterialArray
 from ..rolling_contact import flattened
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..typed import Driving, Numbers
@@ -197,7 +197,7 @@ def _integrate_others(
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
         kernel = _kernel(names, ready)
-        if isinstance(material, PronyArray):
+        if isinstance(material, MaterialArray):
             which = np.minimum(left, len(material) - 1)
             out, info = roll_each(
                 material, which, inputs, times, limits, names,

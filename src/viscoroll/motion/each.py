@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..material_tables import records
-from ..prony_array import PronyArray
+from ..prony_array import MaterialArray
 from ..rolling_contact import flattened
 
 #: how often the unit of time divides a field
@@ -25,7 +25,7 @@ def to_unit(out: NDArray, fields: tuple[str, ...], unit: float) -> None:
 
 
 def roll_each(
-    materials: PronyArray, which: NDArray[np.int64], inputs: list[NDArray], times: NDArray,
+    materials: MaterialArray, which: NDArray[np.int64], inputs: list[NDArray], times: NDArray,
     limits: tuple[float, float, int], fields: tuple[str, ...],
     roll: Callable[[tuple, tuple, NDArray, NDArray, tuple], Any],
 ) -> tuple[NDArray, NDArray]:  # fmt: skip

@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
+from ..bodies_array import BodiesArray
 from ..errors import MOTION_STATUS, ParameterError
+from ..prony import Prony
 from ..prony_array import PronyArray
 from ..scene import PARAMETERS
 from ..symbols import attributes
@@ -59,14 +61,35 @@ def _material(scene: Any) -> dict[str, Any]:
     )
 
 
-def _series(materials: PronyArray) -> dict[str, tuple[Any, dict[str, str]]]:
-    """Strengths and times of a material each as they were given."""
-    form, over = ("creep", "compliance") if materials.by_creep else ("relaxation", "modulus")
-    strengths, times = materials.given
+def _series(materials: Any, count: int) -> dict[str, xr.Variable]:
+    """Strengths and times of a material each as they were given, or of both bodies and the cylinder's share."""
+    if isinstance(materials, PronyArray):
+        return _modes(materials, count, "", "")
+    if not isinstance(materials, BodiesArray):
+        return {}
+    share = {"long_name": "the cylinder's part of the long-time compliance", "units": "1"}
+    return (
+        _modes(materials.cylinder, count, "cylinder_", "cylinder: ")
+        | _modes(materials.half_space, count, "half_space_", "half space: ")
+        | {"share": xr.Variable(("motion",), np.broadcast_to(materials.share, (count,)), share)}
+    )
+
+
+def _modes(given: Prony | PronyArray, count: int, body: str, of: str) -> dict[str, xr.Variable]:
+    """Strengths and times of one body, over (motion, mode)."""
+    form, over = ("creep", "compliance") if given.by_creep else ("relaxation", "modulus")
+    if isinstance(given, PronyArray):
+        strengths, times = given.given
+    else:
+        strengths, times = (given.J, given.T) if given.by_creep else (given.E, given.tau)
+    about = {"strengths": f"strengths of {form} over the long-time {over}", "times": f"times of {form} over T_ref"}
     return {
-        f"{form}_strengths": (strengths, {"long_name": f"strengths of {form} over the long-time {over}", "units": "1"}),
-        f"{form}_times": (times, {"long_name": f"times of {form} over T_ref", "units": "1"}),
-    }
+        f"{body}{form}_{name}": xr.Variable(
+            ("motion", f"{body}mode"), np.broadcast_to(values, (count, np.shape(values)[-1])),
+            {"long_name": of + about[name], "units": "1"},
+        )
+        for name, values in (("strengths", strengths), ("times", times))
+    }  # fmt: skip
 
 
 def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
@@ -112,10 +135,7 @@ def ensemble_dataset(result: Any, described: Callable[[str], dict[str, Any]] = a
     for name in PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
         data[name] = xr.Variable(("motion",) if value.ndim else (), value, attributes(name))
-    if isinstance(result.scene.material, PronyArray):
-        for name, (values, about) in _series(result.scene.material).items():
-            shape = (len(result), values.shape[1])
-            data[name] = xr.Variable(("motion", "mode"), np.broadcast_to(values, shape), about)
+    data |= _series(result.scene.material, len(result))
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name, described))
     data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import MOTION_STATUS, MotionStatus
 from ..labels import Labels
-from ..prony_array import PronyArray
+from ..prony_array import MaterialArray
 from ..results import Row, Shown, unit_of
 from ..scene import Scene
 from ..symbols import attributes
@@ -118,7 +118,9 @@ class Ensemble(Shown):
         """
         some, V, omega = self.judged()
         parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
-        scene = self.scene.replace(**parts) if parts and not isinstance(self.scene.material, PronyArray) else self.scene
+        scene = (
+            self.scene.replace(**parts) if parts and not isinstance(self.scene.material, MaterialArray) else self.scene
+        )
         return scene.validity(V, omega=omega)
 
     def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:

@@ -68,3 +68,5 @@ DRIVE_SI = {
 TIME = Range(0.0)
 #: strengths and times of a series, by the name of a list of them in a file
 MODES = {"E": Range(0.0), "tau": positive(), "J": Range(0.0, high=1.0), "T": positive()}
+#: sections of bodies, and what the names of their inputs begin with
+PREFIXES = {"material": "", "base": "base_"}

@@ -48,8 +48,6 @@ from .units import dimensionless
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
-#: where each motion has two bodies of its own, whose tables take some hundredths of a second
-_ON_BASE = 1 << 10
 _SECTIONS = ("preset", "scene", "cylinder", *MATERIALS, "start", "drive", "correlation", "run")
 
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
@@ -140,7 +138,7 @@ class Run:
         """Motions a block."""
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
-        most = _MAPPED if self.method == "flow" else _ON_BASE if "base" in self.inputs.fixed else _INTEGRATED
+        most = _MAPPED if self.method == "flow" else _INTEGRATED
         fits = 1 << max(_BYTES // self.bytes_a_motion, 1).bit_length() - 1  # a power of two suits Sobol
         return min(most, fits, self.settings.n)
 

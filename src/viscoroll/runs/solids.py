@@ -1,6 +1,7 @@
 """Materials of a run: strengths and times of a series, modulus and Poisson's ratio may be uncertain.
 
-Each of them is an input of its own: E and nu, E_1 and tau_1 of the first mode of ``prony``, J_1 and T_1 of ``creep``.
+Each of them is an input of its own: E and nu, E_1 and tau_1 of the first mode of ``prony``, J_1 and T_1 of ``creep``;
+of a [base] base_E, base_E_1 and so on.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..bodies import Bodies
 from ..material_file import materials_of, series_of
+from ..pair import cylinders_share, effective_modulus, joint_modulus
 from ..prony import Prony
 from ..sections import fault
-from .ranges import CYLINDER, MODES
+from .ranges import CYLINDER, MODES, PREFIXES
 
 if TYPE_CHECKING:
     from .sources import Reader
@@ -41,6 +44,54 @@ class Modes:
         return Prony.creep(strengths, times) if self.creep else Prony(strengths, times)
 
 
+@dataclass(frozen=True)
+class Solid:
+    """A body of a run: its series, modulus and Poisson's ratio, or the names of the inputs that these are."""
+
+    series: Prony | Modes
+    T_ref: float
+    E: float | str
+    nu: float | str
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether time means anything to it."""
+        return isinstance(self.series, Modes) or self.series.alpha > 1.0
+
+    def series_of(self, values: Mapping[str, Any]) -> Any:
+        """Its series of a block's inputs, one or one for each motion."""
+        return self.series.of(values) if isinstance(self.series, Modes) else self.series
+
+    def modulus(self, values: Mapping[str, Any], plane: str) -> Any:
+        """E' of a block's inputs."""
+        E, nu = (values[given] if isinstance(given, str) else given for given in (self.E, self.nu))
+        return effective_modulus(E, nu, plane)
+
+
+@dataclass(frozen=True)
+class Solids:
+    """The bodies of a run of which one is uncertain; no ``base``: that of the cylinder."""
+
+    cylinder: Solid
+    base: Solid | None
+
+    @property
+    def T_ref(self) -> float:
+        """What times are counted in, s, as of a :class:`viscoroll.pair.Pair`."""
+        return (self.base if self.base and not self.cylinder.relaxes else self.cylinder).T_ref
+
+    def law(self, values: Mapping[str, Any], plane: str) -> tuple[Any, Any]:
+        """(Series or bodies, one or one for each motion; E' of both) of a block's inputs."""
+        one = self.cylinder.modulus(values, plane)
+        if self.base is None:
+            return self.cylinder.series_of(values), one
+        other = self.base.modulus(values, plane)
+        first, second = (
+            solid.series_of(values).slower(solid.T_ref / self.T_ref) for solid in (self.cylinder, self.base)
+        )
+        return Bodies(first, second, cylinders_share(one, other)), joint_modulus(one, other)
+
+
 def is_uncertain(section: Any) -> bool:
     """Whether a section of a file has more than numbers where an input may stand."""
     if not isinstance(section, dict):
@@ -53,13 +104,19 @@ def is_uncertain(section: Any) -> bool:
     return any(isinstance(entry, dict) for entry in entries)
 
 
-def read_series(reader: Reader, section: str, given: dict[str, Any]) -> tuple[Prony | Modes | None, dict[str, Any]]:
-    """The series of a section, and the section with the median of each of its distributions in their place."""
+def read_series(
+    reader: Reader, section: str, given: dict[str, Any], prefix: str = ""
+) -> tuple[Prony | Modes | None, dict[str, Any]]:
+    """The series of a section, and the section with the median of each of its distributions in their place.
+
+    ``prefix`` : in front of the names of its inputs.
+    """
     plain = dict(given)
     uncertain = is_uncertain(given)
     for key in SERIES if uncertain else ():
         if isinstance(given.get(key), dict):
-            plain[key] = {name: _medians(reader, f"{section}.{key}", name, value) for name, value in given[key].items()}
+            lists = given[key].items()
+            plain[key] = {name: _medians(reader, f"{section}.{key}", name, value, prefix) for name, value in lists}
             if plain[key].get("alpha") is not None:
                 raise fault(
                     reader.path, f"{section}.{key}", "alpha", "alpha: must be left out where J or T are uncertain"
@@ -68,29 +125,40 @@ def read_series(reader: Reader, section: str, given: dict[str, Any]) -> tuple[Pr
     if series is None or not uncertain:
         return series, plain
     key = "creep" if "creep" in given else "prony"
-    names = [tuple(f"{name}_{n}" for n in range(1, len(given[key][name]) + 1)) for name in SERIES[key]]
+    names = [tuple(f"{prefix}{name}_{n}" for n in range(1, len(given[key][name]) + 1)) for name in SERIES[key]]
     if key == "creep":
         _refuse_infinite_modulus(reader, f"{section}.{key}", names[0])
     return (Modes(key == "creep", *names) if names[0] else series), plain
 
 
-def read_material(reader: Reader, given: dict[str, Any]) -> None:
-    """File the inputs of a section [material] that is uncertain."""
-    series, plain = read_series(reader, "material", given)
-    reader.section = "material"
+def read_solids(reader: Reader, materials: Mapping[str, Any]) -> None:
+    """File the inputs of [material] and [base], of which one is uncertain."""
+    bodies = [_read_solid(reader, name, materials[name]) for name in PREFIXES if name in materials]
+    solids = Solids(bodies[0], bodies[1] if len(bodies) > 1 else None)
+    reader.fixed |= {"solids": solids, "T_ref": solids.T_ref}
+
+
+def _read_solid(reader: Reader, section: str, given: dict[str, Any]) -> Solid:
+    """A body, with its inputs filed where it is uncertain."""
+    if not is_uncertain(given):
+        material = materials_of(reader.path, {section: given})[section]
+        return Solid(material.prony, material.T_ref, material.E, material.nu)
+    prefix = PREFIXES[section]
+    series, plain = read_series(reader, section, given, prefix)
+    reader.section = section
     for name in _SOLID:
         if name in given:
-            plain[name] = median(reader, name, given[name], CYLINDER[name])
-    material = materials_of(reader.path, {"material": plain})["material"]
-    reader.fixed |= {"series": material.prony if series is None else series, "T_ref": material.T_ref}
+            plain[name] = median(reader, prefix + name, given[name], CYLINDER[name], line=name)
+    material = materials_of(reader.path, {section: plain})[section]
+    return Solid(material.prony if series is None else series, material.T_ref, prefix + "E", prefix + "nu")
 
 
-def _medians(reader: Reader, section: str, name: str, value: Any) -> Any:
+def _medians(reader: Reader, section: str, name: str, value: Any, prefix: str) -> Any:
     """File each of a list of strengths or times; what is no such list is for others to refuse."""
     if name not in SERIES[section.rsplit(".", 1)[1]] or not isinstance(value, list):
         return value
     reader.section = section
-    return [median(reader, f"{name}_{n}", entry, MODES[name], line=name) for n, entry in enumerate(value, 1)]
+    return [median(reader, f"{prefix}{name}_{n}", entry, MODES[name], line=name) for n, entry in enumerate(value, 1)]
 
 
 def median(reader: Reader, name: str, value: Any, allowed: Any, line: str = "") -> float:

@@ -18,7 +18,7 @@ from ..sections import fault, hint, refuse_unknown
 from .drives import prescribed_start, read_drive
 from .inputs import Distribution, Inputs, Joint
 from .ranges import CYLINDER, DRIVE, DRIVE_SI, OPTIONAL, SCENE, SOLID, START, START_SI, Range
-from .solids import SERIES, is_uncertain, read_material, read_series
+from .solids import SERIES, is_uncertain, read_series, read_solids
 
 _PLANES = ("strain", "stress")
 
@@ -195,12 +195,8 @@ def read_inputs(
         if plane not in _PLANES:
             raise reader.fault("plane", f"plane = {plane!r}: must be 'strain' or 'stress'")
         reader.fixed["plane"] = plane
-        if is_uncertain(materials.get("base")):
-            raise fault(path, "", "base", "[base] must be of numbers: of two bodies only [material] may be uncertain")
-        if is_uncertain(materials.get("material")):
-            read_material(reader, materials["material"])
-            if "base" in materials:
-                reader.fixed["base"] = materials_of(path, {"base": materials["base"]})["base"]
+        if any(map(is_uncertain, materials.values())):
+            read_solids(reader, materials)
         elif materials:
             pair = _pair(path, materials_of(path, materials), plane)
             reader.fixed |= {"pair": pair, "T_ref": pair.T_ref}

@@ -16,7 +16,7 @@ from ..motion import export
 from ..si.units import QUANTITIES
 from ..si.units import attributes as si_attributes
 from ..symbols import SYMBOLS
-from .ranges import CYLINDER
+from .ranges import CYLINDER, PREFIXES
 
 _ENERGIES = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
@@ -73,6 +73,9 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
             times = f"time {corner.removeprefix('time_')} of the given {what}"
             return {"long_name": times, "units": attributes("t", si)["units"]}
         return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
+    if name.startswith(PREFIXES["base"]):
+        about = attributes(name.removeprefix(PREFIXES["base"]), si)
+        return about | {"long_name": f"base: {about['long_name']}"}
     if si and name in QUANTITIES:
         return si_attributes(name)
     kind, _, number = name.partition("_")

@@ -29,16 +29,15 @@ def scene_from_si(
 
 def scene_of_pair(R: Any, m: Any, pair: Pair, mu: Any, j: Any, g: Any, load: Any = None) -> Scene:
     """As :func:`scene_from_si`, of a pair of materials; times over its T_ref."""
-    kappa, mu, gamma = _scaled(R, m, g, load, pair.E_prime, np.float64(pair.T_ref), mu)
-    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=pair.law)
+    return scene_of_law(R, m, pair.E_prime, pair.T_ref, pair.law, mu, j, g, load)
 
 
-def scene_of_series(
-    R: Any, m: Any, E: Any, nu: Any, T_ref: float, series: Any, mu: Any, j: Any, g: Any, plane: str, load: Any = None
+def scene_of_law(
+    R: Any, m: Any, E_prime: Any, T_ref: float, law: Any, mu: Any, j: Any, g: Any, load: Any = None
 ) -> Scene:
-    """As :func:`scene_from_si`, of a series, or of one each, with the long-time modulus E; times over T_ref."""
-    kappa, mu, gamma = _scaled(R, m, g, load, effective_modulus(E, nu, plane), np.float64(T_ref), mu)
-    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=series)
+    """As :func:`scene_from_si`, of a series or bodies, or of one each, with E' of the pair; times over T_ref."""
+    kappa, mu, gamma = _scaled(R, m, g, load, E_prime, np.float64(T_ref), mu)
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, material=law)
 
 
 def scene_of_solids(
@@ -48,7 +47,7 @@ def scene_of_solids(
     """As :func:`scene_from_si`, of retardation and relaxation times (n,), a series each; times over T_ref."""
     slow, fast = np.broadcast_arrays(*(np.asarray(value, np.float64) for value in times))
     series = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / T_ref)[:, np.newaxis], alpha=slow / fast)
-    return scene_of_series(R, m, E, nu, T_ref, series, mu, j, g, plane, load)
+    return scene_of_law(R, m, effective_modulus(E, nu, plane), T_ref, series, mu, j, g, load)
 
 
 def _scaled(R: Any, m: Any, g: Any, load: Any, E_prime: Any, T: Any, mu: Any) -> tuple[Any, Any, Any]:

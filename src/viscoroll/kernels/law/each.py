@@ -1,4 +1,4 @@
-"""A series for each state or motion: its bins are made where they are met, and are gone with the next material.
+"""A series or a pair for each state or motion: its bins are made where they are met, and are gone with the next.
 
 A bin holds what the table of the whole material would (:mod:`series`), so that a motion is the same to the bit.
 """
@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics import quartet
 from ..numerics.bins import bin_number
-from .series import Room, Series, values
+from .series import fill_bin, fill_bins, unpacked
 
 
 class Ends(NamedTuple):
@@ -30,8 +31,18 @@ class Ends(NamedTuple):
     squares: float
 
 
+class Body(NamedTuple):
+    """What is one body's in m: sum of its J_j T_j, m as z -> infinity; and its terms in the ends of the table."""
+
+    T_mean: float
+    ends: Ends
+
+
 class Filled(NamedTuple):
-    """A material as ``Tabulated``, with the modes that its bins first ... stop - 1 are made from."""
+    """A material as ``Tabulated``, with the modes that its bins first ... stop - 1 are made from.
+
+    modes : how many; numbers : theirs, packed (:func:`series.packed`), with room for an evaluation behind them
+    """
 
     alpha: float
     T_mean: float
@@ -40,8 +51,25 @@ class Filled(NamedTuple):
     ends: Ends
     first: int
     stop: int
-    series: Series
-    work: Room
+    modes: int
+    numbers: Any
+
+
+class FilledPair(NamedTuple):
+    """Two bodies as ``Pair``, likewise."""
+
+    alpha: float
+    T_mean: float
+    tau: float
+    table: Any
+    ends: Ends
+    first: int
+    stop: int
+    modes: int
+    numbers: Any
+    parts: Any
+    half_space: Body
+    cylinder: Body
 
 
 class Each(NamedTuple):
@@ -49,30 +77,54 @@ class Each(NamedTuple):
 
     of : material of each state or motion, a row of all that follows
     numbers : alpha, T_mean, tau, and rise, weight, log_weight and squares of ``Ends``
-    bins : first and stop of ``Filled``
-    count : modes; the arrays of ``series`` have room for the most
-    series : arrays of ``Series`` with a leading axis
+    bins : first and stop of ``Filled``, and its modes
+    packed : numbers of its modes
     table, held : the one table, and whose bins it holds, -1: nobody's
-    work : room of an evaluation
+    work : ``numbers`` of ``Filled``
     """
 
     of: Any
     numbers: Any
     bins: Any
-    count: Any
-    series: Series
+    packed: Any
     table: Any
     held: Any
-    work: Room
+    work: Any
+
+
+class EachPair(NamedTuple):
+    """The pairs of a block: as :class:`Each`.
+
+    numbers : and behind them T_mean, rise, weight, log_weight and squares of the half-space, and of the cylinder
+    parts : the one table of the parts of m
+    """
+
+    of: Any
+    numbers: Any
+    bins: Any
+    packed: Any
+    table: Any
+    held: Any
+    work: Any
+    parts: Any
+
+
+@kernel
+def _empty(table):
+    for n in range(table.shape[0]):
+        table[n, 0] = np.nan
 
 
 @kernel
 def _take(row, each):
-    """Empty the table of another material's bins."""
-    if each.held[0] != row:
-        for n in range(each.table.shape[0]):
-            each.table[n, 0] = np.nan
-        each.held[0] = row
+    """Whether the tables held another material; then that of this row takes its place."""
+    if each.held[0] == row:
+        return False
+    each.held[0] = row
+    _empty(each.table)
+    for n in range(each.packed.shape[1]):
+        each.work[n] = each.packed[row, n]
+    return True
 
 
 @kernel(inline=True, allocates=True)  # what it returns holds references to arrays
@@ -80,14 +132,44 @@ def of_each(each, i):
     """The material of state or motion i."""
     row = each.of[min(i, each.of.size - 1)]
     _take(row, each)
-    n, all_of, numbers = each.count[row], each.series, each.numbers[row]
-    one = Series(
-        all_of.a[row][:n], all_of.b[row][:n], all_of.e[row][:n], all_of.t[row][:n], all_of.Q[row][:n],
-    )  # fmt: skip
+    numbers, bins = each.numbers[row], each.bins[row]
     return Filled(
         numbers[0], numbers[1], numbers[2], each.table, Ends(True, numbers[3], numbers[4], numbers[5], numbers[6]),
-        each.bins[row, 0], each.bins[row, 1], one, each.work,
+        bins[0], bins[1], bins[2], each.work,
     )  # fmt: skip
+
+
+@kernel(inline=True)
+def _body(numbers, at):
+    return Body(numbers[at], Ends(True, numbers[at + 1], numbers[at + 2], numbers[at + 3], numbers[at + 4]))
+
+
+@kernel(inline=True, allocates=True)
+def of_each_pair(each, i):
+    """The pair of state or motion i."""
+    row = each.of[min(i, each.of.size - 1)]
+    if _take(row, each):
+        _empty(each.parts)
+    numbers, bins = each.numbers[row], each.bins[row]
+    return FilledPair(
+        numbers[0], numbers[1], numbers[2], each.table, Ends(True, numbers[3], numbers[4], numbers[5], numbers[6]),
+        bins[0], bins[1], bins[2], each.work, each.parts, _body(numbers, 7), _body(numbers, 12),
+    )  # fmt: skip
+
+
+@kernel(allocates=True)  # views of the numbers
+def _fill(row, z, material):
+    series, work = unpacked(material.numbers, material.modes)
+    fill_bin(z, series, work, row, material.table)
+
+
+@kernel(allocates=True)
+def _fill_pair(row, z, material):
+    series, work = unpacked(material.numbers, material.modes)
+    fill_bins(z, series, work, row, material.table, material.parts)
+
+
+_fill_met = by_record(2, (Filled, _fill), (FilledPair, _fill_pair))
 
 
 @kernel
@@ -96,8 +178,5 @@ def made(row, z, material):
     number = bin_number(z, quartet.BITS)
     if number < material.first or number >= material.stop:
         return False
-    for n in range(quartet.TERMS):
-        g, h, m, b = values(quartet.node(z, n), material.series, material.work)
-        quartet.put(material.table, row, n, g, h, m, b)
-    quartet.finish(material.table, row, z)
+    _fill_met(row, z, material)
     return True

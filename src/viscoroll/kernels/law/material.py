@@ -6,8 +6,8 @@ The last is that of the slow manifold: D = zeta - eta is proportional to it in s
 
 All that the law and the motion know of a material they read here, from one of these records:
 :class:`Standard`, an alpha, whose functions are Bessel ratios; :class:`Tabulated`, polynomials in a table;
-:class:`Pair`, two of these tables, of bodies that deform unlike each other; and :class:`Filled`, a table where each
-motion has its own series.
+:class:`Pair`, two of these tables, of bodies that deform unlike each other; :class:`Filled` and :class:`FilledPair`,
+the same where each motion has its own series, or two.
 Which one a call has is settled when it is compiled.  Where many states or motions each have an alpha of their own
 the ratios serve, and where one material serves all, the table.
 """
@@ -21,7 +21,7 @@ from ..compile.jit import kernel
 from . import pair
 from . import standard as ratios
 from . import tabulated as table
-from .each import Each, Filled, of_each
+from .each import Each, EachPair, Filled, FilledPair, of_each, of_each_pair
 from .pair import Pair
 from .standard import Standard, standard
 from .tabulated import Tabulated
@@ -34,7 +34,7 @@ class Own(NamedTuple):
 
 
 def _either(name: str, at: int) -> Callable:
-    tables = [(kind, getattr(table, name)) for kind in (Tabulated, Pair, Filled)]
+    tables = [(kind, getattr(table, name)) for kind in (Tabulated, Pair, Filled, FilledPair)]
     return by_record(at, (Standard, getattr(ratios, name)), *tables)
 
 
@@ -57,6 +57,7 @@ at_rolling = by_record(
     (Tabulated, table.at_rolling),
     (Pair, pair.at_rolling),
     (Filled, table.at_rolling),
+    (FilledPair, pair.at_rolling),
 )
 #: (means of g' and of (z h)' over [zeta - D, zeta]) at zeta and D
 mean_slopes = _either("mean_slopes", 2)
@@ -75,7 +76,9 @@ def _own(material, i):
 
 
 #: the material of state or motion i, from what is given for all
-material_of = by_record(0, (Tabulated, _shared), (Pair, _shared), (Own, _own), (Each, of_each))
+material_of = by_record(
+    0, (Tabulated, _shared), (Pair, _shared), (Own, _own), (Each, of_each), (EachPair, of_each_pair)
+)
 
 
 @kernel

@@ -12,18 +12,15 @@ from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..numerics import quartet
 from ..numerics.bins import offset_slope
-from .tabulated import Ends, at_an_end, moment_at_an_end, moment_over_z
-
-
-class Body(NamedTuple):
-    """What is one body's in m: sum of its J_j T_j, m as z -> infinity; and its terms in the ends of the table."""
-
-    T_mean: float
-    ends: Ends
+from .each import Body, Ends
+from .tabulated import at_an_end, beyond, make, moment_at_an_end, moment_over_z
 
 
 class Pair(NamedTuple):
-    """As :class:`tabulated.Tabulated`, and m of the half-space and of the cylinder in a table of the same bins."""
+    """As :class:`tabulated.Tabulated`, and m of the half-space and of the cylinder in a table of the same bins.
+
+    Where each motion has a pair of its own: :class:`each.FilledPair`.
+    """
 
     alpha: float
     T_mean: float
@@ -40,7 +37,9 @@ def parts(z, material):
     """(m of the half-space, m of the cylinder, their slopes) at z > 0."""
     row, there = quartet.row_of(z, material.parts)
     if rarely(not there):
-        return _parts_at_an_end(z, material)
+        if beyond(z, material):
+            return _parts_at_an_end(z, material)
+        row = make(row, z, material)
     half_space, cylinder, _, _, d_half_space, d_cylinder, _, _ = quartet.slopes(material.parts, row, quartet.offset(z))
     per = offset_slope(z)
     return half_space, cylinder, d_half_space * per, d_cylinder * per
@@ -66,9 +65,11 @@ def at_rolling(z, material):
     """(g, h, g', h', m of the half-space, m of the cylinder) at z > 0."""
     row, there = quartet.row_of(z, material.table)
     if rarely(not there):
-        g, h, dg, dh = at_an_end(z, material)
-        half_space, cylinder, _, _ = _parts_at_an_end(z, material)
-        return g, h, dg, dh, half_space, cylinder
+        if beyond(z, material):
+            g, h, dg, dh = at_an_end(z, material)
+            half_space, cylinder, _, _ = _parts_at_an_end(z, material)
+            return g, h, dg, dh, half_space, cylinder
+        row = make(row, z, material)
     at, per = quartet.offset(z), offset_slope(z)
     g, h, _, _, dg, dh, _, _ = quartet.slopes(material.table, row, at)
     half_space, cylinder, _, _ = quartet.values(material.parts, row, at)

@@ -79,6 +79,31 @@ def room(series):
     )  # fmt: skip
 
 
+def packed_size(modes: int) -> int:
+    """How many numbers a series of two bodies has, packed: its vectors, then Q."""
+    return modes * (len(Parts._fields) - 1 + modes)
+
+
+def working_size(modes: int) -> int:
+    """How many numbers it is evaluated in, with its own in front."""
+    return packed_size(modes) + modes * (len(Room._fields) - 1 + modes)
+
+
+@kernel(allocates=True)  # views of the numbers
+def unpacked(numbers, modes):
+    """A series of two bodies, and the room that it is evaluated in, from one vector."""
+    n, square = modes, modes * modes
+    Q, work = numbers[5 * n : 5 * n + square], numbers[5 * n + square :]
+    parts = Parts(
+        numbers[:n], numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n : 4 * n], Q.reshape(n, n),
+        numbers[4 * n : 5 * n],
+    )  # fmt: skip
+    return parts, Room(
+        work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n], work[4 * n : 5 * n], work[5 * n : 6 * n],
+        work[6 * n : 7 * n], work[7 * n : 8 * n], work[8 * n : 8 * n + square].reshape(n, n),
+    )  # fmt: skip
+
+
 @kernel
 def _ratios(z, series, work):
     """Ratios and slopes of every mode."""
@@ -141,14 +166,20 @@ def values(z, series, work):
 
 @kernel
 def shares(z, parts, work):
-    """(m of the half-space, m of the cylinder, 0, 0) at z > 0: sums of the shares of the creep modes, all positive.
+    """(m of the half-space, m of the cylinder) at z > 0."""
+    _, h, m, _ = values(z, parts, work)
+    return shares_of(z, h, m, parts, work)
+
+
+@kernel
+def shares_of(z, h, m, parts, work):
+    """``shares`` where ``values`` has filled the room: sums of the shares of the creep modes, all positive.
 
     m_j = t_j k_j f_j + lam^2 J_j sum_i X_i a_i u_i/(a_i - b_j)
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
 
     What their sum differs from m by, roundings of alpha times the size of one, is taken from both alike.
     """
-    _, h, m, _ = values(z, parts, work)
     count, square = parts.a.size, 1.0 + 2.0 * h / z  # 1/lam^2
     half_space = cylinder = 0.0
     for i in range(count):
@@ -168,21 +199,48 @@ def shares(z, parts, work):
         half_space += parts.weights[j] * share
         cylinder += (1.0 - parts.weights[j]) * share
     whole = m / (half_space + cylinder)
-    return half_space * whole, cylinder * whole, 0.0, 0.0
+    return half_space * whole, cylinder * whole
 
 
-#: the four functions of a table: of a material, or of the parts that two bodies have in it
-_four = by_record(1, (Series, values), (Parts, shares))
+@kernel
+def fill_bin(z, series, work, row, table):
+    """Make the bin of z of g, h, m and b."""
+    for n in range(quartet.TERMS):
+        g, h, m, b = values(quartet.node(z, n), series, work)
+        quartet.put(table, row, n, g, h, m, b)
+    quartet.finish(table, row, z)
+
+
+@kernel
+def fill_bin_of_parts(z, parts, work, row, table):
+    """Make the bin of z of what two bodies have in m."""
+    for n in range(quartet.TERMS):
+        half_space, cylinder = shares(quartet.node(z, n), parts, work)
+        quartet.put(table, row, n, half_space, cylinder, 0.0, 0.0)
+    quartet.finish(table, row, z)
+
+
+@kernel
+def fill_bins(z, parts, work, row, table, table_of_parts):
+    """Both."""
+    for n in range(quartet.TERMS):
+        at = quartet.node(z, n)
+        g, h, m, b = values(at, parts, work)
+        half_space, cylinder = shares_of(at, h, m, parts, work)
+        quartet.put(table, row, n, g, h, m, b)
+        quartet.put(table_of_parts, row, n, half_space, cylinder, 0.0, 0.0)
+    quartet.finish(table, row, z)
+    quartet.finish(table_of_parts, row, z)
+
+
+_fill = by_record(1, (Series, fill_bin), (Parts, fill_bin_of_parts))
 
 
 @kernel(allocates=True, seconds=3)
 def fill(series, first, stop, table):
-    """Make the bins first..stop of z."""
+    """Make the bins first..stop of z, of a material, or of the parts that two bodies have in it."""
     work = room(series)
     for number in range(first, stop):
         middle = bin_place(number, quartet.BITS, 0.5)
         row, _ = quartet.row_of(middle, table)
-        for n in range(quartet.TERMS):
-            one, two, three, four = _four(quartet.node(middle, n), series, work)
-            quartet.put(table, row, n, one, two, three, four)
-        quartet.finish(table, row, middle)
+        _fill(middle, series, work, row, table)

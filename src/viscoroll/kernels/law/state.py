@@ -8,13 +8,14 @@ import numpy as np
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
+from .each import FilledPair
 from .length import OK, contact_solution, near_length
 from .material import at_contact, fast_limit, generator_slopes, moment_of
 from .pair import Pair, fast_parts, parts
 from .slopes import slope_ratio, slope_ratio_rise
 from .stick import CLOSE, stick_from_root, stick_solution
 
-#: Order of the rows of the kernel's output; the last four, of a :class:`Pair` alone.
+#: Order of the rows of the kernel's output; the last four, of a pair alone.
 ROWS = (
     "lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M",
     "dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV",
@@ -249,4 +250,4 @@ def _parts_of_pair(V, kappa, solved, here, material, need_slopes, out):
         out[DM_HALF_SPACE_DV], out[DM_CYLINDER_DV] = half_space - per * d_half_space, cylinder - per * d_cylinder
 
 
-_put_parts = by_record(4, (Pair, _parts_of_pair), otherwise=_no_parts)
+_put_parts = by_record(4, (Pair, _parts_of_pair), (FilledPair, _parts_of_pair), otherwise=_no_parts)

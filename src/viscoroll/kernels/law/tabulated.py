@@ -15,7 +15,7 @@ from ..compile.rarely import rarely
 from ..numerics import quartet
 from ..numerics.bins import bin_number, offset_slope
 from . import standard
-from .each import Ends, Filled, made
+from .each import Ends, Filled, FilledPair, made
 from .standard import GAUSS_W, GAUSS_X, Standard
 
 
@@ -102,7 +102,8 @@ def _make_met(row, z, material):
     return row if made(row, z, material) else make_own(row, z, material)
 
 
-_make = by_record(2, (Filled, _make_met), otherwise=make_own)
+#: (row, z, material) -> row of the bin of z, made now
+make = by_record(2, (Filled, _make_met), (FilledPair, _make_met), otherwise=make_own)
 
 
 @kernel(inline=True)
@@ -118,7 +119,8 @@ def _beyond_met(z, material):
     return number < material.first or number >= material.stop
 
 
-_beyond = by_record(1, (Tabulated, _beyond_full), (Filled, _beyond_met))
+#: (z, material) -> whether z lies where the table ends
+beyond = by_record(1, (Filled, _beyond_met), (FilledPair, _beyond_met), otherwise=_beyond_full)
 
 
 @kernel(inline=True)
@@ -126,7 +128,7 @@ def _row(z, material):
     """Row of the bin of z, which is made if it is not there."""
     row, there = quartet.row_of(z, material.table)
     if rarely(not there):
-        row = _make(row, z, material)
+        row = make(row, z, material)
     return row
 
 
@@ -180,11 +182,11 @@ def at_rolling(z, material):
     """(g, h, g', h', m of the half-space, m of the cylinder) at z."""
     row, there = quartet.row_of(z, material.table)
     if rarely(not there):
-        if _beyond(z, material):
+        if beyond(z, material):
             g, h, dg, dh = at_an_end(z, material)
             m, _ = moment_at_an_end(z, material.T_mean, material.ends, material)
             return g, h, dg, dh, 0.5 * m, 0.5 * m
-        row = _make(row, z, material)
+        row = make(row, z, material)
     g, h, m, _, dg, dh, _, _ = quartet.slopes(material.table, row, quartet.offset(z))
     per = offset_slope(z)
     return g, h, dg * per, dh * per, 0.5 * m, 0.5 * m
