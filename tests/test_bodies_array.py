@@ -170,7 +170,10 @@ def test_exported_with_both_bodies():
 
 def test_refused():
     many, few = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), vr.Prony([[1.0]] * 3, [1.0])
-    scene, wide = vr.Scene(material=vr.Bodies(many, many, 0.4), **SCENE), vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0))
+    scene, wide = (
+        vr.Scene(material=vr.Bodies(many, many, 0.4), **SCENE),
+        vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0)),
+    )
     for call, words in (
         (lambda: vr.Bodies(many, few), ("shapes", "cylinder (2,), half_space (3,)")),
         (lambda: vr.Bodies(many, many, [0.1, 1.5]), ("share = 1.5 at row 1", "<= 1")),
