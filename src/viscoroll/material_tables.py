@@ -200,12 +200,21 @@ def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, ND
 
 
 def _of_bodies(modes: Modes, weights: NDArray) -> NDArray[np.float64]:
-    """The numbers of half-space and cylinder of pairs behind a leading axis, 10 of each pair."""
+    """(n, 10): numbers of ``Body``, half-space then cylinder, by the half-space's share of every creep mode."""
+    a, E = modes.a, modes.E[:, None, :]
+    inner = 1.0 / a + (E / (a[:, :, None] + a[:, None, :])).sum(axis=-1)
+    # m_j = J_j T_j - c_j/z as z -> infinity
+    rises = modes.J * np.array([one @ other for one, other in zip(E / modes.gap, inner, strict=True)])
     found = np.empty((len(weights), 10))
-    for n, share in enumerate(weights):
-        one = Modes(modes.alpha[n], modes.a[n], modes.b[n], modes.E[n], modes.J[n], modes.gap[n])
-        found[n] = [value for body in _bodies(one, share) for value in (body.T_mean, *body.ends[1:])]
+    for n, share in ((0, weights), (5, 1.0 - weights)):
+        T_mean, squares = map(_sums_of, (share * modes.J / modes.b, share * rises))
+        found[:, n : n + 5] = np.stack([T_mean, *_weights(modes, share), 2.0 * squares], axis=1)
     return found
+
+
+def _sums_of(terms: NDArray) -> NDArray[np.float64]:
+    """The sum of each row, rounded once."""
+    return np.array([math.fsum(row) for row in terms.tolist()])
 
 
 @lru_cache(maxsize=_KEPT)
@@ -221,25 +230,17 @@ def _series_table(prony: Prony) -> Any:
 @lru_cache(maxsize=_KEPT)
 def _pair_tables(bodies: Bodies) -> Any:
     """The tables of two bodies that deform unlike each other."""
+    from .kernels.law.each import Body, Ends
     from .kernels.law.pair import Pair
     from .kernels.law.series import Parts
 
     whole, modes, weights = bodies.total, bodies.total.modes, bodies.half_space_weights
-    half_space, cylinder = _bodies(modes, weights)
+    each = Modes(modes.alpha, *(part[None] for part in (modes.a, modes.b, modes.E, modes.J, modes.gap)))
+    half_space, cylinder = (
+        Body(one[0], Ends(True, *one[1:])) for one in _of_bodies(each, weights[None]).reshape(2, 5).tolist()
+    )
     parts = _table(Parts(**series(whole)._asdict(), weights=weights), modes)
     return Pair(**_series_table(whole)._asdict(), parts=parts, half_space=half_space, cylinder=cylinder)
-
-
-def _bodies(modes: Modes, weights: NDArray) -> list[Any]:
-    """Half-space and cylinder, by the half-space's share of every creep mode."""
-    from .kernels.law.each import Body
-
-    # m_j = J_j T_j - c_j/z as z -> infinity
-    rises = modes.J * ((modes.E / modes.gap) @ (1.0 / modes.a + (modes.E / (modes.a[:, None] + modes.a)).sum(axis=1)))
-    return [
-        Body(math.fsum(share * modes.J / modes.b), _ends(modes, share, 2.0 * math.fsum(share * rises)))
-        for share in (weights, 1.0 - weights)
-    ]
 
 
 def _found(kept: OrderedDict[Any, Any], given: float | Prony | Bodies, make: Callable[[Any], Any]) -> Any:

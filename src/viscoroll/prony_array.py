@@ -224,5 +224,5 @@ def _sums(modes: Modes, times: NDArray, creep: bool) -> NDArray[np.float64]:
     """(sum J_j T_j, sum E_i tau_i^2 + sum J_j T_j^2) of each, as :class:`Prony` has them: of the times given."""
     tau, T = (1.0 / modes.a, times) if creep else (times, 1.0 / modes.b)
     first = modes.J * T if creep else modes.E * tau
-    terms = zip(first, modes.E * tau**2, modes.J * T**2, strict=True)
+    terms = zip(first.tolist(), (modes.E * tau**2).tolist(), (modes.J * T**2).tolist(), strict=True)
     return np.array([(math.fsum(one), math.fsum(E) + math.fsum(J)) for one, E, J in terms]).reshape(-1, 2)

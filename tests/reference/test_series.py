@@ -39,7 +39,10 @@ def test_chebyshev_against_the_conditions_and_the_kernels(p, z):
     assert sum(shares) == pytest.approx(float(truth.m), rel=tol.SERIES_FORMS)
     for j in range(p.T.size):
         weighted = kernels.Parts(**known._asdict(), weights=np.eye(p.T.size)[j])
-        part, rest, _, _ = kernels.shares(z, weighted, kernels.room(weighted))
+        room = kernels.room(weighted)
+        kernels.values((z, z, z, z), False, weighted, room)
+        kernels.shares((z, z, z, z), weighted, room)
+        part, rest = room.found[16], room.found[20]
         assert part == pytest.approx(shares[j], rel=tol.SERIES_FUNCTIONS)
         assert part + rest == pytest.approx(float(truth.m), rel=tol.SERIES_FORMS)
 

@@ -170,10 +170,16 @@ UNCERTAIN_BASE = """
 [base]
 E = { distribution = "lognorm", s = 0.2, scale = 3e6 }
 nu = 0.5
-prony = { E = [{ distribution = "lognorm", s = 0.3, scale = 0.5 }], tau = [{ distribution = "uniform", loc = 1.0, scale = 1.0 }] }
 T_ref = 0.02
+[base.prony]
+E = [{ distribution = "lognorm", s = 0.3, scale = 0.5 }]
+tau = [{ distribution = "uniform", loc = 1.0, scale = 1.0 }]
 """
-ELASTIC_BASE = '[base]\nE = { distribution = "lognorm", s = 0.2, scale = 3e7 }\nnu = { distribution = "uniform", loc = 0.3, scale = 0.2 }\n'
+ELASTIC_BASE = """
+[base]
+E = { distribution = "lognorm", s = 0.2, scale = 3e7 }
+nu = { distribution = "uniform", loc = 0.3, scale = 0.2 }
+"""
 CERTAIN = "[material]\nE = 3e6\nnu = 0.5\nprony = { E = [0.3, 1.5], tau = [2e-2, 1e-3] }\n"
 CERTAIN = EXAMPLE[: EXAMPLE.index("[material]")] + CERTAIN + EXAMPLE[EXAMPLE.index("[start]") :]
 RIGID = CERTAIN.replace(CERTAIN[CERTAIN.index("E = 3e6") : CERTAIN.index("[start]")], "E = inf\nnu = 0.5\n")

@@ -157,13 +157,13 @@ def of_each_pair(each, i):
     )  # fmt: skip
 
 
-@kernel(allocates=True)  # views of the numbers
+@kernel
 def _fill(row, z, material):
     series, work = unpacked(material.numbers, material.modes)
     fill_bin(z, series, work, row, material.table)
 
 
-@kernel(allocates=True)
+@kernel
 def _fill_pair(row, z, material):
     series, work = unpacked(material.numbers, material.modes)
     fill_bins(z, series, work, row, material.table, material.parts)

@@ -24,7 +24,10 @@ from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics import quartet
 from ..numerics.bins import bin_place
-from ..numerics.linear import factorize, substitute
+from ..numerics.four import LANES, add, divide, four, load, multiply, spread, store, subtract
+
+#: numbers of ``Room.found``
+FOUND = 32
 
 
 class Series(NamedTuple):
@@ -49,7 +52,10 @@ class Parts(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Arrays of one evaluation: sqrt(r), a r', k, b k', x, f, X and i2; B."""
+    """What the evaluation at four places keeps, four numbers each, of every mode; then B, and what is found.
+
+    sqrt(r), a r', k, b k', x, f, X and i2; B; g, h, m and b; m of the half-space and of the cylinder
+    """
 
     root: Any
     slope_r: Any
@@ -60,6 +66,7 @@ class Room(NamedTuple):
     X: Any
     i2: Any
     matrix: Any
+    found: Any
 
 
 class Solved(NamedTuple):
@@ -72,10 +79,10 @@ class Solved(NamedTuple):
 @kernel(allocates=True)
 def room(series):
     """Room for the evaluations of a series."""
-    count = series.a.size
+    count = 4 * series.a.size
     return Room(
         np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.empty(count),
-        np.empty(count), np.empty(count), np.empty((count, count)),
+        np.empty(count), np.empty(count), np.empty(count * series.a.size), np.empty(FOUND),
     )  # fmt: skip
 
 
@@ -86,149 +93,225 @@ def packed_size(modes: int) -> int:
 
 def working_size(modes: int) -> int:
     """How many numbers it is evaluated in, with its own in front."""
-    return packed_size(modes) + modes * (len(Room._fields) - 1 + modes)
+    return packed_size(modes) + 4 * modes * (len(Room._fields) - 2 + modes) + FOUND
 
 
-@kernel(allocates=True)  # views of the numbers
+@kernel(inline=True)
 def unpacked(numbers, modes):
     """A series of two bodies, and the room that it is evaluated in, from one vector."""
-    n, square = modes, modes * modes
-    Q, work = numbers[5 * n : 5 * n + square], numbers[5 * n + square :]
+    n, four = modes, 4 * modes
+    Q, work = numbers[5 * n : 5 * n + n * n], numbers[5 * n + n * n :]
     parts = Parts(
         numbers[:n], numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n : 4 * n], Q.reshape(n, n),
         numbers[4 * n : 5 * n],
     )  # fmt: skip
     return parts, Room(
-        work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n], work[4 * n : 5 * n], work[5 * n : 6 * n],
-        work[6 * n : 7 * n], work[7 * n : 8 * n], work[8 * n : 8 * n + square].reshape(n, n),
+        work[:four], work[four : 2 * four], work[2 * four : 3 * four], work[3 * four : 4 * four],
+        work[4 * four : 5 * four], work[5 * four : 6 * four], work[6 * four : 7 * four], work[7 * four : 8 * four],
+        work[8 * four : (8 + n) * four], work[(8 + n) * four : (8 + n) * four + FOUND],
     )  # fmt: skip
 
 
-@kernel
-def _ratios(z, series, work):
+@kernel(inline=True)
+def _ratios(places, sloped, series, work):
     """Ratios and slopes of every mode."""
     for i in range(series.a.size):
-        x = series.a[i] * z
-        r, complement = ratio_r(x)
-        work.root[i], work.slope_r[i] = np.sqrt(r), series.a[i] * slope_r(x, r, complement)
-        y = series.b[i] * z
-        k, complement = ratio_k(y)
-        work.k[i], work.slope_k[i] = k, series.b[i] * slope_k(y, k, complement)
+        for c in range(LANES):
+            at = 4 * i + c
+            x = series.a[i] * places[c]
+            r, complement = ratio_r(x)
+            root = np.sqrt(r)
+            work.root[at], work.i2[at] = root, ratio_i2(x, root * root)
+            y = series.b[i] * places[c]
+            k, k_complement = ratio_k(y)
+            work.k[at] = k
+            if sloped:
+                work.slope_r[at] = series.a[i] * slope_r(x, r, complement)
+                work.slope_k[at] = series.b[i] * slope_k(y, k, k_complement)
 
 
-@kernel
+@kernel(inline=True)
+def _factorize(matrix, count):
+    """Two triangular factors in place of a matrix, without pivoting: its eigenvalues lie in [1, 2)."""
+    row_of, one = 4 * count, spread(1.0)
+    for i in range(count):
+        inverse = divide(one, load(matrix, i * row_of + 4 * i))
+        for row in range(i + 1, count):
+            share = multiply(load(matrix, row * row_of + 4 * i), inverse)
+            store(matrix, row * row_of + 4 * i, share)
+            for column in range(i + 1, count):
+                at = row * row_of + 4 * column
+                store(matrix, at, subtract(load(matrix, at), multiply(share, load(matrix, i * row_of + 4 * column))))
+
+
+@kernel(inline=True)
+def _substitute(matrix, right, count):
+    """Solve a linear system in place of its right side, from the factors of the matrix."""
+    row_of = 4 * count
+    for row in range(1, count):
+        total = load(right, 4 * row)
+        for i in range(row):
+            total = subtract(total, multiply(load(matrix, row * row_of + 4 * i), load(right, 4 * i)))
+        store(right, 4 * row, total)
+    for i in range(count - 1, -1, -1):
+        total = load(right, 4 * i)
+        for column in range(i + 1, count):
+            total = subtract(total, multiply(load(matrix, i * row_of + 4 * column), load(right, 4 * column)))
+        store(right, 4 * i, divide(total, load(matrix, i * row_of + 4 * i)))
+
+
+@kernel(inline=True)
 def _solve(series, work):
     """x from B x = sqrt(r) e, X and f."""
     count, matrix = series.a.size, work.matrix
     for i in range(count):
+        root = load(work.root, 4 * i)
         for n in range(i + 1):
-            total = 0.0
+            total = spread(0.0)
             for j in range(count):
-                total += series.Q[j, i] * work.k[j] * series.Q[j, n]
-            total *= work.root[i] * work.root[n]
-            matrix[i, n], matrix[n, i] = total, total
-        matrix[i, i] += 1.0
-        work.x[i] = work.root[i] * series.e[i]
-    factorize(matrix, count)
-    substitute(matrix, work.x, count)
+                weighted = multiply(spread(series.Q[j, i]), load(work.k, 4 * j))
+                total = add(total, multiply(weighted, spread(series.Q[j, n])))
+            total = multiply(total, multiply(root, load(work.root, 4 * n)))
+            if n == i:
+                total = add(total, spread(1.0))
+            store(matrix, 4 * (i * count + n), total)
+            store(matrix, 4 * (n * count + i), total)
+        store(work.x, 4 * i, multiply(root, spread(series.e[i])))
+    _factorize(matrix, count)
+    _substitute(matrix, work.x, count)
     for i in range(count):
-        work.X[i] = series.e[i] * work.x[i] / work.root[i]
+        weighted = multiply(spread(series.e[i]), load(work.x, 4 * i))
+        store(work.X, 4 * i, divide(weighted, load(work.root, 4 * i)))
     for j in range(count):
-        total = 0.0
+        total = spread(0.0)
         for i in range(count):
-            total += series.Q[j, i] * work.root[i] * work.x[i]
-        work.f[j] = total
+            weighted = multiply(spread(series.Q[j, i]), load(work.root, 4 * i))
+            total = add(total, multiply(weighted, load(work.x, 4 * i)))
+        store(work.f, 4 * j, total)
 
 
 @kernel
 def solve(z, series, work):
-    """Fill the room at z > 0."""
-    _ratios(z, series, work)
+    """Fill the room at z > 0, all four places."""
+    _ratios((z, z, z, z), False, series, work)
     _solve(series, work)
 
 
 @kernel
-def values(z, series, work):
-    """(g, h, m, b) at z > 0."""
-    solve(z, series, work)
-    g = h = dh = pressed = 0.0
+def values(places, sloped, series, work):
+    """g, h, m, b at four places > 0 into ``found``; b where ``sloped``."""
+    _ratios(places, sloped, series, work)
+    _solve(series, work)
+    g, h, dh, pressed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for i in range(series.a.size):
-        root, x, f = work.root[i], work.x[i], work.f[i]
-        h += root * series.e[i] * x
-        g += series.t[i] * work.k[i] * f
-        per = x / root
-        dh += work.slope_r[i] * (per * per) - work.slope_k[i] * (f * f)
-        pressed += work.X[i] * ratio_i2(series.a[i] * z, root * root)
-    square = 1.0 + 2.0 * h / z  # 1/lam^2
-    m = g + pressed / square
-    return g, h, m, m * np.sqrt(square) / (1.0 + h / z + dh)
+        root, x, f = load(work.root, 4 * i), load(work.x, 4 * i), load(work.f, 4 * i)
+        h = add(h, multiply(multiply(root, spread(series.e[i])), x))
+        g = add(g, multiply(multiply(spread(series.t[i]), load(work.k, 4 * i)), f))
+        pressed = add(pressed, multiply(load(work.X, 4 * i), load(work.i2, 4 * i)))
+        if sloped:
+            per = divide(x, root)
+            rise = multiply(load(work.slope_r, 4 * i), multiply(per, per))
+            dh = add(dh, subtract(rise, multiply(load(work.slope_k, 4 * i), multiply(f, f))))
+    store(work.found, 0, g)
+    store(work.found, 4, h)
+    store(work.found, 8, pressed)
+    store(work.found, 12, dh)
+    for c in range(LANES):
+        z, g_c, h_c = places[c], work.found[c], work.found[4 + c]
+        square = 1.0 + 2.0 * h_c / z  # 1/lam^2
+        m = g_c + work.found[8 + c] / square
+        work.found[8 + c] = m
+        work.found[12 + c] = m * np.sqrt(square) / (1.0 + h_c / z + work.found[12 + c]) if sloped else 0.0
 
 
 @kernel
-def shares(z, parts, work):
-    """(m of the half-space, m of the cylinder) at z > 0."""
-    _, h, m, _ = values(z, parts, work)
-    return shares_of(z, h, m, parts, work)
+def shares(places, parts, work):
+    """m of the half-space and of the cylinder into ``found``, where ``values`` has filled the room.
 
-
-@kernel
-def shares_of(z, h, m, parts, work):
-    """``shares`` where ``values`` has filled the room: sums of the shares of the creep modes, all positive.
+    Sums of the shares of the creep modes, all positive:
 
     m_j = t_j k_j f_j + lam^2 J_j sum_i X_i a_i u_i/(a_i - b_j)
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
 
     What their sum differs from m by, roundings of alpha times the size of one, is taken from both alike.
     """
-    count, square = parts.a.size, 1.0 + 2.0 * h / z  # 1/lam^2
-    half_space = cylinder = 0.0
+    count, z = parts.a.size, four(places[0], places[1], places[2], places[3])
+    h, m = load(work.found, 4), load(work.found, 8)
+    square = add(spread(1.0), divide(multiply(spread(2.0), h), z))  # 1/lam^2
+    half_space, cylinder = spread(0.0), spread(0.0)
     for i in range(count):
-        work.i2[i] = ratio_i2(parts.a[i] * z, work.root[i] * work.root[i])
-    for i in range(count):
-        u, a = work.i2[i], parts.a[i]
+        own, a = load(work.i2, 4 * i), parts.a[i]
+        u = own
         for n in range(count):
-            u += work.X[n] * a * parts.a[n] / (a + parts.a[n]) * (work.i2[i] - work.i2[n])
-        pressed = work.X[i] * u / (square * parts.e[i])
+            apart = subtract(own, load(work.i2, 4 * n))
+            weighted = multiply(multiply(load(work.X, 4 * n), spread(a)), spread(parts.a[n]))
+            u = add(u, multiply(divide(weighted, spread(a + parts.a[n])), apart))
+        pressed = divide(multiply(load(work.X, 4 * i), u), multiply(square, spread(parts.e[i])))
         for j in range(count):
             # J_j/(a_i - b_j) = Q_ji t_j/(e_i a_i)
-            share = parts.t[j] * (parts.Q[j, i] * pressed)
-            half_space += parts.weights[j] * share
-            cylinder += (1.0 - parts.weights[j]) * share
+            share = multiply(spread(parts.t[j]), multiply(spread(parts.Q[j, i]), pressed))
+            half_space = add(half_space, multiply(spread(parts.weights[j]), share))
+            cylinder = add(cylinder, multiply(spread(1.0 - parts.weights[j]), share))
     for j in range(count):
-        share = parts.t[j] * work.k[j] * work.f[j]
-        half_space += parts.weights[j] * share
-        cylinder += (1.0 - parts.weights[j]) * share
-    whole = m / (half_space + cylinder)
-    return half_space * whole, cylinder * whole
+        share = multiply(multiply(spread(parts.t[j]), load(work.k, 4 * j)), load(work.f, 4 * j))
+        half_space = add(half_space, multiply(spread(parts.weights[j]), share))
+        cylinder = add(cylinder, multiply(spread(1.0 - parts.weights[j]), share))
+    whole = divide(m, add(half_space, cylinder))
+    store(work.found, 16, multiply(half_space, whole))
+    store(work.found, 20, multiply(cylinder, whole))
+
+
+@kernel(inline=True)
+def _nodes(z, first):
+    """Four nodes of the bin of z; beyond the last, that once more."""
+    last = quartet.TERMS - 1
+    return (
+        quartet.node(z, min(first, last)), quartet.node(z, min(first + 1, last)),
+        quartet.node(z, min(first + 2, last)), quartet.node(z, min(first + 3, last)),
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def _put(row, first, start, work, table):
+    """Four functions at four nodes into a row; ``start``: of the four in ``found``."""
+    for c in range(min(LANES, quartet.TERMS - first)):
+        at = start + c
+        quartet.put(
+            table, row, first + c, work.found[at], work.found[at + 4], work.found[at + 8], work.found[at + 12]
+        )  # fmt: skip
 
 
 @kernel
 def fill_bin(z, series, work, row, table):
     """Make the bin of z of g, h, m and b."""
-    for n in range(quartet.TERMS):
-        g, h, m, b = values(quartet.node(z, n), series, work)
-        quartet.put(table, row, n, g, h, m, b)
+    for first in range(0, quartet.TERMS, LANES):
+        values(_nodes(z, first), True, series, work)
+        _put(row, first, 0, work, table)
     quartet.finish(table, row, z)
 
 
 @kernel
 def fill_bin_of_parts(z, parts, work, row, table):
-    """Make the bin of z of what two bodies have in m."""
-    for n in range(quartet.TERMS):
-        half_space, cylinder = shares(quartet.node(z, n), parts, work)
-        quartet.put(table, row, n, half_space, cylinder, 0.0, 0.0)
+    """Make the bin of z of what two bodies have in m, and of two zeros."""
+    for first in range(0, quartet.TERMS, LANES):
+        places = _nodes(z, first)
+        values(places, False, parts, work)
+        shares(places, parts, work)
+        work.found[24:] = 0.0
+        _put(row, first, 16, work, table)
     quartet.finish(table, row, z)
 
 
 @kernel
 def fill_bins(z, parts, work, row, table, table_of_parts):
-    """Both."""
-    for n in range(quartet.TERMS):
-        at = quartet.node(z, n)
-        g, h, m, b = values(at, parts, work)
-        half_space, cylinder = shares_of(at, h, m, parts, work)
-        quartet.put(table, row, n, g, h, m, b)
-        quartet.put(table_of_parts, row, n, half_space, cylinder, 0.0, 0.0)
+    """Both, without b, which motions of bodies that differ do not ask for."""
+    for first in range(0, quartet.TERMS, LANES):
+        places = _nodes(z, first)
+        values(places, False, parts, work)
+        shares(places, parts, work)
+        work.found[24:] = 0.0
+        _put(row, first, 0, work, table)
+        _put(row, first, 16, work, table_of_parts)
     quartet.finish(table, row, z)
     quartet.finish(table_of_parts, row, z)
 

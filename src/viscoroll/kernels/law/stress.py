@@ -86,7 +86,7 @@ def _shape_of_several(u, w, z, material):
     for i in range(series.a.size):
         a = series.a[i] * z
         _, r_complement = ratio_r(a)
-        shape += series.a[i] * work.X[i] * _memory(u, w, a, r_complement)
+        shape += series.a[i] * work.X[4 * i] * _memory(u, w, a, r_complement)
     return shape
 
 

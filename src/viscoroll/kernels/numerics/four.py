@@ -1,0 +1,106 @@
+"""Four numbers at once: one instruction of the processor adds, multiplies or divides them all.
+
+Each of the four is rounded as it would be alone.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Callable
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic, models, register_model
+
+#: how many
+LANES = 4
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_INT = ir.IntType(32)
+
+
+class _FourType(types.Type):
+    def __init__(self) -> None:
+        super().__init__("four numbers")
+
+
+_four = _FourType()
+
+
+@register_model(_FourType)
+class _FourModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _VECTOR)
+
+
+def _binary(instruction: str, interpreted: Callable) -> Any:
+    """(a, b) -> a operation b of four numbers each."""
+
+    def typed(typing_context, a, b):
+        def lower(context, builder, signature, given):
+            return getattr(builder, instruction)(*given)
+
+        return _four(_four, _four), lower
+
+    return interpreted if numba.config.DISABLE_JIT else intrinsic(typed)
+
+
+add, subtract = _binary("fadd", np.add), _binary("fsub", np.subtract)
+multiply, divide = _binary("fmul", np.multiply), _binary("fdiv", np.divide)
+
+
+def _spread(typing_context, x):
+    def lower(context, builder, signature, given):
+        one = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), given[0], _INT(0))
+        return builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
+
+    return _four(types.float64), lower
+
+
+def _four_of(typing_context, a, b, c, d):
+    def lower(context, builder, signature, given):
+        whole = ir.Constant(_VECTOR, ir.Undefined)
+        for n, one in enumerate(given):
+            whole = builder.insert_element(whole, one, _INT(n))
+        return whole
+
+    return _four(*[types.float64] * LANES), lower
+
+
+def _pointer(context, builder, kind, array, at):
+    """Where the four numbers of an array begin, the first of them number ``at``."""
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [at]), _VECTOR.as_pointer())
+
+
+def _load(typing_context, array, at):
+    def lower(context, builder, signature, given):
+        return builder.load(_pointer(context, builder, signature.args[0], *given), align=8)
+
+    return _four(array, types.int64), lower
+
+
+def _store(typing_context, array, at, four):
+    def lower(context, builder, signature, given):
+        builder.store(given[2], _pointer(context, builder, signature.args[0], *given[:2]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.int64, _four), lower
+
+
+def _put(array: Any, at: int, four: Any) -> None:
+    array[at : at + LANES] = four
+
+
+if numba.config.DISABLE_JIT:
+    four = lambda *given: np.array(given)  # noqa: E731
+    spread = lambda x: np.full(LANES, x)  # noqa: E731
+    load = lambda array, at: array[at : at + LANES].copy()  # noqa: E731
+    store = _put
+else:
+    #: four numbers as one
+    four = intrinsic(_four_of)
+    #: a number, four times
+    spread = intrinsic(_spread)
+    #: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors
+    load, store = intrinsic(_load), intrinsic(_store)
