@@ -158,6 +158,7 @@ def test_refused():
         (lambda: many.slower(-1.0), ("factor",)),
         (lambda: vr.Scene(material=many, kappa=[1.0, 2.0, 3.0], mu=0.1), ("shapes", "alpha (2,), kappa (3,)")),
         (lambda: scene.validity(0.3), ("material = <2 series", "one material")),
+        (lambda: scene.validity([0.3, 0.2, 0.1]), ("material = <2 series", "one material")),
         (lambda: vr.roll(scene, 1.0, 1.0, T), ("scene", "one motion")),
         (lambda: vr.ensemble(scene, 1.0, 1.0, T, method="flow"), ("method = 'flow'",)),
         (lambda: vr.contact(scene, 1.0, delta=0.0, method="direct"), ("method = 'direct'",)),

@@ -178,9 +178,9 @@ class Scene:
         self, V: ArrayLike, omega: ArrayLike | None, slow: Assumption, bodies: Assumption, plane: str
     ) -> Validity:
         given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
-        broadcast_shape(**given, **{name: np.asarray(value) for name, value in self.numbers.items()})
         if isinstance(self.material, MaterialArray):
             raise ParameterError("material", repr(self.material), "one material, as material[i]")
+        broadcast_shape(**given, **{name: np.asarray(value) for name, value in self.numbers.items()})
         material, unit = self.in_own_time()
         found = strained(material, self.kappa, given["V"] * unit)
         nu = None
