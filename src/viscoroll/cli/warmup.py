@@ -52,6 +52,7 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     series = Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     each = series.replace(material=Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
+    pairs = series.replace(material=Bodies(each.material, modes, 0.5))
     start: Any = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
     yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
@@ -66,6 +67,8 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "contact of a series each", lambda: contact(each, 0.5, delta=0.01)
     yield "motions of a series each", lambda: ensemble(each, **start)
     yield "their energy lost", lambda: ensemble(each, **start, fields=("slip_loss",))
+    yield "contact of a pair each", lambda: contact(pairs, 0.5, delta=0.01)
+    yield "motions of a pair each", lambda: ensemble(pairs, **start)
     yield "two bodies", lambda: contact(pair, 0.5, delta=0.01)
     yield "two bodies, many states", lambda: contact(pair, many, delta=0.01)
     yield "unsteady rolling of a series", lambda: contact(series, 0.5, delta=0.01, fields="N")

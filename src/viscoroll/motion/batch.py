@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FIELDS = STATES + LOSSES + ACTING
-#: motions a block: where all are integrated, and where most come from a map
-_BLOCK, _MAPPED_BLOCK = 64, 1 << 14
+#: motions a block: where all are integrated, have a material each that is converted, and where most come from a map
+_BLOCK, _BLOCK_EACH, _MAPPED_BLOCK = 64, 128, 1 << 14
 #: motions that validity looks at
 _JUDGED = 256
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
@@ -340,7 +340,8 @@ def _integrate_others(
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = bool((answer.status >= 0).any())
-    run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
+    block = _MAPPED_BLOCK if mapped else _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
+    run_blocks(work, steps.size, block, threads=threads, progress=bar)
     return steps
 
 
