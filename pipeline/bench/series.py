@@ -1,4 +1,4 @@
-"""Materials of many relaxation times: contact, motions and tables for 1 to 30 modes, a pair, and a material or pair each."""
+"""Materials of many relaxation times: contact, motions and tables for 1 to 30 modes, a pair, and one of either each."""
 
 from __future__ import annotations
 

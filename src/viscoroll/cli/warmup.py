@@ -50,9 +50,10 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)
     modes = Prony([1.0, 2.0], [1.0, 0.1])
     series = Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
-    each = series.replace(material=Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
+    two = Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1])
+    each = series.replace(material=two)
     pair = series.replace(material=Bodies(modes, Prony.elastic(), 0.5))
-    pairs = series.replace(material=Bodies(each.material, modes, 0.5))
+    pairs = series.replace(material=Bodies(two, modes, 0.5))
     start: Any = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
     yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
