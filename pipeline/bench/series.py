@@ -1,4 +1,4 @@
-"""Materials of many relaxation times: contact, motions and tables for 1 to 30 modes, a pair, and a material each."""
+"""Materials of many relaxation times: contact, motions and tables for 1 to 30 modes, a pair, and one of either each."""
 
 from __future__ import annotations
 
@@ -39,6 +39,8 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             scene, V, delta=delta, fields=fields
         )
     scenes |= {f"{n} modes, a material each": paper.replace(material=spread(random, n, start.shape[1])) for n in EACH}
+    both = (spread(random, 3, start.shape[1]) for _ in range(2))
+    scenes["3 and 3 modes, a pair each"] = paper.replace(material=vr.Bodies(*both, 0.4))
     for name, scene in scenes.items():
         calls[name, "motion"] = lambda scene=scene: vr.ensemble(
             scene, *start, t, rtol=sizes["rtol"], fields=("V", "omega", "x"), method="integrate", threads=1

@@ -44,7 +44,7 @@ class Bodies:
 
     cylinder: Prony
     half_space: Prony
-    share: float = 0.5
+    share: Any = 0.5  # a number: arrays make a BodiesArray
 
     def __new__(cls, cylinder: Any = None, half_space: Any = None, share: Any = 0.5) -> Any:
         if not any(isinstance(body, PronyArray) for body in (cylinder, half_space)) and not np.ndim(share):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,9 @@ from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
 from .warned import look
 
-if TYPE_CHECKING:
-    pass
-
 FIELDS = STATES + LOSSES + ACTING
-#: motions a block: where all are integrated, and where most come from a map
-_BLOCK, _MAPPED_BLOCK = 64, 1 << 14
+#: motions a block: where all are integrated, have a material each that is converted, and where most come from a map
+_BLOCK, _BLOCK_EACH, _MAPPED_BLOCK = 64, 128, 1 << 14
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
 #: thousand (docs/benchmark.md, "One scene")
 FLOW_PAYS = 4096
@@ -211,7 +208,8 @@ def _integrate_others(
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = bool((answer.status >= 0).any())
-    run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
+    block = _MAPPED_BLOCK if mapped else _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
+    run_blocks(work, steps.size, block, threads=threads, progress=bar)
     return steps
 
 
