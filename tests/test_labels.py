@@ -80,6 +80,7 @@ def test_ensembles(body):
 
 def test_unlike_labels_are_refused():
     refused(lambda: vr.contact(SCENE, V, delta=np.array([0.0, 0.1])), "labels")
+    refused(lambda: vr.contact(SCENE, V, delta=(0.0, 0.1)), "labels")
     refused(lambda: vr.stress(SCENE, np.zeros(2), V, delta=0.0), "labels")
     refused(lambda: vr.steady(SCENE, slope=TABLE["V"], torque=TABLE["delta"].iloc[::-1]), "index")
     refused(lambda: vr.ensemble(SCENE, V, np.zeros(2), 1.0), "labels")

@@ -338,6 +338,7 @@ NO_COMMANDS = [
     (["RUN"], "a folder STORE.zarr"),
     (["RUN", "-o", "all.nc"], "a folder STORE.zarr"),
     (["RUN", "RUN", "-o", "s.zarr"], "one run file"),
+    (["s.zarr"], "s.zarr holds results: verify s.zarr"),
     (["RUN", "-o", "s.zarr", "--cluster", "far"], "'local' or 'tcp://host:port'"),
     (["RUN", "-o", "s.zarr", "--cluster", "tcp://"], "cluster = 'tcp://': must be 'local' or 'tcp://host:port'"),
     (["RUN", "-o", "s.zarr", "--cluster", "tcp://localhost:abc"], "'local' or 'tcp://host:port'"),

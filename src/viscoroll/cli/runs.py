@@ -59,6 +59,9 @@ def run(arguments: Namespace) -> int:
         return _verify(words[1]) if words[0] == "verify" else _export(words[1], arguments.output)
     if len(words) != 1:
         raise ParameterError("ensemble", " ".join(words), "one run file, verify STORE.zarr or export STORE.zarr")
+    if words[0].endswith(".zarr"):
+        sentence = f"{words[0]} holds results: verify {words[0]}, export {words[0]}, or viscoroll plot {words[0]}"
+        raise ParameterError("ensemble", words[0], "a run file", sentence)
     return _run(words[0], arguments)
 
 
