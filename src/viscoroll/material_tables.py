@@ -143,7 +143,7 @@ def _table(known: Any, modes: Modes) -> Any:
 
 def _filled(known: Any, first: int, stop: int) -> Any:
     """A table with these bins made."""
-    from .kernels.law.series import fill
+    from .kernels.law.fill import fill
     from .kernels.numerics.quartet import empty_table
 
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))

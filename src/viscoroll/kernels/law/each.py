@@ -13,7 +13,8 @@ from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics import quartet
 from ..numerics.bins import bin_number
-from .series import fill_bin, fill_bins, unpacked
+from .fill import fill_bin, fill_bins
+from .series import unpacked
 
 
 class Ends(NamedTuple):
@@ -41,7 +42,7 @@ class Body(NamedTuple):
 class Filled(NamedTuple):
     """A material as ``Tabulated``, with the modes that its bins first ... stop - 1 are made from.
 
-    modes : how many; numbers : theirs, packed (:func:`series.packed`), with room for an evaluation behind them
+    modes : how many; numbers : theirs, packed (:func:`series.unpacked`), with room for an evaluation behind them
     """
 
     alpha: float
