@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compile.jit import kernel
 from ..motion.collocation import NODES, N, rise_at, rise_terms
-from .nodes import EVENT, OF_EVENT, SPEED
+from .nodes import EVENT, OF_EVENT, SPEED, S
 from .records import EDGE, EVENTS, NO_EVENT, SLOW, STOP
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
@@ -20,23 +20,45 @@ NOWHERE = 2.99
 
 
 @kernel
-def first_event(nodes):
-    """(Event whose function first falls below 0 at a node, that node); NO_EVENT for none."""
-    event, node = NO_EVENT, N + 1
+def _node_of(event, last, nodes):
+    """Node up to the ``last`` at which an event's function first has fallen below 0; 0 for none."""
+    largest = 0.0
+    for i in range(N + 1):
+        largest = max(largest, nodes[EVENT + event, i])
+    inside = nodes[EVENT + event, 0] > _ROUNDING * largest
+    for i in range(1, last + 1):
+        value = nodes[EVENT + event, i]
+        if value < 0.0 and inside:
+            return i
+        inside = inside or value > 0.0
+    return 0
+
+
+@kernel
+def first_event(work):
+    """(Event whose function falls below 0 first, v there); NO_EVENT for none.
+
+    Between the same two nodes the interpolants tell which comes first: behind V = 0 no other counts.
+    """
+    event, last, v = NO_EVENT, N, 2.0
     for row in range(EVENTS):
-        largest = 0.0
-        for i in range(N + 1):
-            largest = max(largest, nodes[EVENT + row, i])
-        inside = nodes[EVENT + row, 0] > _ROUNDING * largest
-        for i in range(1, N + 1):
-            if i >= node:
-                break
-            value = nodes[EVENT + row, i]
-            if value < 0.0 and inside:
-                event, node = row, i
-                break
-            inside = inside or value > 0.0
-    return event, node
+        node = _node_of(row, last, work.nodes)
+        if node == 0:
+            continue
+        here = place_of(row, node, work)
+        if event == NO_EVENT or node < last or here < v:
+            event, last, v = row, node, here
+    return event, v
+
+
+@kernel
+def goes_behind(nodes):
+    """Whether s is negative at a node: in partial slip there is no motion there, and none on the panel that goes on
+    so."""
+    for i in range(1, N + 1):
+        if nodes[S, i] < 0.0:
+            return True
+    return False
 
 
 @kernel

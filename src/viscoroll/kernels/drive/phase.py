@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.collocation import N, rise_at
 from ..motion.control import next_length
-from .events import NOWHERE, ends_on, first_event, place_of
+from .events import NOWHERE, ends_on, first_event, goes_behind, place_of
 from .load import load_at, piece_end
 from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_node
 from .origin import departing
@@ -51,9 +51,12 @@ def _rise_time(s, clock, frame, case):
     load = load_at(clock.tau + soon, clock.piece, frame, case)
     sticks, b = departing(load, case.scene)
     later = rates_at(0.0, b if sticks else case.work.nodes[SECOND, 0], load, frame, case.scene).s_rate
-    gain = max(later - pace, 0.0) / soon
+    pace, gain = max(pace, 0.0), (later - pace) / soon
+    square = pace**2 + 2.0 * gain * s
+    if square < 0.0:  # it does not rise so far, and falls from here on
+        return -pace / gain
     # at b = 1 there may be neither
-    return 2.0 * s / (max(pace, 0.0) + np.sqrt(max(pace, 0.0) ** 2 + 2.0 * gain * s) + 1e-300)
+    return 2.0 * s / (pace + np.sqrt(square) + 1e-300)
 
 
 @kernel
@@ -112,8 +115,9 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         size, track = panel_error(panel, slopes, frame, case), panel
         if not size <= _CUTTABLE:
             break
-        found, node = first_event(nodes)
-        if found == NO_EVENT and not frame.slips and nodes[S, N] < 0.0:
+        found, v = first_event(case.work)
+        behind = not frame.slips and goes_behind(nodes)
+        if found == NO_EVENT and behind:
             break
         if found != NO_EVENT:
             event = found
@@ -121,12 +125,13 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
             event = TURN
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
-        v = place_of(event, node if found != NO_EVENT else 0, case.work)
         # partial slip does not go on beyond V = 0
-        if found != NO_EVENT and size <= 1.0 and (frame.slips or found != TURN or v > _AT_THE_END):
+        if found != NO_EVENT and size <= 1.0 and (not behind or (found == TURN and v > _AT_THE_END)):
             return event, v, panel, size, track
-        if found == NO_EVENT and v >= NOWHERE:  # nowhere near
-            return NO_EVENT, 2.0, panel, size, track
+        if found == NO_EVENT:
+            v = place_of(event, 0, case.work)
+            if v >= NOWHERE:  # nowhere near
+                return NO_EVENT, 2.0, panel, size, track
         length = min(panel.length * (0.5 * v) ** panel.power, longest)
         if not (size <= 1.0 or longest == left) or not 0.0 < length < np.inf or length == panel.length:
             return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track

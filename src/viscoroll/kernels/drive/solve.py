@@ -19,6 +19,7 @@ from .nodes import (
     RATE,
     S_RATE,
     SECOND,
+    SLOPE,
     SPEED,
     S,
     load_there,
@@ -160,6 +161,11 @@ def panel_error(panel, slopes, frame, case):
         off = nodes[RATE, 0] / slopes.weight * half if smooth else 0.0
         for i in range(N):
             off -= TO_START[i] * slope_at(i + 1, SECOND, nodes)
-        lasting = 1.0 + panel.length * abs(slopes.rate / slopes.weight)
+        # near the edge of the stick zone relaxation comes to an end
+        slowest = abs(nodes[SLOPE, 0])
+        for i in range(1, N + 1):
+            if abs(nodes[SLOPE, i]) < slowest:
+                slowest = abs(nodes[SLOPE, i])
+        lasting = 1.0 + panel.length * slowest
         error = max(error, 2.0 * abs(off) / (lasting * per_second))
     return _OVERSTATED * error / (SHARE * case.limits.rtol)
