@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from ..compile.jit import kernel
 from ..motion.collocation import NODES, N, rise_at, rise_terms
-from .nodes import EVENT, OF_EVENT, SPEED, S
-from .records import EDGE, EVENTS, NO_EVENT, SLOW, STOP
+from .load import BRAKE
+from .nodes import DRIVE, EVENT, OF_EVENT, SPEED, S
+from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
 #: function of the event is made of
@@ -53,12 +54,29 @@ def first_event(work):
 
 @kernel
 def goes_behind(nodes):
-    """Whether s is negative at a node: in partial slip there is no motion there, and none on the panel that goes on
-    so."""
+    """Whether s is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
+    least = 0.0
     for i in range(1, N + 1):
-        if nodes[S, i] < 0.0:
-            return True
-    return False
+        least = min(least, nodes[S, i])
+    return least < 0.0
+
+
+@kernel
+def passed_over(frame, case):
+    """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
+    the first of them; NO_EVENT for none."""
+    nodes = case.work.nodes
+    for row in range(EVENTS):
+        if row == SLOW or (row == EDGE and not frame.slips):  # full slip is a case of the equations of partial slip
+            continue
+        most, scale = nodes[EVENT + row, 0], _scale(row, nodes)
+        if row == TURN:
+            scale = max(scale, 2.0 * case.scene.kappa * nodes[SPEED, N])
+        for i in range(1, N + 1):
+            most = max(most, nodes[EVENT + row, i])
+        if most <= _ROUNDING * scale and nodes[EVENT + row, N] < -_near(case.limits.rtol) * scale:
+            return row
+    return NO_EVENT
 
 
 @kernel
@@ -81,10 +99,25 @@ def place_of(event, node, work):
 
 
 @kernel
-def ends_on(event, nodes, rtol):
-    """Whether a panel ends on an event."""
+def _scale(event, nodes):
+    """What the function of an event is made of."""
     largest = 0.0
     for i in range(N + 1):
-        of_speeds = nodes[SPEED, i] if event in (EDGE, STOP, SLOW) else 0.0
-        largest = max(largest, abs(nodes[EVENT + event, i]), of_speeds)
-    return abs(nodes[EVENT + event, N]) <= max(_ON * rtol, _LEAST) * largest
+        largest = max(largest, abs(nodes[EVENT + event, i]))
+        if event in (EDGE, STOP, SLOW):
+            largest = max(largest, nodes[SPEED, i])
+        elif event == FREED:
+            largest = max(largest, nodes[DRIVE + BRAKE, i])
+    return largest
+
+
+@kernel(inline=True)
+def _near(rtol):
+    """Share of that up to which the function counts as 0."""
+    return max(_ON * rtol, _LEAST)
+
+
+@kernel
+def ends_on(event, nodes, rtol):
+    """Whether a panel ends on an event."""
+    return abs(nodes[EVENT + event, N]) <= _near(rtol) * _scale(event, nodes)

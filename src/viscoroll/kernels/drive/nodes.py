@@ -13,9 +13,9 @@ from .rates import rates_at
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 
 #: rows of the values at the nodes: unknowns, their rates, speed scale; what the path is made of; slope at which the
-#: second unknown relaxes; integrands of the path; functions of events
-S, SECOND, S_RATE, RATE, SPEED, OF_V, OF_OMEGA, OF_DELTA, OF_Q, OF_HALF_SPACE, OF_CYLINDER, SLOPE = range(12)
-PATH = 12
+#: second unknown relaxes; s/V; integrands of the path; functions of events
+S, SECOND, S_RATE, RATE, SPEED, OF_V, OF_OMEGA, OF_DELTA, OF_Q, OF_HALF_SPACE, OF_CYLINDER, SLOPE, PER_V = range(13)
+PATH = 13
 #: of the path: x, angle, work of force and of torque, losses in the brake, in slip and in rolling
 PATHS = 7
 EVENT = PATH + PATHS
@@ -74,7 +74,7 @@ def put_node(i, weight, load, frame, case):
     nodes[SPEED, i] = max(abs(rates.V), abs(rates.omega))
     nodes[OF_V, i], nodes[OF_OMEGA, i], nodes[OF_DELTA, i] = rates.V, rates.omega, rates.delta
     nodes[OF_Q, i], nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i] = rates.Q, rates.M_half_space, rates.M_cylinder
-    nodes[SLOPE, i] = rates.rate_slope / rates.weight
+    nodes[SLOPE, i], nodes[PER_V, i] = rates.rate_slope / rates.weight, abs(nodes[S, i] / rates.V)
     nodes[EVENT + EDGE, i] = rates.edge
     return Slopes(weight * rates.s_slope, weight * rates.rate_slope, rates.weight)
 

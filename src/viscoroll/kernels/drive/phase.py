@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.collocation import N, rise_at
 from ..motion.control import next_length
-from .events import NOWHERE, ends_on, first_event, goes_behind, place_of
+from .events import NOWHERE, ends_on, first_event, goes_behind, passed_over, place_of
 from .load import load_at, piece_end
 from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_node
 from .origin import departing
@@ -24,8 +24,6 @@ _SMOOTH = 2.0
 _GRADED, _BEND = 3, 50.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
-#: v from which on an event counts as at the end
-_AT_THE_END = 1.95
 #: s at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
 #: V that stands for 0
@@ -34,6 +32,8 @@ _NO_SPEED = 1e-90
 _CUTTABLE = 1e6
 #: panels solved at most until one ends on the event, and the error over the tolerance given to one that does not
 _CUTS, _HOPELESS = 8, 10.0
+#: length, over the time so far and to come, of a regime that ends where it begins
+_INSTANT = 1e-14
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
 _FASTER, _TINY = 2.5, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
@@ -117,7 +117,10 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
             break
         found, v = first_event(case.work)
         behind = not frame.slips and goes_behind(nodes)
-        if found == NO_EVENT and behind:
+        missed = passed_over(frame, case)
+        if missed != NO_EVENT and panel.length <= _INSTANT * (panel.tau + left):
+            return missed, 2.0, panel, min(size, 1.0), track
+        if missed != NO_EVENT or (found == NO_EVENT and behind):
             break
         if found != NO_EVENT:
             event = found
@@ -125,8 +128,8 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
             event = TURN
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
-        # partial slip does not go on beyond V = 0
-        if found != NO_EVENT and size <= 1.0 and (not behind or (found == TURN and v > _AT_THE_END)):
+        # partial slip does not go on beyond V = 0, and full slip has a kink there
+        if found != NO_EVENT and size <= 1.0 and not behind and found != TURN:
             return event, v, panel, size, track
         if found == NO_EVENT:
             v = place_of(event, 0, case.work)

@@ -16,6 +16,7 @@ from .guess import guess
 from .nodes import (
     OF_S,
     OF_SECOND,
+    PER_V,
     RATE,
     S_RATE,
     SECOND,
@@ -67,12 +68,15 @@ def _put_matrix(i, half, weight, slopes, frame, case):
 def scales(frame, case):
     """(Of s, of the second unknown): what errors are measured by; speeds by the largest of the panel."""
     nodes = case.work.nodes
-    largest = fastest = 0.0
+    # an error of s is one of V by no more than V/s, which is largest for small s: 1/(2 kappa) at V = 0
+    fastest, per = 0.0, 2.0 * case.scene.kappa if nodes[S, 0] * nodes[S, N] <= 0.0 else np.inf
     for i in range(N + 1):
-        largest, fastest = max(largest, abs(nodes[S, i])), max(fastest, nodes[SPEED, i])
+        fastest = max(fastest, nodes[SPEED, i])
+        if nodes[PER_V, i] < per:
+            per = nodes[PER_V, i]
     if frame.slips:
-        return max(largest, 2.0 * case.scene.kappa * fastest), fastest
-    return largest, 1.0 / creep_weight(nodes[SECOND, N])
+        return per * fastest, fastest
+    return per * fastest, 1.0 / creep_weight(nodes[SECOND, N])
 
 
 @kernel
