@@ -21,6 +21,7 @@ _DIRECT, _SLICE, _MOTION = (
     "tests/test_material_tables.py",
     "tests/motion/test_motion.py",
 )
+_DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
 
 LAW = [
     ("law/standard.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
@@ -105,7 +106,8 @@ SERIES = [
     ("law/pair.py", "moment_at_an_end(z, other.T_mean, other.ends, material)", "moment_at_an_end(z, one.T_mean, other.ends, material)", _PAIR),
     ("law/pair.py", "return half_space, cylinder, d_half_space * per, d_cylinder * per", "return half_space, cylinder, d_half_space, d_cylinder * per", _PRONY),
     ("law/each.py", "    each.held[0] = row\n    _empty(each.table)\n", "    each.held[0] = row\n", "tests/test_prony_array.py"),
-    ("law/each.py", "    if _take(row, each):\n        _empty(each.parts)\n", "    _take(row, each)\n", "tests/test_bodies_array.py"),
+    ("law/each.py", "each.parts, _body(numbers, 7), _body(numbers, 12)", "each.parts, _body(numbers, 7), _body(numbers, 7)", "tests/test_bodies_array.py"),
+    ("law/fill.py", "_put(row, first, 16, work, table_of_parts)", "_put(row, first, 0, work, table_of_parts)", "tests/test_bodies_array.py"),
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
     ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),
@@ -116,8 +118,24 @@ SERIES = [
     ("law/steady_loop.py", "share * torque - (1.0 - share) * force", "(1.0 - share) * torque - share * force", _STEADY),
     ("law/steady_loop.py", "D + more, rise_F + more * (1.0 + dg)", "D + more, rise_F + more", _STEADY),
 ]  # fmt: skip
+DRIVE = [
+    ("drive/rates.py", "(torque - Q - M_cylinder)", "(torque - Q + M_cylinder)", _DRIVE),
+    ("drive/rates.py", "(Q - V * m_half_space + force)", "(Q - V * m_half_space - force)", _DRIVE),
+    ("drive/rates.py", "* slope_F) * spread - 2.0 * phi)", "* slope_F) * spread - phi)", _DRIVE),
+    ("drive/load.py", "if by_omega or frame.locked else 1.0 / case.scene.j", "if by_omega else 1.0 / case.scene.j", _DRIVE),
+    ("drive/nodes.py", "weight * (force * V), weight * (torque * omega)", "weight * (force * V), weight * (torque * V)", _DRIVE),
+    ("drive/nodes.py", "slip = omega - V if frame.slips else V * nodes[OF_DELTA, i]", "slip = omega - V if frame.slips else 0.0", _DRIVE),
+    ("drive/integrate.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
+    ("drive/integrate.py", "return State(0.0, -state.second), Frame(True, -direction, -sigma,", "return State(0.0, -state.second), Frame(True, -direction, sigma,", _EVENTS),
+    ("drive/origin.py", "* per - b * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVE),
+    ("drive/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", _EVENTS),
+    ("drive/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind):", "if found == NO_EVENT and behind:", _EVENTS),
+    ("drive/solve.py", "lasting = 1.0 + panel.length * slowest", "lasting = 1.0 + panel.length * abs(nodes[SLOPE, 0])", _EVENTS),
+]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
 COEFFICIENTS = [
     ("bessel/ratios.npy", str(n), "1e-9 of it more", _RATIOS) for n in (0, 1, 302, 1203, 2104, 3005, 4006, 5007)
 ]
-MUTANTS = [Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *SERIES, *COEFFICIENTS)]
+MUTANTS = [
+    Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *SERIES, *DRIVE, *COEFFICIENTS)
+]  # fmt: skip

@@ -3,7 +3,8 @@
     V' = Q - M_half_space + f      j omega' = -Q - M_cylinder + q      tau = gamma t
 
 :mod:`records`, what is handed on; :mod:`load`, the drive at a time; :mod:`rates`, the equations in full and in partial
-slip; :mod:`solve`, a panel of time by collocation; :mod:`origin`, what follows V = omega = 0; :mod:`events`, where a
+slip; :mod:`nodes`, what a panel of time holds; :mod:`guess`, where its solution begins; :mod:`solve`, a panel by
+collocation; :mod:`origin`, what follows V = omega = 0; :mod:`events`, where a
 regime ends; :mod:`phase`, panel after panel in one regime; :mod:`output`; :mod:`integrate`, from regime to regime;
 :mod:`loop`, what Python calls.
 """

@@ -1,54 +1,92 @@
-"""Where on a panel a regime ends first: found on the interpolants, then by panels that end there."""
+"""Where on a panel a regime ends first, as its interpolants show."""
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..compile.jit import kernel
 from ..motion.collocation import NODES, N, rise_at, rise_terms
-from .records import EDGE, EVENTS, NO_EVENT, SLOW, STOP
-from .solve import EVENT, OF_EVENT, SPEED, Panel, panel_error, slope_at, solve
+from .load import BRAKE
+from .nodes import DRIVE, EVENT, OF_EVENT, SPEED, S
+from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
-#: panels solved at most until one ends on the event, and how closely, as shares of the tolerance
-_CUTS, _ON, _NEWTON = 8, 1e-2, 1e-3
-#: error over the tolerance from which on a panel is given up
-_HOPELESS = 30.0
-#: the least that rounding leaves, over what the function of an event is made of
-_LEAST = 4e-15
+#: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
+#: function of the event is made of
+_ON, _LEAST = 1e-2, 4e-15
 #: halvings of a bracket of the interpolant
 _HALVINGS = 60
 #: an edge that a panel starts on, to rounding, is not met there
 _ROUNDING = 1e-14
+#: v up to which the interpolant is followed beyond the panel, and from which on nothing was found there
+_BEYOND = 3.0
+NOWHERE = 2.99
 
 
 @kernel
-def first_event(known, nodes):
-    """(Event but the ``known`` one whose function first falls below 0 at a node, that node); NO_EVENT for none."""
-    event, node = NO_EVENT, N + 1
+def _node_of(event, last, nodes):
+    """Node up to the ``last`` at which an event's function first has fallen below 0; 0 for none."""
+    largest = 0.0
+    for i in range(N + 1):
+        largest = max(largest, nodes[EVENT + event, i])
+    inside = nodes[EVENT + event, 0] > _ROUNDING * largest
+    for i in range(1, last + 1):
+        value = nodes[EVENT + event, i]
+        if value < 0.0 and inside:
+            return i
+        inside = inside or value > 0.0
+    return 0
+
+
+@kernel
+def first_event(work):
+    """(Event whose function falls below 0 first, v there); NO_EVENT for none.
+
+    Between the same two nodes the interpolants tell which comes first: behind V = 0 no other counts.
+    """
+    event, last, v = NO_EVENT, N, 2.0
     for row in range(EVENTS):
-        if row == known:
+        node = _node_of(row, last, work.nodes)
+        if node == 0:
             continue
-        largest = 0.0
-        for i in range(N + 1):
-            largest = max(largest, nodes[EVENT + row, i])
-        inside = nodes[EVENT + row, 0] > _ROUNDING * largest
-        for i in range(1, N + 1):
-            if i >= node:
-                break
-            value = nodes[EVENT + row, i]
-            if value < 0.0 and inside:
-                event, node = row, i
-                break
-            inside = inside or value > 0.0
-    return event, node
+        here = place_of(row, node, work)
+        if event == NO_EVENT or node < last or here < v:
+            event, last, v = row, node, here
+    return event, v
 
 
 @kernel
-def _place(event, node, nodes, powers):
-    """v in [0, 2] at which the interpolant of an event's function passes 0 before this node."""
+def goes_behind(nodes):
+    """Whether s is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
+    least = 0.0
+    for i in range(1, N + 1):
+        least = min(least, nodes[S, i])
+    return least < 0.0
+
+
+@kernel
+def passed_over(frame, case):
+    """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
+    the first of them; NO_EVENT for none."""
+    nodes = case.work.nodes
+    for row in range(EVENTS):
+        if row == SLOW or (row == EDGE and not frame.slips):  # full slip is a case of the equations of partial slip
+            continue
+        most, scale = nodes[EVENT + row, 0], _scale(row, nodes)
+        if row == TURN:
+            scale = max(scale, 2.0 * case.scene.kappa * nodes[SPEED, N])
+        for i in range(1, N + 1):
+            most = max(most, nodes[EVENT + row, i])
+        if most <= _ROUNDING * scale and nodes[EVENT + row, N] < -_near(case.limits.rtol) * scale:
+            return row
+    return NO_EVENT
+
+
+@kernel
+def place_of(event, node, work):
+    """v at which the interpolant of an event's function passes 0, before this node or, where that is 0, beyond the
+    panel."""
+    nodes, powers = work.nodes, work.powers
     rise_terms(nodes[EVENT + event], powers, OF_EVENT)
     start = nodes[EVENT + event, 0]
-    low, high = 1.0 + NODES[node - 1], 1.0 + NODES[node]
+    low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _BEYOND)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
@@ -61,55 +99,25 @@ def _place(event, node, nodes, powers):
 
 
 @kernel
-def _size(event, nodes):
-    """What the function of an event is made of: speeds, or the unknown itself."""
+def _scale(event, nodes):
+    """What the function of an event is made of."""
     largest = 0.0
     for i in range(N + 1):
-        of_speeds = nodes[SPEED, i] if event in (EDGE, STOP, SLOW) else 0.0
-        largest = max(largest, abs(nodes[EVENT + event, i]), of_speeds)
+        largest = max(largest, abs(nodes[EVENT + event, i]))
+        if event in (EDGE, STOP, SLOW):
+            largest = max(largest, nodes[SPEED, i])
+        elif event == FREED:
+            largest = max(largest, nodes[DRIVE + BRAKE, i])
     return largest
 
 
-@kernel
-def _end_slope(event, panel, nodes):
-    """Slope of an event's function in the length of the panel."""
-    return slope_at(N, EVENT + event, nodes) * 2.0 * panel.power / panel.length
+@kernel(inline=True)
+def _near(rtol):
+    """Share of that up to which the function counts as 0."""
+    return max(_ON * rtol, _LEAST)
 
 
 @kernel
-def length_until(event, node, panel, case):
-    """Length until an event that shows at this node."""
-    return panel.length * (0.5 * _place(event, node, case.work.nodes, case.work.powers)) ** panel.power
-
-
-@kernel
-def cut(event, length, longest, panel, slopes, frame, case):
-    """(Event, panel that ends on it, error of that over its tolerance); the error is infinite where there is none.
-
-    By solving panels, of this length first, then corrected by the slope at their ends, up to the ``longest``.  Another
-    event that shows before takes its place.
-    """
-    nodes, near = case.work.nodes, max(_ON * case.limits.rtol, _LEAST)
-    low, high, met = 0.0, longest, longest <= panel.length
-    for _ in range(_CUTS):
-        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.free)
-        if not (0.0 < length < np.inf and solve(_NEWTON, panel, slopes, frame, case)):
-            break
-        size = panel_error(panel, slopes, frame, case)
-        if size > _HOPELESS:
-            return event, panel, size
-        earlier, node = first_event(event, nodes)
-        if earlier != NO_EVENT and nodes[EVENT + earlier, node] < -near * _size(earlier, nodes):
-            low, high, met = 0.0, length, True
-            event, length = earlier, length_until(earlier, node, panel, case)
-            continue
-        off = nodes[EVENT + event, N]
-        if abs(off) <= near * _size(event, nodes):
-            return event, panel, size
-        low, high, met = length if off > 0.0 else low, high if off > 0.0 else length, met or off <= 0.0
-        length -= off / _end_slope(event, panel, nodes)
-        if not low < length < high:
-            if not met:
-                break
-            length = 0.5 * (low + high)
-    return event, panel, np.inf
+def ends_on(event, nodes, rtol):
+    """Whether a panel ends on an event."""
+    return abs(nodes[EVENT + event, N]) <= _near(rtol) * _scale(event, nodes)

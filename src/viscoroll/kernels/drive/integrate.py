@@ -14,7 +14,8 @@ from ..law.stick import stick_length
 from ..motion.collocation import N
 from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL
 from ..motion.records import REST
-from .load import acting, load_at, piece_end, undriven
+from .load import acting, goes_on, load_at, piece_end, undriven
+from .nodes import INTERPOLANTS, PATHS, ROWS, S
 from .origin import STAYS, STICKS, depart, leaving_time
 from .output import coast, put_still, put_to_end, regime_of
 from .phase import phase
@@ -37,7 +38,6 @@ from .records import (
     State,
     Work,
 )  # fmt: skip
-from .solve import INTERPOLANTS, PATHS, ROWS, S
 
 #: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
@@ -45,6 +45,8 @@ _TINY = 1e-150
 _CLOSED = 1e-7
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
+#: share of the length of panels that is kept where the law bends at delta = 0
+_PAST = 0.3
 #: 1/zeta over T_mean below which V decays exponentially to rounding
 _SLOWEST = 1e-17
 
@@ -196,7 +198,8 @@ def follow(moving, state, frame, clock, case):
         if clock.steps >= case.limits.max_steps:
             return STEP_LIMIT, clock, turns, onset_time, np.nan
         if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
-            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends)
+            length = clock.length if goes_on(clock.piece, case.drive.pieces) else 0.0
+            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
             frame = at_new_piece(state, frame, clock, case) if moving else frame
         event, direction, before = NO_EVENT, frame.direction, clock
         if moving and clock.tau >= end:
@@ -221,6 +224,8 @@ def follow(moving, state, frame, clock, case):
         if event != NO_EVENT:
             state, frame, still = switch(event, state, frame, clock, case)
             moving = not still
+            length = _PAST * clock.length if event == KINK else 0.0
+            clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, length)
         if moving and regime >= 0 and frame.direction != direction:
             noted = note(REVERSED, noted, clock, case)
         now = regime_of(frame) if moving else _still_regime(clock, case)
@@ -236,16 +241,17 @@ def follow(moving, state, frame, clock, case):
 def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
 
-    ``sink`` : room for the outputs, (OUTPUTS, n), for the changes of regime, and for the ends of panels (Notes).
+    ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, and room for the changes of
+    regime and for the ends of panels (Notes).
     """
-    out, switches, ends = sink
+    out, paths, switches, ends = sink
     tau = np.empty(t.size)
     for i in range(tau.size):
         tau[i] = t[i] * gamma
     matrix, right = np.empty((2 * N, 2 * N)), np.empty(2 * N)
     work = Work(np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), matrix, right, np.zeros(PATHS))
-    case = Case(scene, drive, limits, tau, out, gamma, Notes(switches, ends), work)
-    clock = Clock(0.0, 0, 0, 0, 0)
+    case = Case(scene, drive, limits, tau, out, gamma, paths, Notes(switches, ends), work)
+    clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, status, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), OK, False
     if V0 != 0.0 or omega0 != 0.0:
         moving = True

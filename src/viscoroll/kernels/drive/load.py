@@ -10,6 +10,10 @@ from .records import NEITHER, OMEGA, SPEED, Load
 START, SCALE, FIRST = 0, 1, 2
 #: the functions: force and torque; the slope over tau of the speed that is prescribed; most that the brake can take
 FORCE, TORQUE, RATE, BRAKE, FUNCTIONS = range(5)
+#: unit of rounding
+_ROUNDING = 2.2e-16
+#: a jump or a corner up to this share is what the fit of a callable leaves
+_SMOOTH = 1e-4
 
 
 @kernel(inline=True)
@@ -28,24 +32,37 @@ def value(row, function, x):
     return total
 
 
-@kernel(inline=True)
-def load_at(tau, piece, frame, case):
-    """The drive at tau in the frame of the motion, without feedback."""
-    drive, j = case.drive, case.scene.j
+@kernel
+def values_at(tau, piece, drive):
+    """Force, torque, slope of a prescribed speed, most that the brake takes."""
     row = drive.pieces[piece]
-    x, direction = (tau - row[START]) * row[SCALE] - 1.0, frame.direction
+    x = (tau - row[START]) * row[SCALE] - 1.0
+    rate = value(row, RATE, x) if drive.prescribed != NEITHER else 0.0
+    return value(row, FORCE, x), value(row, TORQUE, x), rate, max(value(row, BRAKE, x), 0.0)
+
+
+@kernel(inline=True)
+def load_of(values, frame, case):
+    """The drive with these values, in the frame of the motion, without feedback."""
+    force, torque, rate, brake = values
+    drive, direction = case.drive, frame.direction
     by_omega, by_V = drive.prescribed == OMEGA, drive.prescribed == SPEED
-    rate = direction * value(row, RATE, x) if by_omega or by_V else 0.0
     return Load(
-        direction * value(row, FORCE, x),
-        direction * value(row, TORQUE, x),
-        rate if by_V else 0.0,
-        rate if by_omega else 0.0,
-        max(value(row, BRAKE, x), 0.0),
+        direction * force,
+        direction * torque,
+        direction * rate if by_V else 0.0,
+        direction * rate if by_omega else 0.0,
+        brake,
         0.0 if by_V else 1.0,
-        0.0 if by_omega or frame.locked else 1.0 / j,
+        0.0 if by_omega or frame.locked else 1.0 / case.scene.j,
         drive.gains,
     )
+
+
+@kernel
+def load_at(tau, piece, frame, case):
+    """The drive at tau in the frame of the motion, without feedback."""
+    return load_of(values_at(tau, piece, case.drive), frame, case)
 
 
 @kernel
@@ -53,6 +70,33 @@ def piece_end(piece, case):
     """When a piece of the drive, or the motion, ends."""
     end = case.tau[case.tau.size - 1]
     return min(case.drive.pieces[piece + 1, START], end) if piece + 1 < case.drive.pieces.shape[0] else end
+
+
+@kernel
+def rounding(piece, pieces):
+    """What rounding leaves of force and torque together: they are sums of terms that may nearly cancel."""
+    row, size = pieces[piece], 0.0
+    for n in range(FIRST, FIRST + RATE * terms_of(row)):
+        size += abs(row[n])
+    return _ROUNDING * size
+
+
+@kernel
+def goes_on(piece, pieces):
+    """Whether the drive neither jumps nor turns a corner at the end of a piece, to the accuracy of a step's length."""
+    row, then = pieces[piece], pieces[piece + 1]
+    terms = terms_of(row)
+    for function in range(FUNCTIONS):
+        size = jump = turn = 0.0
+        for n in range(terms):
+            before, behind = row[FIRST + function * terms + n], then[FIRST + function * terms + n]
+            sign = 1.0 if n % 2 == 0 else -1.0
+            jump += before - sign * behind
+            turn += n * (before * row[SCALE] + sign * behind * then[SCALE])
+            size += abs(before) + abs(behind)
+        if abs(jump) > _SMOOTH * size or abs(turn) > _SMOOTH * size * max(row[SCALE], then[SCALE]):
+            return False
+    return True
 
 
 @kernel

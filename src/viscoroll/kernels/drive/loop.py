@@ -12,7 +12,7 @@ from ..motion.records import Batch, Limits
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .load import FIRST, RATE, SCALE, START, terms_of
-from .output import OUTPUTS
+from .output import OUTPUTS, paths_in
 from .records import Drive, Gains
 
 
@@ -48,11 +48,12 @@ def drive_loop(batch, drives, t, limits, rows, out, info, notes):
     switches, ends = notes
     motions, drives, limits = Batch(*batch), Drives(*drives), Limits(*limits)
     one, pieces = np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
+    paths = paths_in(rows)
     for i in range(out.shape[1]):
         for row in one:
             fill(np.nan, row)
         scene, gamma, V0, omega0 = motion_of(motions, i)
         gains = _drive_of(drives, gamma, i, pieces)
         drive = Drive(pieces, gains, drives.prescribed)
-        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, switches, ends))
+        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, paths, switches, ends))
         keep(i, rows, one, result, out, info)

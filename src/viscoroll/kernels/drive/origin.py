@@ -17,20 +17,22 @@ from .load import FIRST, FUNCTIONS, load_at, piece_end, terms_of
 from .records import Frame, Load
 
 STAYS, STICKS, SLIDES = range(3)
-_HALVINGS = 200
+_HALVINGS, _ROUNDING = 200, 1e-16
 #: share of a piece of the drive behind which it is looked at where it begins with what moves nothing
 _SOON = 1e-6
 #: parts of a piece in each of which what holds the cylinder is looked at
 _PARTS = 64
 
 
-@kernel
+@kernel(inline=True)
 def _pull(b, load, scene):
-    """(Left less right side of the equation of b, V') at V = 0."""
-    Q = scene.mu * b * (2.0 - abs(b))
+    """(Left less right side of the equation of b, its slope, V') at V = 0."""
+    Q, Q_b = scene.mu * b * (2.0 - abs(b)), 2.0 * scene.mu * (1.0 - abs(b))
     V_rate = load.per_V * (Q + load.force) + load.V_rate
     omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
-    return (omega_rate - V_rate) * (2.0 * scene.kappa / scene.mu) - b * V_rate, V_rate
+    per = 2.0 * scene.kappa / scene.mu
+    slope = -(load.per_omega + load.per_V) * Q_b * per - V_rate - b * load.per_V * Q_b
+    return (omega_rate - V_rate) * per - b * V_rate, slope, V_rate
 
 
 @kernel
@@ -39,16 +41,17 @@ def departing(load, scene):
     low, high = -1.0, 1.0
     if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
         return False, 0.0
-    for _ in range(_HALVINGS):
-        b = 0.5 * (low + high)
-        if not low < b < high:
+    b, V_rate = 0.0, 0.0
+    for _ in range(_HALVINGS):  # Newton's iteration, within a bracket
+        pull, slope, V_rate = _pull(b, load, scene)
+        low, high = (b, high) if pull > 0.0 else (low, b)
+        then = b - pull / slope
+        if not low < then < high:
+            then = 0.5 * (low + high)
+        if abs(then - b) <= _ROUNDING:
             break
-        if _pull(b, load, scene)[0] > 0.0:
-            low = b
-        else:
-            high = b
-    b = 0.5 * (low + high)
-    return _pull(b, load, scene)[1] > 0.0, b
+        b = then
+    return V_rate > 0.0, b
 
 
 @kernel

@@ -5,16 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.collocation import integral_terms, rise_at, rise_terms
+from ..motion.collocation import integral_terms, rise_at
 from ..motion.records import FULL, PARTIAL, REST
 from .load import load_at, needed
+from .nodes import OF_PATH, OF_S, OF_SECOND, PATH, PATHS, SECOND, S, risen
 from .rates import rates_at
 from .records import LOCKED, Clock, Frame
-from .solve import OF_PATH, OF_S, OF_SECOND, PATH, PATHS, SECOND, S, risen
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
-FORCE, WORK = 6, 8
+PATH_FROM, FORCE, WORK = 2, 6, 8
+
+
+@kernel
+def paths_in(rows):
+    """How many of what adds up are among these rows: all, or none."""
+    for row in rows:
+        if PATH_FROM <= row < PATH_FROM + 2 or row >= WORK:
+            return PATHS
+    return 0
 
 
 @kernel
@@ -27,7 +36,7 @@ def regime_of(frame):
 def _put_path(column, n, value, case):
     """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
     if n < 2:
-        case.out[2 + n, column] = value / case.gamma
+        case.out[PATH_FROM + n, column] = value / case.gamma
     else:
         case.out[WORK + n - 2, column] = value
 
@@ -43,7 +52,7 @@ def put_still(until, closed, regime, clock, case):
         for n in range(PATHS):
             _put_path(at, n, case.work.totals[n], case)
         at += 1
-    return Clock(until, at, clock.piece, clock.steps + 1, clock.ends)
+    return Clock(until, at, clock.piece, clock.steps + 1, clock.ends, 0.0)
 
 
 @kernel
@@ -66,7 +75,7 @@ def put_to_end(state, frame, clock, case):
         _put_state(column, state.s, state.second, clock.piece, frame, case)
         for n in range(PATHS):
             _put_path(column, n, case.work.totals[n], case)
-    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps, clock.ends)
+    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
 
 
 @kernel
@@ -76,40 +85,34 @@ def _put(column, v, panel, frame, case):
     s = nodes[S, 0] + rise_at(v, powers, OF_S)
     second = nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND)
     _put_state(column, s, second, panel.piece, frame, case)
-    for n in range(PATHS):
+    for n in range(case.paths):
         way = rise_at(v, powers, OF_PATH + n)
         _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
 
 
 @kernel
-def _terms(panel, nodes, powers):
-    """Interpolants of a panel."""
-    rise_terms(nodes[S], powers, OF_S)
-    rise_terms(nodes[SECOND], powers, OF_SECOND)
-    for n in range(PATHS):
-        integral_terms(nodes[PATH + n], 0.5 * panel.length, powers, OF_PATH + n)
-
-
-@kernel
-def pass_panel(end, panel, frame, clock, case):
-    """Outputs before the ``end`` of a panel, and what adds up over it; the clock behind.
+def pass_panel(end, v, panel, frame, clock, case):
+    """Outputs before the ``end`` of a panel or of what ends at ``v`` on it, and what adds up until then; the clock.
 
     At its end, where the drive may jump, what follows tells; but the last of the outputs is there.
     """
     tau, at = case.tau, clock.at
     closed = end == tau[tau.size - 1]
-    if at < tau.size and (tau[at] < end or closed):
-        _terms(panel, case.work.nodes, case.work.powers)
+    outputs = at < tau.size and (tau[at] < end or closed)
+    if outputs or v < 2.0:
+        for n in range(case.paths):
+            integral_terms(case.work.nodes[PATH + n], 0.5 * panel.length, case.work.powers, OF_PATH + n)
+    if outputs:
         while at < tau.size and (tau[at] < end or closed):
             share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
             _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
             at += 1
     if clock.ends < case.notes.ends.size:
         case.notes.ends[clock.ends] = end / case.gamma
-    for n in range(PATHS):
-        way = risen(PATH + n, panel, case.work.nodes)
+    for n in range(case.paths):
+        way = rise_at(v, case.work.powers, OF_PATH + n) if v < 2.0 else risen(PATH + n, panel, case.work.nodes)
         case.work.totals[n] += frame.direction * way if n < 2 else way
-    return Clock(end, at, clock.piece, clock.steps, clock.ends + 1)
+    return Clock(end, at, clock.piece, clock.steps, clock.ends + 1, clock.length)
 
 
 @kernel
@@ -135,5 +138,5 @@ def coast(state, frame, clock, case):
         for n in range(PATHS):
             _put_path(at, n, totals[n] + (direction * way if n < 2 else 0.0), case)
     last = case.tau[case.tau.size - 1]
-    clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends)
+    clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
     return clock, end / case.gamma if end <= last else np.nan

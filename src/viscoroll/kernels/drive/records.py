@@ -77,13 +77,15 @@ class State(NamedTuple):
 
 
 class Clock(NamedTuple):
-    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted."""
+    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted, length of a
+    panel to try (0: not known)."""
 
     tau: float
     at: int
     piece: int
     steps: int
     ends: int
+    length: float
 
 
 class Work(NamedTuple):
@@ -105,7 +107,10 @@ class Notes(NamedTuple):
 
 
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion; times in tau."""
+    """All that stays the same from start to end of a motion; times in tau.
+
+    paths : how many of what adds up along the way are asked for: all, or none
+    """
 
     scene: Any
     drive: Drive
@@ -113,5 +118,6 @@ class Case(NamedTuple):
     tau: Any
     out: Any
     gamma: float
+    paths: int
     notes: Notes
     work: Work
