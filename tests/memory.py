@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from viscoroll import material_tables
+from viscoroll.materials import tables as material_tables
 from viscoroll.motion import flow
 
 

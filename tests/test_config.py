@@ -13,7 +13,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.config import read_grids, read_scene
-from viscoroll.material_file import as_toml, read_materials
+from viscoroll.materials.file import as_toml, read_materials
 
 PRODUCTION = PIPELINE / "config/production.toml"
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"

@@ -11,8 +11,9 @@ import pytest
 from memory import forget
 
 import viscoroll as vr
-from viscoroll import material_tables, stored
-from viscoroll.material_tables import record
+from viscoroll import stored
+from viscoroll.materials import tables as material_tables
+from viscoroll.materials.tables import record
 
 
 def rubber(modes: int, strength: float = 10.0) -> vr.Prony:

@@ -98,7 +98,7 @@ SLOPE_SLIGHT = 1e-10
 #: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
 SLOPE_DIFFERENCE = 2e-5
 
-# --- material_tables.py (test_material_tables.py) ---
+# --- materials/tables.py (test_material_tables.py) ---
 #: F, H and m from a table against Bessel ratios, relative; measured 1.5e-15.
 TABLE = 1e-14
 #: Their slopes, relative, and differences for slight creep, which are slopes; measured 6e-13.
@@ -329,7 +329,7 @@ PAIR_SWAPPED = 1e-12
 #: Dundurs' constant and wave speeds: quotients of a few roundings.
 PAIR = 1e-14
 
-# --- prony.py, kernels/law/series.py (test_prony.py) ---
+# --- materials/prony.py, kernels/law/series.py (test_prony.py) ---
 #: One form from the other for one mode: roundings of a product or two.
 SERIES_FORMS = 1e-14
 #: Q Q^T - 1 and Q^T t - e of up to 12 modes: each entry is a product of 2 N gaps; measured 8e-15 at 29 modes.

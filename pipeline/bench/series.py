@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll import material_tables
+from viscoroll.materials import tables as material_tables
 
 from ..timing import nanoseconds, rounds, seconds_of
 

@@ -18,7 +18,7 @@ class Mutant(NamedTuple):
 _LAW, _RATIOS, _STRESS = "tests/test_contact.py", "tests/kernels/bessel/test_ratios.py", "tests/test_stress.py"
 _DIRECT, _SLICE, _MOTION = (
     "tests/kernels/printed/test_direct.py",
-    "tests/test_material_tables.py",
+    "tests/materials/test_material_tables.py",
     "tests/motion/test_motion.py",
 )
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
@@ -95,7 +95,11 @@ MOTION = [
     ("motion/integrate.py", "D *= sigma\n", "D *= 1.0\n", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),
 ]  # fmt: skip
-_PRONY, _PAIR, _UNSTEADY = "tests/test_prony.py", "tests/kernels/law/test_pair.py", "tests/kernels/law/test_unsteady.py"
+_PRONY, _PAIR, _UNSTEADY = (
+    "tests/materials/test_prony.py",
+    "tests/kernels/law/test_pair.py",
+    "tests/kernels/law/test_unsteady.py",
+)
 _STEADY, _BOUND = "tests/test_steady.py", "tests/test_bound_law.py"
 SERIES = [
     ("law/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _PRONY),
@@ -105,9 +109,9 @@ SERIES = [
     ("law/series.py", "share = multiply(spread(parts.t[j]), multiply(spread(parts.Q[j, i]), pressed))", "share = multiply(spread(parts.Q[j, i]), pressed)", _PAIR),
     ("law/pair.py", "moment_at_an_end(z, other.T_mean, other.ends, material)", "moment_at_an_end(z, one.T_mean, other.ends, material)", _PAIR),
     ("law/pair.py", "return half_space, cylinder, d_half_space * per, d_cylinder * per", "return half_space, cylinder, d_half_space, d_cylinder * per", _PRONY),
-    ("law/each.py", "    each.held[0] = row\n    _empty(each.table)\n", "    each.held[0] = row\n", "tests/test_prony_array.py"),
-    ("law/each.py", "each.parts, _body(numbers, 7), _body(numbers, 12)", "each.parts, _body(numbers, 7), _body(numbers, 7)", "tests/test_bodies_array.py"),
-    ("law/fill.py", "_put(row, first, 16, work, table_of_parts)", "_put(row, first, 0, work, table_of_parts)", "tests/test_bodies_array.py"),
+    ("law/each.py", "    each.held[0] = row\n    _empty(each.table)\n", "    each.held[0] = row\n", "tests/materials/test_prony_array.py"),
+    ("law/each.py", "each.parts, _body(numbers, 7), _body(numbers, 12)", "each.parts, _body(numbers, 7), _body(numbers, 7)", "tests/materials/test_bodies_array.py"),
+    ("law/fill.py", "_put(row, first, 16, work, table_of_parts)", "_put(row, first, 0, work, table_of_parts)", "tests/materials/test_bodies_array.py"),
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
     ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),

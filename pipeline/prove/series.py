@@ -16,7 +16,7 @@ import viscoroll as vr
 from viscoroll.kernels.law.material import at_contact, generators
 from viscoroll.kernels.law.series import Parts, room
 from viscoroll.kernels.law.series import shares as parts_of
-from viscoroll.material_tables import record, series
+from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
 from viscoroll.reference import spectral
 

@@ -2,7 +2,6 @@
 
 from . import sampling as sampling
 from . import tables as tables
-from .bodies import Bodies as Bodies
 from .bound_law import Law as Law
 from .bound_law import law as law
 from .contact_stress import stress as stress
@@ -24,7 +23,11 @@ from .errors import OutputError as OutputError
 from .errors import ParameterError as ParameterError
 from .errors import TableError as TableError
 from .errors import ViscorollError as ViscorollError
-from .material import Material as Material
+from .materials.bodies import Bodies as Bodies
+from .materials.material import Material as Material
+from .materials.prony import Prony as Prony
+from .materials.shift import WLF as WLF
+from .materials.shift import Arrhenius as Arrhenius
 from .motion import ensemble as ensemble
 from .motion import roll as roll
 from .presets import PAPER_CYLINDER as PAPER_CYLINDER
@@ -34,10 +37,7 @@ from .presets import PAPER_SECTION_5_ROUNDED as PAPER_SECTION_5_ROUNDED
 from .presets import PAPER_STARTS as PAPER_STARTS
 from .presets import RUBBER_CYLINDER as RUBBER_CYLINDER
 from .presets import RUBBER_ROLLER as RUBBER_ROLLER
-from .prony import Prony as Prony
 from .rolling_contact import contact as contact
 from .scene import Scene as Scene
-from .shift import WLF as WLF
-from .shift import Arrhenius as Arrhenius
 
 __version__: str

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from .checks import checked
 from .errors import ConvergenceError, ParameterError
 from .kernels.law.loads import Loads, LoadsAndSlopes
-from .material_tables import shared_record
-from .prony_array import MaterialArray
+from .materials.prony_array import MaterialArray
+from .materials.tables import shared_record
 from .rolling_contact import contact, one_material, refuse_overflow
 from .scene import Scene, checked_scene
 from .typed import Numbers

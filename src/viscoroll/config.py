@@ -13,7 +13,7 @@ import msgspec
 
 from .cylinder import Cylinder
 from .errors import ConfigError, ParameterError, TableError
-from .material_file import SECTIONS, SUFFIX, materials_of, read_materials, series_of
+from .materials.file import SECTIONS, SUFFIX, materials_of, read_materials, series_of
 from .presets import PRESETS
 from .scene import Scene
 from .sections import as_struct, fault, hint, read, refuse_unknown

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .bodies import Bodies
-from .material_tables import records, series
-from .prony_array import MaterialArray
+from .materials.bodies import Bodies
+from .materials.prony_array import MaterialArray
+from .materials.tables import records, series
 from .rolling_contact import flattened
 
 

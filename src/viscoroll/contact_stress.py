@@ -10,9 +10,9 @@ import numpy as np
 from .blocks import elements, run_blocks
 from .checks import broadcast_shape, checked
 from .labels import unlabelled
-from .material_tables import series
-from .prony import Prony
-from .prony_array import MaterialArray
+from .materials.prony import Prony
+from .materials.prony_array import MaterialArray
+from .materials.tables import series
 from .results import Values
 from .rolling_contact import contact, shaped
 from .scene import Scene, checked_scene

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import broadcast_shape, checked, number
 from .errors import ParameterError, one_of
-from .material import Material, refuse_short_retardation
-from .pair import Pair, Plane, effective_modulus
+from .materials.material import Material, refuse_short_retardation
+from .materials.pair import Pair, Plane, effective_modulus
 from .results import Row, Shown, short
 from .scene import Scene, frozen, same
 from .si.conversions import Conversions

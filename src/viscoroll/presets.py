@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .cylinder import Cylinder
-from .material import Material
-from .prony import Prony
+from .materials.material import Material
+from .materials.prony import Prony
 from .scene import Scene
 
 #: Sect. 5 as it was computed: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and

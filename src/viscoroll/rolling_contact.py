@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks, solve_blocks
-from .bodies import Bodies
-from .bodies_array import BodiesArray
 from .checks import broadcast_shape, checked_extent
 from .contact_fields import OF_BODIES, SLOPES, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .errors import ParameterError, one_of
 from .labels import unlabelled
-from .material_tables import inverses, record, unsteadiness
-from .prony import Prony
-from .prony_array import MaterialArray
+from .materials.bodies import Bodies
+from .materials.bodies_array import BodiesArray
+from .materials.prony import Prony
+from .materials.prony_array import MaterialArray
+from .materials.tables import inverses, record, unsteadiness
 from .results import Values
 from .scene import Scene, checked_scene
 from .typed import Numbers
@@ -115,7 +115,7 @@ def contact(
     -----
     Accuracy of method "table": 1e-13 relative in lam, epsilon, delta_star, M and Q for
     alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
-    its condition number (``tests/test_contact.py``, ``tests/test_material_tables.py``).  Parts of M in two
+    its condition number (``tests/test_contact.py``, ``tests/materials/test_material_tables.py``).  Parts of M in two
     bodies: 1e-13 of M (``tests/kernels/law/test_pair.py``).  N, away from its zero: 2e-11 relative for one
     mode and series over four decades (``tests/kernels/law/test_unsteady.py``).
 

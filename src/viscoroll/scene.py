@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .bodies import Bodies
-from .bodies_array import BodiesArray
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError, one_of
-from .prony import HIGHEST_ALPHA, Prony
-from .prony_array import MaterialArray
+from .materials.bodies import Bodies
+from .materials.bodies_array import BodiesArray
+from .materials.prony import HIGHEST_ALPHA, Prony
+from .materials.prony_array import MaterialArray
 from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained, unlike_speeds
 
 
@@ -133,7 +133,7 @@ class Scene:
     def in_own_time(self) -> tuple[Any, float]:
         """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
 
-        Of a material each as they are: a block finds the own time of each (:func:`.material_tables.records`).
+        Of a material each as they are: a block finds the own time of each (:func:`.materials.tables.records`).
         """
         if self.series is None:
             if isinstance(self.material, BodiesArray) and self.material.like:
@@ -246,6 +246,6 @@ def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
 def kernel_scene(material: float | Prony, kappa: float, mu: float, j: float) -> Any:
     """The record that the kernels of a motion take, for this thread alone."""
     from .kernels.motion import records
-    from .material_tables import record
+    from .materials.tables import record
 
     return records.Scene(record(material), kappa, mu, j)

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .material_tables import record, unsteadiness
-from .prony import Prony
+from .materials.prony import Prony
+from .materials.tables import record, unsteadiness
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
 REACH_LIMIT = 0.2

@@ -23,7 +23,7 @@ from processes import printed, python
 import viscoroll as vr
 from viscoroll import config
 from viscoroll.cli import main
-from viscoroll.material_file import read_materials
+from viscoroll.materials.file import read_materials
 from viscoroll.motion import warned
 from viscoroll.tables import AtlasGrid, LiteralGrid
 

@@ -9,7 +9,7 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.kernels.law import series as kernels
-from viscoroll.material_tables import series
+from viscoroll.materials.tables import series
 from viscoroll.reference import series as raw
 from viscoroll.reference import spectral
 

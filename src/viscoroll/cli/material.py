@@ -9,7 +9,7 @@ from .arguments import add_output_option, count, number
 from .plot import FORMATS
 
 if TYPE_CHECKING:
-    from ..material import Material
+    from ..materials.material import Material
 
 
 def add_commands(commands: Any) -> None:
@@ -71,7 +71,7 @@ def _add_file(parser: ArgumentParser) -> None:
 
 
 def _show(arguments: Namespace) -> int:
-    from ..material_file import read_materials
+    from ..materials.file import read_materials
 
     found = read_materials(arguments.file, arguments.temperature)
     print("\n".join(_text(section, material) for section, material in found.items()), end="")
@@ -80,7 +80,7 @@ def _show(arguments: Namespace) -> int:
 
 def _plot(arguments: Namespace) -> int:
     from ..errors import ParameterError
-    from ..material_file import read_materials
+    from ..materials.file import read_materials
 
     found = read_materials(arguments.file, arguments.temperature)
     if arguments.section not in found:
@@ -92,7 +92,7 @@ def _plot(arguments: Namespace) -> int:
 def _fit(arguments: Namespace) -> int:
     from ..dma import fit_prony, read_dma
     from ..files import write_text
-    from ..material_file import SUFFIX, as_toml
+    from ..materials.file import SUFFIX, as_toml
 
     found = fit_prony(*read_dma(arguments.data), arguments.modes, misfit=arguments.misfit)
     material = found.material(arguments.nu, name=arguments.name)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import number
 from ..errors import ParameterError
-from ..prony import MOST_MODES, WIDEST, Prony
+from ..materials.prony import MOST_MODES, WIDEST, Prony
 from ..typed import Numbers
 from ..validity import Assumption
 from .choose import chosen
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..cylinder import Cylinder
-    from ..material import Material
+    from ..materials.material import Material
 
 #: highest over lowest frequency; times reach a decade beyond on either side
 MOST_SPREAD = WIDEST / 100.0
@@ -116,7 +116,7 @@ class Fit:
         ParameterError
             As there.
         """
-        from ..material import Material
+        from ..materials.material import Material
 
         return Material(E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..prony import Prony
+from ..materials.prony import Prony
 from ..rolling_contact import contact
 from ..scene import Scene
 from .choose import grid_of_times

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bodies import Bodies
 from ..errors import ParameterError
-from ..material_tables import record
-from ..prony import Prony
+from ..materials.bodies import Bodies
+from ..materials.prony import Prony
+from ..materials.tables import record
 from ..scene import Scene, checked_scene
 from .zeros import zeros
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..material_tables import record
+from ..materials.tables import record
 from .loads import Loads
 from .resistance import Law, grid
 from .result import States

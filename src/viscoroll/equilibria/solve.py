@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks, solve_blocks
-from ..material_tables import record
+from ..materials.tables import record
 from .loads import Loads
 from .resistance import Law, branches
 from .result import States

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..bodies import Bodies
 from ..contact_stress import stress
+from ..materials.bodies import Bodies
+from ..materials.prony import Prony
 from ..plots.style import LINES, THIN, new_figure, number
-from ..prony import Prony
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..equilibria import humps, steady
+from ..materials.prony import Prony
 from ..plots.style import LINES, THIN, describe, new_figure
 from ..presets import PAPER_SECTION_5
-from ..prony import Prony
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label

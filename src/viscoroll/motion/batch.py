@@ -12,8 +12,8 @@ from ..blocks import run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
 from ..errors import ParameterError
-from ..material_tables import record
-from ..prony_array import MaterialArray
+from ..materials.prony_array import MaterialArray
+from ..materials.tables import record
 from ..rolling_contact import flattened
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..typed import Driving, Numbers

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..material_tables import records
-from ..prony_array import MaterialArray
+from ..materials.prony_array import MaterialArray
+from ..materials.tables import records
 from ..rolling_contact import flattened
 
 #: how often the unit of time divides a field

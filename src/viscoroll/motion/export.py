@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..bodies_array import BodiesArray
 from ..errors import MOTION_STATUS, ParameterError
-from ..prony import Prony
-from ..prony_array import PronyArray
+from ..materials.bodies_array import BodiesArray
+from ..materials.prony import Prony
+from ..materials.prony_array import PronyArray
 from ..scene import PARAMETERS
 from ..symbols import attributes
 from .driven import ACTING

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import run_blocks
-from ..prony import Prony
+from ..materials.prony import Prony
 from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .driven import Drive

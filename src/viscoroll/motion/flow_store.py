@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import stored
-from ..prony import Prony
+from ..materials.prony import Prony
 
 
 @dataclass(frozen=True)

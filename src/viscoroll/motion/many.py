@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import MOTION_STATUS, MotionStatus
 from ..labels import Labels
-from ..prony_array import MaterialArray
+from ..materials.prony_array import MaterialArray
 from ..results import Row, Shown, unit_of
 from ..scene import Scene
 from ..symbols import attributes

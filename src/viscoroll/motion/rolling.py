@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
-from ..material_tables import record
+from ..materials.tables import record
 from ..scene import Scene
 from .driven import LOSSES, ROWS, Drive, prepared, refuse_rest
 from .each import to_unit

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import exp1, expi
 
-from ..prony import Prony
+from ..materials.prony import Prony
 
 #: from here on f is its asymptotic series, of so many terms
 _FAR, _TERMS = 50.0, 30

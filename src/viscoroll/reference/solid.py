@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..bodies import Bodies
 from ..errors import ParameterError
 from ..extras import imported
-from ..prony import Prony
+from ..materials.bodies import Bodies
+from ..materials.prony import Prony
 from ..scene import Scene
 from . import series
 from .enclosures import ratio_i2, ratio_k, ratio_r

@@ -32,11 +32,11 @@ from numpy.typing import NDArray
 
 from ..config import preset
 from ..errors import ParameterError
-from ..material_file import SECTIONS as MATERIALS
-from ..material_file import as_toml, materials_of
+from ..materials.file import SECTIONS as MATERIALS
+from ..materials.file import as_toml, materials_of
+from ..materials.prony import Prony
 from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
-from ..prony import Prony
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
 from .drives import is_driven, lasts

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..errors import ConfigError, ParameterError
 from ..extras import imported
-from ..material import Material
-from ..material_file import materials_of
-from ..pair import Pair, Plane
+from ..materials.file import materials_of
+from ..materials.material import Material
+from ..materials.pair import Pair, Plane
 from ..sections import fault, hint, refuse_unknown
 from .drives import prescribed_start, read_drive
 from .inputs import Distribution, Inputs, Joint

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import ParameterError, one_of
-from ..pair import Pair
+from ..materials.pair import Pair
 
 
 class Conversions:

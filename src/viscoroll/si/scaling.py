@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..pair import Pair, effective_modulus
-from ..prony import Prony
+from ..materials.pair import Pair, effective_modulus
+from ..materials.prony import Prony
 from ..scene import Scene
 
 

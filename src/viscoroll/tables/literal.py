@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bodies import Bodies
+from ..materials.bodies import Bodies
 from . import schema
 from .grid import LiteralGrid
 from .of_material import MaterialGrid, solve

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..checks import number
 from ..errors import ParameterError
-from ..material import Material
-from ..material_file import as_toml, materials_of
-from ..pair import Pair
+from ..materials.file import as_toml, materials_of
+from ..materials.material import Material
+from ..materials.pair import Pair
 from ..rolling_contact import contact, refuse_overflow
 from ..scene import Scene
 from .grid import increasing, refuse_large

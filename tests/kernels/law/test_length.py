@@ -8,7 +8,7 @@ import tolerances as tol
 import viscoroll as vr
 from viscoroll.kernels.law.length import contact_length
 from viscoroll.kernels.law.material import generators
-from viscoroll.material_tables import record
+from viscoroll.materials.tables import record
 
 
 def test_length_at_high_speed():

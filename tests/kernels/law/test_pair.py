@@ -12,7 +12,7 @@ from viscoroll.kernels.law.material import at_contact, at_rolling, generator_slo
 from viscoroll.kernels.law.pair import Pair
 from viscoroll.kernels.law.standard import standard
 from viscoroll.kernels.law.tabulated import tabulated
-from viscoroll.material_tables import record, series
+from viscoroll.materials.tables import record, series
 
 SOFT, STIFF = vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7])
 UNLIKE = vr.Bodies(SOFT, STIFF, 0.3)

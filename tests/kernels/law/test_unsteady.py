@@ -12,7 +12,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.kernels.law.unsteady import room, unsteady
-from viscoroll.material_tables import series
+from viscoroll.materials.tables import series
 from viscoroll.reference import series as raw
 
 DIGITS = 50

@@ -10,12 +10,12 @@ from typing import Any
 
 import msgspec
 
-from .errors import ConfigError, ParameterError, TableError
+from ..errors import ConfigError, ParameterError, TableError
+from ..sections import as_struct, fault, read
 from .material import Material
-from .material_store import SUFFIX
 from .prony import Prony
-from .sections import as_struct, fault, read
 from .shift import WLF, Arrhenius
+from .store import SUFFIX
 
 SECTIONS = ("material", "base")
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import number
-from .errors import ParameterError
+from ..checks import number
+from ..errors import ParameterError
 from .prony import Prony
 from .prony_array import PronyArray
 

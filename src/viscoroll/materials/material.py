@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import checked, number
-from .errors import ParameterError
+from ..checks import checked, number
+from ..errors import ParameterError
+from ..results import Row, Shown
 from .importers import FromPrograms, poisson
 from .prony import Prony
-from .results import Row, Shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -177,7 +177,7 @@ class Material(FromPrograms):
 
     def to_xarray(self) -> xr.Dataset:
         """Both forms of the series and the constants, with names and units, as :meth:`to_netcdf` writes them."""
-        from .material_store import as_dataset
+        from .store import as_dataset
 
         return as_dataset(self)
 
@@ -207,8 +207,8 @@ class Material(FromPrograms):
         OutputError
             If it cannot be written there.
         """
-        from .plots.material import master_curve
-        from .plots.style import save
+        from ..plots.material import master_curve
+        from ..plots.style import save
 
         figure = master_curve(self)
         if path is not None:
@@ -227,13 +227,13 @@ class Material(FromPrograms):
         OutputError
             If it cannot be written there; a file of that name is left as it was.
         """
-        from .material_store import save
+        from .store import save
 
         save(self, path)
 
     @classmethod
     def from_netcdf(cls, path: str | PathLike[str]) -> Material:
-        """The material of a file of :meth:`to_netcdf`, equal to it bit for bit (``tests/test_material.py``).
+        """The material of a file of :meth:`to_netcdf`, equal to it bit for bit (``tests/materials/test_material.py``).
 
         Parameters
         ----------
@@ -244,7 +244,7 @@ class Material(FromPrograms):
         TableError
             A file that is missing, damaged in any byte, or no material.
         """
-        from .material_store import load
+        from .store import load
 
         return load(path)
 

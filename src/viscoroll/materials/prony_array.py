@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import broadcast_shape, checked
-from .errors import ParameterError
+from ..checks import broadcast_shape, checked
+from ..errors import ParameterError
 from .prony import HIGHEST_ALPHA, MOST_MODES, WIDEST, Prony
 from .prony_forms import Modes, of_creep, of_relaxation
 

@@ -13,8 +13,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..errors import ParameterError
 from .bodies import Bodies
-from .errors import ParameterError
 from .material import Material
 from .prony import Prony
 

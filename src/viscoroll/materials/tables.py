@@ -13,7 +13,7 @@ from weakref import WeakValueDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from . import stored
+from .. import stored
 from .bodies import Bodies
 from .prony import Prony
 from .prony_array import MaterialArray
@@ -55,8 +55,8 @@ def shared_record(given: float | Prony | Bodies) -> Any:
 
     A table that lacks no bin is never written to.
     """
-    from .kernels.law.bound import with_every_bin
-    from .kernels.law.standard import standard
+    from ..kernels.law.bound import with_every_bin
+    from ..kernels.law.standard import standard
 
     if not isinstance(given, Prony | Bodies):
         return standard(given)
@@ -70,8 +70,8 @@ def shared_record(given: float | Prony | Bodies) -> Any:
 
 def inverses(given: float | Prony | Bodies) -> Any:
     """The record of one material, or of two bodies unlike each other, and of the inverses of its law, likewise."""
-    from .kernels.law.inverses import inverses_of
-    from .kernels.law.standard import standard
+    from ..kernels.law.inverses import inverses_of
+    from ..kernels.law.standard import standard
 
     def made(given: float | Prony | Bodies) -> Any:
         return inverses_of(_tabulated(given) if isinstance(given, Prony | Bodies) else standard(given))
@@ -80,7 +80,7 @@ def inverses(given: float | Prony | Bodies) -> Any:
 
 
 def _tabulated(given: float | Prony | Bodies) -> Any:
-    from .kernels.law.tabulated import tabulated
+    from ..kernels.law.tabulated import tabulated
 
     if not isinstance(given, Prony | Bodies):
         return tabulated(given)
@@ -94,7 +94,7 @@ def series(prony: Prony) -> Any:
 
 
 def _series_of(modes: Modes) -> Any:
-    from .kernels.law.series import Series
+    from ..kernels.law.series import Series
 
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
     e, t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
@@ -103,8 +103,8 @@ def _series_of(modes: Modes) -> Any:
 
 def unsteadiness(given: Any, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
     """N of M = M(V) + N V' at every zeta; ``given``: a series, or alphas, one or one each."""
-    from .kernels.law.series import Series
-    from .kernels.law.unsteady import unsteady_loop
+    from ..kernels.law.series import Series
+    from ..kernels.law.unsteady import unsteady_loop
 
     found, zeta, alpha = np.empty(zeta.size), zeta.view(), np.empty(0)
     if isinstance(given, Prony):
@@ -119,8 +119,8 @@ def unsteadiness(given: Any, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _bins(fastest: float, slowest: float) -> tuple[int, int]:
     """First bin of a table, and that behind its last, from the highest rate of relaxation and the least of creep."""
-    from .kernels.numerics.bins import bin_number
-    from .kernels.numerics.quartet import BITS
+    from ..kernels.numerics.bins import bin_number
+    from ..kernels.numerics.quartet import BITS
 
     octaves = math.floor(-math.log2(fastest)) - _MARGIN, math.ceil(-math.log2(slowest)) + _MARGIN
     first, stop = (int(bin_number(2.0**octave, BITS)) for octave in octaves)
@@ -143,8 +143,8 @@ def _table(known: Any, modes: Modes) -> Any:
 
 def _filled(known: Any, first: int, stop: int) -> Any:
     """A table with these bins made."""
-    from .kernels.law.fill import fill
-    from .kernels.numerics.quartet import empty_table
+    from ..kernels.law.fill import fill
+    from ..kernels.numerics.quartet import empty_table
 
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
     table[:] = np.nan  # what lay in memory before shall not reach the disk
@@ -161,7 +161,7 @@ def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any, Any]:
 
 def _ends(modes: Modes, share: Any, squares: float) -> Any:
     """The numbers of the ends of a table, for this share of every creep mode."""
-    from .kernels.law.each import Ends
+    from ..kernels.law.each import Ends
 
     rise, weight, log_weight = map(float, _weights(modes, share))
     return Ends(True, rise, weight, log_weight, squares)
@@ -172,9 +172,9 @@ def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, ND
 
     For one thread and one call: it holds the tables of one of them at a time.
     """
-    from .kernels.law.each import Each, EachPair
-    from .kernels.law.series import packed_size, working_size
-    from .kernels.numerics.quartet import empty_table
+    from ..kernels.law.each import Each, EachPair
+    from ..kernels.law.series import packed_size, working_size
+    from ..kernels.numerics.quartet import empty_table
 
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
@@ -220,7 +220,7 @@ def _sums_of(terms: NDArray) -> NDArray[np.float64]:
 @lru_cache(maxsize=_KEPT)
 def _series_table(prony: Prony) -> Any:
     """The table of several modes."""
-    from .kernels.law.tabulated import Tabulated
+    from ..kernels.law.tabulated import Tabulated
 
     modes = prony.modes
     ends = _ends(modes, 1.0, sum(prony.second_moments))
@@ -230,9 +230,9 @@ def _series_table(prony: Prony) -> Any:
 @lru_cache(maxsize=_KEPT)
 def _pair_tables(bodies: Bodies) -> Any:
     """The tables of two bodies that deform unlike each other."""
-    from .kernels.law.each import Body, Ends
-    from .kernels.law.pair import Pair
-    from .kernels.law.series import Parts
+    from ..kernels.law.each import Body, Ends
+    from ..kernels.law.pair import Pair
+    from ..kernels.law.series import Parts
 
     whole, modes, weights = bodies.total, bodies.total.modes, bodies.half_space_weights
     each = Modes(modes.alpha, *(part[None] for part in (modes.a, modes.b, modes.E, modes.J, modes.gap)))

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import broadcast_shape, checked
+from ..errors import ParameterError
 from .bodies import Bodies
-from .checks import broadcast_shape, checked
-from .errors import ParameterError
 from .prony import MOST_MODES, Prony
 from .prony_array import Block, MaterialArray, PronyArray, block_of, moments, own_unit
 from .prony_forms import of_relaxation

@@ -14,7 +14,7 @@ import viscoroll as vr
 from viscoroll.kernels.law import series as kernels
 from viscoroll.kernels.law.material import at_contact, generators
 from viscoroll.kernels.law.standard import standard
-from viscoroll.material_tables import record, series
+from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
 
 MANY, DIGITS = 5000, 60

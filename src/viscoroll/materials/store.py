@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import __version__
-from .errors import ParameterError, TableError
-from .files import seal_holds, write_dataset
+from .. import __version__
+from ..errors import ParameterError, TableError
+from ..files import seal_holds, write_dataset
 from .prony import Prony
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.files import seal, write_dataset
-from viscoroll.material_file import as_toml, read_materials
-from viscoroll.material_store import as_dataset
+from viscoroll.materials.file import as_toml, read_materials
+from viscoroll.materials.store import as_dataset
 
 RUBBER = vr.Material(
     E=2.3e5,

@@ -10,7 +10,7 @@ import tolerances as tol
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.material_tables import _pair_tables, records, series
+from viscoroll.materials.tables import _pair_tables, records, series
 
 COUNT = 12
 SCENE = {"kappa": 2.91, "mu": 0.2, "gamma": 700.0}

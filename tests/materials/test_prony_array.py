@@ -11,7 +11,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.kernels.law.tabulated import Tabulated
-from viscoroll.material_tables import _series_table, records, series
+from viscoroll.materials.tables import _series_table, records, series
 
 COUNT = 12
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "beta", "Q", "M", "dQ_dV", "dM_dV")

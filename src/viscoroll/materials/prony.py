@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import checked
-from .errors import ParameterError
+from ..checks import checked
+from ..errors import ParameterError
 from .prony_forms import Modes, of_creep, of_relaxation
 
 #: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
