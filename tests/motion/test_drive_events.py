@@ -1,0 +1,115 @@
+"""Where regimes of driven motions end: two events at nearly one time, soon behind the start, at bends of the law."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+import viscoroll as vr
+
+#: errors over rtol: of V and omega over the largest speed so far, and of times of events
+BOUND, TIGHT = 30.0, 1e-11
+
+
+class Case(NamedTuple):
+    """alpha, kappa, mu, j; V and omega at the start; force and torque with their times; the tolerance."""
+
+    scene: tuple[float, float, float, float]
+    start: tuple[float, float]
+    times: list[float]
+    force: list[float]
+    torque: list[float]
+    rtol: float
+
+    def roll(self, rtol: float) -> vr.Motion:
+        alpha, kappa, mu, j = self.scene
+        drive: dict[str, Any] = {"force": (self.times, self.force), "torque": (self.times, self.torque)}
+        return vr.roll(
+            vr.Scene(alpha, kappa, mu, 1.0, j), *self.start, np.linspace(0.0, self.times[-1], 30), rtol, **drive
+        )
+
+
+CASES = {
+    "creep vanishes just behind V = 0": Case(
+        (1.251952926897747, 14.366566966903095, 0.06225457758619352, 0.8670153474900839),
+        (0.0, 0.0),
+        [0.0, 1.02785137, 1.02785137, 1.40956229, 1.40956229, 2.153884],
+        [0.02012058, -0.00184899, -0.0634622, 0.03388247, -0.04786456, 0.0551511],
+        [0.02861265, -0.01400404, -0.0795571, 0.01172855, 0.0191713, 0.01795319],
+        1e-4,
+    ),
+    "creep vanishes behind V = 0 on a long panel": Case(
+        (1.5426067514912662, 4.208655521183401, 0.5038038897712876, 0.8875533328204659),
+        (-0.0057341185549934885, -0.0044409412873479895),
+        [0.0, 0.1345195882, 0.1345195882, 0.7477066671, 0.7477066671, 2.666864428],
+        [0.06433821199, -0.0529128838, 0.2150640275, -0.2395562044, -0.03837734746, 0.07281606446],
+        [0.2621202518, -0.1263862551, -0.1840953089, 0.141124825, -0.000603576252, -0.1155004498],
+        1e-4,
+    ),
+    "turned soon behind the start": Case(
+        (1.7503716417274986, 14.622185869366351, 0.06500425690953542, 1.0182098796463372),
+        (0.0, 0.0),
+        [0.0, 6.581182846, 6.581182846, 13.15219954],
+        [-0.008786208208, 0.02275914676, -0.05162162991, -0.00525789712],
+        [0.008619220477, 0.01168577298, 0.02513390411, -0.02328755281],
+        1e-8,
+    ),
+    "turned at once behind the start": Case(
+        (13.626805684161171, 71.50000770361873, 0.09746818855936333, 0.9835450812405226),
+        (0.0, 0.0),
+        [0.0, 1.100267144],
+        [-3.998294142e-05, 0.01300883467],
+        [0.0, 0.0],
+        1e-8,
+    ),
+    "grip is lost where creep relaxes no more": Case(
+        (6.286060432728714, 6.317769046716603, 0.3087903720422438, 0.2748722782242385),
+        (0.046345511437335014, 0.05213215352963815),
+        [0.0, 57.1757268, 57.1757268, 76.81623266],
+        [0.07954037804, 0.2271502601, 0.05048973098, -0.198604992],
+        [-0.02371987236, -0.3842672613, -0.1571861884, -0.295919452],
+        1e-6,
+    ),
+    "slides for a moment out of rest": Case(
+        (3.3731232994632134, 17.419409219968333, 0.03518290906289918, 0.4359698365602171),
+        (0.0, 0.0),
+        [0.0, 0.5222735141, 0.5222735141, 1.660412711],
+        [0.005651296235, -0.02922558741, 0.01873128183, 0.03894137777],
+        [-0.04824636952, 0.01530875354, 0.03902541875, -0.05346461785],
+        1e-6,
+    ),
+    "slides from fast rolling through V = 0": Case(
+        (28.94181173558968, 38.29923802851189, 0.10940359794601726, 1.0233906898481717),
+        (0.7002449034334051, -2.1766534405877245),
+        [0.0, 56.11310584],
+        [0.0, 0.0],
+        [0.0, 0.0],
+        1e-4,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_regimes_end_where_they_do(name):
+    """Every regime, its end and every turn of V are those at a tight tolerance; speeds keep theirs."""
+    case = CASES[name]
+    m, best = case.roll(case.rtol), case.roll(TIGHT)
+    assert m.status == best.status == vr.MotionStatus.DONE
+    assert [s.regime for s in m.switches] == [s.regime for s in best.switches]
+    assert m.reversals.size == best.reversals.size
+    found = [*(s.t for s in m.switches), *m.reversals]
+    assert found == pytest.approx([*(s.t for s in best.switches), *best.reversals], rel=BOUND * case.rtol)
+    fastest = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)))
+    difference = np.maximum(np.abs(m.V - best.V), np.abs(m.omega - best.omega))
+    assert (difference <= BOUND * case.rtol * fastest).all()
+
+
+def test_a_brake_gives_way_at_its_capacity():
+    """Held with all that the brake can take: it lets go where the torque begins to exceed that."""
+    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
+    t = np.linspace(0.0, 2.0, 21)
+    m = vr.roll(scene, 0.0, 0.0, t, brake=0.1, torque=([0.0, 1.0, 2.0], [0.1, 0.1, 0.2]))
+    assert not m.omega[t <= 1.0].any()
+    assert (m.omega[t > 1.0] > 0.0).all()
