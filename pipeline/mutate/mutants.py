@@ -21,6 +21,7 @@ _DIRECT, _SLICE, _MOTION = (
     "tests/test_material_tables.py",
     "tests/motion/test_motion.py",
 )
+_DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
 
 LAW = [
     ("law/standard.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
@@ -94,8 +95,22 @@ MOTION = [
     ("motion/integrate.py", "D *= sigma\n", "D *= 1.0\n", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),
 ]  # fmt: skip
+DRIVE = [
+    ("drive/rates.py", "(torque - Q - M_cylinder)", "(torque - Q + M_cylinder)", _DRIVE),
+    ("drive/rates.py", "(Q - V * m_half_space + force)", "(Q - V * m_half_space - force)", _DRIVE),
+    ("drive/rates.py", "* slope_F) * spread - 2.0 * phi)", "* slope_F) * spread - phi)", _DRIVE),
+    ("drive/load.py", "if by_omega or frame.locked else 1.0 / case.scene.j", "if by_omega else 1.0 / case.scene.j", _DRIVE),
+    ("drive/nodes.py", "weight * (force * V), weight * (torque * omega)", "weight * (force * V), weight * (torque * V)", _DRIVE),
+    ("drive/nodes.py", "slip = omega - V if frame.slips else V * nodes[OF_DELTA, i]", "slip = omega - V if frame.slips else 0.0", _DRIVE),
+    ("drive/integrate.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
+    ("drive/integrate.py", "return State(0.0, -state.second), Frame(True, -direction, -sigma,", "return State(0.0, -state.second), Frame(True, -direction, sigma,", _EVENTS),
+    ("drive/origin.py", "* per - b * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVE),
+    ("drive/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", _EVENTS),
+    ("drive/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind):", "if found == NO_EVENT and behind:", _EVENTS),
+    ("drive/solve.py", "lasting = 1.0 + panel.length * slowest", "lasting = 1.0 + panel.length * abs(nodes[SLOPE, 0])", _EVENTS),
+]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
 COEFFICIENTS = [
     ("bessel/ratios.npy", str(n), "1e-9 of it more", _RATIOS) for n in (0, 1, 302, 1203, 2104, 3005, 4006, 5007)
 ]
-MUTANTS = [Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *COEFFICIENTS)]
+MUTANTS = [Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *DRIVE, *COEFFICIENTS)]
