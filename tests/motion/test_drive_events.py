@@ -113,3 +113,15 @@ def test_a_brake_gives_way_at_its_capacity():
     m = vr.roll(scene, 0.0, 0.0, t, brake=0.1, torque=([0.0, 1.0, 2.0], [0.1, 0.1, 0.2]))
     assert not m.omega[t <= 1.0].any()
     assert (m.omega[t > 1.0] > 0.0).all()
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-9, 1e-12])
+def test_a_faint_push_the_other_way(share):
+    """A ramp that begins on the other side, by a share of what it reaches: V turns at twice the time of its zero."""
+    scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5), np.linspace(0.0, 8.0, 33)
+    plain = vr.roll(scene, 0.0, 0.0, t, 1e-10, torque=([0.0, 8.0], [0.0, 0.2]))
+    m = vr.roll(scene, 0.0, 0.0, t, 1e-10, torque=([0.0, 8.0], [-0.2 * share, 0.2]))
+    assert m.status == vr.MotionStatus.DONE
+    assert m.steps <= 3 * plain.steps
+    assert m.reversals == pytest.approx([16.0 * share], rel=1e-3)
+    assert m.V[1:] == pytest.approx(plain.V[1:], rel=100.0 * share + BOUND * 1e-10)

@@ -10,6 +10,8 @@ from .records import NEITHER, OMEGA, SPEED, Load
 START, SCALE, FIRST = 0, 1, 2
 #: the functions: force and torque; the slope over tau of the speed that is prescribed; most that the brake can take
 FORCE, TORQUE, RATE, BRAKE, FUNCTIONS = range(5)
+#: unit of rounding
+_ROUNDING = 2.2e-16
 #: a jump or a corner up to this share is what the fit of a callable leaves
 _SMOOTH = 1e-4
 
@@ -68,6 +70,15 @@ def piece_end(piece, case):
     """When a piece of the drive, or the motion, ends."""
     end = case.tau[case.tau.size - 1]
     return min(case.drive.pieces[piece + 1, START], end) if piece + 1 < case.drive.pieces.shape[0] else end
+
+
+@kernel
+def rounding(piece, pieces):
+    """What rounding leaves of force and torque together: they are sums of terms that may nearly cancel."""
+    row, size = pieces[piece], 0.0
+    for n in range(FIRST, FIRST + RATE * terms_of(row)):
+        size += abs(row[n])
+    return _ROUNDING * size
 
 
 @kernel

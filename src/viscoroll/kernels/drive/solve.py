@@ -13,6 +13,7 @@ from ..motion.collocation import SLOPES, TO_START, N, rise_terms
 from ..motion.control import SHARE, creep_weight
 from ..numerics.linear import factorize, substitute
 from .guess import guess
+from .load import rounding
 from .nodes import (
     OF_S,
     OF_SECOND,
@@ -156,7 +157,9 @@ def panel_error(panel, slopes, frame, case):
     per_s, per_second = scales(frame, case)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not
     error = _mismatch(S_RATE, nodes[S_RATE, 0] if smooth else 0.0, half, nodes)
-    error = max(error, _LAST * abs(case.work.powers[OF_S, N - 1])) / per_s
+    error = max(error, _LAST * abs(case.work.powers[OF_S, N - 1]))
+    # shorter panels do not mend what the rounding of the drive moves V by
+    error = max(error - 2.0 * case.scene.kappa * panel.length * rounding(panel.piece, case.drive.pieces), 0.0) / per_s
     if nodes[SPEED, 0] == 0.0:
         error /= _least(panel, case)
     else:  # early on speeds are to be right beside those so far
