@@ -23,7 +23,7 @@ class Case(NamedTuple):
     torque: list[float]
     rtol: float
 
-    def roll(self, rtol: float) -> vr.Motion:
+    def roll(self, rtol: float) -> Any:
         alpha, kappa, mu, j = self.scene
         drive: dict[str, Any] = {"force": (self.times, self.force), "torque": (self.times, self.torque)}
         return vr.roll(
