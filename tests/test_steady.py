@@ -310,6 +310,16 @@ def test_determinant_is_b_times_the_slope_of_M():
         assert ((c.dM_dV < 0.0) == ~s.stable).all()
 
 
+def test_trace_by_the_slopes_of_the_contact_law():
+    """Of unlike bodies the share of M that the half-space takes turns with V; in det it cancels."""
+    scene = series_scene(UNLIKE, j=1.7)
+    s = vr.steady(scene, force=0.3 * vr.humps(scene).M[0])
+    names = ("dQ_dV", "dQ_domega", "dM_half_space_dV")
+    c = vr.contact(scene, s.V, omega=s.omega, fields=names)
+    trace = c.dQ_dV - c.dM_half_space_dV - c.dQ_domega / scene.j
+    np.testing.assert_allclose(s.eigenvalues.sum(axis=-1).real, trace, rtol=tol.STEADY_DETERMINANT)
+
+
 def test_slow_rate_of_slow_rolling():
     """(1 + j) V' = -M' V at last."""
     s = vr.steady(SCENE, force=1e-6)

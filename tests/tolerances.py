@@ -391,7 +391,7 @@ STEADY_RESIDUAL = 1e-12
 STEADY_BETA = 1e-9
 #: Eigenvalues by central differences: the truncation.
 STEADY_DIFFERENCES = 1e-3
-#: Their product against b M'/j of the contact law; measured 4.2e-14.
+#: Their product against b M'/j of the contact law, their sum against its slopes; measured 4.2e-14, 4e-15.
 STEADY_DETERMINANT = 1e-11
 #: Where motions from rest end at rtol 1e-10: measured 6e-14.
 STEADY_SETTLED = 1e-9

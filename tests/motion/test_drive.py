@@ -291,6 +291,16 @@ def test_brake_holds_slips_and_lets_go():
     assert away.V[-1] > 0.0
 
 
+@pytest.mark.parametrize("share", [0.7, 1.3])
+def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
+    """A cylinder thrown with backspin slides, Q = -mu; where omega has come to 0, mu - M/2 would turn it on."""
+    t = np.linspace(0.0, 2.0, 41)
+    m = vr.roll(ROLLER, 2.0, -0.1, t, brake=share * ROLLER.mu)
+    omega = m.omega[t >= 0.25]  # it comes to 0 at 0.20, and at 0.15
+    assert (omega > 0.0).all() if share < 1.0 else not omega.any()
+    assert balance(m) <= 1e-7
+
+
 def test_bodies_that_differ():
     """Their own parts of M: energy closes; swapped bodies swap the parts; a rigid base leaves M to the cylinder."""
     scene = vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
