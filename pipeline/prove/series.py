@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.law.material import at_contact, generators
-from viscoroll.kernels.law.series import Parts, room
+from viscoroll.kernels.law.series import Parts, room, values
 from viscoroll.kernels.law.series import shares as parts_of
 from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
@@ -105,8 +105,12 @@ def chebyshev(random: np.random.Generator, count: int) -> Claim:
         table = record(p)
         z = float(p.tau[-1] * 10.0 ** random.uniform(-2.0, np.log10(THICKEST)))
         other, weights = spectral.contact(p, z, TERMS), random.random(p.T.size)
-        known = Parts(**series(p)._asdict(), weights=weights)
-        found = np.array([*generators(z, table), at_contact(z, table)[4], parts_of(z, known, room(known))[0]])
+        known, places = Parts(**series(p)._asdict(), weights=weights), (z, z, z, z)
+        work = room(known)
+        values(places, False, known, work)
+        parts_of(places, known, work)
+        half_space = work.found[16]
+        found = np.array([*generators(z, table), at_contact(z, table)[4], half_space])
         claim.add(abs(found / [*other[:3], weights @ other.shares] - 1.0), at(z=z) + f", {p!r}")
     return claim
 

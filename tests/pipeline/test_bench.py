@@ -78,7 +78,7 @@ def test_bound_law(folder):
 def test_series(folder):
     """Every material has its row, and those of several modes the time of their table."""
     (rows,) = measured(folder, "series")
-    assert len(rows) == 9
+    assert len(rows) == 10
     for row in rows:
         assert all(row[kind]["ns"] > 0.0 for kind in ("contact", "motion") if kind in row)
     assert {row["material"] for row in rows if row["table_ms"]} >= {"1 modes", "30 modes", "pair of 10 and 3 modes"}
