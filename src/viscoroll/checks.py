@@ -49,8 +49,8 @@ def checked_extent(
 
 def _listed(array: NDArray[np.float64], bad: NDArray[np.bool_]) -> str:
     """The first bad value, its place, and how many more there are."""
-    if array.ndim == 0:
-        return str(array[()])
+    if array.size == 1:
+        return str(array.item())
     first = tuple(int(n[0]) for n in np.nonzero(bad))
     place = f"at row {first[0]}" if array.ndim == 1 else f"at {first}"
     more = int(np.count_nonzero(bad)) - 1

@@ -561,7 +561,7 @@ NO_DRIVE = [
     ("--torque 1@0,2", "'2' must be VALUE@TIME"),
     ("--torque 1@2,1@1", "times of torque = 2.0: must be in ascending order"),
     ("--torque 1@0,1@0,1@0", "times of torque = 0.0: must be there once, or twice"),
-    ("--torque 1@-1", "times of torque = -1.0 at row 0: must be"),
+    ("--torque 1@-1", "times of torque = -1.0: must be"),
     ("--force nan", "force = nan"),
     ("--force none.csv", "none.csv: cannot be read"),
     ("--force a.csv", "a.csv: must have a first line t,value"),
