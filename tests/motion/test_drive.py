@@ -298,6 +298,7 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
     m = vr.roll(ROLLER, 2.0, -0.1, t, brake=share * ROLLER.mu)
     omega = m.omega[t >= 0.25]  # it comes to 0 at 0.20, and at 0.15
     assert (omega > 0.0).all() if share < 1.0 else not omega.any()
+    assert [s.regime for s in m.switches] == ([] if share < 1.0 else ["locked"])
     assert balance(m) <= 1e-7
 
 
