@@ -1,9 +1,14 @@
-"""What a process keeps of earlier calls, in one place for the tests that need it gone."""
+"""What a process keeps of earlier calls, in one place for the tests that need it gone; and what a call takes."""
 
 from __future__ import annotations
 
+import tracemalloc
+from collections.abc import Callable
+
+import numpy as np
+
 from viscoroll.materials import tables as material_tables
-from viscoroll.motion import flow
+from viscoroll.motion import Ensemble, flow
 
 
 def forget() -> None:
@@ -13,3 +18,12 @@ def forget() -> None:
     material_tables._kept.inverses.clear()
     material_tables._series_table.cache_clear()
     material_tables._pair_tables.cache_clear()
+
+
+def taken_beside(call: Callable[[], Ensemble]) -> int:
+    """Bytes that a call takes at most, beside those of its result."""
+    tracemalloc.start()
+    result = call()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return peak - sum(value.nbytes for value in vars(result).values() if isinstance(value, np.ndarray))

@@ -68,12 +68,9 @@ class Shown:
             If the file cannot be written, or its suffix names no format.
         """
         from .plots import draw
-        from .plots.style import save
+        from .plots.style import saved
 
-        figure = draw(self.to_xarray())
-        if path is not None:
-            save(figure, path)
-        return figure
+        return saved(draw(self.to_xarray()), path)
 
     def __repr__(self) -> str:
         title, rows = self._card()

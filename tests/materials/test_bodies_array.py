@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import tracemalloc
-
+import memory
 import numpy as np
 import pytest
 import tolerances as tol
@@ -147,15 +146,11 @@ def test_stress_of_a_pair_each():
 def test_memory_is_bounded_by_a_block():
     """Beside input and result four times as many motions take no more."""
 
-    def beside(count: int) -> float:
+    def beside(count: int) -> int:
         draw = np.random.default_rng(2)
         pair = vr.Bodies(rubbers(draw, 3, count=count), rubbers(draw, 3, count=count), 0.4)
         scene = vr.Scene(material=pair, **SCENE)
-        tracemalloc.start()
-        result = vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1)
-        peak = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-        return peak - sum(value.nbytes for value in vars(result).values() if isinstance(value, np.ndarray))
+        return memory.taken_beside(lambda: vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1))
 
     beside(64)
     assert beside(1024) - beside(256) <= tol.MEMORY_SLACK / 10

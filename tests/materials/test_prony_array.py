@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import tracemalloc
-
+import memory
 import numpy as np
 import pytest
 import tolerances as tol
@@ -121,13 +120,9 @@ def test_losses_of_a_material_each():
 def test_memory_is_bounded_by_a_block():
     """Beside input and result four times as many motions take no more."""
 
-    def beside(count: int) -> float:
+    def beside(count: int) -> int:
         scene, V0 = vr.Scene(material=materials(3, count=count), **SCENE), np.full(count, 1.0)
-        tracemalloc.start()
-        result = vr.ensemble(scene, V0, 0.0, T[::6], rtol=1e-3, fields="V", threads=1)
-        peak = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-        return peak - sum(value.nbytes for value in vars(result).values() if isinstance(value, np.ndarray))
+        return memory.taken_beside(lambda: vr.ensemble(scene, V0, 0.0, T[::6], rtol=1e-3, fields="V", threads=1))
 
     beside(64)
     assert beside(2048) - beside(512) <= tol.MEMORY_SLACK / 10

@@ -168,12 +168,9 @@ class Fit:
             If it cannot be written there.
         """
         from ..plots.material import fitted
-        from ..plots.style import save
+        from ..plots.style import saved
 
-        figure = fitted(self)
-        if path is not None:
-            save(figure, path)
-        return figure
+        return saved(fitted(self), path)
 
     def to_xarray(self) -> xr.Dataset:
         """Data and fit over omega, the series over ``mode``, and the constants as attributes."""

@@ -208,12 +208,9 @@ class Material(FromPrograms):
             If it cannot be written there.
         """
         from ..plots.material import master_curve
-        from ..plots.style import save
+        from ..plots.style import saved
 
-        figure = master_curve(self)
-        if path is not None:
-            save(figure, path)
-        return figure
+        return saved(master_curve(self), path)
 
     def to_netcdf(self, path: str | PathLike[str]) -> None:
         """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed by a SHA-256.

@@ -112,6 +112,13 @@ def scaled(name: str, exponent: int) -> str:
     return rf"${SYMBOLS[name].latex}\times 10^{{{exponent}}}$"
 
 
+def saved(figure: Figure, path: str | PathLike[str] | None) -> Figure:
+    """The figure, written to ``path`` by :func:`save` where one is given."""
+    if path is not None:
+        save(figure, path)
+    return figure
+
+
 def save(figure: Figure, path: str | PathLike[str]) -> None:
     """Write a figure, whole or not at all; the suffix of ``path`` chooses the format.
 

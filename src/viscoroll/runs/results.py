@@ -96,12 +96,10 @@ class RunResults(Shown):
         OutputError
             If it cannot be written there.
         """
-        from ..figures import run_distributions, save
+        from ..figures import run_distributions
+        from ..plots.style import saved
 
-        figure = run_distributions(self.summaries)
-        if path is not None:
-            save(figure, path)
-        return figure
+        return saved(run_distributions(self.summaries), path)
 
     def _card(self) -> tuple[str, list[Row]]:
         data = self.summaries
