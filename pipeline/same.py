@@ -3,7 +3,7 @@
     python -m pipeline.same                 the hashes of this tree
     python -m pipeline.same --base HEAD     beside those of a commit: exit code 1 where they differ
 
-Contact states, stresses, motions, maps and tables through the public interface alone: the script
+Contact states, stresses, motions, maps, steady rolling and tables through the public interface alone: the script
 outlives any move inside.
 """
 
@@ -68,11 +68,33 @@ def parts() -> Iterator[tuple[str, list[Any]]]:
     yield "roll", [m.V, m.omega, m.x, m.angle, m.delta, m.regime, [each.t for each in m.switches]]
     e = vr.ensemble(scene, V0, omega0, t, method="flow", fields=_ALL)
     yield "flow-map", [getattr(e, field) for field in _ALL]
+    yield from _bodies_and_drives(V, delta, V0, omega0, t)
     atlas = vr.tables.build(vr.tables.AtlasGrid(nodes=(6, 12, 12)))
     yield "table-atlas", [each.values for each in atlas.data_vars.values()]
     axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
     literal = vr.tables.build(vr.tables.LiteralGrid(2.9, 0.2, *axes))
     yield "table-literal", [each.values for each in literal.data_vars.values()]
+
+
+def _bodies_and_drives(V: Any, delta: Any, V0: Any, omega0: Any, t: Any) -> Iterator[tuple[str, list[Any]]]:
+    """Several relaxation times, two bodies, a material for each motion, drives, steady rolling."""
+    strengths, times = np.array([3.0, 5.0, 1.0]), (1e-3, 0.1, 10.0)
+    rubber, plastic = vr.Prony(strengths, times), vr.Prony((2.0,), (1.0,))
+    each = vr.Prony(np.linspace(1.0, 6.0, 50)[:, None] * strengths, times)
+    for name, material, own in (
+        ("series", rubber, each),
+        ("pair", vr.Bodies(plastic, rubber, 0.3), vr.Bodies(plastic, each, 0.3)),
+    ):
+        scene = vr.Scene(material=material, kappa=20.0, mu=0.2, gamma=100.0)
+        yield f"contact-{name}", _values(vr.contact(scene, V, delta=delta, slopes=True))
+        motions = vr.ensemble(scene.replace(material=own), V0[:50], omega0[:50], t, method="integrate", fields=_ALL)
+        yield f"motions-{name}-each", [getattr(motions, field) for field in _ALL]
+        driven = vr.ensemble(
+            scene, V0[:200], omega0[:200], t, force=0.03, torque=np.linspace(-0.1, 0.1, 200), fields=_ALL
+        )
+        yield f"driven-{name}", [getattr(driven, field) for field in _ALL]
+        steady = vr.steady(scene, torque=np.geomspace(1e-4, 0.1, 50))
+        yield f"steady-{name}", [steady.V, steady.omega, steady.Q, steady.M_half_space, steady.M_cylinder]
 
 
 def _values(result: Any) -> list[Any]:

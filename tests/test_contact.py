@@ -16,8 +16,8 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.contact_fields import FIELDS, SLOPES
-from viscoroll.kernels.law.material import standard
 from viscoroll.kernels.law.stick import differences
+from viscoroll.kernels.material.functions import standard
 from viscoroll.reference import contact_enclosure
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED

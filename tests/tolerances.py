@@ -329,7 +329,7 @@ PAIR_SWAPPED = 1e-12
 #: Dundurs' constant and wave speeds: quotients of a few roundings.
 PAIR = 1e-14
 
-# --- materials/prony.py, kernels/law/series.py (test_prony.py) ---
+# --- materials/prony.py, kernels/material/series.py (test_prony.py) ---
 #: One form from the other for one mode: roundings of a product or two.
 SERIES_FORMS = 1e-14
 #: Q Q^T - 1 and Q^T t - e of up to 12 modes: each entry is a product of 2 N gaps; measured 8e-15 at 29 modes.

@@ -23,7 +23,7 @@ from viscoroll.kernels.bessel.ratios import (
     ratio_k,
     ratio_r,
 )
-from viscoroll.kernels.law.material import generators, standard
+from viscoroll.kernels.material.functions import generators, standard
 from viscoroll.kernels.motion.partial_slip import slip_differences
 from viscoroll.reference import contact_precise
 

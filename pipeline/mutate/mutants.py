@@ -24,15 +24,15 @@ _DIRECT, _SLICE, _MOTION = (
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
 
 LAW = [
-    ("law/standard.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
-    ("law/standard.py", "dp = dr * k + r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", "dp = dr * k - r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", _LAW),
-    ("law/standard.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _LAW),
+    ("material/standard.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
+    ("material/standard.py", "dp = dr * k + r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", "dp = dr * k - r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", _LAW),
+    ("material/standard.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _LAW),
     ("law/stick.py", "return D, (1.0 + ratio) * D\n", "return D, ratio * D\n", _LAW),
     ("law/stick.py", "return zeta - d, d, (2.0 - d / zeta) * d, OK", "return zeta - d, 0.5 * d, (2.0 - d / zeta) * d, OK", _MOTION),
-    ("law/standard.py", "slope_zh += GAUSS_W[n] * (h + z * dh)", "slope_zh += GAUSS_W[n] * (h + zeta * dh)", _LAW),
+    ("material/standard.py", "slope_zh += GAUSS_W[n] * (h + z * dh)", "slope_zh += GAUSS_W[n] * (h + zeta * dh)", _LAW),
     ("numerics/nodes.py", "weights = [1 / ((1 - x * x)", "weights = [(1 + Decimal('1e-9')) / ((1 - x * x)", _LAW),
     ("law/stick.py", "CLOSE = 0.1\n", "CLOSE = 0.9\n", _LAW),
-    ("law/standard.py", "return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g", "return lam * ratio_i2(alpha * zeta, h / rest) * rest + g", _LAW),
+    ("material/standard.py", "return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g", "return lam * ratio_i2(alpha * zeta, h / rest) * rest + g", _LAW),
     ("law/length.py", "_CUBED = 3e-6\n", "_CUBED = 3e-3\n", _LAW),
     ("law/length.py", "_SLOW, _FAST = 1e-17, 1e-9\n", "_SLOW, _FAST = 1e-7, 1e-9\n", _LAW),
     ("law/stick.py", "low, high = max(y - 0.5 * material.T_mean, 0.0), y", "low, high = max(y - 0.25 * material.T_mean, 0.0), y", _LAW),
@@ -43,7 +43,7 @@ LAW = [
     ("law/state.py", "bracket = -share * H + H * fall / A + 0.5 * A_eta * d", "bracket = -share * H + H * fall / A - 0.5 * A_eta * d", _LAW),
     ("law/state.py", "out[DQ_DV] -= dQ_ddelta * (1.0 + delta) / abs(V)", "out[DQ_DV] -= dQ_ddelta / abs(V)", _LAW),
     ("law/state.py", "out[M], out[DM_DV] = c * V, c\n", "out[M], out[DM_DV] = V, c\n", _LAW),
-    ("law/standard.py", "d_i2 = alpha * 2.0 * (r * r - i2) * per_x", "d_i2 = alpha * 2.0 * (r - i2) * per_x", _LAW),
+    ("material/standard.py", "d_i2 = alpha * 2.0 * (r * r - i2) * per_x", "d_i2 = alpha * 2.0 * (r - i2) * per_x", _LAW),
     ("law/slopes.py", "(ddH * dF - dH * ddg)", "(ddH * dF + dH * ddg)", _LAW),
     ("bessel/ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
     ("bessel/ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
@@ -72,8 +72,8 @@ SLICE = [
     ("law/inverse_loop.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
     ("law/inverse_loop.py", "part, slight_status = slight_traction", "_, slight_status = slight_traction", _SLICE),
     ("numerics/quartet.py", "ir.Constant(_FOUR, [float(k)] * 4)", "ir.Constant(_FOUR, [float(k * 1.0000001)] * 4)", _SLICE),
-    ("law/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
-    ("law/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
+    ("material/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
+    ("material/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
 ]  # fmt: skip
 MOTION = [
     ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),
@@ -97,21 +97,21 @@ MOTION = [
 ]  # fmt: skip
 _PRONY, _PAIR, _UNSTEADY = (
     "tests/materials/test_prony.py",
-    "tests/kernels/law/test_pair.py",
+    "tests/kernels/material/test_pair.py",
     "tests/kernels/law/test_unsteady.py",
 )
 _STEADY, _BOUND = "tests/test_steady.py", "tests/test_bound_law.py"
 SERIES = [
-    ("law/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _PRONY),
-    ("law/series.py", "square = 1.0 + 2.0 * h_c / z  # 1/lam^2\n        m =", "square = 1.0 + h_c / z\n        m =", _PRONY),
-    ("law/series.py", "dh = add(dh, subtract(rise,", "dh = add(dh, add(rise,", _PRONY),
-    ("law/series.py", "u = add(u, multiply(divide(weighted, spread(a + parts.a[n])), apart))", "u = add(u, multiply(divide(weighted, spread(a)), apart))", _PAIR),
-    ("law/series.py", "share = multiply(spread(parts.t[j]), multiply(spread(parts.Q[j, i]), pressed))", "share = multiply(spread(parts.Q[j, i]), pressed)", _PAIR),
-    ("law/pair.py", "moment_at_an_end(z, other.T_mean, other.ends, material)", "moment_at_an_end(z, one.T_mean, other.ends, material)", _PAIR),
-    ("law/pair.py", "return half_space, cylinder, d_half_space * per, d_cylinder * per", "return half_space, cylinder, d_half_space, d_cylinder * per", _PRONY),
-    ("law/each.py", "    each.held[0] = row\n    _empty(each.table)\n", "    each.held[0] = row\n", "tests/materials/test_prony_array.py"),
-    ("law/each.py", "each.parts, _body(numbers, 7), _body(numbers, 12)", "each.parts, _body(numbers, 7), _body(numbers, 7)", "tests/materials/test_bodies_array.py"),
-    ("law/fill.py", "_put(row, first, 16, work, table_of_parts)", "_put(row, first, 0, work, table_of_parts)", "tests/materials/test_bodies_array.py"),
+    ("material/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _PRONY),
+    ("material/series.py", "square = 1.0 + 2.0 * h_c / z  # 1/lam^2\n        m =", "square = 1.0 + h_c / z\n        m =", _PRONY),
+    ("material/series.py", "dh = add(dh, subtract(rise,", "dh = add(dh, add(rise,", _PRONY),
+    ("material/series.py", "u = add(u, multiply(divide(weighted, spread(a + parts.a[n])), apart))", "u = add(u, multiply(divide(weighted, spread(a)), apart))", _PAIR),
+    ("material/series.py", "share = multiply(spread(parts.t[j]), multiply(spread(parts.Q[j, i]), pressed))", "share = multiply(spread(parts.Q[j, i]), pressed)", _PAIR),
+    ("material/pair.py", "moment_at_an_end(z, other.T_mean, other.ends, material)", "moment_at_an_end(z, one.T_mean, other.ends, material)", _PAIR),
+    ("material/pair.py", "return half_space, cylinder, d_half_space * per, d_cylinder * per", "return half_space, cylinder, d_half_space, d_cylinder * per", _PRONY),
+    ("material/each.py", "    each.held[0] = row\n    _empty(each.table)\n", "    each.held[0] = row\n", "tests/materials/test_prony_array.py"),
+    ("material/each.py", "each.parts, _body(numbers, 7), _body(numbers, 12)", "each.parts, _body(numbers, 7), _body(numbers, 7)", "tests/materials/test_bodies_array.py"),
+    ("material/fill.py", "_put(row, first, 16, work, table_of_parts)", "_put(row, first, 0, work, table_of_parts)", "tests/materials/test_bodies_array.py"),
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
     ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),

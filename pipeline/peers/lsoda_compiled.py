@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import standard
+from viscoroll.kernels.material.functions import standard
 from viscoroll.kernels.motion.partial_slip import creep_speeds, partial_rates, slow_D
 from viscoroll.kernels.motion.records import Scene
 

@@ -13,8 +13,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.kernels.law.material import standard
 from viscoroll.kernels.law.state import ROWS, M, Need, Q, State, contact_state
+from viscoroll.kernels.material.functions import standard
 
 from ..bench.jit import compiled
 

@@ -13,9 +13,9 @@ import numpy as np
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import at_contact, generators
-from viscoroll.kernels.law.series import Parts, room, values
-from viscoroll.kernels.law.series import shares as parts_of
+from viscoroll.kernels.material.functions import at_contact, generators
+from viscoroll.kernels.material.series import Parts, room, values
+from viscoroll.kernels.material.series import shares as parts_of
 from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
 from viscoroll.reference import spectral

@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.bessel import layout as layout
-from viscoroll.kernels.law.material import generators, standard
+from viscoroll.kernels.material.functions import generators, standard
 from viscoroll.rolling_contact import WORTHWHILE
 
 from ..reference.check_values import EDGE_ALPHAS

@@ -11,7 +11,7 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.kernels.law.material import generators, standard
+from viscoroll.kernels.material.functions import generators, standard
 from viscoroll.reference.enclosures import (
     INPUTS,
     condition_numbers,

@@ -40,8 +40,8 @@ def _times(values: NDArray, unit: NDArray) -> NDArray:
 
 def stresses_each(materials: MaterialArray) -> Callable:
     """``stress_loop`` over points with a material each, which lie together where they share one."""
-    from .kernels.law.material import Own
     from .kernels.law.stress_loop import stress_loop
+    from .kernels.material.functions import Own
 
     def loop(numbers: NDArray, points: Any, p: NDArray, tau: NDArray, start: int, stop: int) -> None:
         for first, last in pairwise([start, *(1 + np.flatnonzero(np.diff(numbers))), stop]):

@@ -58,8 +58,8 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
-    from .kernels.law.material import Own
     from .kernels.law.stress_loop import Points, stress_loop
+    from .kernels.material.functions import Own
 
     checked_scene(scene, "stress")
     plain, labels = unlabelled({"x": x, "V": V, "delta": delta, "omega": omega})

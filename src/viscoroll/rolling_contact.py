@@ -116,7 +116,7 @@ def contact(
     Accuracy of method "table": 1e-13 relative in lam, epsilon, delta_star, M and Q for
     alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
     its condition number (``tests/test_contact.py``, ``tests/materials/test_material_tables.py``).  Parts of M in two
-    bodies: 1e-13 of M (``tests/kernels/law/test_pair.py``).  N, away from its zero: 2e-11 relative for one
+    bodies: 1e-13 of M (``tests/kernels/material/test_pair.py``).  N, away from its zero: 2e-11 relative for one
     mode and series over four decades (``tests/kernels/law/test_unsteady.py``).
 
     From 4096 states on with one alpha > 1, and no slopes, the law is read from polynomials of one
@@ -257,7 +257,7 @@ def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method
     """The kernel for a call, which takes the alphas of a block in place of its material."""
     from .kernels.law.contact_loop import contact_loop, state_loop
     from .kernels.law.lockstep import TOGETHER
-    from .kernels.law.material import Own
+    from .kernels.material.functions import Own
 
     if isinstance(material, MaterialArray):
         from .contact_each import states_each

@@ -60,7 +60,7 @@ SYMBOLS = {
         r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/law/stick.py"
     ),
     "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
-    "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/law/standard.py"),
+    "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/material/standard.py"),
     "force": Symbol("f", "force along V over load", "finite", "", "kernels/drive/load.py"),
     "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "kernels/drive/load.py"),
     "brake": Symbol("B", "most torque that a brake takes over load times radius", ">= 0", "", "kernels/drive/load.py"),
@@ -72,8 +72,8 @@ SYMBOLS = {
     "rate_slow": Symbol(
         r"\lambda_2", "rate of the slower small disturbance over gamma", "finite", "Eq. (22)", "equilibria/result.py"
     ),
-    "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/law/pair.py"),
-    "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/law/pair.py"),
+    "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/material/pair.py"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/material/pair.py"),
     "N": Symbol(
         "N",
         "moment over P R for each unit of V', M = M(V) + N V' in slow changes",
@@ -85,7 +85,11 @@ SYMBOLS = {
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
     "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/law/stick.py"),
     "kappa_M": Symbol(
-        r"\kappa M", "kappa times rolling resistance moment over P R", ">= 0", "Eq. (16)", "kernels/law/standard.py"
+        r"\kappa M",
+        "kappa times rolling resistance moment over P R",
+        ">= 0",
+        "Eq. (16)",
+        "kernels/material/standard.py",
     ),
     "p": Symbol("p/E'", "contact pressure over E'", ">= 0", "Eq. (11)", "kernels/law/stress.py"),
     "tau": Symbol(

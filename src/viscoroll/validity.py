@@ -100,7 +100,7 @@ class Strained(NamedTuple):
 def strained(material: Any, kappa: Any, V: NDArray[np.float64]) -> Strained:
     """Broadcast over the arguments; ``material``: alphas, or a series."""
     from .kernels.law.length import contact_length
-    from .kernels.law.material import generators, standard
+    from .kernels.material.functions import generators, standard
 
     def state(given: Any, kappa: float, V: float) -> Strained:
         material, u = record(given) if isinstance(given, Prony) else standard(given), kappa * abs(V)

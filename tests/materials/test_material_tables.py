@@ -13,9 +13,9 @@ import tolerances as tol
 import viscoroll as vr
 from viscoroll import rolling_contact
 from viscoroll.contact_fields import FIELDS
-from viscoroll.kernels.law.material import at_contact, standard
 from viscoroll.kernels.law.stick import differences
-from viscoroll.kernels.law.tabulated import tabulated
+from viscoroll.kernels.material.functions import at_contact, standard
+from viscoroll.kernels.material.tabulated import tabulated
 from viscoroll.materials import tables as material_tables
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED

@@ -12,8 +12,8 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.kernels.law import series as kernels
-from viscoroll.kernels.law.material import at_contact, generators
-from viscoroll.kernels.law.standard import standard
+from viscoroll.kernels.material.functions import at_contact, generators
+from viscoroll.kernels.material.standard import standard
 from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
 

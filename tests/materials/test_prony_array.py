@@ -9,7 +9,7 @@ import tolerances as tol
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.kernels.law.tabulated import Tabulated
+from viscoroll.kernels.material.tabulated import Tabulated
 from viscoroll.materials.tables import _series_table, records, series
 
 COUNT = 12

@@ -56,7 +56,7 @@ def shared_record(given: float | Prony | Bodies) -> Any:
     A table that lacks no bin is never written to.
     """
     from ..kernels.law.bound import with_every_bin
-    from ..kernels.law.standard import standard
+    from ..kernels.material.standard import standard
 
     if not isinstance(given, Prony | Bodies):
         return standard(given)
@@ -71,7 +71,7 @@ def shared_record(given: float | Prony | Bodies) -> Any:
 def inverses(given: float | Prony | Bodies) -> Any:
     """The record of one material, or of two bodies unlike each other, and of the inverses of its law, likewise."""
     from ..kernels.law.inverses import inverses_of
-    from ..kernels.law.standard import standard
+    from ..kernels.material.standard import standard
 
     def made(given: float | Prony | Bodies) -> Any:
         return inverses_of(_tabulated(given) if isinstance(given, Prony | Bodies) else standard(given))
@@ -80,7 +80,7 @@ def inverses(given: float | Prony | Bodies) -> Any:
 
 
 def _tabulated(given: float | Prony | Bodies) -> Any:
-    from ..kernels.law.tabulated import tabulated
+    from ..kernels.material.tabulated import tabulated
 
     if not isinstance(given, Prony | Bodies):
         return tabulated(given)
@@ -94,7 +94,7 @@ def series(prony: Prony) -> Any:
 
 
 def _series_of(modes: Modes) -> Any:
-    from ..kernels.law.series import Series
+    from ..kernels.material.series import Series
 
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
     e, t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
@@ -103,8 +103,8 @@ def _series_of(modes: Modes) -> Any:
 
 def unsteadiness(given: Any, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
     """N of M = M(V) + N V' at every zeta; ``given``: a series, or alphas, one or one each."""
-    from ..kernels.law.series import Series
     from ..kernels.law.unsteady import unsteady_loop
+    from ..kernels.material.series import Series
 
     found, zeta, alpha = np.empty(zeta.size), zeta.view(), np.empty(0)
     if isinstance(given, Prony):
@@ -143,7 +143,7 @@ def _table(known: Any, modes: Modes) -> Any:
 
 def _filled(known: Any, first: int, stop: int) -> Any:
     """A table with these bins made."""
-    from ..kernels.law.fill import fill
+    from ..kernels.material.fill import fill
     from ..kernels.numerics.quartet import empty_table
 
     table = empty_table(2 ** math.ceil(math.log2(stop - first)))
@@ -161,7 +161,7 @@ def _weights(modes: Modes, share: Any = 1.0) -> tuple[Any, Any, Any]:
 
 def _ends(modes: Modes, share: Any, squares: float) -> Any:
     """The numbers of the ends of a table, for this share of every creep mode."""
-    from ..kernels.law.each import Ends
+    from ..kernels.material.each import Ends
 
     rise, weight, log_weight = map(float, _weights(modes, share))
     return Ends(True, rise, weight, log_weight, squares)
@@ -172,8 +172,8 @@ def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, ND
 
     For one thread and one call: it holds the tables of one of them at a time.
     """
-    from ..kernels.law.each import Each, EachPair
-    from ..kernels.law.series import packed_size, working_size
+    from ..kernels.material.each import Each, EachPair
+    from ..kernels.material.series import packed_size, working_size
     from ..kernels.numerics.quartet import empty_table
 
     some, of = np.unique(which, return_inverse=True)
@@ -220,7 +220,7 @@ def _sums_of(terms: NDArray) -> NDArray[np.float64]:
 @lru_cache(maxsize=_KEPT)
 def _series_table(prony: Prony) -> Any:
     """The table of several modes."""
-    from ..kernels.law.tabulated import Tabulated
+    from ..kernels.material.tabulated import Tabulated
 
     modes = prony.modes
     ends = _ends(modes, 1.0, sum(prony.second_moments))
@@ -230,9 +230,9 @@ def _series_table(prony: Prony) -> Any:
 @lru_cache(maxsize=_KEPT)
 def _pair_tables(bodies: Bodies) -> Any:
     """The tables of two bodies that deform unlike each other."""
-    from ..kernels.law.each import Body, Ends
-    from ..kernels.law.pair import Pair
-    from ..kernels.law.series import Parts
+    from ..kernels.material.each import Body, Ends
+    from ..kernels.material.pair import Pair
+    from ..kernels.material.series import Parts
 
     whole, modes, weights = bodies.total, bodies.total.modes, bodies.half_space_weights
     each = Modes(modes.alpha, *(part[None] for part in (modes.a, modes.b, modes.E, modes.J, modes.gap)))

@@ -186,7 +186,7 @@ def _integrate_others(
     steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        from ..kernels.law.material import Own
+        from ..kernels.material.functions import Own
         from ..kernels.motion.loop import INFO
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)

@@ -7,7 +7,7 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.kernels.law.length import contact_length
-from viscoroll.kernels.law.material import generators
+from viscoroll.kernels.material.functions import generators
 from viscoroll.materials.tables import record
 
 

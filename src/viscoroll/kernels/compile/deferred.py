@@ -132,6 +132,8 @@ def _pipelines() -> tuple[type, type]:
     class Part(JITCodeLibrary):
         """IR alone."""
 
+        is_part = True
+
         def finalize(self) -> None:
             self._finalized = True
 
@@ -152,16 +154,14 @@ def _pipelines() -> tuple[type, type]:
         def _get_module_for_linking(self) -> Any:
             """For an ordinary jitted function between two kernels, which LLVM compiles by itself: all below."""
             module = super()._get_module_for_linking().clone()
-            for library in below(self):
-                module.link_in(alone(library), preserve=True)
+            _link(self, module)
             return module
 
     class Whole(JITCodeLibrary):
         """IR of all parts below, optimised and compiled together."""
 
         def finalize(self) -> None:
-            for library in below(self):
-                self._final_module.link_in(alone(library), preserve=True)
+            _link(self, self._final_module)
             self._linking_libraries = []
             super().finalize()
 
@@ -172,21 +172,21 @@ def _pipelines() -> tuple[type, type]:
                     raise RuntimeError(f"{self.name} calls {function.name}, which was not compiled with it")
             super()._verify_declare_only_symbols()
 
-    def below(library: Any) -> list[Any]:
-        """The libraries that this one and the parts below it call."""
-        found, ahead = [], list(library._linking_libraries)
-        while ahead:
-            library = ahead.pop(0)
-            if library not in found:
-                found.append(library)
-                ahead.extend(library._linking_libraries if isinstance(library, Part) else ())
-        return found
-
-    def alone(library: Any) -> Any:
-        """The module of a library without those of the parts below."""
-        return JITCodeLibrary._get_module_for_linking(library)
-
     return _pipeline(Part), _pipeline(Whole)
+
+
+def _link(library: Any, module: Any) -> None:
+    """Put into a module what this library and the parts below it call, each library once."""
+    from numba.core.codegen import JITCodeLibrary
+
+    known, ahead = [], list(library._linking_libraries)
+    while ahead:
+        library = ahead.pop(0)
+        if library not in known:
+            known.append(library)
+            # without what a part links by itself
+            module.link_in(JITCodeLibrary._get_module_for_linking(library), preserve=True)
+            ahead.extend(library._linking_libraries if hasattr(library, "is_part") else ())
 
 
 def _pipeline(library_class: type) -> type:

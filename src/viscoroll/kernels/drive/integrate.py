@@ -9,8 +9,8 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import OK, contact_length
-from ..law.material import generators
 from ..law.stick import stick_length
+from ..material.functions import generators
 from ..motion.collocation import N
 from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL
 from ..motion.records import REST

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import at_rolling, generator_slopes
+from ..material.functions import at_rolling, generator_slopes
 from ..motion.partial_slip import slip_differences
 from .load import acting
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import contact_length
-from ..law.material import generator_slopes
+from ..material.functions import generator_slopes
 from ..motion.collocation import INTEGRALS, NODES, SLOPES, N, fit_terms, polynomial
 from ..motion.partial_slip import branch_rates
 from ..numerics.bracket import narrowed, secant

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..law.standard import GAUSS_W, GAUSS_X
+from ..material.standard import GAUSS_W, GAUSS_X
 from ..numerics.bins import bin_number, bin_offset
 from . import layout
 from .fit import bits_and_offset, polynomial

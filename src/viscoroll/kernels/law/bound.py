@@ -19,11 +19,12 @@ from numpy.typing import NDArray
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
+from ..material.pair import Body, Pair
+from ..material.standard import Standard
+from ..material.tabulated import Ends, Tabulated, make_own
 from ..numerics import quartet
 from ..numerics.bins import bin_number, bin_place
 from .length import OK
-from .pair import Body, Pair
-from .standard import Standard
 from .state import (
     DM_CYLINDER_DV,
     DM_DV,
@@ -39,7 +40,6 @@ from .state import (
     State,
     contact_state,
 )
-from .tabulated import Ends, Tabulated, make_own
 
 #: status of input that is not finite, or of kappa |V| beyond :data:`FASTEST`
 OUT_OF_RANGE = 2

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..material.functions import material_of
 from . import lockstep
 from .length import OK
-from .material import material_of
 from .state import FAR, NEAR, ROWS, contact_state, contact_state_at, creep_ratio, signed_slip, state_of
 from .stick import slight
 

@@ -18,15 +18,15 @@ from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
+from ..material.functions import generator_slopes, generators, moment_of
+from ..material.pair import Pair, parts
+from ..material.standard import GAUSS_W, GAUSS_X, Standard
+from ..material.tabulated import Tabulated
 from ..numerics import quartet
 from ..numerics.bins import offset_slope
 from ..numerics.nodes import gauss
 from .length import OK, contact_length
-from .material import generator_slopes, generators, moment_of
-from .pair import Pair, parts
-from .standard import GAUSS_W, GAUSS_X, Standard
 from .stick import root_of_F
-from .tabulated import Tabulated
 
 #: up to this D/L the integral of the slope of Q takes four points of the polynomial of one bin, which it may leave by
 #: 0.15 of half a bin: to 2e-15, measured

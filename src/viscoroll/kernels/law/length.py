@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .material import generator_slopes, second_slopes
+from ..material.functions import generator_slopes, second_slopes
 
 OK, NOT_CONVERGED = 0, 1
 MAX_STEPS = 60

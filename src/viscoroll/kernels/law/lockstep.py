@@ -12,8 +12,8 @@ import numpy as np
 
 from ..bessel.ratios import K_LEAST, k_from, piece_of, place_k, place_r, r_from, slopes_of
 from ..compile.jit import kernel
+from ..material.standard import Standard, assemble, standard
 from .length import NOT_CONVERGED, OK, at_an_end, contact_solution, length_step, near_length, small_step
-from .standard import Standard, assemble, standard
 from .stick import near_eta, root_bracket, root_step
 
 #: states of a block; a block is one vector, so that the compiler sees how far apart its rows are

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .material import generator_slopes, second_slopes
-from .standard import GAUSS_W, GAUSS_X
+from ..material.functions import generator_slopes, second_slopes
+from ..material.standard import GAUSS_W, GAUSS_X
 
 
 @kernel

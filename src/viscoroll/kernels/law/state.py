@@ -8,10 +8,10 @@ import numpy as np
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
-from .each import FilledPair
+from ..material.each import FilledPair
+from ..material.functions import at_contact, fast_limit, generator_slopes, moment_of
+from ..material.pair import Pair, fast_parts, parts
 from .length import OK, contact_solution, near_length
-from .material import at_contact, fast_limit, generator_slopes, moment_of
-from .pair import Pair, fast_parts, parts
 from .slopes import slope_ratio, slope_ratio_rise
 from .stick import CLOSE, stick_from_root, stick_solution
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
+from ..material.functions import at_contact, generator_slopes
+from ..material.pair import Pair, parts
+from ..material.tabulated import Tabulated
 from .length import OK, contact_length, contact_solution, near_length
-from .material import at_contact, generator_slopes
-from .pair import Pair, parts
 from .state import UNSOLVED, State, stick, traction_slopes
 from .stick import CLOSE, differences
-from .tabulated import Tabulated
 
 #: rows of :func:`curve_loop`: kappa V, kappa (M - gain V), and the slope of that over V
 SPEED, RISE, SLOPE = range(3)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..material.functions import generator_slopes, generators, mean_slopes, second_slopes
 from .length import MAX_STEPS, NOT_CONVERGED, OK, small_step
-from .material import generator_slopes, generators, mean_slopes, second_slopes
 
 #: below this (zeta - eta)/zeta differences of g and h are integrals of their slopes
 CLOSE = 0.1

@@ -24,9 +24,9 @@ import numpy as np
 from ..bessel.ratios import ratio_k, ratio_r
 from ..compile.choice import by_record
 from ..compile.jit import kernel
+from ..material.series import Solved, solve
+from ..material.standard import Standard
 from ..numerics.nodes import gauss
-from .series import Solved, solve
-from .standard import Standard
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from ..compile.choice import by_record
 from ..compile.jit import kernel
-from .material import Own, standard
-from .series import Series, Solved, room
+from ..material.functions import Own, standard
+from ..material.series import Series, Solved, room
 from .stress import stress_at
 
 

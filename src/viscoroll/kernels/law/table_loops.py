@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..material.functions import Own, moment_of, standard
 from ..numerics.arrays import copy
 from .contact_loop import contact_loop
 from .length import OK, contact_solution, near_length
-from .material import Own, moment_of, standard
 from .state import BETA, DELTA_STAR, EPSILON, LAM, UNSOLVED, M, Need, Q, States, stick
 
 #: Rows of ``plane`` and ``volume`` of :func:`atlas_loop`, by the names of the file.

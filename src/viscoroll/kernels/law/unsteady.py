@@ -1,7 +1,7 @@
 """The first-order term of unsteady rolling: M = M(V) + N(V) V' where speed changes slowly, in closed form.
 
-With g, h, H, m, X and the ratios of a series (:mod:`series`) at z = zeta, y = sum X_i i2(a_i z), theta = 2 H/H' and
-' = d/dz,
+With g, h, H, m, X and the ratios of a series (:mod:`material.series`) at z = zeta, y = sum X_i i2(a_i z),
+theta = 2 H/H' and ' = d/dz,
 
     W = H g - 2 z (h - z h') g - z H g' + z^2 (y - z y')
     U = H g_s - g H_s + z^2 y_s + T_mean (H g - z^2 y)
@@ -9,7 +9,7 @@ With g, h, H, m, X and the ratios of a series (:mod:`series`) at z = zeta, y = s
 
 _s is the slope at s = 0 of a material with the rates a_i - s, b_j - s, the same J_j b_j, E_i a_i and Q, divided by
 1 + T_mean s, which makes its long-time modulus 1 again.  Every number therefore comes as a jet: value, d/dz, d/ds and
-d2/dz ds.  The system is that of :mod:`series` in y = r nu, nu = x/sqrt(r),
+d2/dz ds.  The system is that of :mod:`material.series` in y = r nu, nu = x/sqrt(r),
 
     (1/r + Q^T k Q) y = e      h = sum e_i y_i      g = sum t_j k_j (Q y)_j      sum X_i i2_i = sum e_i y_i i2_i/r_i
 

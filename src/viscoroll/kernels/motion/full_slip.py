@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import contact_length
-from ..law.material import at_slide, generators, moment_factor
+from ..material.functions import at_slide, generators, moment_factor
 
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
 HOLDS = 0.16

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import material_of
+from ..material.functions import material_of
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
 from .output import OUTPUTS

@@ -14,9 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.standard import GAUSS_W, GAUSS_X
 from ..law.state import ROWS as CONTACT_ROWS
 from ..law.state import Need, Q, State, contact_state
+from ..material.standard import GAUSS_W, GAUSS_X
 from ..numerics.arrays import fill
 from .integrate import integrate
 from .loop import keep, motion_of

@@ -22,8 +22,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.material import at_contact, generator_slopes, generators
 from ..law.stick import differences
+from ..material.functions import at_contact, generator_slopes, generators
 
 #: differences of g and h, which are at most min(zeta, 1/2), lose digits where D is a small
 #: part of that: there they are integrated instead

@@ -15,8 +15,22 @@ from numba.extending import intrinsic, models, register_model
 
 #: how many
 LANES = 4
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INT = ir.IntType(32)
+
+
+def spread_over(builder: Any, x: Any) -> Any:
+    """Instructions that make a vector of one number, four times."""
+    one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
+    return builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
+
+
+def side_by_side(builder: Any, numbers: Any) -> Any:
+    """Instructions that make a vector of four numbers."""
+    whole = ir.Constant(VECTOR, ir.Undefined)
+    for n, one in enumerate(numbers):
+        whole = builder.insert_element(whole, one, _INT(n))
+    return whole
 
 
 class _FourType(types.Type):
@@ -30,7 +44,7 @@ _four = _FourType()
 @register_model(_FourType)
 class _FourModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _VECTOR)
+        super().__init__(manager, kind, VECTOR)
 
 
 def _binary(instruction: str, interpreted: Callable) -> Any:
@@ -51,18 +65,14 @@ multiply, divide = _binary("fmul", np.multiply), _binary("fdiv", np.divide)
 
 def _spread(typing_context, x):
     def lower(context, builder, signature, given):
-        one = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), given[0], _INT(0))
-        return builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
+        return spread_over(builder, given[0])
 
     return _four(types.float64), lower
 
 
 def _four_of(typing_context, a, b, c, d):
     def lower(context, builder, signature, given):
-        whole = ir.Constant(_VECTOR, ir.Undefined)
-        for n, one in enumerate(given):
-            whole = builder.insert_element(whole, one, _INT(n))
-        return whole
+        return side_by_side(builder, given)
 
     return _four(*[types.float64] * LANES), lower
 
@@ -70,7 +80,7 @@ def _four_of(typing_context, a, b, c, d):
 def _pointer(context, builder, kind, array, at):
     """Where the four numbers of an array begin, the first of them number ``at``."""
     data = context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [at]), _VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
 
 
 def _load(typing_context, array, at):

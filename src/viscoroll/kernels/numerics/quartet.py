@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ..compile.fma import fma
 from ..compile.jit import kernel
 from .bins import bin_number, bin_offset, bin_place
+from .four import VECTOR, side_by_side, spread_over
 from .nodes import chebyshev, rounded, to_chebyshev
 
 BITS, TERMS = 3, 11
@@ -130,7 +131,7 @@ def finish(table, row, x):
     table[row, 0] = np.int64(bin_number(x, BITS)).view(np.float64)
 
 
-_FOUR, _INT = ir.VectorType(ir.DoubleType(), 4), ir.IntType(64)
+_INT = ir.IntType(64)
 
 
 class _Row:
@@ -140,28 +141,18 @@ class _Row:
         self.builder = builder
         data = context.make_array(table_type)(context, builder, table).data
         first = builder.add(builder.mul(row, _INT(WIDTH)), _INT(FIRST))
-        start = builder.bitcast(builder.gep(data, [first]), _FOUR.as_pointer())
+        start = builder.bitcast(builder.gep(data, [first]), VECTOR.as_pointer())
         self.terms = [builder.load(builder.gep(start, [_INT(k)]), align=8) for k in range(TERMS)]
-        kind = ir.FunctionType(_FOUR, [_FOUR] * 3)
+        kind = ir.FunctionType(VECTOR, [VECTOR] * 3)
         self._fma = cgutils.get_or_insert_function(builder.module, kind, "llvm.fma.v4f64")
 
     def fma(self, a: Any, b: Any, c: Any) -> Any:
         return self.builder.call(self._fma, [a, b, c])
 
-    def vector(self, parts: tuple) -> Any:
-        whole = ir.Constant(_FOUR, ir.Undefined)
-        for n, part in enumerate(parts):
-            whole = self.builder.insert_element(whole, part, _INT(n))
-        return whole
-
     def one_function(self, f: int) -> list:
         """Coefficients of one of the functions, each four times."""
         same = ir.Constant(ir.VectorType(ir.IntType(32), 4), [f] * 4)
         return [self.builder.shuffle_vector(term, term, same) for term in self.terms]
-
-    def four_times(self, x: Any) -> Any:
-        one = self.builder.insert_element(ir.Constant(_FOUR, ir.Undefined), x, _INT(0))
-        return self.builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(ir.IntType(32), 4), [0] * 4))
 
     def sum(self, terms: list, power: Any) -> Any:
         """By Estrin's scheme: its parts do not wait for one another."""
@@ -172,14 +163,14 @@ class _Row:
         return terms[0]
 
     def derived(self, terms: list) -> list:
-        return [self.builder.fmul(term, ir.Constant(_FOUR, [float(k)] * 4)) for k, term in enumerate(terms)][1:]
+        return [self.builder.fmul(term, ir.Constant(VECTOR, [float(k)] * 4)) for k, term in enumerate(terms)][1:]
 
 
 def _derivatives(orders: int) -> Callable:
     """(table, row, t) -> values, and slopes in t up to an order, of the four functions one after the other."""
 
     def instructions(row: _Row, t: Any) -> list:
-        terms, power, found = row.terms, row.four_times(t), []
+        terms, power, found = row.terms, spread_over(row.builder, t), []
         for _ in range(orders):
             found.append(row.sum(terms, power))
             terms = row.derived(terms)
@@ -199,7 +190,7 @@ def _secants() -> Callable:
     """(table, row, t, s) -> (p(t) - p(s))/(t - s) of the four functions, without cancellation."""
 
     def instructions(row: _Row, t: Any, s: Any) -> list:
-        t, s, last = row.four_times(t), row.four_times(s), row.terms[-1]
+        t, s, last = spread_over(row.builder, t), spread_over(row.builder, s), row.terms[-1]
         total = last
         for term in row.terms[-2:0:-1]:
             last = row.fma(t, last, term)
@@ -216,7 +207,7 @@ def _at_four(f: int) -> Callable:
     """(table, row, four offsets) -> one of the functions at four places of a bin."""
 
     def instructions(row: _Row, *offsets: Any) -> list:
-        return [row.sum(row.one_function(f), row.vector(offsets))]
+        return [row.sum(row.one_function(f), side_by_side(row.builder, offsets))]
 
     def interpreted(terms: NDArray, *offsets: float) -> list:
         return [np.array([sum(term[f] * t**k for k, term in enumerate(terms)) for t in offsets])]

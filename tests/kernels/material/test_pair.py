@@ -8,10 +8,10 @@ import tolerances as tol
 
 import viscoroll as vr
 from viscoroll.kernels.law import series as kernels
-from viscoroll.kernels.law.material import at_contact, at_rolling, generator_slopes
-from viscoroll.kernels.law.pair import Pair
-from viscoroll.kernels.law.standard import standard
-from viscoroll.kernels.law.tabulated import tabulated
+from viscoroll.kernels.material.functions import at_contact, at_rolling, generator_slopes
+from viscoroll.kernels.material.pair import Pair
+from viscoroll.kernels.material.standard import standard
+from viscoroll.kernels.material.tabulated import tabulated
 from viscoroll.materials.tables import record, series
 
 SOFT, STIFF = vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7])

@@ -39,14 +39,20 @@ def fill_bin(z, series, work, row, table):
     quartet.finish(table, row, z)
 
 
+@kernel(inline=True)
+def _take_apart(z, first, parts, work):
+    """At four nodes g, h, m, from place 16 on what two bodies have in m, and two zeros."""
+    places = _nodes(z, first)
+    values(places, False, parts, work)
+    shares(places, parts, work)
+    work.found[24:] = 0.0
+
+
 @kernel
 def fill_bin_of_parts(z, parts, work, row, table):
     """Make the bin of z of what two bodies have in m, and of two zeros."""
     for first in range(0, quartet.TERMS, LANES):
-        places = _nodes(z, first)
-        values(places, False, parts, work)
-        shares(places, parts, work)
-        work.found[24:] = 0.0
+        _take_apart(z, first, parts, work)
         _put(row, first, 16, work, table)
     quartet.finish(table, row, z)
 
@@ -55,10 +61,7 @@ def fill_bin_of_parts(z, parts, work, row, table):
 def fill_bins(z, parts, work, row, table, table_of_parts):
     """Both, without b, which motions of bodies that differ do not ask for."""
     for first in range(0, quartet.TERMS, LANES):
-        places = _nodes(z, first)
-        values(places, False, parts, work)
-        shares(places, parts, work)
-        work.found[24:] = 0.0
+        _take_apart(z, first, parts, work)
         _put(row, first, 0, work, table)
         _put(row, first, 16, work, table_of_parts)
     quartet.finish(table, row, z)
