@@ -161,6 +161,19 @@ MANIFOLD = 0.02
 #: The second stick of the brief's example, printed to 9 digits.
 RETURN_TIME = 3e-9
 
+# --- boundary layer (kernels/motion/test_layer.py) ---
+#: A panel of two e-folds, of degree 9, against an integration in time at rtol 1e-12; measured 2e-9.
+LAYER_PANEL = 1e-8
+#: What slopes change by over a distance e from the manifold, over e: that of delta most, which goes with S + e where S
+#: is a twentieth of the first e; measured 21.
+LAYER_LINEAR = 40.0
+
+# --- partial slip (kernels/motion/test_partial_slip.py) ---
+#: The slow manifold over its leading order, less 1, times zeta; measured 0.0024 at alpha = 1.5 to 0.068 at 300.
+MANIFOLD_NEXT = 0.2
+#: A slope by central differences of a step of 1e-4: its square.
+MANIFOLD_SLOPE = 1e-7
+
 # --- full slip (test_slide.py) ---
 #: Closed forms of the elastic cylinder, over the speed and the duration: roundings.
 SLIDE = 1e-14

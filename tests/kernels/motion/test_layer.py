@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import tolerances as tol
+from scipy.integrate import solve_ivp
 
 import viscoroll as vr
+from viscoroll.kernels.motion.collocation import INTEGRAL, N
+from viscoroll.kernels.motion.layer import layer_node, layer_solve, manifold, slow_creep
+from viscoroll.kernels.motion.partial_slip import stiff_rates
+from viscoroll.kernels.motion.path import D_TAU, D_TURN, D_X, D_Y, Y
+from viscoroll.kernels.motion.slow import workspace
 from viscoroll.presets import PAPER_STARTS
+from viscoroll.scene import kernel_scene
 from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED
@@ -89,3 +98,51 @@ def test_distance_is_integrated_from_what_substitution_ends_with():
     way = 0.5 * end * weight @ motion.V[:-1]
     assert motion.x[-1] == pytest.approx(way, rel=1e-12, abs=0.0)
     assert motion.steps < 20  # what was left of it looked like an error of the panel: 57
+
+
+def around(y: float, D: float) -> tuple[Any, Any, float]:
+    """Scene, arrays that hold the manifold around (y, D), and the distance of D from it."""
+    scene, work = kernel_scene(11.0, 2.91, 0.2, 0.5), workspace.py_func()
+    for array in work:
+        array.fill(0.0)
+    assert manifold(y, D, 1e-12, scene, work)
+    return scene, work, D - slow_creep(y, work.slow)[0]
+
+
+@pytest.mark.parametrize("D", [1.0, -1.0])
+def test_a_panel_takes_the_time_in_which_the_distance_falls(D):
+    """Two e-folds: (y, D) integrated in time for as long as the panel says are where it ends.
+
+    Where panels fail, steps in time go through the layer: that is right, too, and only takes longer.
+    """
+    y, folds = np.log(2.0), 2.0
+    scene, work, e = around(y, D)
+    nodes, sign = work.nodes, np.sign(D)
+    nodes[Y, 0] = y
+    layer_node(0, e, 1.0, nodes, work.slow, scene)
+    assert layer_solve(e, folds, 1, False, 1e-12, scene, work) == folds
+    tau = 0.5 * folds * INTEGRAL @ nodes[D_TAU, 1:]
+    exact = solve_ivp(
+        lambda _, u: stiff_rates(*u, sign, scene)[:2], (0.0, tau), [y, D], "DOP853", rtol=1e-12, atol=1e-13
+    )
+    y_end, D_end = exact.y[:, -1]
+    assert nodes[Y, N] == pytest.approx(y_end, abs=tol.LAYER_PANEL)
+    assert e * np.exp(-folds) == pytest.approx(D_end - slow_creep(y_end, work.slow)[0], rel=tol.LAYER_PANEL)
+
+
+@pytest.mark.parametrize("D", [1.0, -1.0])
+def test_slopes_over_e_folds_next_to_the_manifold(D):
+    """All is linear in a small distance: it falls at one pace, while the rest goes at the rates on the manifold."""
+    y = np.log(2.0)
+    scene, work, e = around(y, D)
+    nodes, (S, slope) = work.nodes, slow_creep(y, work.slow)
+    (rise, fall), (back, drop) = (stiff_rates(y, S + h, np.sign(S), scene)[:2] for h in (1e-4, -1e-4))
+    pace = -(fall - drop - slope * (rise - back)) / 2e-4
+    dy, _, V, delta, _, _ = stiff_rates(y, S, np.sign(S), scene)
+    for share in (1e-4, 1e-6, 1e-8, 1e-12):  # below 3e-7 of zeta rounding would spoil a difference of rates
+        nodes[Y, 1] = y
+        layer_node(1, share * e, 1.0, nodes, work.slow, scene)
+        m = 1.0 / nodes[D_TAU, 1]
+        assert m == pytest.approx(pace, rel=tol.LAYER_LINEAR * (share + 1e-5))
+        found = nodes[[D_Y, D_X, D_TURN], 1] * m
+        assert found == pytest.approx([dy, V, V * delta], rel=tol.LAYER_LINEAR * (share + 1e-12))
