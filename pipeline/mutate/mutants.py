@@ -81,7 +81,7 @@ MOTION = [
     ("motion/full_slip.py", "return V, mu * half_lam * (1.0 + g * s) * V", "return V, 0.98 * mu * half_lam * (1.0 + g * s) * V", _MOTION),
     ("motion/slide.py", "- sigma * (1.0 / j - 1.0) * I", "+ sigma * (1.0 / j - 1.0) * I", _MOTION),
     ("motion/slide.py", "(omega - (push - mean) / j) * tau", "(omega - push / j) * tau", _MOTION),
-    ("motion/partial_slip.py", "factor = -(1.0 - j) / (8.0", "factor = (1.0 - j) / (8.0", _MOTION),
+    ("motion/partial_slip.py", "factor = -(1.0 - j) / (8.0", "factor = (1.0 - j) / (8.0", "tests/kernels/motion/test_partial_slip.py"),
     ("motion/partial_slip.py", "rate = q_over_V - 0.5 * m\n", "rate = q_over_V - 0.5 * m * (1.0 + 1e-6)\n", _MOTION),
     ("motion/partial_slip.py", "0.5 * m) * (per_V / mu) - 2.0 * d * rate", "0.5 * m) * (per_V / mu)", _MOTION),
     ("motion/radau_phase.py", "if share > 1.0 + _ROUNDING:", "if share > 2.0 + _ROUNDING:", _MOTION),
