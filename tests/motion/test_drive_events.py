@@ -125,3 +125,22 @@ def test_a_faint_push_the_other_way(share):
     assert m.steps <= 3 * plain.steps
     assert m.reversals == pytest.approx([16.0 * share], rel=1e-3)
     assert m.V[1:] == pytest.approx(plain.V[1:], rel=100.0 * share + BOUND * 1e-10)
+
+
+@pytest.mark.parametrize("early", [0.02, 0.1, 0.3])
+def test_a_brake_locks_just_before_v_is_zero(early):
+    """Sliding at V > 0 > omega: omega comes to 0 first, and only then do V and with it the slip vanish.
+
+    On one panel both the stop and, beyond it, the end of slip lie between the same two nodes.  An elastic cylinder:
+    V' is the force less mu until then, V a parabola.
+    """
+    scene, rtol = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), 1e-8
+    end = (np.sqrt(0.06) - 0.2) / 0.01  # of V = 1 - 0.2 t - 0.005 t^2
+    stop = end - early  # omega' is (mu + brake)/j = 1
+    t = np.append(np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]))
+    m = vr.roll(scene, 1.0, -stop, t, rtol, brake=0.3, force=([0.0, 10.0], [0.0, -0.1]))
+    assert [s.regime for s in m.switches] == ["locked"]
+    assert m.switches[0].t == pytest.approx(stop, rel=BOUND * rtol)
+    bound = BOUND * rtol * stop
+    assert m.V == pytest.approx(1.0 - 0.2 * t - 0.005 * t**2, abs=bound)
+    assert m.omega == pytest.approx(np.minimum(t - stop, 0.0), abs=bound)
