@@ -48,6 +48,17 @@ def elements(array: NDArray[np.float64], shape: tuple[int, ...]) -> Callable[[in
     return gathered
 
 
+def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
+    """One value, or one for each element of ``shape``, as a contiguous vector.
+
+    Read-only whatever was given: a kernel is compiled anew for every kind of array that it sees.
+    """
+    whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
+    vector = whole.reshape(-1).view()
+    vector.flags.writeable = False
+    return vector
+
+
 def thread_count(threads: int | None = None) -> int:
     """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use; at least 1.
 

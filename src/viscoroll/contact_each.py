@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .blocks import flattened
 from .materials.bodies import Bodies
 from .materials.prony_array import MaterialArray
 from .materials.tables import records, series
-from .rolling_contact import flattened
 
 
 def states_each(materials: MaterialArray, per_speed: set[str]) -> Callable:

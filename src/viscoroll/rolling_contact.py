@@ -203,17 +203,6 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
-def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
-    """One value, or one for each element of ``shape``, as a contiguous vector.
-
-    Read-only whatever was given: a kernel is compiled anew for every kind of array that it sees.
-    """
-    whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
-    vector = whole.reshape(-1).view()
-    vector.flags.writeable = False
-    return vector
-
-
 def _compute(
     material: Any,
     arrays: list[NDArray],

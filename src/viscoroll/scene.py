@@ -12,8 +12,9 @@ from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError, one_of
 from .materials.bodies import Bodies
 from .materials.bodies_array import BodiesArray
-from .materials.prony import HIGHEST_ALPHA, Prony
+from .materials.prony import Prony
 from .materials.prony_array import MaterialArray
+from .materials.prony_forms import HIGHEST_ALPHA
 from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained, unlike_speeds
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.kernels.law import series as kernels
+from viscoroll.kernels.material import series as kernels
 from viscoroll.kernels.material.functions import at_contact, generators
 from viscoroll.kernels.material.standard import standard
 from viscoroll.materials.tables import record, series

@@ -157,15 +157,32 @@ def test_a_brake_locks_just_before_v_is_zero(early):
     """Sliding at V > 0 > omega: omega comes to 0 first, and only then do V and with it the slip vanish.
 
     On one panel both the stop and, beyond it, the end of slip lie between the same two nodes.  An elastic cylinder:
-    V' is the force less mu until then, V a parabola.
+    V' is the force less mu until then, V a parabola; then the brake holds it.
     """
     scene, rtol = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), 1e-8
     end = (np.sqrt(0.06) - 0.2) / 0.01  # of V = 1 - 0.2 t - 0.005 t^2
     stop = end - early  # omega' is (mu + brake)/j = 1
-    t = np.append(np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]))
+    t = np.concatenate([np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]), [end + 1.0]])
     m = vr.roll(scene, 1.0, -stop, t, rtol, brake=0.3, force=([0.0, 10.0], [0.0, -0.1]))
-    assert [s.regime for s in m.switches] == ["locked"]
-    assert m.switches[0].t == pytest.approx(stop, rel=BOUND * rtol)
+    assert [s.regime for s in m.switches] == ["locked", "held"]
+    assert [s.t for s in m.switches] == pytest.approx([stop, end], rel=BOUND * rtol)
     bound = BOUND * rtol * stop
-    assert m.V == pytest.approx(1.0 - 0.2 * t - 0.005 * t**2, abs=bound)
+    assert m.V == pytest.approx(np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0), abs=bound)
     assert m.omega == pytest.approx(np.minimum(t - stop, 0.0), abs=bound)
+
+
+@pytest.mark.parametrize("pull", [-0.001, 0.001])
+def test_a_locked_cylinder_skids_to_rest(pull):
+    """Under a force that changes: at alpha = 1 the edge of slip was sought across V = 0, where |V| has a kink, and the
+    cylinder crept on with its brake locked."""
+    draw, rtol, mu, count = np.random.default_rng(7), 1e-8, 0.2, 500
+    V0 = 10.0 ** draw.uniform(-2.0, 1.0, count)
+    scene = vr.Scene(alpha=1.0, kappa=10.0 ** draw.uniform(-1.0, 2.0, count), mu=mu, gamma=1.0, j=0.5)
+    t = np.geomspace(0.01, 100.0, 400)
+    force = [0.0, t[-1]], [0.0, pull * t[-1]]
+    e = vr.ensemble(scene, V0, 0.0, t, rtol=rtol, brake=10.0, force=force, fields=("V", "regime"))
+    end = 2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))  # of V = V0 - mu t + pull t^2/2
+    skids = t < end[:, None]
+    V = np.where(skids, V0[:, None] - mu * t + 0.5 * pull * t**2, 0.0)
+    assert (np.abs(e.V - V).max(axis=1) <= BOUND * rtol * V0).all()
+    assert (e.regime == np.where(skids, 3, 4)).all()

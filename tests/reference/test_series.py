@@ -8,7 +8,7 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
-from viscoroll.kernels.law import series as kernels
+from viscoroll.kernels.material import series as kernels
 from viscoroll.materials.tables import series
 from viscoroll.reference import series as raw
 from viscoroll.reference import spectral

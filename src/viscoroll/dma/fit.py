@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import number
 from ..errors import ParameterError
-from ..materials.prony import MOST_MODES, WIDEST, Prony
+from ..materials.prony import Prony
+from ..materials.prony_forms import MOST_MODES, WIDEST
 from ..typed import Numbers
 from ..validity import Assumption
 from .choose import chosen

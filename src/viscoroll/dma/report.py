@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from .fit import Fit
 
 #: medians of the Kramers-Kronig ratio outside of which storage and loss are said not to go together
 _SOUND = (0.8, 1.25)
 
 
-def report(fit: Fit) -> str:
-    """The report that ``print(fit)`` shows."""
+def report(fit: Any) -> str:
+    """The report that ``print(fit)`` shows, of a :class:`viscoroll.dma.Fit`."""
     prony = fit.prony
     lines = [
         f"Prony series of {prony.E.size} modes for {fit.omega.size} points, omega = {_span(fit.omega)} rad/s",
@@ -44,11 +41,11 @@ def _span(values: np.ndarray) -> str:
     return f"{values.min():.3g} to {values.max():.3g}"
 
 
-def _floor(fit: Fit) -> str:
+def _floor(fit: Any) -> str:
     return "" if fit.plateau else "; the least that is allowed: the data do not determine it"
 
 
-def _asked(fit: Fit) -> str:
+def _asked(fit: Any) -> str:
     return f"{fit.target:.2%} was asked for" + ("" if fit.reached else " and not reached")
 
 
@@ -62,7 +59,7 @@ def _together(median: float) -> str:
     return text + ": storage and loss do not go together, or the spectrum is of few narrow modes"
 
 
-def _outside(fit: Fit) -> str:
+def _outside(fit: Any) -> str:
     count = int(fit.outside.sum())
     if not count:
         return "no mode lies outside the data's range of 1/omega"
@@ -71,7 +68,7 @@ def _outside(fit: Fit) -> str:
     return f"{which}, lie outside the data's range of 1/omega"
 
 
-def _shifts(fit: Fit) -> list[str]:
+def _shifts(fit: Any) -> list[str]:
     if fit.shifts is None:
         return []
     held = zip(fit.shifts.temperature, fit.shifts.a_T, strict=True)

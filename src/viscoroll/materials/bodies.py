@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..checks import number
 from ..errors import ParameterError
+from .bodies_array import BodiesArray
 from .prony import Prony
 from .prony_array import PronyArray
 
@@ -49,9 +50,7 @@ class Bodies:
     def __new__(cls, cylinder: Any = None, half_space: Any = None, share: Any = 0.5) -> Any:
         if not any(isinstance(body, PronyArray) for body in (cylinder, half_space)) and not np.ndim(share):
             return super().__new__(cls)
-        from .bodies_array import BodiesArray
-
-        return BodiesArray(cylinder, half_space, share)
+        return BodiesArray(cylinder, half_space, share, one=cls)
 
     def __post_init__(self) -> None:
         for name in ("cylinder", "half_space"):

@@ -1,4 +1,4 @@
-"""Pairs of bodies, one for each state or motion: :class:`BodiesArray`, which :class:`Bodies` makes of arrays."""
+"""Pairs of bodies, one for each state or motion: :class:`BodiesArray`, which ``Bodies`` makes of arrays."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import broadcast_shape, checked
 from ..errors import ParameterError
-from .bodies import Bodies
-from .prony import MOST_MODES, Prony
+from .prony import Prony
 from .prony_array import Block, MaterialArray, PronyArray, block_of, moments, own_unit
-from .prony_forms import of_relaxation
+from .prony_forms import MOST_MODES, of_relaxation
 
 
 class _Given(NamedTuple):
@@ -70,7 +69,7 @@ def _within(which: Any, series: PronyArray) -> Any:
 
 
 class BodiesArray(MaterialArray):
-    """Pairs 0 ... n - 1, :class:`Bodies` each.
+    """Pairs 0 ... n - 1, ``Bodies`` each.
 
     Made by ``Bodies(cylinder, half_space, share)`` where a body is n series (:class:`PronyArray`) or the share an array
     (n,); what is single is that of all pairs.
@@ -90,7 +89,10 @@ class BodiesArray(MaterialArray):
     Immutable, hashable, equal where what was given is.  ``p[i]`` is a single pair, and ``p[i:k]`` some of them.
     """
 
-    def __init__(self, cylinder: Prony | PronyArray, half_space: Prony | PronyArray, share: ArrayLike) -> None:
+    def __init__(
+        self, cylinder: Prony | PronyArray, half_space: Prony | PronyArray, share: ArrayLike, *, one: Any
+    ) -> None:
+        self._one = one  # the class of a single pair
         for name, body in (("cylinder", cylinder), ("half_space", half_space)):
             if not isinstance(body, Prony | PronyArray):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
@@ -127,8 +129,8 @@ class BodiesArray(MaterialArray):
         numbers, share = np.arange(len(self))[which], np.broadcast_to(self.share, self.shape)[which]
         cylinder, half_space = (_picked(body, numbers) for body in (self.cylinder, self.half_space))
         if isinstance(which, slice):
-            return BodiesArray(cylinder, half_space, share)
-        return Bodies(cylinder, half_space, float(share))
+            return BodiesArray(cylinder, half_space, share, one=self._one)
+        return self._one(cylinder, half_space, float(share))
 
     def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
         """The pairs ``which`` in the own times of their sums, those of as many modes together."""
@@ -211,8 +213,8 @@ def _picked(series: Prony | PronyArray, numbers: Any) -> Any:
     return series[_within(numbers, series)]
 
 
-def _repeated(one: Prony) -> PronyArray:
+def _repeated(one: Prony) -> Any:
     """A series as an array of it alone."""
     if one.by_creep:
-        return PronyArray(one.J[None], one.T[None], one.alpha, creep=True)
-    return PronyArray(one.E[None], one.tau[None], None, creep=False)
+        return Prony.creep(one.J[None], one.T[None], alpha=one.alpha)
+    return Prony(one.E[None], one.tau[None])

@@ -243,7 +243,7 @@ class Material(FromPrograms):
         """
         from .store import load
 
-        return load(path)
+        return load(path, cls)
 
     def _storage(self, omega: ArrayLike) -> NDArray[np.float64]:
         product = self._products(omega)

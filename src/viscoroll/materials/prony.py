@@ -19,12 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import checked
 from ..errors import ParameterError
-from .prony_forms import Modes, of_creep, of_relaxation
-
-#: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
-HIGHEST_ALPHA = 1e12
-#: most modes of a series, and longest over shortest time
-MOST_MODES, WIDEST = 64, 1e32
+from .prony_array import PronyArray
+from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
 
 
 class Prony:
@@ -48,7 +44,7 @@ class Prony:
     """
 
     def __new__(cls, E: ArrayLike = (), tau: ArrayLike = ()) -> Any:
-        many = _array_of(E, tau, creep=False)
+        many = _array_of(E, tau, cls, creep=False)
         return super().__new__(cls) if many is None else many
 
     def __init__(self, E: ArrayLike, tau: ArrayLike) -> None:
@@ -80,7 +76,7 @@ class Prony:
         ParameterError
             As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
         """
-        many = _array_of(J, T, alpha, creep=True)
+        many = _array_of(J, T, cls, alpha, creep=True)
         if many is not None:
             return many
         J, T = _series("J", J, "T", T)
@@ -191,16 +187,14 @@ class Prony:
         return f"Prony.creep(J={J}, T={T}, alpha={self._alpha!r})"
 
 
-def _array_of(strengths: ArrayLike, times: ArrayLike, alpha: Any = None, *, creep: bool) -> Any:
+def _array_of(strengths: ArrayLike, times: ArrayLike, one: type[Prony], alpha: Any = None, *, creep: bool) -> Any:
     """Materials, one each, of arrays (n, N); None of others."""
     try:
         if max(np.ndim(strengths), np.ndim(times)) < 2:
             return None
     except ValueError:  # ragged: refused where it is checked
         return None
-    from .prony_array import PronyArray
-
-    return PronyArray(strengths, times, alpha, creep=creep)
+    return PronyArray(strengths, times, alpha, creep=creep, one=one)
 
 
 def _series(

@@ -1,4 +1,4 @@
-"""Materials, one for each state or motion: :class:`PronyArray`, which :class:`Prony` makes of arrays (n, N).
+"""Materials, one for each state or motion: :class:`PronyArray`, which ``Prony`` makes of arrays (n, N).
 
 Pairs of them: :mod:`bodies_array`.
 """
@@ -16,8 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import broadcast_shape, checked
 from ..errors import ParameterError
-from .prony import HIGHEST_ALPHA, MOST_MODES, WIDEST, Prony
-from .prony_forms import Modes, of_creep, of_relaxation
+from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
 
 
 class Block(NamedTuple):
@@ -63,7 +62,7 @@ class MaterialArray(ABC):
 
 
 class PronyArray(MaterialArray):
-    """Materials 0 ... n - 1, a :class:`Prony` series each.
+    """Materials 0 ... n - 1, a ``Prony`` series each.
 
     Made by ``Prony(E, tau)`` and ``Prony.creep(J, T, alpha=...)`` of arrays (n, N), one of which may be (N,), shared by
     all; ``alpha`` a number or (n,).
@@ -84,9 +83,11 @@ class PronyArray(MaterialArray):
     What follows from strengths and times is found block by block where it is needed and not kept.
     """
 
-    def __init__(self, strengths: ArrayLike, times: ArrayLike, alpha: ArrayLike | None, *, creep: bool) -> None:
+    def __init__(
+        self, strengths: ArrayLike, times: ArrayLike, alpha: ArrayLike | None, *, creep: bool, one: Any
+    ) -> None:
         names = ("J", "T") if creep else ("E", "tau")
-        self._creep = creep
+        self._creep, self._one = creep, one  # the class of a single one
         self._strengths, self._times = (
             _kept(checked(name, given, low=0.0, strict=strict))
             for name, given, strict in zip(names, (strengths, times), (False, True), strict=True)
@@ -119,12 +120,15 @@ class PronyArray(MaterialArray):
     def __getitem__(self, which: Any) -> Any:
         if isinstance(which, slice | np.ndarray):
             each = self._alpha if self._alpha is None or self._alpha.ndim == 0 else self._alpha[which]
-            return PronyArray(self._whole[0][which], self._whole[1][which], each, creep=self._creep)
+            return self._like(self._whole[0][which], self._whole[1][which], each)
         strengths, times = (array[which] for array in self._whole)
         if not self._creep:
-            return Prony(strengths, times)
+            return self._one(strengths, times)
         given = None if self._alpha is None else float(np.broadcast_to(self._alpha, self.shape)[which])
-        return Prony.creep(strengths, times, alpha=given)
+        return self._one.creep(strengths, times, alpha=given)
+
+    def _like(self, strengths: NDArray, times: NDArray, alpha: NDArray | None) -> PronyArray:
+        return PronyArray(strengths, times, alpha, creep=self._creep, one=self._one)
 
     @cached_property
     def alpha(self) -> NDArray[np.float64]:
@@ -142,7 +146,7 @@ class PronyArray(MaterialArray):
     def slower(self, factor: ArrayLike) -> PronyArray:
         """All times longer by a factor, or by one each."""
         by = checked("factor", factor, low=0.0, strict=True)
-        return PronyArray(self._strengths, self._times * by[..., None], self._alpha, creep=self._creep)
+        return self._like(self._strengths, self._times * by[..., None], self._alpha)
 
     def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
         """The materials ``which`` in their own times: those with all their modes together, and the others."""
@@ -221,7 +225,7 @@ def _kept(array: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _sums(modes: Modes, times: NDArray, creep: bool) -> NDArray[np.float64]:
-    """(sum J_j T_j, sum E_i tau_i^2 + sum J_j T_j^2) of each, as :class:`Prony` has them: of the times given."""
+    """(sum J_j T_j, sum E_i tau_i^2 + sum J_j T_j^2) of each, as ``Prony`` has them: of the times given."""
     tau, T = (1.0 / modes.a, times) if creep else (times, 1.0 / modes.b)
     first = modes.J * T if creep else modes.E * tau
     terms = zip(first.tolist(), (modes.E * tau**2).tolist(), (modes.J * T**2).tolist(), strict=True)

@@ -12,6 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+#: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
+HIGHEST_ALPHA = 1e12
+#: most modes of a series, and longest over shortest time
+MOST_MODES, WIDEST = 64, 1e32
 #: halvings of ln(distance) until it is good to rounding, and steps of Newton's iteration behind them
 _HALVINGS, _POLISH = 64, 3
 #: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved

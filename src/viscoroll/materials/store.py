@@ -1,11 +1,12 @@
-"""A material as netCDF that carries its series: :meth:`Material.to_netcdf` and :meth:`Material.from_netcdf`."""
+"""A material as netCDF that carries its series: ``to_netcdf`` and ``from_netcdf`` of :class:`viscoroll.Material`."""
 
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -17,8 +18,7 @@ from .prony import Prony
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .material import Material
-
+_Made = TypeVar("_Made")
 SUFFIX = ".nc"
 #: what a file says of itself; another number where one of this version could not be read any more
 _SCHEMA = "viscoroll material 1"
@@ -38,7 +38,7 @@ _MEANING = {
 }
 
 
-def as_dataset(material: Material) -> xr.Dataset:
+def as_dataset(material: Any) -> xr.Dataset:
     """Both forms of the series over "mode", slowest first, and the constants; ``given`` names the form to trust."""
     import xarray as xr
 
@@ -62,13 +62,13 @@ def as_dataset(material: Material) -> xr.Dataset:
     )  # fmt: skip
 
 
-def save(material: Material, path: str | PathLike[str]) -> None:
+def save(material: Any, path: str | PathLike[str]) -> None:
     """Write a material, sealed; raises OutputError."""
     write_dataset(as_dataset(material), path, sealed=True)
 
 
-def load(path: str | PathLike[str]) -> Material:
-    """The material of a file that :func:`save` wrote; raises TableError."""
+def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
+    """What ``make`` gives of the arguments of a material that :func:`save` wrote; raises TableError."""
     import xarray as xr
 
     content = _whole(Path(path))
@@ -76,21 +76,19 @@ def load(path: str | PathLike[str]) -> Material:
         found = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False)
         if found.attrs.get("schema") != _SCHEMA:
             raise TableError(path, f"is no material: its schema is {found.attrs.get('schema')!r}, not {_SCHEMA!r}")
-        return _made(found)
+        return make(**_arguments(found))
     except (ParameterError, KeyError, ValueError, OSError) as error:
         raise TableError(path, f"is no material ({' '.join(str(error).split()):.200})") from error
 
 
-def _made(found: xr.Dataset) -> Material:
-    from .material import Material
-
+def _arguments(found: xr.Dataset) -> dict[str, Any]:
     constants: dict[str, Any] = {name: float(found[name]) for name in ("nu", "T_ref")}
     if "density" in found:
         constants["density"] = float(found.density)
     strengths, times = (found[name].values.astype(np.float64) for name in _FORMS[found.attrs["given"]])
     creep = found.attrs["given"] == "creep"
     series = Prony.creep(strengths, times, alpha=float(found.alpha)) if creep else Prony(strengths, times)
-    return Material(float(found.E_long), prony=series, name=found.attrs["name"], **constants)
+    return constants | {"E": float(found.E_long), "prony": series, "name": found.attrs["name"]}
 
 
 def _whole(path: Path) -> bytes:

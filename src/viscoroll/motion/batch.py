@@ -8,13 +8,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import run_blocks
+from ..blocks import flattened, run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
 from ..errors import ParameterError
 from ..materials.prony_array import MaterialArray
 from ..materials.tables import record
-from ..rolling_contact import flattened
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..typed import Driving, Numbers
 from .checks import SPEED_RANGE, controls, output_times, start_speeds

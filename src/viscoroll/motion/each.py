@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..blocks import flattened
 from ..materials.prony_array import MaterialArray
 from ..materials.tables import records
-from ..rolling_contact import flattened
 
 #: how often the unit of time divides a field
 _PER_TIME = {"V": 1, "omega": 1} | dict.fromkeys(

@@ -16,9 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import run_blocks
+from ..blocks import flattened, run_blocks
 from ..materials.prony import Prony
-from ..rolling_contact import flattened
 from ..scene import Scene, kernel_scene
 from .driven import Drive
 from .flow_store import FlowMap, load, path_of, save

@@ -17,12 +17,14 @@ from ..scene import Scene
 from ..symbols import attributes
 from ..validity import Validity
 from .checks import SPEED_RANGE, output_times
-from .driven import LOSSES, Drive
-from .rolling import Inputs
+from .driven import LOSSES, ROWS, Drive
+from .rolling import Inputs, rolled
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: changes of regime that are kept
+_SWITCHES_KEPT = 1000
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
 
 
@@ -171,8 +173,6 @@ class Motion(Shown):
         ParameterError
             Times that are not ascending or lie beyond the end of the motion.
         """
-        from .single import integrated
-
         times = output_times(t)
         end = self._inputs.end
         if times[-1] > end:
@@ -184,6 +184,24 @@ class Motion(Shown):
         from .export import motion_dataset
 
         return motion_dataset(self)
+
+
+def integrated(inputs: Inputs, times: NDArray) -> Motion:
+    """The motion at ``times``, up to its end."""
+    asked = times if times[-1] == inputs.end else np.append(times, inputs.end)
+    switches = np.full((_SWITCHES_KEPT, 2), np.nan)
+    scene, error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
+    rows = dict(zip(ROWS, out[:, : times.size], strict=True))
+    losses = np.stack([rows.pop(name) for name in LOSSES])
+    whole = rows.pop("regime")
+    regime = np.where(np.isnan(whole), -1, whole).astype(np.int8)
+    noted = switches[~np.isnan(switches[:, 1])]
+    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in noted if what >= 0.0)
+    return Motion(
+        scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
+        status=MotionStatus(int(status)), steps=int(steps), reversals=noted[noted[:, 1] < 0.0, 0],
+        drive_error=error, _inputs=inputs, _losses=None if np.isnan(losses).all() else losses,
+    )  # fmt: skip
 
 
 def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:

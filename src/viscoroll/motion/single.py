@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +13,11 @@ from ..errors import MotionStatus, ParameterError
 from ..scene import Scene, checked_scene
 from ..typed import Numbers
 from .checks import controls, output_times, start_speeds
-from .driven import LOSSES, ROWS, Drive
-from .one import REGIMES, Motion, Switch
+from .driven import Drive
+from .one import Motion, integrated
 from .rolling import Inputs, rolled
 from .warned import look
 
-if TYPE_CHECKING:
-    pass
-
-_SWITCHES_KEPT = 1000
 #: room for the ends of steps at first
 _STEPS = 1000
 _NO_SWITCHES = np.empty((0, 2))
@@ -136,21 +131,3 @@ def _step_times(inputs: Inputs) -> NDArray:
         ends = np.full(min(max(4 * ends.size, _STEPS), inputs.max_steps), np.nan)
         rolled(inputs, np.array([end]), (_NO_SWITCHES, ends))
     return np.unique(np.concatenate(([0.0], ends[ends < end], [end])))
-
-
-def integrated(inputs: Inputs, times: NDArray) -> Motion:
-    """The motion at ``times``, up to its end."""
-    asked = times if times[-1] == inputs.end else np.append(times, inputs.end)
-    switches = np.full((_SWITCHES_KEPT, 2), np.nan)
-    scene, error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
-    rows = dict(zip(ROWS, out[:, : times.size], strict=True))
-    losses = np.stack([rows.pop(name) for name in LOSSES])
-    whole = rows.pop("regime")
-    regime = np.where(np.isnan(whole), -1, whole).astype(np.int8)
-    noted = switches[~np.isnan(switches[:, 1])]
-    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in noted if what >= 0.0)
-    return Motion(
-        scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
-        status=MotionStatus(int(status)), steps=int(steps), reversals=noted[noted[:, 1] < 0.0, 0],
-        drive_error=error, _inputs=inputs, _losses=None if np.isnan(losses).all() else losses,
-    )  # fmt: skip

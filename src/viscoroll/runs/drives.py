@@ -21,7 +21,7 @@ from .units import are_si, load_of, unit_of_time
 if TYPE_CHECKING:
     from .inputs import Inputs
     from .ranges import Range
-    from .sources import Reader
+    from .reader import Reader
 
 PREFIX = "drive_"
 #: in place of a time: that before once more, so that the value jumps

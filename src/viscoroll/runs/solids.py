@@ -20,7 +20,7 @@ from ..sections import fault
 from .ranges import CYLINDER, MODES, PREFIXES
 
 if TYPE_CHECKING:
-    from .sources import Reader
+    from .reader import Reader
 
 #: keys of a series, and the lists of its strengths and times
 SERIES = {"prony": ("E", "tau"), "creep": ("J", "T")}

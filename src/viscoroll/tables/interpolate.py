@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..blocks import flattened
 from ..checks import broadcast_shape, checked
 from ..errors import OutOfTableError, ParameterError
-from ..rolling_contact import Values, flattened
+from ..rolling_contact import Values
 from . import schema
 from .grid import ATLAS_MAPS
 

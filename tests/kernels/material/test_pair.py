@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
-from viscoroll.kernels.law import series as kernels
+from viscoroll.kernels.material import series as kernels
 from viscoroll.kernels.material.functions import at_contact, at_rolling, generator_slopes
 from viscoroll.kernels.material.pair import Pair
 from viscoroll.kernels.material.standard import standard

@@ -13,7 +13,7 @@ from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_n
 from .origin import departing
 from .output import pass_panel
 from .rates import rates_at
-from .records import NO_EVENT, STUCK, TURN, Clock, Frame, State
+from .records import EDGE, NO_EVENT, SLOW, STUCK, TURN, Clock, Frame, State
 from .solve import panel_error, solve
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
@@ -116,11 +116,11 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if not size <= _CUTTABLE:
             break
         found, v = first_event(case.work)
-        behind = not frame.slips and goes_behind(nodes)
+        behind = goes_behind(nodes)
         missed = passed_over(frame, case)
         if missed != NO_EVENT and panel.length <= _INSTANT * (panel.tau + left):
             return missed, 2.0, panel, min(size, 1.0), track
-        if missed != NO_EVENT or (found == NO_EVENT and behind):
+        if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):
             break
         if found != NO_EVENT:
             event = found
@@ -128,8 +128,9 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
             event = TURN
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
-        # partial slip does not go on beyond V = 0, and full slip has a kink there
-        if found != NO_EVENT and size <= 1.0 and not behind and found != TURN:
+        # partial slip does not go on beyond V = 0, and |V| in the edge and in the speeds of full slip has a kink there
+        kinked = behind and (not frame.slips or found == EDGE or found == SLOW)
+        if found != NO_EVENT and size <= 1.0 and not kinked and found != TURN:
             return event, v, panel, size, track
         if found == NO_EVENT:
             v = place_of(event, 0, case.work)
