@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.material.functions import at_contact, generators
-from viscoroll.kernels.material.series import Parts, room, values
+from viscoroll.kernels.material.series import AT_HALF_SPACE, Parts, room, values
 from viscoroll.kernels.material.series import shares as parts_of
 from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
@@ -109,7 +109,7 @@ def chebyshev(random: np.random.Generator, count: int) -> Claim:
         work = room(known)
         values(places, False, known, work)
         parts_of(places, known, work)
-        half_space = work.found[16]
+        half_space = work.found[AT_HALF_SPACE]
         found = np.array([*generators(z, table), at_contact(z, table)[4], half_space])
         claim.add(abs(found / [*other[:3], weights @ other.shares] - 1.0), at(z=z) + f", {p!r}")
     return claim

@@ -117,7 +117,7 @@ def test_functions_against_the_conditions_as_they_stand(seed, decades):
         for z in np.exp(draw.uniform(np.log(table.tau) - 30.0, np.log(p.T[0]) + 28.0, 12)):
             exact = raw.functions(mp, exact_rates, z)
             kernels.values((z, z, z, z), True, known, room)
-            g, h, m = room.found[:12:4]
+            g, h, m = room.found[kernels.AT_G : kernels.AT_B : kernels.LANES]
             for found in ((g, h, m), (*generators(z, table), at_contact(z, table)[4])):
                 for value, truth in zip(found, (exact.g, exact.h, exact.m), strict=True):
                     assert abs(mp.mpf(float(value)) / truth - 1) <= tol.SERIES_FUNCTIONS, z

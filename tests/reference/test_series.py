@@ -42,7 +42,7 @@ def test_chebyshev_against_the_conditions_and_the_kernels(p, z):
         room = kernels.room(weighted)
         kernels.values((z, z, z, z), False, weighted, room)
         kernels.shares((z, z, z, z), weighted, room)
-        part, rest = room.found[16], room.found[20]
+        part, rest = room.found[kernels.AT_HALF_SPACE], room.found[kernels.AT_CYLINDER]
         assert part == pytest.approx(shares[j], rel=tol.SERIES_FUNCTIONS)
         assert part + rest == pytest.approx(float(truth.m), rel=tol.SERIES_FORMS)
 

@@ -172,7 +172,7 @@ def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, ND
 
     For one thread and one call: it holds the tables of one of them at a time.
     """
-    from ..kernels.material.each import Each, EachPair
+    from ..kernels.material.each import COLUMNS, COLUMNS_OF_PAIRS, FIRST, MODES, STOP, Each, EachPair
     from ..kernels.material.series import packed_size, working_size
     from ..kernels.numerics.quartet import empty_table
 
@@ -180,20 +180,20 @@ def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, ND
     blocks = list(materials.blocks(some))
     pairs = any(block.weights is not None for block in blocks)
     count, most = some.size, max((block.modes.a.shape[-1] for block in blocks), default=0)
-    numbers, bins = np.zeros((count, 17 if pairs else 7)), np.zeros((count, 3), np.int64)
+    numbers, bins = np.zeros((count, COLUMNS_OF_PAIRS if pairs else COLUMNS)), np.zeros((count, 3), np.int64)
     packed, unit = np.zeros((count, packed_size(most))), np.empty(count)
     for block in blocks:
         modes, rows, N = block.modes, block.rows, block.modes.a.shape[-1]
-        unit[rows], bins[rows, 2] = block.unit, N
+        unit[rows], bins[rows, MODES] = block.unit, N
         columns = modes.alpha, block.T_mean, 1.0 / modes.a[:, -1] if N else 1.0, *_weights(modes), block.squares
-        numbers[rows, :7] = np.stack(np.broadcast_arrays(*columns), axis=1)
+        numbers[rows, :COLUMNS] = np.stack(np.broadcast_arrays(*columns), axis=1)
         if N:
-            bins[rows, :2] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
+            bins[rows, FIRST : STOP + 1] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
         *vectors, Q = _series_of(modes)
         weights = np.ones(modes.b.shape) if block.weights is None else block.weights
         packed[rows, : packed_size(N)] = np.concatenate([*vectors, weights, Q.reshape(rows.size, -1)], axis=1)
         if block.weights is not None:
-            numbers[rows, 7:] = _of_bodies(modes, block.weights)
+            numbers[rows, COLUMNS:] = _of_bodies(modes, block.weights)
     own = np.ascontiguousarray(of, dtype=np.int64)
     whole = Each(own, numbers, bins, packed, empty_table(), np.full(1, -1), np.empty(working_size(most)))
     return EachPair(*whole, empty_table()) if pairs else whole, unit[own]

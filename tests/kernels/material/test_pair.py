@@ -53,7 +53,7 @@ def test_the_table_is_the_sum_over_the_modes(seed):
         g, h, dg, dh, half_space, cylinder = at_rolling(z, pair)
         kernels.values((z, z, z, z), False, known, room)
         kernels.shares((z, z, z, z), known, room)
-        exact = room.found[16:24:4]
+        exact = room.found[kernels.AT_HALF_SPACE : kernels.AT_ZEROS : kernels.LANES]
         m = at_contact(z, whole)[4]
         assert abs(half_space - exact[0]) <= tol.SHARES_OF_MODES * m
         assert abs(cylinder - exact[1]) <= tol.SHARES_OF_MODES * m

@@ -32,6 +32,18 @@ def regime_of(frame):
     return LOCKED if frame.locked else FULL if frame.slips else PARTIAL
 
 
+@kernel(inline=True)
+def _put_moving(column, moving, regime, out):
+    """(V, omega, delta) and the regime, in one column."""
+    out[0, column], out[1, column], out[4, column] = moving
+    out[5, column] = regime
+
+
+@kernel(inline=True)
+def _put_acting(column, force, torque, out):
+    out[FORCE, column], out[FORCE + 1, column] = force, torque
+
+
 @kernel
 def _put_path(column, n, value, case):
     """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
@@ -47,8 +59,8 @@ def put_still(until, closed, regime, clock, case):
     at, out, still = clock.at, case.out, Frame(False, 1.0, 1.0, 0.0, False)
     while at < case.tau.size and (case.tau[at] < until or (closed and case.tau[at] == until)):
         load = load_at(case.tau[at], clock.piece, still, case)
-        out[0, at], out[1, at], out[4, at], out[5, at] = 0.0, 0.0, 0.0, regime
-        out[FORCE, at], out[FORCE + 1, at] = load.force, load.torque
+        _put_moving(at, (0.0, 0.0, 0.0), regime, out)
+        _put_acting(at, load.force, load.torque, out)
         for n in range(PATHS):
             _put_path(at, n, case.work.totals[n], case)
         at += 1
@@ -63,9 +75,8 @@ def _put_state(column, s, second, piece, frame, case):
     rates = rates_at(s, second, load, frame, case.scene)
     moments = rates.Q, rates.M_half_space, rates.M_cylinder
     force, torque, _ = needed((rates.V, rates.omega), moments, load, frame, case.scene.j)
-    out[0, column], out[1, column] = direction * rates.V, direction * rates.omega
-    out[4, column], out[5, column] = rates.delta, regime_of(frame)
-    out[FORCE, column], out[FORCE + 1, column] = direction * force, direction * torque
+    _put_moving(column, (direction * rates.V, direction * rates.omega, rates.delta), regime_of(frame), out)
+    _put_acting(column, direction * force, direction * torque, out)
 
 
 @kernel
@@ -132,9 +143,9 @@ def coast(state, frame, clock, case):
         way = -rates.V * np.expm1(-rate * since) / rate
         V = rates.V * decay if moves else 0.0
         delta = rates.delta * decay if moves else 0.0
-        out[0, at], out[1, at] = direction * V, direction * (V * (1.0 + delta))
-        out[4, at], out[5, at] = delta, PARTIAL if moves else REST
-        out[FORCE, at], out[FORCE + 1, at] = 0.0, 0.0
+        regime = PARTIAL if moves else REST
+        _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), regime, out)
+        _put_acting(at, 0.0, 0.0, out)
         for n in range(PATHS):
             _put_path(at, n, totals[n] + (direction * way if n < 2 else 0.0), case)
     last = case.tau[case.tau.size - 1]

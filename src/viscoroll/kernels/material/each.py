@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..compile.choice import by_record
 from ..compile.jit import kernel
 from ..numerics import quartet
@@ -73,12 +71,19 @@ class FilledPair(NamedTuple):
     cylinder: Body
 
 
+#: columns of ``Each.numbers``: alpha, T_mean, tau, those of ``Ends``; of pairs also those of ``Body``, of either
+ALPHA, T_MEAN, TAU, ENDS = range(4)
+HALF_SPACE, CYLINDER, COLUMNS_OF_PAIRS = 7, 12, 17
+COLUMNS = HALF_SPACE
+#: columns of ``Each.bins``: of ``Filled``
+FIRST, STOP, MODES = range(3)
+
+
 class Each(NamedTuple):
     """The materials of a block.
 
     of : material of each state or motion, a row of all that follows
-    numbers : alpha, T_mean, tau, and rise, weight, log_weight and squares of ``Ends``
-    bins : first and stop of ``Filled``, and its modes
+    numbers, bins : the numbers of ``Filled``
     packed : numbers of its modes
     table, held : the one table, and whose bins it holds, -1: nobody's
     work : ``numbers`` of ``Filled``
@@ -96,7 +101,6 @@ class Each(NamedTuple):
 class EachPair(NamedTuple):
     """The pairs of a block: as :class:`Each`.
 
-    numbers : and behind them T_mean, rise, weight, log_weight and squares of the half-space, and of the cylinder
     parts : the one table of the parts of m
     """
 
@@ -111,18 +115,12 @@ class EachPair(NamedTuple):
 
 
 @kernel
-def _empty(table):
-    for n in range(table.shape[0]):
-        table[n, 0] = np.nan
-
-
-@kernel
 def _take(row, each):
     """Whether the tables held another material; then that of this row takes its place."""
     if each.held[0] == row:
         return False
     each.held[0] = row
-    _empty(each.table)
+    quartet.clear(each.table)
     for n in range(each.packed.shape[1]):
         each.work[n] = each.packed[row, n]
     return True
@@ -135,14 +133,19 @@ def of_each(each, i):
     _take(row, each)
     numbers, bins = each.numbers[row], each.bins[row]
     return Filled(
-        numbers[0], numbers[1], numbers[2], each.table, Ends(True, numbers[3], numbers[4], numbers[5], numbers[6]),
-        bins[0], bins[1], bins[2], each.work,
+        numbers[ALPHA], numbers[T_MEAN], numbers[TAU], each.table, _ends(numbers, ENDS),
+        bins[FIRST], bins[STOP], bins[MODES], each.work,
     )  # fmt: skip
 
 
 @kernel(inline=True)
+def _ends(numbers, at):
+    return Ends(True, numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3])
+
+
+@kernel(inline=True)
 def _body(numbers, at):
-    return Body(numbers[at], Ends(True, numbers[at + 1], numbers[at + 2], numbers[at + 3], numbers[at + 4]))
+    return Body(numbers[at], _ends(numbers, at + 1))
 
 
 @kernel(inline=True, allocates=True)
@@ -150,11 +153,12 @@ def of_each_pair(each, i):
     """The pair of state or motion i."""
     row = each.of[min(i, each.of.size - 1)]
     if _take(row, each):
-        _empty(each.parts)
+        quartet.clear(each.parts)
     numbers, bins = each.numbers[row], each.bins[row]
     return FilledPair(
-        numbers[0], numbers[1], numbers[2], each.table, Ends(True, numbers[3], numbers[4], numbers[5], numbers[6]),
-        bins[0], bins[1], bins[2], each.work, each.parts, _body(numbers, 7), _body(numbers, 12),
+        numbers[ALPHA], numbers[T_MEAN], numbers[TAU], each.table, _ends(numbers, ENDS),
+        bins[FIRST], bins[STOP], bins[MODES], each.work, each.parts,
+        _body(numbers, HALF_SPACE), _body(numbers, CYLINDER),
     )  # fmt: skip
 
 

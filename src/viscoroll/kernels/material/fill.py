@@ -7,7 +7,7 @@ from ..compile.jit import kernel
 from ..numerics import quartet
 from ..numerics.bins import bin_place
 from ..numerics.four import LANES
-from .series import Parts, Series, room, shares, values
+from .series import AT_G, AT_HALF_SPACE, AT_ZEROS, Parts, Series, room, shares, values
 
 
 @kernel(inline=True)
@@ -22,12 +22,11 @@ def _nodes(z, first):
 
 @kernel(inline=True)
 def _put(row, first, start, work, table):
-    """Four functions at four nodes into a row; ``start``: of the four in ``found``."""
-    for c in range(min(LANES, quartet.TERMS - first)):
-        at = start + c
-        quartet.put(
-            table, row, first + c, work.found[at], work.found[at + 4], work.found[at + 8], work.found[at + 12]
-        )  # fmt: skip
+    """Four functions at four nodes into a row; ``start``: of the first in ``found``."""
+    found = work.found
+    for n in range(min(LANES, quartet.TERMS - first)):
+        a, b, c, d = start + n, start + n + LANES, start + n + 2 * LANES, start + n + 3 * LANES
+        quartet.put(table, row, first + n, found[a], found[b], found[c], found[d])
 
 
 @kernel
@@ -35,17 +34,17 @@ def fill_bin(z, series, work, row, table):
     """Make the bin of z of g, h, m and b."""
     for first in range(0, quartet.TERMS, LANES):
         values(_nodes(z, first), True, series, work)
-        _put(row, first, 0, work, table)
+        _put(row, first, AT_G, work, table)
     quartet.finish(table, row, z)
 
 
 @kernel(inline=True)
 def _take_apart(z, first, parts, work):
-    """At four nodes g, h, m, from place 16 on what two bodies have in m, and two zeros."""
+    """At four nodes g, h and m, what two bodies have in m, and two zeros."""
     places = _nodes(z, first)
     values(places, False, parts, work)
     shares(places, parts, work)
-    work.found[24:] = 0.0
+    work.found[AT_ZEROS:] = 0.0
 
 
 @kernel
@@ -53,7 +52,7 @@ def fill_bin_of_parts(z, parts, work, row, table):
     """Make the bin of z of what two bodies have in m, and of two zeros."""
     for first in range(0, quartet.TERMS, LANES):
         _take_apart(z, first, parts, work)
-        _put(row, first, 16, work, table)
+        _put(row, first, AT_HALF_SPACE, work, table)
     quartet.finish(table, row, z)
 
 
@@ -62,8 +61,8 @@ def fill_bins(z, parts, work, row, table, table_of_parts):
     """Both, without b, which motions of bodies that differ do not ask for."""
     for first in range(0, quartet.TERMS, LANES):
         _take_apart(z, first, parts, work)
-        _put(row, first, 0, work, table)
-        _put(row, first, 16, work, table_of_parts)
+        _put(row, first, AT_G, work, table)
+        _put(row, first, AT_HALF_SPACE, work, table_of_parts)
     quartet.finish(table, row, z)
     quartet.finish(table_of_parts, row, z)
 

@@ -23,8 +23,9 @@ from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 from ..compile.jit import kernel
 from ..numerics.four import LANES, add, divide, four, load, multiply, spread, store, subtract
 
-#: numbers of ``Room.found``
-FOUND = 32
+#: where the four of each begin in ``Room.found``, zeros last, and how many numbers that has
+AT_G, AT_H, AT_M, AT_B, AT_HALF_SPACE, AT_CYLINDER, AT_ZEROS = range(0, 7 * LANES, LANES)
+FOUND = 8 * LANES
 
 
 class Series(NamedTuple):
@@ -209,16 +210,16 @@ def values(places, sloped, series, work):
             per = divide(x, root)
             rise = multiply(load(work.slope_r, 4 * i), multiply(per, per))
             dh = add(dh, subtract(rise, multiply(load(work.slope_k, 4 * i), multiply(f, f))))
-    store(work.found, 0, g)
-    store(work.found, 4, h)
-    store(work.found, 8, pressed)
-    store(work.found, 12, dh)
+    store(work.found, AT_G, g)
+    store(work.found, AT_H, h)
+    store(work.found, AT_M, pressed)
+    store(work.found, AT_B, dh)
     for c in range(LANES):
-        z, g_c, h_c = places[c], work.found[c], work.found[4 + c]
+        z, g_c, h_c = places[c], work.found[AT_G + c], work.found[AT_H + c]
         square = 1.0 + 2.0 * h_c / z  # 1/lam^2
-        m = g_c + work.found[8 + c] / square
-        work.found[8 + c] = m
-        work.found[12 + c] = m * np.sqrt(square) / (1.0 + h_c / z + work.found[12 + c]) if sloped else 0.0
+        m = g_c + work.found[AT_M + c] / square
+        work.found[AT_M + c] = m
+        work.found[AT_B + c] = m * np.sqrt(square) / (1.0 + h_c / z + work.found[AT_B + c]) if sloped else 0.0
 
 
 @kernel
@@ -233,7 +234,7 @@ def shares(places, parts, work):
     What their sum differs from m by, roundings of alpha times the size of one, is taken from both alike.
     """
     count, z = parts.a.size, four(places[0], places[1], places[2], places[3])
-    h, m = load(work.found, 4), load(work.found, 8)
+    h, m = load(work.found, AT_H), load(work.found, AT_M)
     square = add(spread(1.0), divide(multiply(spread(2.0), h), z))  # 1/lam^2
     half_space, cylinder = spread(0.0), spread(0.0)
     for i in range(count):
@@ -254,5 +255,5 @@ def shares(places, parts, work):
         half_space = add(half_space, multiply(spread(parts.weights[j]), share))
         cylinder = add(cylinder, multiply(spread(1.0 - parts.weights[j]), share))
     whole = divide(m, add(half_space, cylinder))
-    store(work.found, 16, multiply(half_space, whole))
-    store(work.found, 20, multiply(cylinder, whole))
+    store(work.found, AT_HALF_SPACE, multiply(half_space, whole))
+    store(work.found, AT_CYLINDER, multiply(cylinder, whole))

@@ -49,6 +49,13 @@ def empty_table(kept: int = KEPT) -> NDArray[np.float64]:
     return table
 
 
+@kernel
+def clear(table):
+    """Take all bins out of a table."""
+    for row in range(table.shape[0]):
+        table[row, 0] = np.nan
+
+
 @kernel(inline=True)
 def row_of(x, table):
     """(row, whether it holds the bin of x)."""
