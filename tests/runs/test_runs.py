@@ -19,7 +19,8 @@ import viscoroll as vr
 from viscoroll.motion.batch import FLOW_PAYS
 from viscoroll.runs import draws, estimate, read_run, roll_inputs
 from viscoroll.runs.evaluate import block_inputs, roll_block, scene_of
-from viscoroll.runs.inputs import LARGEST, SMALLEST, Distribution, Inputs
+from viscoroll.runs.inputs.record import LARGEST, SMALLEST, Distribution, Inputs
+from viscoroll.runs.inputs.units import scales
 from viscoroll.runs.quantities import QUANTITIES
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.store import columns_of
@@ -33,7 +34,6 @@ from viscoroll.runs.summaries import (
     summarise,
     summary_dataset,
 )  # fmt: skip
-from viscoroll.runs.units import scales
 
 ANY = {"distribution": "uniform", "loc": -2.0, "scale": 4.0}
 FULL = """

@@ -15,9 +15,9 @@ from refusals import refused
 import viscoroll as vr
 from viscoroll.runs import export_netcdf, read_run, run_ensemble, verify
 from viscoroll.runs.evaluate import roll_block, scene_of
+from viscoroll.runs.inputs.units import attributes
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.store import columns_of
-from viscoroll.runs.units import attributes
 
 EXAMPLE = (ROOT / "docs/examples/rubber-sensitivity.toml").read_text(encoding="utf-8").replace("20_000", "60")
 SCENE = """

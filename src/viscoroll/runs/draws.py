@@ -21,7 +21,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .inputs import LARGEST, SMALLEST
+from .inputs.record import LARGEST, SMALLEST
 
 Design = Literal["random", "latin", "sobol"]
 _ROUNDS = 6

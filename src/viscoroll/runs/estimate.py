@@ -11,11 +11,11 @@ import msgspec
 from ..blocks import thread_count
 from . import zarr_files
 from .evaluate import roll_block
+from .inputs.units import scales
 from .records import Record, encoded
 from .runfile import Run
 from .store import columns_of
 from .summaries import summarise
-from .units import scales
 
 #: motions of the trial, mapped and integrated: some tenths of a second
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}

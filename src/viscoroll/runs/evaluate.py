@@ -13,11 +13,11 @@ from ..motion.many import Ensemble
 from ..scene import Scene
 from ..si.scaling import scene_from_si, scene_of_law, scene_of_pair
 from . import draws
-from .drives import drive_of
-from .ranges import CYLINDER, SCENE, SOLID, START
+from .inputs.drives import drive_of
+from .inputs.ranges import CYLINDER, SCENE, SOLID, START
+from .inputs.solids import Modes
+from .inputs.units import are_si, dimensionless, unit_of_time
 from .runfile import Run
-from .solids import Modes
-from .units import are_si, dimensionless, unit_of_time
 
 
 def block_inputs(run: Run, block: int) -> dict[str, Any]:

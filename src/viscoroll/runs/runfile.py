@@ -39,12 +39,12 @@ from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
-from .drives import is_driven, lasts
-from .inputs import Inputs
+from .inputs.drives import is_driven, lasts
+from .inputs.ranges import CYLINDER, SCENE, START
+from .inputs.record import Inputs
+from .inputs.sources import read_inputs
+from .inputs.units import dimensionless
 from .quantities import QUANTITIES
-from .ranges import CYLINDER, SCENE, START
-from .sources import read_inputs
-from .units import dimensionless
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27

@@ -18,13 +18,13 @@ from .. import __version__
 from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..extras import imported
-from .drives import PREFIX
 from .evaluate import roll_inputs
-from .inputs import LARGEST, SMALLEST, Inputs
+from .inputs.drives import PREFIX
+from .inputs.ranges import START
+from .inputs.record import LARGEST, SMALLEST, Inputs
+from .inputs.units import attributes, scales
 from .quantities import QUANTITIES, valued
-from .ranges import START
 from .runfile import Run
-from .units import attributes, scales
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -27,10 +27,10 @@ from ..errors import OutputError
 from ..motion.many import Ensemble
 from . import zarr_files
 from .evaluate import roll_block, roll_inputs
+from .inputs.units import attributes, scales
 from .records import Record, damaged, make_folder, put, read_record, write_record
 from .runfile import Run
 from .summaries import Summary, merged, summarise, summary_dataset
-from .units import attributes, scales
 
 RECORDS, MOTIONS = "records", "motions"
 _LOCK = ".lock"

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.many import Ensemble
+from .inputs.units import attributes
 from .quantities import QUANTITIES, valued
-from .units import attributes
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ..motion import export
-from ..si.units import QUANTITIES
-from ..si.units import attributes as si_attributes
-from ..symbols import SYMBOLS
+from ...motion import export
+from ...si.units import QUANTITIES
+from ...si.units import attributes as si_attributes
+from ...symbols import SYMBOLS
 from .ranges import CYLINDER, PREFIXES
 
 _ENERGIES = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")

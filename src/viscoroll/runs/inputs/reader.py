@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ConfigError
-from ..extras import imported
-from ..sections import fault, hint
-from .inputs import Distribution
+from ...errors import ConfigError
+from ...extras import imported
+from ...sections import fault, hint
 from .ranges import START, Range
+from .record import Distribution
 
 
 class Reader:

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..motion.schedule import curve
+from ...errors import ParameterError
+from ...motion.schedule import curve
 from .ranges import DRIVE, TIME
 from .solids import median, spread
 from .units import are_si, load_of, unit_of_time
 
 if TYPE_CHECKING:
-    from .inputs import Inputs
     from .ranges import Range
     from .reader import Reader
+    from .record import Inputs
 
 PREFIX = "drive_"
 #: in place of a time: that before once more, so that the value jumps

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..materials.bodies import Bodies
-from ..materials.file import materials_of, series_of
-from ..materials.pair import cylinders_share, effective_modulus, joint_modulus
-from ..materials.prony import Prony
-from ..sections import fault
+from ...materials.bodies import Bodies
+from ...materials.file import materials_of, series_of
+from ...materials.pair import cylinders_share, effective_modulus, joint_modulus
+from ...materials.prony import Prony
+from ...sections import fault
 from .ranges import CYLINDER, MODES, PREFIXES
 
 if TYPE_CHECKING:

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
-from ..materials.file import materials_of
-from ..materials.material import Material
-from ..materials.pair import Pair, Plane
-from ..sections import fault, hint, refuse_unknown
+from ...errors import ParameterError
+from ...materials.file import materials_of
+from ...materials.material import Material
+from ...materials.pair import Pair, Plane
+from ...sections import fault, hint, refuse_unknown
 from .drives import prescribed_start, read_drive
-from .inputs import Distribution, Inputs, Joint
 from .ranges import CYLINDER, DRIVE, DRIVE_SI, OPTIONAL, SCENE, SOLID, START, START_SI
 from .reader import Reader
+from .record import Distribution, Inputs, Joint
 from .solids import SERIES, is_uncertain, read_series, read_solids
 
 _PLANES = ("strain", "stress")
