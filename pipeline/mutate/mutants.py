@@ -71,7 +71,7 @@ SLICE = [
     ("law/inverses.py", "lam * (1.0 + g / zeta)", "lam * (1.0 + g / zeta * (1.0 + 1e-9))", _SLICE),
     ("law/inverse_loop.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
     ("law/inverse_loop.py", "part, slight_status = slight_traction", "_, slight_status = slight_traction", _SLICE),
-    ("numerics/quartet.py", "ir.Constant(_FOUR, [float(k)] * 4)", "ir.Constant(_FOUR, [float(k * 1.0000001)] * 4)", _SLICE),
+    ("numerics/quartet.py", "ir.Constant(VECTOR, [float(k)] * 4)", "ir.Constant(VECTOR, [float(k * 1.0000001)] * 4)", _SLICE),
     ("material/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
     ("material/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
 ]  # fmt: skip
@@ -133,7 +133,8 @@ DRIVE = [
     ("drive/integrate.py", "return State(0.0, -state.second), Frame(True, -direction, -sigma,", "return State(0.0, -state.second), Frame(True, -direction, sigma,", _EVENTS),
     ("drive/origin.py", "* per - b * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVE),
     ("drive/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", _EVENTS),
-    ("drive/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind):", "if found == NO_EVENT and behind:", _EVENTS),
+    ("drive/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):", "if found == NO_EVENT and behind and not frame.slips:", _EVENTS),
+    ("drive/phase.py", "kinked = behind and (not frame.slips or found == EDGE or found == SLOW)", "kinked = behind and not frame.slips", _EVENTS),
     ("drive/solve.py", "lasting = 1.0 + panel.length * slowest", "lasting = 1.0 + panel.length * abs(nodes[SLOPE, 0])", _EVENTS),
 ]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
