@@ -101,11 +101,7 @@ def ensemble(
     motions (``tests/test_hostile.py``).
     """
     checked_scene(scene, "ensemble", moves=True)
-    times = output_times(t)
-    names = (fields,) if isinstance(fields, str) else tuple(fields)
-    for name in names:
-        if name not in FIELDS:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS))
+    times, names = output_times(t), _names(fields)
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
@@ -119,16 +115,7 @@ def ensemble(
     if method == "flow" and (scene.shape or ready):
         what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
-    starts: Any = V0, omega0
-    arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
-    if ready and ready.pieces.shape[0] > 1:
-        arrays["drive"] = np.zeros(ready.pieces.shape[0])
-    shape = broadcast_shape(**arrays)
-    if len(shape) > 1:
-        raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
-    arrays.pop("drive", None)
-    count = shape[0] if shape else 1
+    arrays, count = _inputs(scene, (V0, omega0), ready)
     material, unit = scene.in_own_time()
     own_time = {"gamma": unit * unit, "V0": unit, "omega0": unit}
     flat = [flattened(array * own_time.get(name, 1.0), (count,)) for name, array in arrays.items()]
@@ -136,15 +123,15 @@ def ensemble(
     found = names if ready else tuple(name for name in names if name not in ACTING)
     rows = tuple((ROWS if ready else FIELDS).index(name) for name in found)
     bar = "motions" if progress else None
-    use_map = not ready and (method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS))
-    chosen = _map_of(scene, flat[5], flat[6], speed and speed * unit, threads) if use_map else None
-    error = (
-        np.nan if chosen is None else chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
-    )
-    if chosen is not None and error <= rtol:
-        given = float(flat[3][0]), threshold * unit, flat[5], flat[6], times / unit
-        answer = ask(chosen, *given, rows, threads=threads, progress=bar)
-    else:
+    answer, chosen, error = None, None, np.nan
+    if not ready and (method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS)):
+        chosen = _map_of(scene, flat[5], flat[6], speed and speed * unit, threads)
+    if chosen is not None:
+        error = chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
+        if error <= rtol:
+            given = float(flat[3][0]), threshold * unit, flat[5], flat[6], times / unit
+            answer = ask(chosen, *given, rows, threads=threads, progress=bar)
+    if answer is None:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
     shared = None if scene.material is None and np.ndim(scene.alpha) else scene.kernel_material if ready else material
@@ -161,6 +148,25 @@ def ensemble(
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
         drive_error=ready.error if ready else 0.0, drive=drive, labels=labels,
     )  # fmt: skip
+
+
+def _names(fields: Iterable[str]) -> tuple[str, ...]:
+    names = (fields,) if isinstance(fields, str) else tuple(fields)
+    for name in names:
+        if name not in FIELDS:
+            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS))
+    return names
+
+
+def _inputs(scene: Scene, starts: Any, ready: Prepared | None) -> tuple[dict[str, NDArray], int]:
+    """(Parameters and start speeds, how many motions they make)."""
+    arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
+    arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
+    drives = {"drive": np.zeros(ready.pieces.shape[0])} if ready and ready.pieces.shape[0] > 1 else {}
+    shape = broadcast_shape(**arrays, **drives)
+    if len(shape) > 1:
+        raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
+    return arrays, shape[0] if shape else 1
 
 
 def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, threads: int | None) -> FlowMap | None:
