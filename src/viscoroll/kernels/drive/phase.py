@@ -49,7 +49,7 @@ def _rise_time(s, clock, frame, case):
     """Time in which s rises from 0 to about this: its pace changes as the drive does."""
     soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[S_RATE, 0]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
-    _, b = departing(load, case.scene)
+    _, b = departing(load, frame.spin, case.scene)
     later = rates_at(0.0, b if b != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene).s_rate
     pace, gain = max(pace, 0.0), (later - pace) / soon
     square = pace**2 + 2.0 * gain * s
