@@ -260,3 +260,16 @@ def test_a_prescribed_speed_stands_at_0(rtol, then):
     for m in (turning, moving, fast):
         assert m.status == vr.MotionStatus.DONE
     assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
+
+
+def test_a_brake_lets_go_after_what_it_takes_turned():
+    """What it takes of the torque changes its sign on the panel on which it lets go: its size has a kink there.
+
+    An elastic cylinder skids with omega = 0: the brake takes q + mu = 0.4 t - 0.1 of up to 0.15 - 0.05 t.
+    """
+    scene, t = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), np.linspace(0.0, 2.0, 9)
+    for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
+        drive = {"torque": ([0.0, 2.0], [-0.3, 0.5]), "brake": ([0.0, 2.0], [0.15, 0.05])}
+        m = vr.roll(scene, 1.0, 0.0, t, rtol, **drive)
+        assert m.switches[0].regime == "full slip"
+        assert m.switches[0].t == pytest.approx(0.25 / 0.45, rel=BOUND * rtol)

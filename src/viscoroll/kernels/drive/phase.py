@@ -181,7 +181,7 @@ def phase(fresh, state, frame, clock, case):
     while clock.tau < end and clock.steps < limits.max_steps:
         frame, slopes = _begin(state, frame, clock, case)
         if length == 0.0:
-            length = _first_length(fresh, slopes, clock, frame, case)
+            length = max(_first_length(fresh, slopes, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
         panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > _NO_SPEED)
         zero = _pace_to_zero(panel, state, frame, case)
