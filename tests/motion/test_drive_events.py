@@ -186,3 +186,90 @@ def test_a_locked_cylinder_skids_to_rest(pull):
     V = np.where(skids, V0[:, None] - mu * t + 0.5 * pull * t**2, 0.0)
     assert (np.abs(e.V - V).max(axis=1) <= BOUND * rtol * V0).all()
     assert (e.regime == np.where(skids, 3, 4)).all()
+
+
+def test_a_brake_that_begins_at_0():
+    """It takes hold as it rises, though it takes nothing where its piece of the drive begins.
+
+    An elastic cylinder that slides at V > 0 > omega: V' is -mu and omega' (mu + brake)/j until the brake locks, then
+    V goes on to 0.
+    """
+    scene, rtol, t = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), 1e-8, np.linspace(0.0, 6.0, 25)
+    m = vr.roll(scene, 1.0, -1.0, t, rtol, brake=([0.0, 6.0], [0.0, 1.8]))
+    stop = (np.sqrt(0.34) - 0.2) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
+    assert [s.regime for s in m.switches] == ["locked", "held"]
+    assert [s.t for s in m.switches] == pytest.approx([stop, 5.0], rel=BOUND * rtol)
+    assert m.V == pytest.approx(np.maximum(1.0 - 0.2 * t, 0.0), abs=BOUND * rtol)
+    assert m.omega == pytest.approx(np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), abs=BOUND * rtol)
+
+
+@pytest.mark.parametrize("most", [0.0859, 0.0333, 0.1])
+def test_a_brake_gives_way_to_a_ramp(most):
+    """What is left of the torque rises from 0: the motion is that of a ramp from 0 without a brake."""
+    scene, t, rtol = vr.Scene(alpha=1.0, kappa=15.0, mu=0.05, gamma=12.0, j=0.66), np.linspace(0.0, 1.0, 21), 1e-8
+    slope, free = -0.3, t >= most / 0.3
+    m = vr.roll(scene, 0.0, 0.0, t, rtol, brake=most, torque=([0.0, 1.0], [0.0, slope]))
+    since = np.append(0.0, t[free] - most / 0.3)
+    plain = vr.roll(scene, 0.0, 0.0, since, rtol, torque=([0.0, 1.0], [0.0, slope]))
+    assert m.status == vr.MotionStatus.DONE
+    assert not m.V[~free].any()
+    assert m.V[free] == pytest.approx(plain.V[1:], rel=BOUND * rtol)
+    assert m.omega[free] == pytest.approx(plain.omega[1:], rel=BOUND * rtol)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-10])
+def test_locked_cylinders_skid_to_rest(rtol):
+    """At any tolerance, viscoelastic or not: slip with omega = 0 ends with V."""
+    draw, count = np.random.default_rng(11), 200
+    alpha, V0 = 1.0 + 10.0 ** draw.uniform(-2.0, 3.0, count), 10.0 ** draw.uniform(-2.0, 1.0, count)
+    scene = vr.Scene(alpha=alpha, kappa=10.0 ** draw.uniform(0.0, 2.0, count), mu=0.2, gamma=1.0, j=0.5)
+    force = [0.0, 100.0], [0.05, -0.1]
+    e = vr.ensemble(
+        scene, V0, -V0, [0.0, 100.0], rtol=rtol, brake=([0.0, 100.0], [5.0, 6.0]), force=force, fields=("V", "regime")
+    )
+    assert (e.status == vr.MotionStatus.DONE).all()
+    assert not e.V[:, -1].any()
+    assert (e.regime[:, -1] == 4).all()
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-11])
+def test_spun_on_the_spot(rtol):
+    """V is prescribed to stay 0: omega' is what torque and brake leave of friction, over j."""
+    scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), np.linspace(0.0, 2.0, 17)
+    m = vr.roll(scene, None, 1.0, t, rtol, V=0.0, brake=0.1)
+    assert m.omega == pytest.approx(np.maximum(1.0 - 0.6 * t, 0.0), abs=BOUND * rtol)
+    m = vr.roll(scene, None, 0.0, t, rtol, V=0.0, brake=0.1, torque=([0.0, 2.0], [0.0, 0.6]))
+    assert m.omega == pytest.approx(0.3 * np.maximum(t - 1.0, 0.0) ** 2, abs=BOUND * rtol)  # held up to 0.3
+    m = vr.roll(scene, None, -0.2, t, rtol, V=0.0, torque=0.3)
+    assert m.omega == pytest.approx(np.where(t < 0.2, t - 0.2, 0.2 * (t - 0.2)), abs=BOUND * rtol)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-11])
+@pytest.mark.parametrize("then", [1.0, -1.0])
+def test_a_prescribed_speed_stands_at_0(rtol, then):
+    """What its integration leaves of it is 0: the other speed comes to rest too; then it sets out either way."""
+    scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.05, gamma=1.0, j=0.5), np.linspace(0.0, 4.0, 17)
+    stands = ([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
+    turning = vr.roll(scene, None, -0.1, t, rtol, V=stands)
+    # sliding at V = 0 it spins down by 0.1 a unit of time
+    assert turning.V == pytest.approx(np.interp(t, *stands), abs=BOUND * rtol)
+    moving = vr.roll(scene, 1.0, None, t, rtol, omega=stands)
+    assert moving.omega == pytest.approx(np.interp(t, *stands), abs=BOUND * rtol)
+    fast = vr.roll(scene, None, -2.0, t, rtol, V=stands, torque=-0.051)
+    assert fast.V == pytest.approx(np.interp(t, *stands), abs=BOUND * rtol)
+    for m in (turning, moving, fast):
+        assert m.status == vr.MotionStatus.DONE
+    assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
+
+
+def test_a_brake_lets_go_after_what_it_takes_turned():
+    """What it takes of the torque changes its sign on the panel on which it lets go: its size has a kink there.
+
+    An elastic cylinder skids with omega = 0: the brake takes q + mu = 0.4 t - 0.1 of up to 0.15 - 0.05 t.
+    """
+    scene, t = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), np.linspace(0.0, 2.0, 9)
+    for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
+        drive = {"torque": ([0.0, 2.0], [-0.3, 0.5]), "brake": ([0.0, 2.0], [0.15, 0.05])}
+        m = vr.roll(scene, 1.0, 0.0, t, rtol, **drive)
+        assert m.switches[0].regime == "full slip"
+        assert m.switches[0].t == pytest.approx(0.25 / 0.45, rel=BOUND * rtol)

@@ -107,7 +107,7 @@ def _scale(event, nodes):
         if event in (EDGE, STOP, SLOW):
             largest = max(largest, nodes[SPEED, i])
         elif event == FREED:
-            largest = max(largest, nodes[DRIVE + BRAKE, i])
+            largest = max(largest, nodes[DRIVE + BRAKE, i] * nodes[DRIVE + BRAKE, i])
     return largest
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..motion.collocation import NODES, N, rise_at
 from .load import load_at
-from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, S, time_at
+from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, S, time_at
 from .origin import departing
 from .rates import rates_at
 
@@ -21,6 +21,8 @@ def guess(panel, slopes, track, frame, case):
     of one that was too long."""
     if panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
         _follow(panel, track, frame, case.work)
+    elif frame.slips and case.work.nodes[SPEED, 0] == 0.0:
+        _slide_out(panel, frame, case)
     elif panel.free:
         _set_out(panel, slopes, frame, case.work.nodes)
     else:
@@ -65,7 +67,7 @@ def _set_out_from_rest(panel, frame, case):
     """Unknowns at the nodes from V = 0 in partial slip on, where b follows the drive and s may start at no pace."""
     nodes = case.work.nodes
     load = load_at(panel.tau + panel.length, panel.piece, frame, case)
-    sticks, b = departing(load, case.scene)
+    sticks, b = departing(load, frame.spin, case.scene)
     if not sticks:
         b = nodes[SECOND, 0]
     late = rates_at(0.0, b, load, frame, case.scene).s_rate
@@ -74,3 +76,17 @@ def _set_out_from_rest(panel, frame, case):
         mean = nodes[S_RATE, 0] + 0.5 * share * (max(late, 0.0) - nodes[S_RATE, 0])
         nodes[S, i] = mean * share * panel.length
         nodes[SECOND, i] = nodes[SECOND, 0] + share * (b - nodes[SECOND, 0])
+
+
+@kernel
+def _slide_out(panel, frame, case):
+    """Unknowns at the nodes from V = omega = 0 in full slip on, where speeds may start at no pace and follow the
+    drive."""
+    nodes = case.work.nodes
+    load = load_at(panel.tau + panel.length, panel.piece, frame, case)
+    late = rates_at(0.0, 0.0, load, frame, case.scene)
+    for i in range(1, N + 1):
+        share = 0.5 * (1.0 + NODES[i])
+        s_rate = nodes[S_RATE, 0] + 0.5 * share * (late.s_rate - nodes[S_RATE, 0])
+        rate = nodes[RATE, 0] + 0.5 * share * (late.rate - nodes[RATE, 0])
+        nodes[S, i], nodes[SECOND, i] = s_rate * share * panel.length, rate * share * panel.length

@@ -14,8 +14,9 @@ from ..material.functions import generators
 from ..motion.collocation import N
 from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL
 from ..motion.records import REST
-from .load import acting, goes_on, load_at, piece_end, undriven
+from .load import acting, brakes, goes_on, load_at, piece_end, risen_by, undriven
 from .nodes import INTERPOLANTS, PATHS, ROWS, S
+from .nodes import SPEED as FASTEST
 from .origin import STAYS, STICKS, depart, leaving_time
 from .output import coast, put_still, put_to_end, regime_of
 from .phase import phase
@@ -28,6 +29,7 @@ from .records import (
     NO_EVENT,
     REVERSED,
     SLOW,
+    SPEED,
     STOP,
     STUCK,
     TURN,
@@ -43,6 +45,10 @@ from .records import (
 _TINY = 1e-150
 #: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
 _CLOSED = 1e-7
+#: what rounding leaves of a prescribed speed that has come to 0, over what it has changed by
+_DRIFT = 1e-12
+#: what an event may be off by, over rtol
+_OFF = 10.0
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
 #: share of the length of panels that is kept where the law bends at delta = 0
@@ -101,17 +107,55 @@ def locks(state, frame, clock, case):
 @kernel
 def released(state, frame, clock, case):
     """The frame once a brake that held omega lets go, or the sign of omega changes under it."""
-    excess, most = _excess(state, frame, clock, case)
-    spin = np.sign(excess) if most > 0.0 else 0.0
+    excess, _ = _excess(state, frame, clock, case)
+    spin = np.sign(excess) if brakes(clock.piece, case.drive.pieces) else 0.0
     return Frame(frame.slips, frame.direction, frame.sigma, spin, False)
+
+
+@kernel
+def closed(state, locked, case):
+    """Whether the stick band closes at V = 0, where omega is 0 too."""
+    nodes = case.work.nodes
+    if not locked:
+        return state.s <= _CLOSED * nodes[S, 0]
+    largest = 0.0  # slip with omega = 0 ends with V, which is 0 but for the tolerance
+    for i in range(N + 1):
+        largest = max(largest, nodes[S, i])
+    return state.s <= max(_CLOSED, _OFF * case.limits.rtol) * largest
+
+
+@kernel
+def drift(fastest, clock, case):
+    """What the integration of a prescribed speed may leave of it where it has come to 0."""
+    return (case.limits.rtol + _DRIFT) * max(fastest, risen_by(clock.piece, case.drive.pieces))
+
+
+@kernel
+def turned(state, frame):
+    """Full slip at V = 0 as seen in the other direction."""
+    slips, direction, sigma, spin, locked = frame
+    return State(0.0, -state.second), Frame(slips, -direction, -sigma, -spin, locked)
+
+
+@kernel
+def stands(state, frame, clock, case):
+    """Whether V and omega, one of them prescribed, are 0 but for what the integration of that one leaves."""
+    if case.drive.prescribed == NEITHER:
+        return False
+    rates, fastest = _here(state, frame, clock, case)[1], 0.0
+    for i in range(N + 1):
+        fastest = max(fastest, case.work.nodes[FASTEST, i])
+    return max(abs(rates.V), abs(rates.omega)) <= drift(fastest, clock, case)
 
 
 @kernel
 def switch(event, state, frame, clock, case):
     """(State, frame, whether V = omega = 0) behind an event that changes the regime."""
     slips, direction, sigma, spin, locked = frame
+    if slips and stands(state, frame, clock, case):
+        return state, frame, True
     if event == EDGE and slips:
-        if state.s <= _CLOSED * case.work.nodes[S, 0]:  # the stick band closes at V = 0: omega is 0 too
+        if closed(state, locked, case):
             return state, frame, True
         return State(state.s, sigma), Frame(False, direction, sigma, spin, locked), False
     if event == EDGE:
@@ -122,7 +166,8 @@ def switch(event, state, frame, clock, case):
     if event == TURN:
         if not slips or state.second == 0.0:
             return state, frame, True
-        return State(0.0, -state.second), Frame(True, -direction, -sigma, -spin, locked), False
+        state, frame = turned(state, frame)
+        return state, frame, False
     if event == STOP:
         still = State(state.s, 0.0) if slips else state
         if locks(still, frame, clock, case):
@@ -134,8 +179,7 @@ def switch(event, state, frame, clock, case):
 @kernel
 def _still_regime(clock, case):
     """The regime of V = omega = 0."""
-    still = Frame(False, 1.0, 1.0, 0.0, False)
-    braked = load_at(clock.tau, clock.piece, still, case).brake > 0.0
+    braked = brakes(clock.piece, case.drive.pieces)
     return HELD if braked or case.drive.prescribed != NEITHER else REST
 
 
@@ -149,6 +193,7 @@ def stay(clock, case):
         closed = until == case.tau[case.tau.size - 1]
         clock = put_still(until, closed, _still_regime(clock, case), clock, case)
         return False, state, frame, clock
+    clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, 0.0)
     return True, State(0.0, b if kind == STICKS else 0.0), frame, clock
 
 
@@ -162,15 +207,27 @@ def note(what, noted, clock, case):
 
 
 @kernel
+def setting_out(state, frame, clock, case):
+    """(State, frame) of full slip where a piece of the drive begins: seen from where V goes if it is 0."""
+    _, rates = _here(state, frame, clock, case)
+    if case.drive.prescribed == SPEED and abs(rates.V) <= drift(0.0, clock, case):
+        state = State(0.0, state.second)
+        _, rates = _here(state, frame, clock, case)
+    return turned(state, frame) if state.s == 0.0 and rates.s_rate < 0.0 else (state, frame)
+
+
+@kernel
 def at_new_piece(state, frame, clock, case):
-    """The frame where a piece of the drive begins: brakes take hold or let go."""
+    """(State, frame) where a piece of the drive begins: brakes take hold or let go, V may turn."""
+    if frame.slips:
+        state, frame = setting_out(state, frame, clock, case)
     slips, direction, sigma, spin, locked = frame
-    load, rates = _here(state, frame, clock, case)
-    if locked or rates.omega == 0.0:
-        if load.brake > 0.0 and locks(state, frame, clock, case):
-            return Frame(slips, direction, sigma, spin, True)
-        return released(state, frame, clock, case)
-    return Frame(slips, direction, sigma, np.sign(rates.omega) if load.brake > 0.0 else 0.0, False)
+    braked, omega = brakes(clock.piece, case.drive.pieces), _here(state, frame, clock, case)[1].omega
+    if locked or omega == 0.0:
+        if braked and locks(state, frame, clock, case):
+            return state, Frame(slips, direction, sigma, spin, True)
+        return state, released(state, frame, clock, case)
+    return state, Frame(slips, direction, sigma, np.sign(omega) if braked else 0.0, False)
 
 
 @kernel
@@ -200,7 +257,9 @@ def follow(moving, state, frame, clock, case):
         if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
             length = clock.length if goes_on(clock.piece, case.drive.pieces) else 0.0
             clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
-            frame = at_new_piece(state, frame, clock, case) if moving else frame
+            if moving:
+                state, frame = at_new_piece(state, frame, clock, case)
+                moving = not frame.slips or state.s != 0.0 or state.second != 0.0
         event, direction, before = NO_EVENT, frame.direction, clock
         if moving and clock.tau >= end:
             clock = put_to_end(state, frame, clock, case)
@@ -259,6 +318,6 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     if status != OK:
         return NOT_CONVERGED, 0, 0, np.nan, np.nan
     if moving:
-        frame = at_new_piece(state, frame, clock, case)
+        state, frame = at_new_piece(state, frame, clock, case)
     status, clock, turns, onset_time, rest_time = follow(moving, state, frame, clock, case)
     return status, clock.steps, turns, onset_time, rest_time

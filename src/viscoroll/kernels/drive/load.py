@@ -100,6 +100,27 @@ def goes_on(piece, pieces):
 
 
 @kernel
+def brakes(piece, pieces):
+    """Whether there is a brake within a piece, if only later on."""
+    row, size = pieces[piece], 0.0
+    for n in range(FIRST + BRAKE * terms_of(row), row.size):
+        size += abs(row[n])
+    return size > 0.0
+
+
+@kernel
+def risen_by(piece, pieces):
+    """What a prescribed speed has risen and fallen by, at most, before a piece."""
+    total = 0.0
+    for row in pieces[:piece]:
+        terms, size = terms_of(row), 0.0
+        for n in range(FIRST + RATE * terms, FIRST + (RATE + 1) * terms):
+            size += abs(row[n])
+        total += 2.0 * size / row[SCALE] if row[SCALE] > 0.0 else 0.0
+    return total
+
+
+@kernel
 def undriven(piece, drive):
     """Whether nothing drives from this piece on, which is the last."""
     gains = drive.gains

@@ -98,7 +98,8 @@ def put_path(panel, frame, case):
         nodes[EVENT + TURN, i] = nodes[S, i]
         nodes[EVENT + STOP, i] = frame.spin * omega if frame.spin != 0.0 and not frame.locked else 1.0
         nodes[EVENT + SLOW, i] = nodes[SPEED, i] - rest if rest > 0.0 else 1.0
-        nodes[EVENT + FREED, i] = load.brake - abs(brake) if frame.locked else 1.0
+        # of squares: smooth where what the brake takes changes its sign
+        nodes[EVENT + FREED, i] = load.brake * load.brake - brake * brake if frame.locked else 1.0
 
 
 @kernel(inline=True)

@@ -13,13 +13,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .load import FIRST, FUNCTIONS, load_at, piece_end, terms_of
+from .load import FIRST, FUNCTIONS, brakes, load_at, piece_end, terms_of
 from .records import Frame, Load
 
 STAYS, STICKS, SLIDES = range(3)
 _HALVINGS, _ROUNDING = 200, 1e-16
 #: share of a piece of the drive behind which it is looked at where it begins with what moves nothing
 _SOON = 1e-6
+#: over what holds the cylinder, what rounding leaves of what it takes more to move it
+_BARELY = 4e-15
 #: parts of a piece in each of which what holds the cylinder is looked at
 _PARTS = 64
 
@@ -36,9 +38,16 @@ def _pull(b, load, scene):
 
 
 @kernel
-def departing(load, scene):
-    """(Whether the cylinder may roll off sticking with V > 0, b then)."""
-    low, high = -1.0, 1.0
+def _under_brake(load, spin):
+    """The load with the torque of the brake at this sign of omega."""
+    force, torque, V_rate, omega_rate, brake, per_V, per_omega, gains = load
+    return Load(force, torque - spin * brake, V_rate, omega_rate, brake, per_V, per_omega, gains)
+
+
+@kernel
+def departing(load, spin, scene):
+    """(Whether the cylinder may roll off sticking with V > 0, b then), against a brake where ``spin`` is 1."""
+    load, low, high = _under_brake(load, spin), -1.0, 1.0
     if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
         return False, 0.0
     b, V_rate = 0.0, 0.0
@@ -55,24 +64,24 @@ def departing(load, scene):
 
 
 @kernel
-def holding(load, braked, mu):
+def holding(load, mu):
     """How much more it would take to move the cylinder from V = omega = 0; negative where it moves.
 
     A traction within +-mu must leave V as it is, and omega too, which a brake may help with.
     """
-    if load.per_V == 0.0 or (load.per_omega == 0.0 and not braked):
-        still = load.V_rate == 0.0 and load.omega_rate == 0.0
-        needs = -load.force if load.per_V > 0.0 else load.torque
-        return mu - abs(needs) if still else -1.0
-    rest = load.brake if braked else 0.0
-    return min(mu - abs(load.force), rest - abs(load.force + load.torque))
+    if load.V_rate != 0.0 or load.omega_rate != 0.0:
+        return -1.0
+    if load.per_V == 0.0:
+        return mu + load.brake - abs(load.torque)
+    if load.per_omega == 0.0:
+        return mu - abs(load.force)
+    return min(mu - abs(load.force), load.brake - abs(load.force + load.torque))
 
 
 @kernel
 def _moves_at(tau, piece, frame, case):
     """``holding`` at a time."""
-    load = load_at(tau, piece, frame, case)
-    return holding(load, load.brake > 0.0, case.scene.mu)
+    return holding(load_at(tau, piece, frame, case), case.scene.mu)
 
 
 @kernel
@@ -115,29 +124,23 @@ def depart(tau, piece, case):
     still = Frame(False, 1.0, 1.0, 0.0, False)
     when = tau
     load = load_at(tau, piece, still, case)
-    if holding(load, load.brake > 0.0, scene.mu) >= 0.0 and not constant(piece, case.drive.pieces):
+    barely = _BARELY * (scene.mu + load.brake)
+    if holding(load, scene.mu) >= -barely and not constant(piece, case.drive.pieces):
         # what begins to move the cylinder shows a little later
         when = tau + _SOON * (piece_end(piece, case) - tau)
         load = load_at(when, piece, still, case)
-    braked = load.brake > 0.0
-    if holding(load, braked, scene.mu) >= 0.0:
+    braked = brakes(piece, case.drive.pieces)
+    if holding(load, scene.mu) >= 0.0:
         return STAYS, still, 0.0
     for direction in (1.0, -1.0):
         frame = Frame(False, direction, 1.0, 0.0, False)
         spin = 1.0 if braked else 0.0
-        sticks, b = departing(_braked(load_at(when, piece, frame, case), spin), scene)
+        sticks, b = departing(load_at(when, piece, frame, case), spin, scene)
         if sticks:
             # b is that of now: the limit that the motion leaves from
-            _, now = departing(_braked(load_at(tau, piece, frame, case), spin), scene)
+            _, now = departing(load_at(tau, piece, frame, case), spin, scene)
             return STICKS, Frame(False, direction, 1.0 if b >= 0.0 else -1.0, spin, False), now
     return _slide_off(when, piece, braked, case)
-
-
-@kernel
-def _braked(load, spin):
-    """The load with the torque of the brake at this sign of omega."""
-    force, torque, V_rate, omega_rate, brake, per_V, per_omega, gains = load
-    return Load(force, torque - spin * brake, V_rate, omega_rate, brake, per_V, per_omega, gains)
 
 
 @kernel

@@ -49,7 +49,7 @@ def _rise_time(s, clock, frame, case):
     """Time in which s rises from 0 to about this: its pace changes as the drive does."""
     soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[S_RATE, 0]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
-    _, b = departing(load, case.scene)
+    _, b = departing(load, frame.spin, case.scene)
     later = rates_at(0.0, b if b != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene).s_rate
     pace, gain = max(pace, 0.0), (later - pace) / soon
     square = pace**2 + 2.0 * gain * s
@@ -181,7 +181,7 @@ def phase(fresh, state, frame, clock, case):
     while clock.tau < end and clock.steps < limits.max_steps:
         frame, slopes = _begin(state, frame, clock, case)
         if length == 0.0:
-            length = _first_length(fresh, slopes, clock, frame, case)
+            length = max(_first_length(fresh, slopes, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
         panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > _NO_SPEED)
         zero = _pace_to_zero(panel, state, frame, case)

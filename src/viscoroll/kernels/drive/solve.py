@@ -51,6 +51,7 @@ def _put_matrix(i, half, weight, slopes, frame, case):
     """Rows of Newton's matrix for node i; the slopes in s are differences."""
     nodes, matrix = case.work.nodes, case.work.matrix
     s, step = nodes[S, i], _STEP * max(abs(nodes[S, i]), 0.01 * abs(nodes[S, 0]), abs(nodes[S_RATE, i]) * half)
+    step = step if step > 0.0 else _STEP  # V is prescribed to stay 0
     at = rates_at(s + step, nodes[SECOND, i], load_there(i, frame, case), frame, case.scene)
     s_s = (weight * at.s_rate - nodes[S_RATE, i]) / step
     rate_s = (weight * at.rate - nodes[RATE, i]) / step
@@ -147,7 +148,7 @@ def _least(panel, case):
         largest = max(largest, abs(nodes[S, i]))
         if least == 0.0 or time_at(panel, i)[0] <= at:
             least = abs(nodes[S, i])
-    return least / largest
+    return least / largest if largest > 0.0 else 1.0
 
 
 @kernel
