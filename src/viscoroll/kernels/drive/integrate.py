@@ -14,13 +14,11 @@ from ..material.functions import generators
 from ..motion.collocation import N
 from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL
 from ..motion.records import REST
-from .load import acting, brakes, goes_on, load_at, piece_end, risen_by, undriven
-from .nodes import INTERPOLANTS, PATHS, ROWS, S
-from .nodes import SPEED as FASTEST
+from .load import brakes, goes_on, piece_end, undriven
+from .nodes import INTERPOLANTS, PATHS, ROWS
 from .origin import STAYS, STICKS, depart, leaving_time
 from .output import coast, put_still, put_to_end, regime_of
 from .phase import phase
-from .rates import rates_at
 from .records import (
     EDGE,
     HELD,
@@ -29,10 +27,7 @@ from .records import (
     NO_EVENT,
     REVERSED,
     SLOW,
-    SPEED,
-    STOP,
     STUCK,
-    TURN,
     Case,
     Clock,
     Frame,
@@ -40,36 +35,16 @@ from .records import (
     State,
     Work,
 )  # fmt: skip
+from .switch import at_new_piece, here, switch
 
 #: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
-#: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
-_CLOSED = 1e-7
-#: what rounding leaves of a prescribed speed that has come to 0, over what it has changed by
-_DRIFT = 1e-12
-#: what an event may be off by, over rtol
-_OFF = 10.0
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
 #: share of the length of panels that is kept where the law bends at delta = 0
 _PAST = 0.3
 #: 1/zeta over T_mean below which V decays exponentially to rounding
 _SLOWEST = 1e-17
-
-
-@kernel
-def _here(state, frame, clock, case):
-    """(The drive, what the equations say) at a state."""
-    load = load_at(clock.tau, clock.piece, frame, case)
-    return load, rates_at(state.s, state.second, load, frame, case.scene)
-
-
-@kernel
-def _excess(state, frame, clock, case):
-    """(Torque that would turn a wheel held at omega = 0, the most that the brake can take of it)."""
-    load, rates = _here(state, frame, clock, case)
-    _, torque, _ = acting(rates.V, 0.0, load, frame)
-    return torque - rates.Q - rates.M_cylinder, load.brake
 
 
 @kernel
@@ -89,91 +64,12 @@ def enter(V, omega, clock, case):
     frame = Frame(True, direction, sigma, 0.0, False)
     if V == 0.0 or abs(slip) >= limit:
         # at V = 0 the frame is that which V turns to
-        if V == 0.0 and _here(State(s, omega), frame, clock, case)[1].s_rate < 0.0:
+        if V == 0.0 and here(State(s, omega), frame, clock, case)[1].s_rate < 0.0:
             direction, omega, sigma = -direction, -omega, -sigma
         return State(s, omega), Frame(True, direction, sigma, 0.0, False), OK
     zeta = 1.0 / s
     _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
     return State(s, sigma * (D * s)), Frame(False, direction, sigma, 0.0, False), status
-
-
-@kernel
-def locks(state, frame, clock, case):
-    """Whether the brake holds omega, which has just become 0."""
-    excess, most = _excess(state, frame, clock, case)
-    return abs(excess) <= most
-
-
-@kernel
-def released(state, frame, clock, case):
-    """The frame once a brake that held omega lets go, or the sign of omega changes under it."""
-    excess, _ = _excess(state, frame, clock, case)
-    spin = np.sign(excess) if brakes(clock.piece, case.drive.pieces) else 0.0
-    return Frame(frame.slips, frame.direction, frame.sigma, spin, False)
-
-
-@kernel
-def closed(state, locked, case):
-    """Whether the stick band closes at V = 0, where omega is 0 too."""
-    nodes = case.work.nodes
-    if not locked:
-        return state.s <= _CLOSED * nodes[S, 0]
-    largest = 0.0  # slip with omega = 0 ends with V, which is 0 but for the tolerance
-    for i in range(N + 1):
-        largest = max(largest, nodes[S, i])
-    return state.s <= max(_CLOSED, _OFF * case.limits.rtol) * largest
-
-
-@kernel
-def drift(fastest, clock, case):
-    """What the integration of a prescribed speed may leave of it where it has come to 0."""
-    return (case.limits.rtol + _DRIFT) * max(fastest, risen_by(clock.piece, case.drive.pieces))
-
-
-@kernel
-def turned(state, frame):
-    """Full slip at V = 0 as seen in the other direction."""
-    slips, direction, sigma, spin, locked = frame
-    return State(0.0, -state.second), Frame(slips, -direction, -sigma, -spin, locked)
-
-
-@kernel
-def stands(state, frame, clock, case):
-    """Whether V and omega, one of them prescribed, are 0 but for what the integration of that one leaves."""
-    if case.drive.prescribed == NEITHER:
-        return False
-    rates, fastest = _here(state, frame, clock, case)[1], 0.0
-    for i in range(N + 1):
-        fastest = max(fastest, case.work.nodes[FASTEST, i])
-    return max(abs(rates.V), abs(rates.omega)) <= drift(fastest, clock, case)
-
-
-@kernel
-def switch(event, state, frame, clock, case):
-    """(State, frame, whether V = omega = 0) behind an event that changes the regime."""
-    slips, direction, sigma, spin, locked = frame
-    if slips and stands(state, frame, clock, case):
-        return state, frame, True
-    if event == EDGE and slips:
-        if closed(state, locked, case):
-            return state, frame, True
-        return State(state.s, sigma), Frame(False, direction, sigma, spin, locked), False
-    if event == EDGE:
-        omega = _here(state, frame, clock, case)[1].omega
-        return State(state.s, omega), Frame(True, direction, sigma, spin, locked), False
-    if event == KINK:
-        return State(state.s, 0.0), Frame(False, direction, -sigma, spin, locked), False
-    if event == TURN:
-        if not slips or state.second == 0.0:
-            return state, frame, True
-        state, frame = turned(state, frame)
-        return state, frame, False
-    if event == STOP:
-        still = State(state.s, 0.0) if slips else state
-        if locks(still, frame, clock, case):
-            return still, Frame(slips, direction, sigma, spin, True), False
-        return still, released(still, frame, clock, case), False
-    return state, released(state, frame, clock, case), False
 
 
 @kernel
@@ -207,30 +103,6 @@ def note(what, noted, clock, case):
 
 
 @kernel
-def setting_out(state, frame, clock, case):
-    """(State, frame) of full slip where a piece of the drive begins: seen from where V goes if it is 0."""
-    _, rates = _here(state, frame, clock, case)
-    if case.drive.prescribed == SPEED and abs(rates.V) <= drift(0.0, clock, case):
-        state = State(0.0, state.second)
-        _, rates = _here(state, frame, clock, case)
-    return turned(state, frame) if state.s == 0.0 and rates.s_rate < 0.0 else (state, frame)
-
-
-@kernel
-def at_new_piece(state, frame, clock, case):
-    """(State, frame) where a piece of the drive begins: brakes take hold or let go, V may turn."""
-    if frame.slips:
-        state, frame = setting_out(state, frame, clock, case)
-    slips, direction, sigma, spin, locked = frame
-    braked, omega = brakes(clock.piece, case.drive.pieces), _here(state, frame, clock, case)[1].omega
-    if locked or omega == 0.0:
-        if braked and locks(state, frame, clock, case):
-            return state, Frame(slips, direction, sigma, spin, True)
-        return state, released(state, frame, clock, case)
-    return state, Frame(slips, direction, sigma, np.sign(omega) if braked else 0.0, False)
-
-
-@kernel
 def coasts(state, frame, clock, case):
     """Whether nothing drives any more, and V decays exponentially to rounding."""
     T_mean = case.scene.material.T_mean
@@ -242,7 +114,7 @@ def unresolved(state, frame, clock, case):
     """Whether V is so small that b relaxes within the rounding of time: then it may as well be 0."""
     if frame.slips:
         return False
-    _, rates = _here(state, frame, clock, case)
+    _, rates = here(state, frame, clock, case)
     return rates.weight < _ROUNDING * clock.tau * abs(rates.rate_slope)
 
 
