@@ -72,7 +72,7 @@ same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	$(RUN) -m pipeline.same --base $(BASE)
 
 test: setup ## the whole test suite
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist worksteal
 
 DEBIAN := netcdf-bin libnetcdf-dev octave octave-netcdf r-base-core r-cran-ncdf4
 SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)

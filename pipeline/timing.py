@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-#: calls quicker than this, s, are repeated for as long
-_QUICK = 0.1
+#: calls quicker than this, s, are repeated for as long; 0 where times are of no interest: a call is made once, as it is
+shortest = 0.1
 
 
 def seconds_of(call: Callable[[], Any], *, collect: bool = True) -> tuple[float, Any]:
     """Wall time of one call, and its result; garbage is collected before, which takes longer than many quick calls."""
-    if collect:
+    if collect and shortest:
         gc.collect()
     start = time.perf_counter()
     result = call()
@@ -34,8 +34,8 @@ def _repeat(call: Callable[[], Any], number: int) -> None:
 def steady_seconds(call: Callable[[], Any]) -> tuple[float, Any]:
     """As :func:`seconds_of`; a quick call is repeated, so that cold caches and new memory do not count."""
     seconds, result = seconds_of(call)
-    if seconds < _QUICK:
-        number = int(_QUICK / seconds) + 1
+    if seconds < shortest:
+        number = int(shortest / seconds) + 1
         seconds = seconds_of(lambda: _repeat(call, number))[0] / number
     return seconds, result
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 
+# a thread of BLAS that waits for another spins: where cores are busy a fit of a master curve takes ten times longer
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
 import pytest
 import xarray as xr
 from memory import forget

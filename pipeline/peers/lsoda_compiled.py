@@ -11,7 +11,9 @@ the package, and none of that is timed.  A motion whose full slip returns is bey
 from __future__ import annotations
 
 from functools import cache
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import numba
@@ -104,10 +106,19 @@ def _engine():
     return _by_numbalsoda() if ENGINE == "numbalsoda" else _by_scipy
 
 
-def _by_numbalsoda():
-    from numbalsoda import lsoda, lsoda_sig
+def numbalsoda_driver() -> ModuleType:
+    """The module of ``lsoda`` alone: beside it lies another method, which numba compiles on import, for 5 s."""
+    spec = spec_from_file_location("driver", Path(find_spec("numbalsoda").origin).with_name("driver.py"))
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
-    @numba.cfunc(lsoda_sig, cache=True)
+
+def _by_numbalsoda():
+    driver = numbalsoda_driver()
+    lsoda = driver.lsoda
+
+    @numba.cfunc(driver.lsoda_sig, cache=True)
     def rates(_, u, du, p):
         y = numba.carray(u, 2)
         par = numba.carray(p, 4)
@@ -121,10 +132,12 @@ def _by_numbalsoda():
                 continue
             times = np.empty(t.size - first[i] + 1)
             times[0] = tau[i]
-            times[1:] = t[first[i] :] * gamma[i]
+            for m in range(1, times.size):  # numba takes seconds to compile the message of slices that do not fit
+                times[m] = t[first[i] + m - 1] * gamma[i]
             solution, good = lsoda(address, u[i].copy(), times, par[i].copy(), rtol, atol, _MOST_STEPS)
             if good:
-                unknowns[i, first[i] :] = solution[1:]
+                for m in range(1, times.size):
+                    unknowns[i, first[i] + m - 1, 0], unknowns[i, first[i] + m - 1, 1] = solution[m]
 
     return lambda *given: loop(rates.address, *given)
 

@@ -17,6 +17,7 @@ from viscoroll.kernels.law.state import ROWS, M, Need, Q, State, contact_state
 from viscoroll.kernels.material.functions import standard
 
 from ..bench.jit import compiled
+from .lsoda_compiled import numbalsoda_driver
 
 INSTALLED = bool(find_spec("numbalsoda"))
 #: share of rtol that the absolute tolerance is
@@ -38,9 +39,10 @@ def _rates(V, omega, t, par, out, du):
 
 @cache
 def _compiled():
-    from numbalsoda import lsoda, lsoda_sig
+    driver = numbalsoda_driver()
+    lsoda = driver.lsoda
 
-    @numba.cfunc(lsoda_sig, cache=True)
+    @numba.cfunc(driver.lsoda_sig, cache=True)
     def rates(t, u, du, p):
         y = numba.carray(u, 2)
         _rates(y[0], y[1], t, numba.carray(p, 9), np.empty(len(ROWS)), numba.carray(du, 2))

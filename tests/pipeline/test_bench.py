@@ -49,8 +49,8 @@ def test_motions(folder):
 
 
 def test_law_tables_and_the_rest(folder):
-    law, tables, skips, scaling, cold = measured(folder, "law", "tables", "skips", "scaling", "cold-start")
-    fixed, agreement = measured(folder, "fixed-scene", "agreement")
+    parts = "law", "tables", "skips", "scaling", "cold-start", "fixed-scene", "agreement"
+    law, tables, skips, scaling, cold, fixed, agreement = measured(folder, *parts)
     assert all(row["ns"] > 0.0 for row in fixed["rows"].values())
     assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED
     assert fixed["bytes"] < 3_000_000

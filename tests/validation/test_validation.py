@@ -168,7 +168,7 @@ def config(path: Path, table: Path, **changes) -> Path:
 def test_stage_passes_then_fails(tmp_path, small_atlas):
     out = tmp_path / "out"
     vr.tables.save(small_atlas, tmp_path / "atlas.nc")
-    settings = config(tmp_path / "small.toml", tmp_path / "atlas.nc")
+    settings = config(tmp_path / "small.toml", tmp_path / "atlas.nc", states=200, stress_states=1, times=5)
     made("demo.validate", "--config", settings, "-o", out)
     assert "every difference is within what is allowed" in (out / "validation.txt").read_text(encoding="utf-8")
     with xr.open_dataset(out / "validation.nc", engine="h5netcdf") as saved:
