@@ -4,8 +4,7 @@
 
 :mod:`records`, what is handed on; :mod:`load`, the drive at a time; :mod:`rates`, the equations in full and in partial
 slip; :mod:`nodes`, what a panel of time holds; :mod:`guess`, where its solution begins; :mod:`solve`, a panel by
-collocation; :mod:`origin`, what follows V = omega = 0; :mod:`events`, where a
-regime ends; :mod:`phase`, panel after panel in one regime; :mod:`switch`, what follows; :mod:`output`; :mod:`integrate`, from
-regime to regime;
-:mod:`loop`, what Python calls.
+collocation; :mod:`origin`, what follows V = omega = 0; :mod:`events`, where a regime ends; :mod:`phase`, panel after
+panel in one regime; :mod:`switch`, what follows; :mod:`output`; :mod:`integrate`, from regime to regime; :mod:`loop`,
+what Python calls.
 """
