@@ -6,6 +6,7 @@ The other method is SciPy's Radau on (V, omega) and the contact law: it knows of
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ WORST, MOST, APART = 30.0, 3.0, 10.0
 BALANCE, OTHER = 1e-8, 1e-6
 TIGHT, OTHER_RTOL = 1e-11, 1e-9
 DOMAIN = "random scenes, starts from rest and not, force and torque that stay, ramp and jump"
+BRAKED = "such motions under brakes that stay, ramp and jump, a quarter of them at alpha = 1"
 Case = tuple[vr.Scene, float, float, NDArray, dict[str, Any]]
 
 
@@ -43,6 +45,18 @@ def random_case(random: np.random.Generator) -> Case:
         force, torque = np.repeat(force[::2], 2)[: times.size], np.repeat(torque[::2], 2)[: times.size]
     drive = {"force": (times, force * (random.random() < 0.7)), "torque": (times, torque * (random.random() < 0.7))}
     return scene, V0, omega0, np.linspace(0.0, end, 30), drive
+
+
+def braked_case(random: np.random.Generator) -> Case:
+    """As the last, with a brake; in half of the cases one of the speeds is 0 at first."""
+    scene, V0, omega0, t, drive = random_case(random)
+    if random.random() < 0.25:
+        scene = scene.replace(alpha=1.0)
+    times, _ = drive["torque"]
+    brake = np.abs(random.normal(size=times.size)) * scene.mu * 10.0 ** random.uniform(-1.0, 0.5)
+    brake *= np.repeat(random.random(times.size // 2) < 0.7, 2)
+    V0, omega0 = ((V0, omega0), (V0, omega0), (V0, 0.0), (0.0, omega0))[random.integers(4)]
+    return scene, V0, omega0, t, drive | {"brake": (times, brake)}
 
 
 def off(one: vr.Motion, other: vr.Motion) -> float:
@@ -69,18 +83,23 @@ def balance(m: vr.Motion) -> float:
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """All rows."""
-    random = np.random.default_rng(sizes["seed"] + 7)
-    tolerances = sizes["driven_rtol"]
-    worst = {rtol: Claim(f"V and omega over the largest speed so far, rtol {rtol:.0e}, over rtol", DOMAIN, WORST)
+    random, braked = (np.random.default_rng(sizes["seed"] + n) for n in (7, 8))
+    claims = judged((random_case(random) for _ in range(sizes["driven_motions"])), sizes["driven_rtol"], DOMAIN)
+    claims += judged((braked_case(braked) for _ in range(sizes["braked_motions"])), sizes["driven_rtol"], BRAKED)
+    return [claim.row for claim in [*claims, *other_method(random, sizes)]]
+
+
+def judged(cases: Iterator[Case], tolerances: list[float], domain: str) -> list[Claim]:
+    """Motions at each tolerance in turn against themselves at a tight one, and the balance of energy of that."""
+    worst = {rtol: Claim(f"V and omega over the largest speed so far, rtol {rtol:.0e}, over rtol", domain, WORST)
              for rtol in tolerances}  # fmt: skip
-    many = Claim(f"share of motions beyond {MOST:g} rtol, all rtol", DOMAIN, 0.01)
+    many = Claim(f"share of motions beyond {MOST:g} rtol, all rtol", domain, 0.01)
     parting = Claim(
-        f"share of motions whose neighbours part by more than {APART:g}, which are judged by that", DOMAIN, 1.0
+        f"share of motions whose neighbours part by more than {APART:g}, which are judged by that", domain, 1.0
     )
-    energy = Claim(f"balance of energy at rtol {TIGHT:.0e}", DOMAIN, BALANCE)
-    beyond, grown, count = 0, 0, sizes["driven_motions"]
-    for n in tqdm(range(count), desc="driven motions", leave=False):
-        case = random_case(random)
+    energy = Claim(f"balance of energy at rtol {TIGHT:.0e}", domain, BALANCE)
+    beyond = grown = count = 0
+    for n, case in enumerate(tqdm(cases, desc="driven motions", leave=False)):
         scene, V0, omega0, t, drive = case
         best, where = vr.roll(scene, V0, omega0, t, TIGHT, **drive), f"motion {n}, {scene!r:.200}"
         energy.add(balance(best), where)
@@ -90,10 +109,10 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             growth = apart(case, rtol, best)
             grown, error = grown + (growth > APART), error / growth if growth > APART else error
         worst[rtol].add(error, where)
-        beyond += error > MOST
+        beyond, count = beyond + (error > MOST), count + 1
     many.add(beyond / count)
     parting.add(grown / count)
-    return [claim.row for claim in [*worst.values(), many, parting, energy, *other_method(random, sizes)]]
+    return [*worst.values(), many, parting, energy]
 
 
 def precise_rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
