@@ -150,15 +150,8 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     package = f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
     names = sorted({each.name for each in packages.required if each.marker is None or "extra" not in str(each.marker)})
-    quiet = [
-        "-p",
-        "no:cacheprovider",
-        "-o",
-        "filterwarnings=ignore::viscoroll.ModelWarning",
-        "--disable-warnings",
-        "--show-capture=no",
-        "-rfE",
-    ]
+    warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
+    quiet = ["-p", "no:cacheprovider", "-o", warnings, "--disable-warnings", "--show-capture=no", "-rfE"]
     test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
     steps = {
         "environment": ([case.python, "-m", "venv", place / "env"], place),
