@@ -160,7 +160,10 @@ def test_jitted_code_takes_a_tuple_of_laws():
             moment += law(V, V).M
         return moment
 
-    assert total(laws, 0.3) == sum(law(0.3, 0.3).M for law in laws)
+    moment = 0.0
+    for law in laws:  # as above: sum() of Python 3.12 keeps more digits
+        moment += law(0.3, 0.3).M
+    assert total(laws, 0.3) == moment
 
 
 def test_jitted_code_with_a_law_inside_is_not_cached(tmp_path):

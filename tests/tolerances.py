@@ -513,3 +513,7 @@ EXAMPLE_JACOBIAN = 1e-4
 TRANSIENT_M = 2e-3
 #: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
 TRANSIENT_ERROR = 6e-3
+
+# --- kernels/drive/events.py (tests/kernels/drive/test_events.py) ---
+#: v where a straight line through the nodes of a panel passes 0: rounding of its interpolant
+EVENT_PLACE = 1e-14

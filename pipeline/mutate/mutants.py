@@ -132,7 +132,7 @@ DRIVE = [
     ("drive/switch.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
     ("drive/switch.py", "Frame(slips, -direction, -sigma, -spin, locked)", "Frame(slips, -direction, sigma, -spin, locked)", _EVENTS),
     ("drive/origin.py", "* per - b * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVE),
-    ("drive/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", _EVENTS),
+    ("drive/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/kernels/drive/test_events.py"),
     ("drive/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):", "if found == NO_EVENT and behind and not frame.slips:", _EVENTS),
     ("drive/phase.py", "kinked = behind and (not frame.slips or found == EDGE or found == SLOW)", "kinked = behind and not frame.slips", _EVENTS),
     ("drive/solve.py", "lasting = 1.0 + panel.length * slowest", "lasting = 1.0 + panel.length * abs(nodes[SLOPE, 0])", _EVENTS),

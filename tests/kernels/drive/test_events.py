@@ -1,0 +1,42 @@
+"""Which of the events on a panel is the first."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+from viscoroll.kernels.drive.events import first_event
+from viscoroll.kernels.drive.nodes import EVENT, INTERPOLANTS, ROWS
+from viscoroll.kernels.drive.records import EVENTS, NO_EVENT, Work
+from viscoroll.kernels.motion.collocation import NODES, N
+
+
+def work_of(zeros: dict[int, float]) -> Work:
+    """A panel on which functions of events fall along straight lines to 0 at these v, those of the others stay."""
+    nodes, empty = np.ones((ROWS, N + 1)), np.empty(0)
+    for event, v in zeros.items():
+        nodes[EVENT + event] = v - 1.0 - NODES
+    return Work(nodes, np.empty((INTERPOLANTS, N + 2)), np.empty((0, 0)), empty, empty)
+
+
+def test_none():
+    assert first_event(work_of({})) == (NO_EVENT, 2.0)
+
+
+@pytest.mark.parametrize("shares", [(0.3, 0.7), (0.499, 0.501)])
+def test_the_earlier_of_two_between_the_same_nodes(shares):
+    """Whatever the order of their rows."""
+    low, high = 1.0 + NODES[4], 1.0 + NODES[5]
+    early, late = (low + share * (high - low) for share in shares)
+    for first, second in permutations(range(EVENTS), 2):
+        event, v = first_event(work_of({first: early, second: late}))
+        assert event == first
+        assert v == pytest.approx(early, rel=tol.EVENT_PLACE)
+
+
+def test_the_earlier_of_two_between_other_nodes():
+    for first, second in permutations(range(EVENTS), 2):
+        assert first_event(work_of({first: 1.0 + NODES[3] + 0.01, second: 1.0 + NODES[6] + 0.01}))[0] == first
