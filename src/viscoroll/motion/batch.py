@@ -117,8 +117,9 @@ def ensemble(
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays, count = _inputs(scene, (V0, omega0), ready)
     material, unit = scene.in_own_time()
-    own_time = {"gamma": unit * unit, "V0": unit, "omega0": unit}
-    flat = [flattened(array * own_time.get(name, 1.0), (count,)) for name, array in arrays.items()]
+    own_time = {} if unit == 1.0 else {"gamma": unit * unit, "V0": unit, "omega0": unit}
+    scaled = (array * own_time[name] if name in own_time else array for name, array in arrays.items())
+    flat = [flattened(array, (count,)) for array in scaled]
     # without a drive nothing acts
     found = names if ready else tuple(name for name in names if name not in ACTING)
     rows = tuple((ROWS if ready else FIELDS).index(name) for name in found)
@@ -212,7 +213,7 @@ def _integrate_others(
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
-    mapped = bool((answer.status >= 0).any())
+    mapped = answer.status.max(initial=-1) >= 0
     block = _MAPPED_BLOCK if mapped else _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
     run_blocks(work, steps.size, block, threads=threads, progress=bar)
     return steps
