@@ -191,8 +191,8 @@ class Ensemble:
         return f"exit code {code}, " + (f"then {again}" if kept else "the file damaged")
 
     def damage(self, count: int, change: Any) -> Iterator[str]:
-        """Of any file: it must be found, and the same command must put it right."""
-        names = sorted(self.expected)
+        """Of any file that is not empty, as the lock is: it must be found, and the same command must put it right."""
+        names = sorted(name for name, data in self.expected.items() if data)
         restore(self.store, self.expected)
         for _ in tqdm(range(count), desc="damage", delay=1.0, leave=False):
             path = self.store / names[int(self.rng.integers(len(names)))]
