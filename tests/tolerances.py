@@ -116,6 +116,10 @@ SLICE = 2e-14
 #: delta_star of a table against that of one state, in units in the last place; measured 10 (alpha = 1e4).
 SLICE_STAR_ULP = 16
 
+# --- materials/law_table.py (test_law_table.py) ---
+#: lam, M/V, eta/F and H/F^2 by a row, relative, and epsilon: the bounds asked.
+TABLE_LAW, TABLE_SHIFT = 5e-15, 2e-14
+
 # --- scene.py (test_scene.py) ---
 #: Conversions: a few roundings of products and one square root.
 SCENE = 1e-15

@@ -90,10 +90,10 @@ def _tabulated(given: float | Prony | Bodies) -> Any:
 
 def series(prony: Prony) -> Any:
     """The record of a series by its modes."""
-    return _series_of(prony.modes)
+    return series_of(prony.modes)
 
 
-def _series_of(modes: Modes) -> Any:
+def series_of(modes: Modes) -> Any:
     from ..kernels.material.series import Series
 
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
@@ -189,7 +189,7 @@ def records(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, ND
         numbers[rows, :COLUMNS] = np.stack(np.broadcast_arrays(*columns), axis=1)
         if N:
             bins[rows, FIRST : STOP + 1] = [_bins(*ends) for ends in zip(modes.a[:, -1], modes.b[:, 0], strict=True)]
-        *vectors, Q = _series_of(modes)
+        *vectors, Q = series_of(modes)
         weights = np.ones(modes.b.shape) if block.weights is None else block.weights
         packed[rows, : packed_size(N)] = np.concatenate([*vectors, weights, Q.reshape(rows.size, -1)], axis=1)
         if block.weights is not None:

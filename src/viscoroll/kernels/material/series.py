@@ -111,7 +111,7 @@ def unpacked(numbers, modes):
 
 
 @kernel(inline=True)
-def _ratios(places, sloped, series, work):
+def ratios(places, sloped, series, work):
     """Ratios and slopes of every mode."""
     for i in range(series.a.size):
         for c in range(LANES):
@@ -143,7 +143,7 @@ def _factorize(matrix, count):
 
 
 @kernel(inline=True)
-def _substitute(matrix, right, count):
+def substitute(matrix, right, count):
     """Solve a linear system in place of its right side, from the factors of the matrix."""
     row_of = 4 * count
     for row in range(1, count):
@@ -159,7 +159,7 @@ def _substitute(matrix, right, count):
 
 
 @kernel(inline=True)
-def _solve(series, work):
+def solve_four(series, work):
     """x from B x = sqrt(r) e, X and f."""
     count, matrix = series.a.size, work.matrix
     for i in range(count):
@@ -176,7 +176,7 @@ def _solve(series, work):
             store(matrix, 4 * (n * count + i), total)
         store(work.x, 4 * i, multiply(root, spread(series.e[i])))
     _factorize(matrix, count)
-    _substitute(matrix, work.x, count)
+    substitute(matrix, work.x, count)
     for i in range(count):
         weighted = multiply(spread(series.e[i]), load(work.x, 4 * i))
         store(work.X, 4 * i, divide(weighted, load(work.root, 4 * i)))
@@ -191,15 +191,15 @@ def _solve(series, work):
 @kernel
 def solve(z, series, work):
     """Fill the room at z > 0, all four places."""
-    _ratios((z, z, z, z), False, series, work)
-    _solve(series, work)
+    ratios((z, z, z, z), False, series, work)
+    solve_four(series, work)
 
 
 @kernel
 def values(places, sloped, series, work):
     """g, h, m, b at four places > 0 into ``found``; b where ``sloped``."""
-    _ratios(places, sloped, series, work)
-    _solve(series, work)
+    ratios(places, sloped, series, work)
+    solve_four(series, work)
     g, h, dh, pressed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
     for i in range(series.a.size):
         root, x, f = load(work.root, 4 * i), load(work.x, 4 * i), load(work.f, 4 * i)

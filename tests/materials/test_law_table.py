@@ -1,0 +1,110 @@
+"""Tables of the law: every function of every row against 60 digits, its limits, and how they are shared."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
+from viscoroll.reference import series as raw
+
+DIGITS = 60
+SOFT, STIFF = vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7])
+UNLIKE = vr.Bodies(SOFT, STIFF, 0.3)
+
+
+def random_series(seed: int, modes: int, decades: float) -> vr.Prony:
+    draw = np.random.default_rng(seed)
+    return vr.Prony(10.0 ** draw.uniform(-1.5, 1.5, modes), 10.0 ** draw.uniform(-decades, 0.0, modes))
+
+
+MATERIALS: dict[str, Any] = {
+    **{f"alpha {alpha:g}": alpha for alpha in (1.0 + 1e-9, 1.01, 11.0, 300.0, 1e6)},
+    "four modes": random_series(1, 4, 3.0),
+    "six modes, 14 decades": random_series(2, 6, 14.0),
+    "two bodies": UNLIKE,
+    "a rigid base": vr.Bodies(SOFT, vr.Prony.elastic(), 1.0),
+}
+
+
+def at(table: LawTable, name: str, x: float) -> float:
+    """A function of the table, by its file's own rule."""
+    mantissa, exponent = np.frexp(x)
+    row = max(exponent - table.e0, 0)
+    t = x * 2.0**-table.e0 if row == 0 else 4.0 * mantissa - 3.0
+    return float(np.polynomial.polynomial.polyval(t, table.coefficients[row, :, FUNCTIONS.index(name)]))
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_against_60_digits(name):
+    given = MATERIALS[name]
+    table = law_table(given)
+    one = vr.Prony.creep([(given - 1.0) / given], [1.0], alpha=given) if isinstance(given, float) else given
+    total = one.total if isinstance(one, vr.Bodies) else one
+    places = np.random.default_rng(5).uniform(table.e0 - 4.0, table.e0 + len(table.coefficients) - 1.5, 12)
+    with mp.workdps(DIGITS + 20):
+        if isinstance(given, float):
+            known = raw.Rates([mp.mpf(given)], [mp.mpf(1)], mp.mpf(given), 1 - 1 / mp.mpf(given))
+        elif total.by_creep:
+            alpha = 1 / (1 - sum(map(mp.mpf, total.J.tolist())))  # to all digits: at high speed all but its last cancel
+            known = raw.rates_of_creep(mp, total.J.tolist(), total.T.tolist(), alpha)
+        else:
+            known = raw.rates(mp, total.E.tolist(), total.tau.tolist())
+        for x in 2.0**places:
+            z = 1 / mp.mpf(x)
+            g, h, m, _ = raw.functions(mp, known, z)
+            square, F = 1 + 2 * h / z, z + g
+            u, v = 1 / (2 * z * mp.sqrt(square)), 1 / F
+            exact = {"lam": 1 / mp.sqrt(square), "epsilon": g / z, "share": z / F, "press": square * (z / F) ** 2}
+            for function, truth in exact.items():
+                found = at(table, function, float(v if function in ("share", "press") else u))
+                bound = tol.TABLE_SHIFT if function == "epsilon" else tol.TABLE_LAW
+                assert close(found, float(truth), rel=bound), (function, x)
+            both = at(table, "m_half_space", float(u)) + at(table, "m_cylinder", float(u))
+            assert close(both, float(m), rel=tol.TABLE_LAW), x
+
+
+def test_an_elastic_contact_is_closed_form():
+    for given in (1.0, vr.Prony.elastic(), vr.Bodies(vr.Prony.elastic(), vr.Prony.elastic(), 0.3)):
+        table = law_table(given)
+        assert table.coefficients.shape == (1, 24, 7)
+        assert table.coefficients[0, 0].tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]
+        assert not table.coefficients[0, 1:].any()
+
+
+def test_a_table_is_made_once_and_shared():
+    with ThreadPoolExecutor(4) as pool:
+        tables = [*pool.map(law_table, [vr.Prony([1.5, 0.25], [1.0, 0.125])] * 4)]
+    assert all(table is tables[0] for table in tables)
+    assert law_table(tables[0]) is tables[0]
+    assert law_table(vr.Bodies(SOFT, SOFT)) is law_table(SOFT)
+    for values in (tables[0].coefficients, tables[0].given_coefficients, tables[0].fast_limit, tables[0].record.rows):
+        assert not values.flags.writeable
+
+
+def test_a_rigid_body_takes_nothing():
+    table = law_table(MATERIALS["a rigid base"])
+    assert not table.coefficients[:, :, FUNCTIONS.index("m_half_space")].any()
+
+
+def test_the_unit_of_time_is_an_exponent():
+    """Times longer by 2^k move the rows by k, and nothing else but M/V, which is a time, and N, its square."""
+    here, there = law_table(UNLIKE), law_table(vr.Bodies(SOFT.slower(2.0**60), STIFF.slower(2.0**60), 0.3))
+    assert there.e0 == here.e0 - 60
+    for power, name in zip((0, 0, 1, 1, 2, 0, 0), FUNCTIONS, strict=True):
+        for x in 2.0 ** np.random.default_rng(6).uniform(here.e0 - 2.0, here.e0 + len(here.coefficients) - 1.5, 40):
+            exact, scale = at(here, name, x), max(abs(at(here, name, 0.0)), 1.0) if name == "N" else 0.0
+            assert close(at(there, name, x * 2.0**-60) * 2.0 ** (-60 * power), exact, rel=tol.TABLE_SHIFT, scale=scale)
+
+
+def test_times_beyond_the_doubles_are_refused():
+    text = refused(lambda: law_table(vr.Prony([1.0], [1e-120])))
+    assert text.startswith("times = 1e-120 to ")
