@@ -82,6 +82,7 @@ def test_a_material_written_is_read_to_the_bit(toml):
         vr.Material(
             1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one', 1100.0 / 3.0
         ),
+        vr.Material.elastic(1e6, 0.3, name="tread \U0001f6de, Gummi für µ\tand\x7f\n"),
         vr.Material.elastic(2e11, 0.3),
         vr.Material.rigid(name="ideal"),
     ):
@@ -113,6 +114,7 @@ NO_MATERIAL = [
     (RUBBER + "wlf = { T0 = 20.0 }\narrhenius = { T0 = 20.0, energy = 1.0 }", ["one of the two"]),
     (RUBBER + "arrhenius = { T0 = 20.0 }", ["[material.arrhenius]", "`energy`"]),
     ("material = 3", ["section [material]"]),
+    ("\ufeff[material]\nE = 1.0", ["line 1: [material]", "`nu`"]),
 ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 
 import numpy as np
@@ -52,6 +53,16 @@ def test_each_shows_itself(results):
         assert isinstance(figure, Figure)
         figure.draw_without_rendering()
         assert any(axes.get_xlabel() for axes in figure.axes), name
+
+
+def test_each_is_equal_to_itself_alone(results):
+    """Arrays have no single answer: a comparison of results raised, and so did their hash."""
+    for result in (*results.values(), results["steady"].loss):
+        other = dataclasses.replace(result) if dataclasses.is_dataclass(result) else None
+        assert result == result
+        assert result in {result}
+        if not isinstance(result, vr.Material):
+            assert result != other
 
 
 def test_si_units_are_on_the_axes_and_in_the_text(results):

@@ -12,6 +12,7 @@ from refusals import refused
 from scipy import stats
 
 import viscoroll as vr
+from viscoroll import sampling
 from viscoroll.sampling import DESIGNS, Sample, sample
 
 
@@ -36,6 +37,15 @@ def test_designs_fill_their_strata():
     for design in ("latin", "sobol"):
         V0 = sample(64, seed=0, design=design, V0=stats.uniform(0.0, 1.0), omega0=stats.uniform(0.0, 1.0))["V0"]
         assert np.array_equal(np.sort(np.floor(64 * V0)), np.arange(64))
+
+
+def test_no_draw_lies_on_the_edge(monkeypatch):
+    """Of as many points as a Sobol sequence has one has the coordinate 0, whose normal draw would be infinite."""
+    monkeypatch.setattr(sampling, "_SOBOL_BITS", 6)
+    drawn = sample(64, seed=0, design="sobol", V0=stats.norm(), omega0=stats.uniform())
+    assert np.all(np.isfinite(drawn["V0"]))
+    for u in (stats.norm.cdf(drawn["V0"]), drawn["omega0"]):
+        assert np.array_equal(np.sort(np.floor(64 * u + 0.25)), np.arange(64))
 
 
 def test_sample_follows_its_distribution():

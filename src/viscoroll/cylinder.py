@@ -153,7 +153,8 @@ class Cylinder(InSI, Conversions):
 
     def __hash__(self) -> int:
         numbers = (getattr(self, name) for name in _NUMBERS)
-        parts = (None if value is None else np.asarray(value).tobytes() for value in numbers)
+        # + 0.0: -0 and 0 are equal
+        parts = (None if value is None else (np.asarray(value) + 0.0).tobytes() for value in numbers)
         return hash((*parts, self.plane, self.material, self.base))
 
     def _card(self) -> tuple[str, list[Row]]:

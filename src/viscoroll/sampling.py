@@ -78,6 +78,8 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
         points = qmc.LatinHypercube(len(random), rng=generator).random(n)
     else:
         points = qmc.Sobol(len(random), bits=_SOBOL_BITS, rng=generator).random_base2(int(np.ceil(np.log2(n))))[:n]
+    # infinite draws come from the edge of the cube alone: of a Sobol sequence to the middle of the cell there
+    points = np.clip(points, 2.0 ** -(_SOBOL_BITS + 1) if design == "sobol" else 2.0**-54, 1.0 - 2.0**-53)
     with np.errstate(all="ignore"):  # what overflows is infinite, and refused
         drawn = {
             name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, points.T, strict=True)

@@ -10,6 +10,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 import types
 import warnings
 
@@ -340,6 +341,8 @@ def test_doctor_and_validity(run):
     out = run("doctor")
     for words in ("viscoroll", vr.__version__, "numba", "threads", "cache", "Q = "):
         assert words in out
+    required = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+    assert {re.split("[^a-z0-9]", each)[0] for each in required} <= set(re.findall(r"\w+", out))
     out = run("validity", "--preset", "rubber-roller", "--V", "5", "--omega", "4.99")
     names = [line.split()[0] for line in out.splitlines()]
     assert names == list(vr.RUBBER_ROLLER.validity(1.0)._fields)

@@ -111,6 +111,8 @@ def test_arrays_replace_and_refusals():
         assert many.contact(0.01, delta=-0.02).Q[n] == pytest.approx(one.Q, rel=tol.SI_MOTION)
     assert many == ROLLER.replace(R=radii.copy())
     assert hash(many) == hash(ROLLER.replace(R=radii.copy()))
+    assert ROLLER.replace(nu=0.0) == ROLLER.replace(nu=-0.0)
+    assert hash(ROLLER.replace(nu=0.0)) == hash(ROLLER.replace(nu=-0.0))
     assert ROLLER.replace(m=70.0).load == pytest.approx(70.0 * 9.81)
     assert ROLLER.replace(load=500.0).replace(m=70.0).load == 500.0
     assert ROLLER.replace(material=RUBBER).E is None

@@ -14,7 +14,9 @@ from typing import Any
 
 from .. import __version__
 
-_BASE = ("numpy", "scipy", "numba", "llvmlite", "h5py", "h5netcdf", "xarray", "matplotlib", "msgspec", "tqdm")
+_BASE = (
+    "numpy", "scipy", "numba", "llvmlite", "h5py", "h5netcdf", "xarray", "matplotlib", "msgspec", "tqdm", "filelock",
+)  # fmt: skip
 #: extra -> what it brings
 _EXTRAS = {"runs": ("zarr", "SALib"), "cluster": ("distributed",)}
 

@@ -35,7 +35,7 @@ class Switch(NamedTuple):
     regime: str
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Motion(Shown):
     """One motion of the cylinder; everything dimensionless.
 

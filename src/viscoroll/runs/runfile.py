@@ -71,7 +71,7 @@ class RunSection(msgspec.Struct, frozen=True):
     quantiles: tuple[Share, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
     """What a run file asks for.
 

@@ -34,7 +34,7 @@ _ROWS = ("V", "omega", "x", "angle", "force", "torque", "work_force", "work_torq
 _SCALED = {*_ROWS, "slip_loss", "rolling_loss", "V0", "omega0", "onset_time", "rest_time"}
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionSI(Shown):
     """One motion of a cylinder in SI units, per m of its length.
 
@@ -148,7 +148,7 @@ class MotionSI(Shown):
         return motion_dataset(self, attributes).assign_attrs(_about(self.cylinder))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EnsembleSI(Shown):
     """Motions of cylinders in SI units; as :class:`viscoroll.motion.Ensemble`, with its names.
 
