@@ -121,7 +121,7 @@ torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes
 matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
 	$(RUN) -m pipeline.matrix
 
-release-check: .venv/docs ## sdist and wheel, their metadata, the README as a package page, licences; what is left to decide
+release-check: .venv/docs ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to decide
 	$(RUN) -m pipeline.release
 
 check: setup ## ruff, mypy and the import contract

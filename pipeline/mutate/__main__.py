@@ -4,7 +4,7 @@
 
 Each mutant of mutants.py is planted in a copy of the tree with a compile cache of its own, and the tests
 named beside it run until the first failure; without a defect they must pass.  As many run at a time as there
-are cores: all of them take half an hour on two.  --only takes those whose file or texts hold a WORD, --fresh
+are cores: all of them take about an hour on two.  --only takes those whose file or texts hold a WORD, --fresh
 leaves out what was run on the same kernels before.  The file says when each was run and on which kernels.
 --check runs nothing: it lists the mutants that have no place in the kernels, or several, or whose tests are
 gone (exit code 1 if there are any), which no run begins with.  Exit code 1 if fewer than 95 % of those run are
@@ -30,9 +30,9 @@ from typing import Any
 import numpy as np
 
 from viscoroll.files import write_text
-from viscoroll.kernels.compile.cache import sources_digest
 
 from ..stage import ROOT
+from ..stamps import kernels_digest
 from .mutants import MUTANTS, Mutant
 
 RESULTS = ROOT / "data/results/mutants.json"
@@ -57,7 +57,7 @@ def main() -> int:
     results: dict[str, Any] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
     results = {name: result for name, result in results.items() if name in known}
     if arguments.fresh:
-        chosen = [m for m in chosen if results.get(name_of(m), {}).get("kernels") != sources_digest()]
+        chosen = [m for m in chosen if results.get(name_of(m), {}).get("kernels") != kernels_digest()]
     with ThreadPoolExecutor(arguments.jobs) as pool:
         try:
             judge_all(chosen, pool, arguments.timeout, results)
@@ -96,7 +96,7 @@ def judge_all(mutants: list[Mutant], pool: ThreadPoolExecutor, timeout: float, r
         mutant, (outcome, by, seconds) = runs[run], run.result()
         results[name_of(mutant)] = {
             "outcome": outcome, "by": by, "seconds": round(seconds, 1), "tests": mutant.tests,
-            "date": datetime.date.today().isoformat(), "kernels": sources_digest(),
+            "date": datetime.date.today().isoformat(), "kernels": kernels_digest(),
         }  # fmt: skip
         print(f"{number}/{len(runs)} {outcome:>9} {seconds:>5.0f} s  {name_of(mutant)}", flush=True)
         write_text(RESULTS, json.dumps(results, indent=1, sort_keys=True, ensure_ascii=False) + "\n")

@@ -145,6 +145,7 @@ def test_document_fills_and_refuses(tmp_path):
         page.write_text(text, encoding="utf-8")
         assert stage_refused("document", page).startswith("document: ")
         assert page.read_text(encoding="utf-8") == text
+    assert "nowhere: no folder" in stage_refused("document", "--results", tmp_path / "nowhere", page)
 
 
 def test_measure_runs_and_document_reads_it(tmp_path):
@@ -155,7 +156,8 @@ def test_measure_runs_and_document_reads_it(tmp_path):
     assert measured.keys() == committed.keys()
     assert all(field["worst"] <= tol.MEASURED_CONTACT for field in measured["contact_error"].values())
     page.write_text("<!-- measured:headline -->\n<!-- end -->\n", encoding="utf-8")
-    made("document", "--results", results, page)
+    made("document", "--results", tmp_path, page)
+    assert "not those of this version" not in page.read_text(encoding="utf-8")
 
 
 def test_measure_refuses_a_configuration_without_its_section(tmp_path):
