@@ -73,7 +73,7 @@ def test_scenes_beyond_all_bounds():
 
 
 def test_a_sentence_each():
-    lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
+    _, *lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
     assert [line.split()[0] for line in lines] == list(SCENE.validity(1.0)._fields)
     assert "plane strain" in lines[-1]
     assert SCENE.validity(1.0).bodies.holds is None
