@@ -1,6 +1,6 @@
 """Every tolerance of the tests, by name, with its reason."""
 
-# --- bessel.py and direct.py (test_direct.py) ---
+# --- kernels/printed/ (test_direct.py) ---
 #: Units in the last place of the textbook Bessel ratios; measured 2.7 (I) and 3.6 (K, where Temme's two sums are
 #: divided).
 BESSEL_ULP = 4.0

@@ -4,7 +4,7 @@
 
 Each mutant of mutants.py is planted in a copy of the tree with a compile cache of its own, and the tests
 named beside it run until the first failure; without a defect they must pass.  As many run at a time as there
-are cores: all of them take about an hour on two.  --only takes those whose file or texts hold a WORD, --fresh
+are cores: all of them take half an hour on two.  --only takes those whose file or texts hold a WORD, --fresh
 leaves out what was run on the same kernels before.  The file says when each was run and on which kernels.
 --check runs nothing: it lists the mutants that have no place in the kernels, or several, or whose tests are
 gone (exit code 1 if there are any), which no run begins with.  Exit code 1 if fewer than 95 % of those run are

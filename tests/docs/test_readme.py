@@ -22,7 +22,7 @@ from viscoroll.reference import MissingDependencyError, contact_precise
 from viscoroll.runs import read_run
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
-PAGES = [*HOME, *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
 LOADING = ROOT / "docs/loading/README.md"
 
 
@@ -121,11 +121,28 @@ def test_relative_links_exist():
 
 
 def test_files_named_in_the_text_exist():
-    named = r"`((?:tests|pipeline|kernels|data/reference)/[\w./]+(?:\.\w+|/))`"
+    named = r"`((?:tests|pipeline|kernels|data/reference|data/results)/[\w./-]+(?:\.\w+|/))`"
     for page in PAGES:
         for name in re.findall(named, page.read_text(encoding="utf-8")):
             found = ROOT / "src/viscoroll" / name if name.startswith("kernels/") else ROOT / name
-            assert found.exists(), f"{page.name}: {name}"
+            assert found.exists(), f"{page}: {name}"
+
+
+def test_the_pages_of_data_and_pipeline_name_what_is_there():
+    """Every file of data, and every stage of a room, by name; no others."""
+    page = (ROOT / "data/README.md").read_text(encoding="utf-8")
+    here = {path.name for folder in ("reference", "results") for path in (ROOT / "data" / folder).iterdir()}
+    said = set(re.findall(r"`(?:\w+/)*([\w-]+\.(?:csv|json|nc))`", page))
+    tables = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["tables"]
+    assert said == {name for name in here if not name.startswith("bench-")} | {f"{name}.nc" for name in tables}
+    page = (ROOT / "pipeline/README.md").read_text(encoding="utf-8")
+    stages = {
+        path.relative_to(ROOT / "pipeline").with_suffix("").as_posix().replace("/", ".").removesuffix(".__main__")
+        for path in (ROOT / "pipeline").glob("*/*.py")
+        if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+    }
+    assert set(re.findall(r"-> ([a-z_.]+) *(?:->|\()", page)) == stages
+    assert set(re.findall(r"`(\w+\.py)`", page)) == {path.name for path in (ROOT / "pipeline").glob("[!_]*.py")}
 
 
 def test_blocks_show_the_measured_numbers():

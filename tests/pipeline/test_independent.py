@@ -59,7 +59,7 @@ def test_profiles_of_the_half_space_code():
 
 
 def test_implicit_integration():
-    """More of it in tests/test_motion.py."""
+    """More of it in tests/motion/test_motion.py."""
     found = worst(independent.section_5())
     assert found["V, relative"] <= tol.SECTION_5_SPEED
     assert found["ω, over V"] <= tol.SECTION_5_SPEED

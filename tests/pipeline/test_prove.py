@@ -173,7 +173,8 @@ def test_committed_proofs_are_of_the_same_claims(quick):
 def test_a_planted_error_of_1e_9_fails_the_proof():
     """The proof of the ratios sees it wherever it reaches 10 ULP of the value.
 
-    In higher orders a term is itself too small for that; tests/test_ratios.py fits every coefficient anew.
+    In higher orders a term is itself too small for that; tests/kernels/bessel/test_ratios.py fits every coefficient
+    anew.
     """
     script = """
 import flint

@@ -16,7 +16,7 @@ def add_commands(commands: Any) -> None:
     """Add the group to the program."""
     group = commands.add_parser(
         "material",
-        help="show and draw a material of several relaxation times",
+        help="show, draw and fit a material of several relaxation times",
         description="Materials by the sections [material] and [base] of a TOML file, in SI units.",
         epilog="example:\n  viscoroll material show docs/examples/rubber.toml",
     ).add_subparsers(metavar="COMMAND", required=True)
