@@ -20,10 +20,12 @@ def close(found: Any, exact: Any, *, rel: Any, scale: Any = 0.0, what: object = 
     Raises
     ------
     AssertionError
-        Beyond what is allowed, or of another shape (a single ``exact`` stands for a whole array).
+        Beyond what is allowed, of another shape (a single ``exact`` stands for a whole array), or where there is
+        nothing to compare.
     """
     found, exact = (np.asarray(v, complex if np.iscomplexobj(v) else float) for v in (found, exact))
     assert exact.ndim == 0 or found.shape == exact.shape, f"shape {found.shape}, not {exact.shape}"
+    assert found.size, "nothing to compare"
     with np.errstate(invalid="ignore", over="ignore"):
         off = np.abs(found - exact)
         allowed = rel * np.maximum(np.abs(exact), np.abs(scale))
