@@ -452,6 +452,10 @@ DMA_WINDOW = (0.009, 0.006)
 DMA_WINDOW_MOMENT = 0.1
 #: Two fits of data that differ by a factor in frequency or modulus: paths of the iterations that round otherwise.
 DMA_SCALED = 1e-6
+#: The same sums, and shifts given, once more: a few roundings.
+DMA_REPEATED = 1e-14
+#: Numbers read from a file, times the factor of a unit.
+DMA_READ = 1e-15
 #: Median of the local Kramers-Kronig ratio of broad spectra, noise 0.5 %; measured 0.021.
 DMA_KRAMERS_KRONIG = 0.05
 #: that of the curve shipped from pyvisco, "about 1.65"; measured 1.68.

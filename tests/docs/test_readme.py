@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 import tolerances as tol
+from closeness import close
 from places import RESULTS, ROOT
 from processes import made, stage, stage_refused
 from refusals import refused
@@ -209,7 +210,7 @@ def test_precise_values_hold_their_digits():
             with mpmath.workdps(60):
                 assert abs(few[name] - exact) <= mpmath.mpf(10) ** -20 * abs(exact), (name, state)
             bound = tol.MEASURED_CONTACT / (to_the_limit if name == "beta" else 1.0)
-            assert getattr(double, name) == pytest.approx(float(exact), rel=bound, abs=0.0), (name, state)
+            assert close(getattr(double, name), float(exact), rel=bound, what=(name, state))
 
 
 def test_precise_refuses():
