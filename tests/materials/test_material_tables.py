@@ -14,6 +14,8 @@ from closeness import close
 import viscoroll as vr
 from viscoroll import rolling_contact
 from viscoroll.contact_fields import FIELDS
+from viscoroll.kernels.law import inverses
+from viscoroll.kernels.law.inverses import inverses_of
 from viscoroll.kernels.law.stick import differences
 from viscoroll.kernels.material.functions import at_contact, standard
 from viscoroll.kernels.material.tabulated import tabulated
@@ -159,6 +161,19 @@ def test_from_several_threads():
     with ThreadPoolExecutor(4) as pool:
         found = list(pool.map(lambda _: vr.contact(scene, V, delta=delta).Q, range(4)))
     assert all(np.array_equal(Q, found[0]) for Q in found)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one table")
+def test_threads_keep_tables_for_later_calls(monkeypatch):
+    """Once a process: each thread of each call made its own."""
+    made = []
+    monkeypatch.setattr(inverses, "inverses_of", lambda given: made.append(given) or inverses_of(given))
+    monkeypatch.setenv("VISCOROLL_THREADS", "2")
+    monkeypatch.setattr(rolling_contact, "_BLOCK", MANY)
+    V, delta, _ = states(vr.Scene(24.5, KAPPA, MU), 2 * MANY, seed=16)
+    for _ in range(2):
+        vr.contact(vr.Scene(24.5, KAPPA, MU), V, delta=delta)
+    assert len(made) == 1
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
