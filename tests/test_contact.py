@@ -387,7 +387,7 @@ def test_bad_input():
     """One line that names the thing, its value and what is allowed; a ValueError too."""
     for options, name, value, allowed in BAD_CALLS:
         text = refused(partial(vr.contact, SCENE, **options), value, allowed)
-        assert text.startswith(f"{name} = ")
+        assert text.startswith((f"{name} = ", f"{name}: "))
     both = refused(partial(vr.contact, SCENE, 1.0, delta=0.1, omega=1.1))
     assert both == "delta and omega are both given: give one of the two"
     assert refused(partial(vr.contact, SCENE, 1.0)) == "give delta or omega"

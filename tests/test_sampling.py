@@ -70,7 +70,7 @@ BAD = [
     ({"n": 2.5}, "n = 2.5"),
     ({"seed": -1}, "seed = -1: must be a whole number >= 0"),
     ({"seed": None}, "seed = None"),
-    ({"design": "grid"}, "design = 'grid': must be out of random, latin, sobol"),
+    ({"design": "grid"}, "design: 'grid' is not a design; choose from random, latin, sobol"),
     ({"V0": math.nan}, "V0 = nan: must be a finite number or a frozen scipy.stats distribution"),
     ({"V0": "fast"}, "V0 = fast"),
     ({"V0": [1.0, 2.0]}, "V0 = [1.0, 2.0]"),

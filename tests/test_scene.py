@@ -234,8 +234,8 @@ def test_forces_of_a_pair():
 
 BAD_PAIRS = [
     ({"material": RUBBER, "E": 1e6, "T_sigma": 1.0}, "material and E, T_sigma are both given"),
-    ({}, "E = None"),
-    ({"E": 1e6, "nu": 0.4, "T_epsilon": 1.0}, "T_sigma = None"),
+    ({}, "give material=, or all of E, nu, T_epsilon and T_sigma: E, nu, T_epsilon, T_sigma not given"),
+    ({"E": 1e6, "nu": 0.4, "T_epsilon": 1.0}, "T_sigma: T_sigma not given"),
     ({"material": "rubber"}, "material = 'rubber': must be a Material"),
     ({"material": RUBBER, "base": 2e11}, "base = 200000000000.0: must be a Material"),
     ({"material": vr.Material.rigid()}, "base = rigid: must be a body that deforms"),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import checked, number
-from .errors import ParameterError
+from .errors import ParameterError, unknown
 
 DESIGNS = ("random", "latin", "sobol")
 #: bits of scipy's Sobol sequence, which has no more points
@@ -67,7 +67,7 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise ParameterError(name, value, f"a whole number >= {least}")
     if design not in DESIGNS:
-        raise ParameterError("design", repr(design), "out of " + ", ".join(DESIGNS))
+        raise unknown("design", design, DESIGNS, "a design")
     if design == "sobol" and n > 1 << _SOBOL_BITS:
         raise ParameterError("n", n, f"at most 2^{_SOBOL_BITS} for design 'sobol'")
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]

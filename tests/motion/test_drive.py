@@ -370,6 +370,8 @@ REFUSALS = {
     "steep": ({"slope": 1.6}, "slope"),
     "nan": ({"torque": lambda t: math.nan}, "torque(t)"),
     "callable": ({"torque": lambda t: float(t > 0.3)}, "jumps near t = 0.3"),
+    "of the speeds": ({"torque": lambda t, V, w: -V}, "torque is called with t alone, this function takes (t, V, w)"),
+    "of nothing": ({"force": vr.Feedback(lambda: 0.1, V=-1.0)}, "force is called with t alone"),
     "rest": ({"force": 0.1, "rest": 1e-3}, "rest"),
     "brake": ({"brake": -1.0}, "brake"),
     "no start": ({"V0": None}, "V0"),

@@ -215,7 +215,7 @@ BAD_CALLS = [
     ({"scene": SCENE.replace(mu=[0.1, 0.2]), "V0": [1.0, 2.0, 3.0]}, "mu (2,), V0 (3,)"),
     ({"V0": [[1.0, 2.0]]}, "must be scalars or vectors (n,)"),
     ({"t": [1.0, 0.5]}, "must be in ascending order"),
-    ({"fields": ("V", "speed")}, "fields = 'speed': must be out of V, omega"),
+    ({"fields": ("V", "speed")}, "fields: 'speed' is not a field; choose from V, omega"),
     ({"rtol": 1.0}, "rtol = 1.0: must be a number in"),
 ]
 

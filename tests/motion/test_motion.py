@@ -583,10 +583,10 @@ BAD_CALLS = [
     ("fast", 0.5, 1e-3, {}, "V0 = 'fast': must be"),
     (1e200, 0.5, 1e-3, {}, "V0 = 1e+200: must be at most 1e+100"),
     (5e-324, 0.0, 1e-3, {}, "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300"),
-    ([1.0, 2.0], 0.5, 1e-3, {}, "for many use ensemble"),
+    ([1.0, 2.0], 0.5, 1e-3, {}, "but V0 has shape (2,): use ensemble"),
     (1.0, 0.5, -1e-3, {}, "t = -0.001: must be finite and >= 0"),
     (1.0, 0.5, [0.0, math.nan], {}, "t = nan"),
-    (1.0, 0.5, [2e-3, 1e-3], {}, "must be in ascending order"),
+    (1.0, 0.5, [2e-3, 1e-3], {}, "t = 0.002, 0.001 at rows 0, 1: must be in ascending order"),
     (1.0, 0.5, [], {}, "one end time or a vector"),
     (1.0, 0.5, [[1e-3]], {}, "one end time or a vector"),
     (1.0, 0.5, 1e-3, {"rtol": 0.1}, "rtol = 0.1: must be a number in [1e-12, 0.01]"),
@@ -601,7 +601,7 @@ BAD_CALLS = [
 def test_bad_input():
     for V0, omega0, t, options, text in BAD_CALLS:
         refused(partial(vr.roll, ROUNDED, V0, omega0, t, **options), text)
-    refused(lambda: vr.roll(ROUNDED.replace(mu=[0.1, 0.2]), 1.0, 1.0, 1e-3), "for many use ensemble")
+    refused(lambda: vr.roll(ROUNDED.replace(mu=[0.1, 0.2]), 1.0, 1.0, 1e-3), "the scene has shape (2,): use ensemble")
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-11])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 import re
 from functools import partial
+from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -477,7 +479,7 @@ REFUSED = [
     ("rtol = 1e-6", "rtol = 1.0", ["line 16", "rtol"]),
     ('"onset_time"', '"onset"', ["line 18", "onset"]),
     ("block = 512", 'method = "flow"', ["line 17", "scenes differ"]),
-    ('preset = "paper-section-5"', 'preset = "paper"', ["line 2", "out of paper-section-5"]),
+    ('preset = "paper-section-5"', 'preset = "paper"', ["line 2", "choose from paper-section-5"]),
     ("V0.mu = 0.7", "V0.mu = 0.0\nmu.V0 = 0.9", ["[correlation]", "V0.mu = 0.0: must be that of mu.V0 = 0.9"]),
     ("[0.05, 0.6]", "[0.05, nan]", ["line 4", "truncate = [0.05, nan]", "must be [low, high]"]),
     ("[0.05, 0.6]", "[false, true]", ["line 4", "truncate = [False, True]", "must be [low, high]"]),
@@ -527,3 +529,21 @@ def test_estimate_says_what_it_takes(read):
     assert found.blocks == run.blocks == -(-3_000_000_000 // 512)
     assert found.seconds > 60.0
     assert "MB" in str(found)
+
+
+def test_an_estimate_does_not_scale_up_what_happens_once(read, monkeypatch):
+    """By a clock that goes by the work alone: 100 s for what a process does once, as to import, then 1 s a trial."""
+    clock = [0.0]
+
+    def summarised(*given):
+        clock[0] += 100.0 if clock[0] == 0.0 else 1.0
+        return summarise(*given)
+
+    module = import_module("viscoroll.runs.estimate")  # whose name is the function's
+    monkeypatch.setattr(module, "summarise", summarised)
+    monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    run = read(FULL.replace("DESIGN", "sobol").replace("n = 3000", f"n = {512 * 5}"))
+    assert run.blocks == 5
+    assert estimate(run, threads=1).seconds == 5.0
+    assert estimate(run, threads=2).seconds == 3.0  # three blocks for one of the two
+    assert estimate(run, threads=9).seconds == 1.0

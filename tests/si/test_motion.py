@@ -139,6 +139,7 @@ REFUSED = [
     ({"rest": 1e-3, "force": 1.0}, "rest = "),
     ({"V": 0.1, "omega": 1.0}, "V and omega are both given"),
     ({"V": 0.1, "force": 1.0}, "force is given beside V="),
+    ({"torque": lambda t, V, omega: -V}, "torque is called with t alone, this function takes (t, V, omega)"),
 ]
 
 
@@ -183,5 +184,6 @@ def test_retardation_times_of_each():
         assert close(e.onset_time[n], m.onset_time, rel=tol.SI_ENSEMBLE)
     assert many == many.replace(T_epsilon=slow.copy())
     refused(lambda: many.replace(T_sigma=5e-3), "T_epsilon = 0.001: must be >= T_sigma = 0.005")
+    refused(lambda: many.roll(1.0, 0.0, 1.0), "roll computes one motion, but T_epsilon has shape (3,): use ensemble")
     refused(lambda: many.replace(T_epsilon=slow[:, np.newaxis]), "T_epsilon", "a vector (n,)")
     refused(lambda: many.replace(base=vr.Material.rigid()).scene(), "T_epsilon", "single number")

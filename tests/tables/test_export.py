@@ -164,7 +164,7 @@ def test_refused(literal, small_atlas, tmp_path):
             literal,
             "t.nc",
             {"format": "excel"},
-            "format = 'excel': must be out of netcdf4, netcdf3, csv, modelica, matlab",
+            "format: 'excel' is not a format; choose from netcdf4, netcdf3, csv, modelica, matlab",
         ),
         (literal, "t.txt", {"format": "matlab"}, "a name that ends in .mat for format matlab"),
         (literal, "t.nc", {"alpha": 5.0}, f"alpha = 5: {one_of}: 1, 3, 11"),

@@ -79,12 +79,12 @@ def _show(arguments: Namespace) -> int:
 
 
 def _plot(arguments: Namespace) -> int:
-    from ..errors import ParameterError
+    from ..errors import unknown
     from ..materials.file import read_materials
 
     found = read_materials(arguments.file, arguments.temperature)
     if arguments.section not in found:
-        raise ParameterError("section", repr(arguments.section), f"out of {', '.join(found)}, which the file has")
+        raise unknown("section", arguments.section, found, "in the file")
     found[arguments.section].plot(arguments.output)
     return 0
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import __version__
 from ..checks import checked
-from ..errors import ParameterError
+from ..errors import ParameterError, unknown
 from ..files import replacing, write_text
 from ..symbols import PAPER, SYMBOLS
 from . import schema, store
@@ -64,7 +64,7 @@ def export(
 def check_format(format: str, path: str | PathLike[str]) -> None:
     """Raise ParameterError unless ``format`` is known and ``path`` ends as its files do."""
     if format not in FORMATS:
-        raise ParameterError("format", repr(format), f"out of {', '.join(FORMATS)}")
+        raise unknown("format", format, FORMATS, "a format")
     suffix, _ = FORMATS[format]
     if Path(path).suffix != suffix:
         raise ParameterError("path", path, f"a name that ends in {suffix} for format {format}")

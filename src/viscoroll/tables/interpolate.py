@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..blocks import flattened
 from ..checks import broadcast_shape, checked
-from ..errors import OutOfTableError, ParameterError
+from ..errors import OutOfTableError, ParameterError, unknown
 from ..rolling_contact import Values
 from . import schema
 from .grid import ATLAS_MAPS
@@ -81,7 +81,7 @@ class Interpolant:
         names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
         for name in names:
             if name not in known:
-                raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
+                raise unknown("fields", name, known, "a field of this table")
         return names
 
     def _checked_points(

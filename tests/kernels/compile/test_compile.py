@@ -185,7 +185,7 @@ def test_a_record_takes_its_own_version_and_never_that_of_another():
     asked = [kernel(lambda record, of=of: of(record)) for of in (strict, open_ended)]
     assert asked[0](Known(3.0)) == asked[1](Known(3.0)) == 6.0
     assert asked[1](Other(3.0)) == 3.0
-    with pytest.raises(TypeError, match="Other: not out of Known"):
+    with pytest.raises(TypeError, match="Other: must be one of Known"):
         strict(Other(3.0))
 
 
@@ -536,7 +536,8 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 # --- what is said ---
 
 SCENE = "import numpy as np; import viscoroll as vr; scene = vr.PAPER_SECTION_5\n"
-NOTICE = r"viscoroll: compiling kernels, once for this machine, about \d+ s; `viscoroll warmup` does it ahead\n"
+#: without a figure: the first kernel does not know how many follow it
+NOTICE = r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
 
 
 def test_who_waits_is_told_once_a_process(tmp_path):
@@ -554,10 +555,8 @@ def untold(monkeypatch):
 
 
 def test_what_is_said(untold, capsys):
-    notice.tell(0.5)
-    assert capsys.readouterr() == ("", "")
-    notice.tell(12.0)
-    notice.tell(20.0)
+    notice.tell()
+    notice.tell()
     said = capsys.readouterr()
     assert said.out == ""
     assert re.fullmatch(NOTICE, said.err)
@@ -566,16 +565,16 @@ def test_what_is_said(untold, capsys):
 def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
     with monkeypatch.context() as quiet:
         quiet.setenv("VISCOROLL_QUIET", "1")
-        notice.tell(12.0)
+        notice.tell()
     with monkeypatch.context() as child:
         child.setattr(notice.multiprocessing, "parent_process", lambda: "this process has one")
-        notice.tell(12.0)
+        notice.tell()
     with monkeypatch.context() as worker:
         worker.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask"))
-        notice.tell(12.0)
+        notice.tell()
     with monkeypatch.context() as window:
         window.setattr(sys, "stderr", None)
-        notice.tell(12.0)
+        notice.tell()
     assert capsys.readouterr() == ("", "")
 
 
@@ -584,5 +583,5 @@ def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
         raise ValueError("No worker found")
 
     monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
-    notice.tell(12.0)
+    notice.tell()
     assert re.fullmatch(NOTICE, capsys.readouterr().err)
