@@ -147,7 +147,7 @@ NO_SCENE = [
     (CYLINDER.replace("0.49", "0.7"), ["nu = 0.7", "> -1, <= 0.5"]),
     (CYLINDER + 'plane = "sideways"', ["[cylinder]", "'sideways'", "plane"]),
     ('preset = "paper"', ["preset: 'paper' is not", "paper-section-5"]),
-    ("preset = [1]", ["preset = [1]", "paper-section-5"]),
+    ("preset = [1]", ["preset: [1] is not", "paper-section-5"]),
     ("scene = 3", ["scene = 3", "section [scene]"]),
     ("", ["exactly one of preset, [scene] and [cylinder]", "none"]),
     (SCENE + CYLINDER, ["exactly one", "scene and cylinder"]),
