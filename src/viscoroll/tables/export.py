@@ -76,7 +76,7 @@ def _at_alphas(table: xr.Dataset, wanted: NDArray) -> xr.Dataset:
     if wanted.ndim != 1 or not wanted.size:
         raise ParameterError("alpha", f"an array of shape {wanted.shape}", "one alpha or a vector of them")
     nodes = table["alpha"].values
-    same = np.isclose(wanted[:, np.newaxis], nodes, rtol=_SAME_ALPHA, atol=0.0)
+    same = np.abs(wanted[:, np.newaxis] - nodes) <= _SAME_ALPHA * nodes
     missing = wanted[~same.any(axis=1)]
     if missing.size:
         raise ParameterError("alpha", f"{missing[0]:g}", f"one that the table holds: {_listed(nodes)}")
