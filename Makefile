@@ -54,7 +54,6 @@ numbers: setup $(TABLES) ## measure again what README and docs state, and put it
 	$(RUN) -m pipeline.measure.loading --config $(CONFIG)
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	$(RUN) -m pipeline.document
-	$(BIN)/viscoroll plot figure-5 -o docs/figures/motion.png
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
@@ -111,7 +110,7 @@ fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECOND
 	$(RUN) -m pipeline.torture.fuzz_loaders toml
 	$(RUN) -m pipeline.torture.fuzz_loaders table
 
-mutate: setup ## plant defects in the kernels and see which the tests notice (about an hour)
+mutate: setup ## plant defects in the kernels and see which the tests notice (half an hour)
 	$(RUN) -m pipeline.mutate
 
 torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 25 minutes)
@@ -121,7 +120,7 @@ torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes
 matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
 	$(RUN) -m pipeline.matrix
 
-release-check: .venv/docs ## sdist and wheel, their metadata, the README as a package page, licences; what is left to decide
+release-check: .venv/docs ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to decide
 	$(RUN) -m pipeline.release
 
 check: setup ## ruff, mypy and the import contract

@@ -1,4 +1,4 @@
-"""What a release needs, checked: sdist and wheel, their metadata, the README as a package page, licences.
+"""What a release needs, checked: sdist and wheel, metadata, the README as a package page, licences, measured numbers.
 
     python -m pipeline.release [--final]
 
@@ -23,6 +23,9 @@ from packaging.metadata import Metadata
 from readme_renderer import markdown
 
 import viscoroll as vr
+
+from .results import RESULTS
+from .stamps import SHORT, kernels_digest, outdated
 
 ROOT = Path(__file__).parents[1]
 #: data that others made: their files need a licence beside them in the sdist
@@ -107,6 +110,14 @@ def page(packages: Packages) -> Iterator[str]:
         yield "the README does not render"
 
 
+def numbers(packages: Packages) -> Iterator[str]:
+    """What README and docs state was measured at the kernels that are shipped."""
+    others = outdated(RESULTS)
+    if others:
+        files = ", ".join(f"{name} ({', '.join(one[:SHORT] for one in digests)})" for name, digests in others.items())
+        yield f"of other kernels than these, {kernels_digest()[:SHORT]}, in data/results: {files}"
+
+
 def undecided(packages: Packages) -> Iterator[str]:
     """What only a person can decide."""
     if not (packages.metadata.project_urls or {}).get("Repository"):
@@ -120,7 +131,13 @@ def undecided(packages: Packages) -> Iterator[str]:
         yield "the CHANGELOG has an unreleased section: give it the version and set __version__ and CITATION.cff"
 
 
-CHECKS = {"metadata": metadata, "contents": contents, "licences": licences, "package page": page}
+CHECKS = {
+    "metadata": metadata,
+    "contents": contents,
+    "licences": licences,
+    "package page": page,
+    "measured numbers": numbers,
+}
 
 
 def main() -> int:

@@ -20,6 +20,7 @@ from viscoroll.errors import ConfigError
 from viscoroll.files import write_text
 
 from .stage import CONFIG, ROOT, make_folder, read_toml, told
+from .stamps import kernels_digest
 
 #: folder of the results
 RESULTS = ROOT / "data/results"
@@ -152,10 +153,8 @@ def rounded(value: Any) -> Any:
 
 
 def machine() -> dict[str, Any]:
-    """Where and when, and with what, this was measured; ``kernels`` is the hash of their sources."""
+    """Where and when, and with what, this was measured."""
     import numba
-
-    from viscoroll.kernels.compile.cache import sources_digest
 
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
@@ -170,6 +169,6 @@ def machine() -> dict[str, Any]:
         "numpy": np.__version__,
         "numba": numba.__version__,
         "viscoroll": vr.__version__,
-        "kernels": sources_digest(),
+        "kernels": kernels_digest(),
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
     }

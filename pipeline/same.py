@@ -111,13 +111,20 @@ def _hash(values: list[Any]) -> str:
 def _hashes_at(revision: str) -> dict[str, str]:
     """What this script finds in a copy of another commit."""
     with tempfile.TemporaryDirectory() as folder:
-        archive = subprocess.run(["git", "-C", ROOT, "archive", revision, "src"], stdout=subprocess.PIPE, check=True)
-        subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
         done = subprocess.run(
-            [sys.executable, __file__], env=os.environ | {"PYTHONPATH": str(Path(folder) / "src")},
+            [sys.executable, __file__], env=os.environ | {"PYTHONPATH": str(checked_out(revision, Path(folder)))},
             stdout=subprocess.PIPE, text=True, check=True,
         )  # fmt: skip
     return dict(line.split() for line in done.stdout.splitlines())
+
+
+def checked_out(revision: str, folder: Path) -> Path:
+    """``src`` of a commit, in a folder; raises FileNotFoundError where this clone lacks the commit."""
+    archive = subprocess.run(["git", "-C", ROOT, "archive", revision, "src"], capture_output=True, check=False)
+    if archive.returncode:
+        raise FileNotFoundError(f"no commit {revision} here; a shallow clone has few: git fetch --unshallow")
+    subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
+    return folder / "src"
 
 
 if __name__ == "__main__":

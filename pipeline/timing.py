@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import subprocess
 import sys
 import time
@@ -71,10 +72,11 @@ given = json.loads(sys.argv[1])
 """
 
 
-def printed(program: str, *given: Any) -> Any:
+def printed(program: str, *given: Any, **environment: str) -> Any:
     """What a program prints as JSON that finds its arguments in the list ``given``, in a process of its own."""
     command = [sys.executable, "-c", _BEGIN + program, json.dumps(given)]
-    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    done = subprocess.run(command, env=os.environ | environment, check=True, capture_output=True, text=True)
+    return json.loads(done.stdout)
 
 
 def usages() -> list[Any]:

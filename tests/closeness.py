@@ -11,19 +11,21 @@ from typing import Any
 import numpy as np
 
 
-def close(found: Any, exact: Any, *, rel: float, scale: Any = 0.0) -> bool:
+def close(found: Any, exact: Any, *, rel: Any, scale: Any = 0.0, what: object = "") -> bool:
     """Whether ``|found - exact| <= rel max(|exact|, scale)`` everywhere; where it is not, the worst place is told.
 
     ``scale`` is the size of which ``rel`` counts where ``exact`` is small or 0: a sum's largest term, a motion's
-    largest speed.  NaN agrees with NaN alone, infinity with the same infinity.
+    largest speed.  NaN agrees with NaN alone, infinity with the same infinity.  ``what`` is told first.
 
     Raises
     ------
     AssertionError
-        Beyond what is allowed, or of another shape (a single ``exact`` stands for a whole array).
+        Beyond what is allowed, of another shape (a single ``exact`` stands for a whole array), or where there is
+        nothing to compare.
     """
-    found, exact = np.asarray(found, float), np.asarray(exact, float)
+    found, exact = (np.asarray(v, complex if np.iscomplexobj(v) else float) for v in (found, exact))
     assert exact.ndim == 0 or found.shape == exact.shape, f"shape {found.shape}, not {exact.shape}"
+    assert found.size, "nothing to compare"
     with np.errstate(invalid="ignore", over="ignore"):
         off = np.abs(found - exact)
         allowed = rel * np.maximum(np.abs(exact), np.abs(scale))
@@ -35,6 +37,6 @@ def close(found: Any, exact: Any, *, rel: float, scale: Any = 0.0) -> bool:
         badness = np.where(good, -1.0, np.nan_to_num(off / allowed, nan=np.inf, posinf=np.inf))
     worst = np.unravel_index(np.argmax(badness), off.shape)
     raise AssertionError(
-        f"{found[worst]!r} at {tuple(int(i) for i in worst)}, not {exact[worst]!r}: off by {off[worst]:.3g} where"
-        f" {allowed[worst]:.3g} is allowed; {np.count_nonzero(~good)} of {good.size} beyond"
+        f"{what} {found[worst]!r} at {tuple(int(i) for i in worst)}, not {exact[worst]!r}: off by {off[worst]:.3g}"
+        f" where {allowed[worst]:.3g} is allowed; {np.count_nonzero(~good)} of {good.size} beyond"
     )

@@ -47,12 +47,13 @@ def test_a_grid_of_two_axes_is_as_the_grid_written_out():
 
 def test_a_number_of_threads_that_is_none(monkeypatch):
     start = (vr.PAPER_SECTION_5, [1.0, 2.0], 0.5, 1e-5)
-    for threads in ("2", 1.5, True):
-        with pytest.raises(vr.ParameterError, match=f"threads = {threads!r}: must be a whole number"):
+    for threads in ("2", 1.5, True, 0, -5):
+        with pytest.raises(vr.ParameterError, match=f"threads = {threads!r}: must be a whole number >= 1"):
             vr.ensemble(*start, threads=threads)
-    monkeypatch.setenv("VISCOROLL_THREADS", "two")
-    with pytest.raises(vr.ParameterError, match="VISCOROLL_THREADS = 'two': must be a whole number"):
-        vr.ensemble(*start)
+    for threads in ("two", "0", "-5"):
+        monkeypatch.setenv("VISCOROLL_THREADS", threads)
+        with pytest.raises(vr.ParameterError, match=f"VISCOROLL_THREADS = '{threads}': must be a whole number >= 1"):
+            vr.ensemble(*start)
     monkeypatch.setenv("VISCOROLL_THREADS", "")
     assert thread_count() == cores()
 

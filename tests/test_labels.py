@@ -22,7 +22,7 @@ def test_contact_states(body):
     creep = xr.DataArray([0.0, 0.01, 0.02], dims="creep")
     found = own(V, delta=creep)
     assert found.M.dims == found.to_xarray()["M"].dims == ("run", "creep")
-    assert found.M.sel(run="b").values == pytest.approx(own(0.2, delta=creep.values).M)
+    assert np.array_equal(found.M.sel(run="b"), own(0.2, delta=creep.values).M)
     assert list(found.to_xarray()["run"]) == ["a", "b"]
     found = own(TABLE["V"], delta=TABLE["delta"])
     assert found.M["y"] == own(0.2, delta=0.01).M
@@ -38,7 +38,7 @@ def test_stresses(body):
     x = xr.DataArray(np.linspace(-1e-3, 1e-3, 5), dims="place")
     found = own(x, V, delta=0.01)
     assert found.p.dims == ("place", "run")
-    assert found.tau.sel(run="b").values == pytest.approx(own(x.values, 0.2, delta=0.01).tau)
+    assert np.array_equal(found.tau.sel(run="b"), own(x.values, 0.2, delta=0.01).tau)
     series = pd.Series(x.values, index=list("abcde"))
     assert own(series, 0.2, delta=0.01).p["c"] == own(0.0, 0.2, delta=0.01).p
 
@@ -49,7 +49,7 @@ def test_equilibria(body):
     slope = xr.DataArray(np.radians([0.01, 0.02, 40.0]), dims="place", coords={"place": ["a", "b", "c"]})
     found, plain = own(slope=slope), own(slope=slope.values)
     assert found.V.dims == ("place", "equilibrium")
-    assert found.V.sel(place="b").values == pytest.approx(plain.V[1], nan_ok=True)
+    assert np.array_equal(found.V.sel(place="b"), plain.V[1], equal_nan=True)
     assert found.loss.slip.dims == found.V.dims
     assert found.eigenvalues.dims == ("place", "equilibrium", "rate")
     assert found.count.sel(place="c") == 0

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 
 import numpy as np
 import pytest
+import tolerances as tol
+from closeness import close
 from matplotlib.figure import Figure
 from places import ROOT
 from processes import printed
@@ -52,6 +55,16 @@ def test_each_shows_itself(results):
         assert isinstance(figure, Figure)
         figure.draw_without_rendering()
         assert any(axes.get_xlabel() for axes in figure.axes), name
+
+
+def test_each_is_equal_to_itself_alone(results):
+    """Arrays have no single answer: a comparison of results raised, and so did their hash."""
+    for result in (*results.values(), results["steady"].loss):
+        other = dataclasses.replace(result) if dataclasses.is_dataclass(result) else None
+        assert result == result
+        assert result in {result}
+        if not isinstance(result, vr.Material):
+            assert result != other
 
 
 def test_si_units_are_on_the_axes_and_in_the_text(results):
@@ -128,7 +141,7 @@ def test_validity_of_motions(results):
     m = results["motion"]
     found = m.validity()
     assert found.steady.value[0] == SCENE.validity(m.V[0]).steady.value
-    assert found.creep.value == pytest.approx(np.abs(m.delta))
+    assert close(found.creep.value, np.abs(m.delta), rel=tol.SCENE, scale=1.0)
     assert not found.creep.holds[0]
     assert found.creep.holds[-1]
     assert results["motion in SI"].validity().quasistatic.value.shape == (9,)
@@ -163,3 +176,36 @@ def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
     assert len(braked.plot().axes) == 3
     assert "held at t = " in repr(braked)
     assert len(vr.RUBBER_CYLINDER.roll(2.0, 20.0, t, torque=0.5).plot().axes) == 4
+
+
+def test_a_motion_tells_its_peak(results):
+    """First, largest with its time, last: a roller that is spun up and rolls out was fastest between the two."""
+    m = ROLLER.roll(0.0, 0.0, np.linspace(0.0, 10.0, 101), torque=([0.0, 1.0, 1.0], [2.0, 2.0, 0.0]))
+    (line,) = (line for line in repr(m).splitlines() if line.startswith("  V "))
+    assert line.split(maxsplit=1)[1] == f"first 0, largest {m.V[10]:.6g} (at t = 1), last {m.V[-1]:.6g} m s-1"
+    assert "largest" not in next(line for line in repr(results["motion"]).splitlines() if line.startswith("  V "))
+    with pytest.warns(RuntimeWarning, match="step limit"):
+        cut = vr.roll(SCENE, 1.5, 0.5, np.linspace(0.0, 4e-3, 9), max_steps=12)
+    assert np.isnan(cut.V[-1])
+    assert f"last {cut.V[~np.isnan(cut.V)][-1]:.6g}" in repr(cut)
+
+
+def test_rest_without_a_threshold_is_told_as_what_it_is():
+    """Nothing stops: V has decayed to less than doubles hold."""
+    m = vr.roll(SCENE, 1.5, 0.5, 1.0, force=([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.0]))
+    assert m.switches[-1].regime == "rest"
+    assert np.isnan(m.rest_time)
+    assert f"to rest at t = {m.switches[-1].t:.6g}: V fell to 0 in double precision" in repr(m)
+    assert "in double precision" not in repr(vr.roll(SCENE, 1.5, 0.5, 1.0, rest=1e-3))
+
+
+def test_a_validity_is_a_card(results):
+    """Not the numbers of all times, in text and in a notebook; its parts are a sentence each."""
+    found = vr.RUBBER_CYLINDER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity()
+    assert repr(found) == str(found)
+    assert len(repr(found).splitlines()) == 1 + len(found)
+    assert found._repr_html_().count("<tr>") == len(found)
+    assert "True" not in found._repr_html_()
+    assert repr(found.steady) == f"yes: {found.steady.sentence}"
+    assert repr(found.plane).startswith("?: ")
+    assert repr(found.creep).startswith("no: ")

@@ -12,6 +12,7 @@ from refusals import refused
 from scipy import stats
 
 import viscoroll as vr
+from viscoroll import sampling
 from viscoroll.sampling import DESIGNS, Sample, sample
 
 
@@ -38,6 +39,15 @@ def test_designs_fill_their_strata():
         assert np.array_equal(np.sort(np.floor(64 * V0)), np.arange(64))
 
 
+def test_no_draw_lies_on_the_edge(monkeypatch):
+    """Of as many points as a Sobol sequence has one has the coordinate 0, whose normal draw would be infinite."""
+    monkeypatch.setattr(sampling, "_SOBOL_BITS", 6)
+    drawn = sample(64, seed=0, design="sobol", V0=stats.norm(), omega0=stats.uniform())
+    assert np.all(np.isfinite(drawn["V0"]))
+    for u in (stats.norm.cdf(drawn["V0"]), drawn["omega0"]):
+        assert np.array_equal(np.sort(np.floor(64 * u + 0.25)), np.arange(64))
+
+
 def test_sample_follows_its_distribution():
     drawn = sample(4096, seed=1, V0=stats.norm(2.0, 0.5))["V0"]
     assert stats.kstest(drawn, stats.norm(2.0, 0.5).cdf).pvalue > tol.KOLMOGOROV
@@ -60,7 +70,7 @@ BAD = [
     ({"n": 2.5}, "n = 2.5"),
     ({"seed": -1}, "seed = -1: must be a whole number >= 0"),
     ({"seed": None}, "seed = None"),
-    ({"design": "grid"}, "design = 'grid': must be out of random, latin, sobol"),
+    ({"design": "grid"}, "design: 'grid' is not a design; choose from random, latin, sobol"),
     ({"V0": math.nan}, "V0 = nan: must be a finite number or a frozen scipy.stats distribution"),
     ({"V0": "fast"}, "V0 = fast"),
     ({"V0": [1.0, 2.0]}, "V0 = [1.0, 2.0]"),

@@ -115,6 +115,18 @@ def test_no_folder(folder):
     assert bits(TEN) == made
 
 
+def test_what_others_may_have_written_is_not_read(folder):
+    made = bits(TEN)
+    (path,) = folder.iterdir()
+    folder.chmod(0o777)
+    path.write_bytes(b"others' work, which is damaged if it is looked at")
+    assert bits(TEN) == made
+    assert path.read_bytes().startswith(b"others")
+    folder.chmod(0o755)
+    with pytest.warns(RuntimeWarning, match="is damaged"):
+        assert bits(TEN) == made
+
+
 def test_those_used_last_are_kept(folder, monkeypatch):
     monkeypatch.setattr(stored, "KEPT", 2)
     record(TEN)

@@ -3,7 +3,8 @@
     python -m pipeline.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
 Parts: work-precision, own-parameters, fixed-scene, agreement, law, bound-law, tables, scaling, cold-start, first-calls,
-skips, series, driven; default: all.  Sizes are in [bench] of the configuration, those of --quick in [bench.PART.quick].
+skips, series, driven, last-release; default: all.  Sizes are in [bench] of the configuration, those of --quick in
+[bench.PART.quick].
 Times are of this machine at this moment, medians of alternating runs on one core: run it with nothing else running.
 A peer that is not installed is skipped with a printed reason (pipeline/peers/README.md).
 """
@@ -39,6 +40,7 @@ PARTS = {
     "skips": ("skips", "skips"),
     "series": ("series", "series"),
     "driven": ("driven", "driven"),
+    "last-release": ("last_release", "last_release"),
 }
 
 

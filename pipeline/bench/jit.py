@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numba
 
-from viscoroll.kernels.compile.cache import cache_root, sources_digest
+from viscoroll.kernels.compile.cache import sources_digest
+from viscoroll.kernels.compile.folder import cache_root
 
 PIPELINE = Path(__file__).parents[1]
 

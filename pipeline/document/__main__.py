@@ -1,8 +1,9 @@
 """Put measured numbers into the text: data/results/ -> marked blocks of README.md and docs/.
 
-    python -m pipeline.document [--check] [--results FILE] [FILE ...]
+    python -m pipeline.document [--check] [--results FOLDER] [FILE ...]
 
 A block is what stands between <!-- measured:NAME --> and <!-- end -->; NAME is a block of STAGES.
+Below its numbers it says of which kernels they are, where not of those of this tree.
 Nothing else is touched, and a second run changes nothing.  With --check nothing is written: exit code 1
 if a block is out of date.  Exit code 2 for results that are missing or incomplete, and for broken marks.
 """
@@ -10,7 +11,6 @@ if a block is out of date.  Exit code 2 for results that are missing or incomple
 from __future__ import annotations
 
 import argparse
-import json
 import re
 import sys
 from collections.abc import Callable
@@ -21,6 +21,7 @@ from viscoroll.files import write_text
 
 from ..results import RESULTS, Results
 from ..stage import ROOT, told
+from ..stamps import SHORT, kernels_digest, stamps
 from . import bench, ensembles, symbols, tables
 
 #: who measures what a block shows
@@ -44,7 +45,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
         "bench_bound_law": bench.bound_law,
         "bench_scaling": bench.scaling, "bench_skips": bench.skips, "bench_cold_start": bench.cold_start,
         "bench_first_calls": bench.first_calls, "bench_series": bench.series, "bench_driven": bench.driven,
-        "bench_free": bench.free,
+        "bench_free": bench.free, "bench_last_release": bench.last_release,
     },
 }  # fmt: skip
 BLOCKS = {name: (stage, text) for stage, texts in STAGES.items() for name, text in texts.items()}
@@ -57,8 +58,8 @@ class DocumentError(ViscorollError):
     """Results that are missing or incomplete, or marks that do not pair."""
 
 
-def filled(text: str, results: Results, name: str) -> str:
-    """``text`` of the page ``name`` with every block filled.
+def filled(text: str, folders: list[Path], name: str) -> str:
+    """``text`` of the page ``name`` with every block filled, from the first of ``folders`` that has the results.
 
     Raises
     ------
@@ -70,8 +71,9 @@ def filled(text: str, results: Results, name: str) -> str:
         if match[2] not in BLOCKS:
             raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}")
         stage, block = BLOCKS[match[2]]
+        results = Results(*folders)
         try:
-            return f"{match[1]}{block(results)}{match[3]}"
+            return f"{match[1]}{block(results)}{provenance(results)}{match[3]}"
         except (KeyError, TypeError) as error:
             raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline.{stage}") from error
 
@@ -81,13 +83,28 @@ def filled(text: str, results: Results, name: str) -> str:
     return result
 
 
-def document(files: list[Path], measured: Path, check: bool) -> int:
+def provenance(results: Results) -> str:
+    """A sentence on the kernels of all that was read of ``results``, if any are not those of this tree."""
+    read = {part: digest for name, found in results.items() for part, digest in stamps(found, name).items()}
+    others: dict[str, list[str]] = {}
+    for part, digest in read.items():
+        if digest != kernels_digest():
+            others.setdefault(digest[:SHORT], []).append(part)
+    if not others:
+        return ""
+    alone = len(set(read.values())) == 1
+    named = (f"`{digest}`" + ("" if alone else f" ({', '.join(parts)})") for digest, parts in others.items())
+    return f"\nMeasured at kernels {' and '.join(named)}, not those of this version.\n"
+
+
+def document(files: list[Path], results: Path, check: bool) -> int:
     """Fill the blocks of ``files``, or only see whether they are up to date: 1 if they are not."""
-    results, stale = Results(measured.parent, RESULTS), []
-    results["measured"] = json.loads(measured.read_text(encoding="utf-8"))
+    if not results.is_dir():
+        raise DocumentError(f"{results}: no folder of results")
+    stale = []
     for path in files:
         old = path.read_text(encoding="utf-8")
-        new = filled(old, results, path.name)
+        new = filled(old, [results, RESULTS], path.name)
         if new != old:
             stale.append(path.name)
             if not check:
@@ -100,7 +117,9 @@ def document(files: list[Path], measured: Path, check: bool) -> int:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a block is out of date")
-    parser.add_argument("--results", type=Path, default=RESULTS / "measured.json", help="those of pipeline.measure")
+    parser.add_argument(
+        "--results", type=Path, default=RESULTS, metavar="FOLDER", help="results that go before data/results"
+    )
     parser.add_argument("files", nargs="*", type=Path, default=DOCUMENTS, metavar="FILE")
     arguments = parser.parse_args()
     return told("document", lambda: document(arguments.files, arguments.results, arguments.check))

@@ -192,6 +192,17 @@ def skips(results: Results) -> str:
     return listed({"left out": "{name}", "times faster": "{ratio:.3g}"}, rows)
 
 
+def last_release(results: Results) -> str:
+    """``contact`` beside that of the last release."""
+    found = results["bench-last-release"]
+    rows = ({"name": name} | row for name, row in found["measured"].items())
+    columns = {
+        "Q and M of": "{name}", "a state": "{ns!t} ns", f"in {found['sizes']['release']}": "{ns_before!t} ns",
+        "times": "{ratio:.2f}",
+    }  # fmt: skip
+    return listed(columns, rows)
+
+
 def series(results: Results) -> str:
     """Contact, motions and tables by the number of modes."""
     rows = [

@@ -30,9 +30,9 @@ from typing import Any
 import numpy as np
 
 from viscoroll.files import write_text
-from viscoroll.kernels.compile.cache import sources_digest
 
 from ..stage import ROOT
+from ..stamps import kernels_digest
 from .mutants import MUTANTS, Mutant
 
 RESULTS = ROOT / "data/results/mutants.json"
@@ -57,7 +57,7 @@ def main() -> int:
     results: dict[str, Any] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
     results = {name: result for name, result in results.items() if name in known}
     if arguments.fresh:
-        chosen = [m for m in chosen if results.get(name_of(m), {}).get("kernels") != sources_digest()]
+        chosen = [m for m in chosen if results.get(name_of(m), {}).get("kernels") != kernels_digest()]
     with ThreadPoolExecutor(arguments.jobs) as pool:
         try:
             judge_all(chosen, pool, arguments.timeout, results)
@@ -96,7 +96,7 @@ def judge_all(mutants: list[Mutant], pool: ThreadPoolExecutor, timeout: float, r
         mutant, (outcome, by, seconds) = runs[run], run.result()
         results[name_of(mutant)] = {
             "outcome": outcome, "by": by, "seconds": round(seconds, 1), "tests": mutant.tests,
-            "date": datetime.date.today().isoformat(), "kernels": sources_digest(),
+            "date": datetime.date.today().isoformat(), "kernels": kernels_digest(),
         }  # fmt: skip
         print(f"{number}/{len(runs)} {outcome:>9} {seconds:>5.0f} s  {name_of(mutant)}", flush=True)
         write_text(RESULTS, json.dumps(results, indent=1, sort_keys=True, ensure_ascii=False) + "\n")

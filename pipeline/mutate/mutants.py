@@ -92,7 +92,7 @@ MOTION = [
     ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/motion/test_ensemble.py"),
     ("flow/layer.py", "share * (1.0 + delta) - 1.0", "share * (1.0 - delta) - 1.0", "tests/motion/test_flow.py"),
     ("motion/integrate.py", "Frame(FULL, -frame.direction, -frame.sigma)", "Frame(FULL, -frame.direction, frame.sigma)", _MOTION),
-    ("motion/integrate.py", "D *= sigma\n", "D *= 1.0\n", _MOTION),
+    ("motion/integrate.py", "D, status = D * sigma, max(", "D, status = D, max(", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),
 ]  # fmt: skip
 _PRONY, _PAIR, _UNSTEADY = (

@@ -28,6 +28,7 @@ from viscoroll.symbols import SYMBOLS, label
 
 from ..results import RESULTS, parser, read_sizes
 from ..stage import ROOT, told
+from ..stamps import kernels_digest
 from .contact import by_slice, one_by_one, relative_error
 
 if TYPE_CHECKING:
@@ -162,7 +163,10 @@ def make(config: Path, quick: bool, output: Path, figure: Path) -> None:
     sizes = read_sizes(config, "error_maps", quick)
     rng = np.random.default_rng(sizes["seed"])
     maps = xr.merge([over_alpha(sizes, rng), over_creep(sizes, rng)], combine_attrs="no_conflicts")
-    maps.attrs |= {"title": "Relative error of the contact law in double precision, largest in a cell"}
+    maps.attrs |= {
+        "title": "Relative error of the contact law in double precision, largest in a cell",
+        "kernels": kernels_digest(),
+    }
     for path in (output, figure):
         path.parent.mkdir(parents=True, exist_ok=True)
     write_dataset(maps, output)

@@ -13,6 +13,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -60,22 +61,23 @@ def flattened(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
 
 def thread_count(threads: int | None = None) -> int:
-    """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use; at least 1.
+    """``threads``, else ``$VISCOROLL_THREADS``, else the cores this process may use.
 
     Raises
     ------
     ParameterError
-        Where either is no whole number.
+        Where either is no whole number >= 1.
     """
-    if threads is None:
-        asked = os.environ.get("VISCOROLL_THREADS") or "0"
-        try:
-            threads = int(asked) or cores()
-        except ValueError:
-            raise ParameterError("VISCOROLL_THREADS", repr(asked), "a whole number") from None
-    elif isinstance(threads, bool) or not isinstance(threads, (int, np.integer)):
-        raise ParameterError("threads", repr(threads), "a whole number, or None")
-    return max(1, int(threads))
+    if threads is not None:
+        if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
+            raise ParameterError("threads", repr(threads), "a whole number >= 1, or None")
+        return int(threads)
+    if not (asked := os.environ.get("VISCOROLL_THREADS")):
+        return cores()
+    with suppress(ValueError):
+        if (count := int(asked)) >= 1:
+            return count
+    raise ParameterError("VISCOROLL_THREADS", repr(asked), "a whole number >= 1")
 
 
 def cores() -> int:

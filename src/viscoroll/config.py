@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from .cylinder import Cylinder
-from .errors import ConfigError, ParameterError, TableError
+from .errors import ConfigError, ParameterError, TableError, unknown
 from .materials.file import SECTIONS, SUFFIX, materials_of, read_materials, series_of
 from .presets import PRESETS
 from .scene import Scene
@@ -112,7 +112,7 @@ def preset(name: str) -> Scene:
         An unknown name.
     """
     if not isinstance(name, str) or name not in PRESETS:
-        raise ParameterError("preset", repr(name), "out of " + ", ".join(PRESETS))
+        raise unknown("preset", name, PRESETS, "a preset")
     return PRESETS[name]
 
 

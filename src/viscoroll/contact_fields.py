@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .errors import ParameterError
+from .errors import ParameterError, unknown
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
@@ -29,7 +29,7 @@ def field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: 
     known = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
     for name in names:
         if name not in known:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
+            raise unknown("fields", name, known, "a field")
     if slopes:
         names += tuple(name for name in default_slopes if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):

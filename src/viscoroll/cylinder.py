@@ -39,8 +39,8 @@ class Cylinder(InSI, Conversions):
     m : mass per unit length, kg/m.
     E : long-time Young's modulus, Pa; with the next three, of both bodies, in place of ``material``.
     nu : Poisson's ratio, in (-1, 0.5].
-    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.  Of a T_epsilon each, (n,), every
-        cylinder has a series of its own, and T_ref is the longest of them.
+    T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma.  If T_epsilon is an array (n,),
+        each cylinder has its own material, and T_ref is the largest T_epsilon.
     mu : coefficient of friction.
     j : J/(m R^2); 1/2 for a solid cylinder.
     g : gravitational acceleration, m/s^2.
@@ -89,6 +89,10 @@ class Cylinder(InSI, Conversions):
         solid = [name for name in _SOLID if given[name] is not None]
         if material is not None and solid:
             raise one_of("material", ", ".join(solid), both=True)
+        if material is None and len(solid) < len(_SOLID):
+            missing = ", ".join(name for name in _SOLID if name not in solid)
+            sentence = f"give material=, or all of E, nu, T_epsilon and T_sigma: {missing} not given"
+            raise ParameterError(missing, None, "given, or material", sentence)
         for name in ("R", "m", "mu", "j", "g", *(() if material is not None else _SOLID)):
             low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
             given[name] = frozen(checked(name, given[name], low=low, strict=True, high=high))
@@ -153,7 +157,8 @@ class Cylinder(InSI, Conversions):
 
     def __hash__(self) -> int:
         numbers = (getattr(self, name) for name in _NUMBERS)
-        parts = (None if value is None else np.asarray(value).tobytes() for value in numbers)
+        # + 0.0: -0 and 0 are equal
+        parts = (None if value is None else (np.asarray(value) + 0.0).tobytes() for value in numbers)
         return hash((*parts, self.plane, self.material, self.base))
 
     def _card(self) -> tuple[str, list[Row]]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -41,6 +43,22 @@ class Feedback:
             object.__setattr__(self, "value", value if value.ndim else float(value))
         for name in ("V", "omega"):
             object.__setattr__(self, name, number(name, getattr(self, name)))
+
+
+def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:
+    """Raise ParameterError for a function that cannot be called with a time alone."""
+    try:
+        takes = signature(function)
+    except ValueError:  # compiled code may not tell
+        return
+    try:
+        takes.bind(0.0)
+    except TypeError:
+        sentence = (
+            f"{name} is called with t alone, this function takes {takes}: for gains on the speeds give Feedback, "
+        )
+        sentence += "any other controller goes with vr.law into an integrator of your own"
+        raise ParameterError(name, function, "a function of t", sentence) from None
 
 
 def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

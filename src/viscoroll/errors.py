@@ -17,6 +17,7 @@ Kernels never raise; they return a status.  Motions carry one each, with a sente
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any
 
@@ -45,6 +46,12 @@ def one_of(first: str, second: str, both: bool) -> ParameterError:
     """The error where both or neither of two names were given."""
     sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
     return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
+
+
+def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
+    """The error where ``value`` is none of the ``known`` names; ``kind``: what they are names of, with its article."""
+    names = ", ".join(known)
+    return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
 
 
 class OutOfTableError(ParameterError):

@@ -73,17 +73,25 @@ class Shown:
         return saved(draw(self.to_xarray()), path)
 
     def __repr__(self) -> str:
-        title, rows = self._card()
-        width = max((len(row.name) for row in rows), default=0)
-        return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
+        return as_text(*self._card())
 
     def _repr_html_(self) -> str:
-        title, rows = self._card()
-        cells = "".join(
-            "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
-            for row in rows[:_MOST_ROWS]
-        )
-        return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
+        return as_html(*self._card())
+
+
+def as_text(title: str, rows: list[Row]) -> str:
+    """A card for a terminal."""
+    width = max((len(row.name) for row in rows), default=0)
+    return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
+
+
+def as_html(title: str, rows: list[Row]) -> str:
+    """A card for a notebook."""
+    cells = "".join(
+        "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
+        for row in rows[:_MOST_ROWS]
+    )
+    return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 
 
 def unit_of(described: dict[str, Any]) -> str:

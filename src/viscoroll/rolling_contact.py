@@ -120,7 +120,8 @@ def contact(
     mode and series over four decades (``tests/kernels/law/test_unsteady.py``).
 
     From 4096 states on with one alpha > 1, and no slopes, the law is read from polynomials of one
-    variable, which are made where they are met and kept for later calls.  Such a call agrees with
+    variable, which are made where they are met and kept for later calls; only threads that share
+    a call, of more than 32,768 states, make them anew in each.  Such a call agrees with
     calls of single states to 2e-14 and not bit for bit; full slip begins at the delta_star that
     the call reports, within 16 units in the last place of the other.  Either way a state's
     result depends on nothing else in the call but the number of states and the fields.

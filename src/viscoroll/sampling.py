@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import checked, number
-from .errors import ParameterError
+from .errors import ParameterError, unknown
 
 DESIGNS = ("random", "latin", "sobol")
 #: bits of scipy's Sobol sequence, which has no more points
@@ -67,7 +67,7 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < least:
             raise ParameterError(name, value, f"a whole number >= {least}")
     if design not in DESIGNS:
-        raise ParameterError("design", repr(design), "out of " + ", ".join(DESIGNS))
+        raise unknown("design", design, DESIGNS, "a design")
     if design == "sobol" and n > 1 << _SOBOL_BITS:
         raise ParameterError("n", n, f"at most 2^{_SOBOL_BITS} for design 'sobol'")
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
@@ -78,6 +78,8 @@ def sample(n: int, seed: int, design: Literal["random", "latin", "sobol"] = "ran
         points = qmc.LatinHypercube(len(random), rng=generator).random(n)
     else:
         points = qmc.Sobol(len(random), bits=_SOBOL_BITS, rng=generator).random_base2(int(np.ceil(np.log2(n))))[:n]
+    # infinite draws come from the edge of the cube alone: of a Sobol sequence to the middle of the cell there
+    points = np.clip(points, 2.0 ** -(_SOBOL_BITS + 1) if design == "sobol" else 2.0**-54, 1.0 - 2.0**-53)
     with np.errstate(all="ignore"):  # what overflows is infinite, and refused
         drawn = {
             name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, points.T, strict=True)

@@ -57,7 +57,7 @@ def fault(path: Any, name: str, key: str, problem: str) -> ConfigError:
     """The error to raise for ``key`` of section ``name`` ("": the top), with its line if that is found."""
     line = None
     with suppress(OSError, UnicodeDecodeError):
-        line = line_of(Path(path).read_text(encoding="utf-8"), name, key)
+        line = line_of(Path(path).read_text(encoding="utf-8-sig"), name, key)
     at = "" if line is None else f"line {line}: "
     return ConfigError(path, f"{at}[{name}] {problem}" if name else f"{at}{problem}")
 

@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import OutputError
-from .files import seal, seal_holds, write_bytes
+from .files import seal, seal_holds
+from .kernels.compile.folder import cache_root, read_own, write_own
 
 #: files kept of each kind; the one that was used longest ago goes first
 KEPT = 64
@@ -25,7 +25,7 @@ Numbers = Sequence[float] | NDArray[np.float64]
 
 def folder(kind: str) -> Path:
     """Where things of a kind are kept: they are worth no more than the kernels that fill and read them."""
-    from .kernels.compile.cache import cache_root, sources_digest
+    from .kernels.compile.cache import sources_digest
 
     return cache_root() / f"{kind}-{sources_digest()}"
 
@@ -41,7 +41,7 @@ def load(path: Path, what: str, numbers: Numbers, read: Callable[[Any], Made]) -
     ``numbers`` are the parameters that it was saved with.
     """
     try:
-        content = path.read_bytes()
+        content = read_own(path)
     except OSError:
         return None
     try:
@@ -66,12 +66,11 @@ def _checked(content: bytes, numbers: Numbers, read: Callable[[Any], Made]) -> M
 def save(path: Path, numbers: Numbers, **arrays: Any) -> None:
     """Keep arrays, sealed; where they cannot be written they are made anew next time."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         content = io.BytesIO()
         np.savez(content, parameters=numbers, **arrays)
-        write_bytes(path, seal(content.getvalue()))
+        write_own(path, seal(content.getvalue()))
         oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
         for file in oldest[:-KEPT]:
             file.unlink()
-    except (OSError, OutputError):
+    except OSError:
         pass

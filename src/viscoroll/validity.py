@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .materials.prony import Prony
 from .materials.tables import record, unsteadiness
+from .results import Row, as_html, as_text
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
 REACH_LIMIT = 0.2
@@ -38,6 +39,14 @@ class Assumption(NamedTuple):
     holds: Any
     value: Any
     sentence: str
+
+    @property
+    def word(self) -> str:
+        """Whether it holds, everywhere: yes, no, or "?" where nothing tells."""
+        return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
+
+    def __repr__(self) -> str:
+        return f"{self.word}: {self.sentence}"
 
 
 class Validity(NamedTuple):
@@ -78,15 +87,17 @@ class Validity(NamedTuple):
     @property
     def failed(self) -> tuple[str, ...]:
         """Names of the assumptions that do not hold, of arrays somewhere; empty where none is known to fail."""
-        return tuple(name for name, each in self._asdict().items() if each.holds is not None and not np.all(each.holds))
+        return tuple(name for name, each in self._asdict().items() if each.word == "no")
 
-    def __str__(self) -> str:
-        def line(name: str, each: Assumption) -> str:
-            word = "?" if each.holds is None else "no" if name in failed else "yes"
-            return f"{name:>{width}}  {word:<4} {each.sentence}"
+    def _card(self) -> tuple[str, list[Row]]:
+        rows = [Row(name, f"{each.word:<4} {each.sentence}") for name, each in self._asdict().items()]
+        return "What the model assumes, and whether it holds", rows
 
-        width, failed = max(map(len, self._fields)), self.failed
-        return "\n".join(line(name, each) for name, each in self._asdict().items())
+    def __repr__(self) -> str:
+        return as_text(*self._card())
+
+    def _repr_html_(self) -> str:
+        return as_html(*self._card())
 
 
 class Strained(NamedTuple):

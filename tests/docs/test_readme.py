@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 import tolerances as tol
+from closeness import close
 from places import RESULTS, ROOT
 from processes import made, stage, stage_refused
 from refusals import refused
@@ -22,7 +23,7 @@ from viscoroll.reference import MissingDependencyError, contact_precise
 from viscoroll.runs import read_run
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
-PAGES = [*HOME, *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
 LOADING = ROOT / "docs/loading/README.md"
 
 
@@ -121,11 +122,28 @@ def test_relative_links_exist():
 
 
 def test_files_named_in_the_text_exist():
-    named = r"`((?:tests|pipeline|kernels|data/reference)/[\w./]+(?:\.\w+|/))`"
+    named = r"`((?:tests|pipeline|kernels|data/reference|data/results)/[\w./-]+(?:\.\w+|/))`"
     for page in PAGES:
         for name in re.findall(named, page.read_text(encoding="utf-8")):
             found = ROOT / "src/viscoroll" / name if name.startswith("kernels/") else ROOT / name
-            assert found.exists(), f"{page.name}: {name}"
+            assert found.exists(), f"{page}: {name}"
+
+
+def test_the_pages_of_data_and_pipeline_name_what_is_there():
+    """Every file of data, and every stage of a room, by name; no others."""
+    page = (ROOT / "data/README.md").read_text(encoding="utf-8")
+    here = {path.name for folder in ("reference", "results") for path in (ROOT / "data" / folder).iterdir()}
+    said = set(re.findall(r"`(?:\w+/)*([\w-]+\.(?:csv|json|nc))`", page))
+    tables = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["tables"]
+    assert said == {name for name in here if not name.startswith("bench-")} | {f"{name}.nc" for name in tables}
+    page = (ROOT / "pipeline/README.md").read_text(encoding="utf-8")
+    stages = {
+        path.relative_to(ROOT / "pipeline").with_suffix("").as_posix().replace("/", ".").removesuffix(".__main__")
+        for path in (ROOT / "pipeline").glob("*/*.py")
+        if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+    }
+    assert set(re.findall(r"-> ([a-z_.]+) *(?:->|\()", page)) == stages
+    assert set(re.findall(r"`(\w+\.py)`", page)) == {path.name for path in (ROOT / "pipeline").glob("[!_]*.py")}
 
 
 def test_blocks_show_the_measured_numbers():
@@ -145,6 +163,7 @@ def test_document_fills_and_refuses(tmp_path):
         page.write_text(text, encoding="utf-8")
         assert stage_refused("document", page).startswith("document: ")
         assert page.read_text(encoding="utf-8") == text
+    assert "nowhere: no folder" in stage_refused("document", "--results", tmp_path / "nowhere", page)
 
 
 def test_measure_runs_and_document_reads_it(tmp_path):
@@ -155,7 +174,8 @@ def test_measure_runs_and_document_reads_it(tmp_path):
     assert measured.keys() == committed.keys()
     assert all(field["worst"] <= tol.MEASURED_CONTACT for field in measured["contact_error"].values())
     page.write_text("<!-- measured:headline -->\n<!-- end -->\n", encoding="utf-8")
-    made("document", "--results", results, page)
+    made("document", "--results", tmp_path, page)
+    assert "not those of this version" not in page.read_text(encoding="utf-8")
 
 
 def test_measure_refuses_a_configuration_without_its_section(tmp_path):
@@ -190,7 +210,7 @@ def test_precise_values_hold_their_digits():
             with mpmath.workdps(60):
                 assert abs(few[name] - exact) <= mpmath.mpf(10) ** -20 * abs(exact), (name, state)
             bound = tol.MEASURED_CONTACT / (to_the_limit if name == "beta" else 1.0)
-            assert getattr(double, name) == pytest.approx(float(exact), rel=bound, abs=0.0), (name, state)
+            assert close(getattr(double, name), float(exact), rel=bound, what=(name, state))
 
 
 def test_precise_refuses():

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from closeness import close
 from matplotlib.figure import Figure
 from places import DATA
 from processes import made, printed, stage_refused
@@ -108,7 +109,7 @@ def test_traction_meets_its_limits_where_V_passes_0(drawn):
     before, after, *circles = (np.array(one.get_data(), float) for one in axes.get_lines()[:4])
     for (_, Q), ((t,), (limit,)), at in zip((before, after), circles, (-1, 0), strict=True):
         assert before[0][-1] < t < after[0][0]
-        assert Q[at] == pytest.approx(limit, abs=tol.DRIVE_TURN)
+        assert close(Q[at], limit, rel=tol.DRIVE_TURN, scale=1.0)
     assert circles[0][1] < circles[1][1] < 0.0
 
 
@@ -153,9 +154,9 @@ def test_figure_2_shows_the_limits():
     scene, axes = vr.PAPER_FIGURES_2_3, figure_2().axes[0]
     for alpha in (1, 1.5, 21.5, 81.5):
         V, star = line(axes, rf"$\alpha$ = {alpha:g}")
-        assert star[0] == pytest.approx(1e3 * scene.mu / (2.0 * scene.kappa), rel=tol.FIGURE)
+        assert close(star[0], 1e3 * scene.mu / (2.0 * scene.kappa), rel=tol.FIGURE)
         at = vr.contact(scene.replace(alpha=alpha), V[100], delta=0.0).delta_star
-        assert star[100] == pytest.approx(1e3 * at, rel=tol.FIGURE)
+        assert close(star[100], 1e3 * at, rel=tol.FIGURE)
 
 
 def test_figure_3_saturates_and_is_odd():
@@ -163,7 +164,7 @@ def test_figure_3_saturates_and_is_odd():
     _, Q = line(left, "$V$ = 0.1")
     assert (Q[0], Q[-1]) == (-0.2, 0.2)
     _, M = line(right, r"$\alpha$ = 21.5")
-    assert np.allclose(M, -M[::-1], rtol=tol.FIGURE, atol=0.0)
+    assert close(M, -M[::-1], rel=tol.FIGURE)
 
 
 def test_figure_5_starts_where_the_paper_does():
@@ -191,7 +192,7 @@ def test_rolling_resistance_shifts_with_temperature():
     assert np.array_equal(line(left, "$E'$")[1], fit.storage)
     (V, warm), (_, cold) = line(right, "warm"), line(right, "cold")
     decade = int(np.argmin(np.abs(V - 10.0 * V[0])))
-    assert np.allclose(cold[:-decade], warm[decade:], rtol=tol.FIGURE)
+    assert close(cold[:-decade], warm[decade:], rel=tol.FIGURE)
 
 
 def test_equilibria_of_a_slope_alternate_along_the_curve():
@@ -201,7 +202,7 @@ def test_equilibria_of_a_slope_alternate_along_the_curve():
         (stable, load), (saddle, _) = line(axes, "stable"), line(axes, "saddle")
         assert stable.size == saddle.size
         assert (stable < saddle).all()
-        assert np.allclose(np.interp(stable, V, M), load, rtol=tol.FIGURE_CURVE)
+        assert close(np.interp(stable, V, M), load, rel=tol.FIGURE_CURVE)
     assert stable.size > 1
 
 
@@ -210,17 +211,17 @@ def test_law_of_modes_has_the_limits():
     lam, epsilon, star, _ = law_of_materials().axes
     for name in ("1 mode", "2 modes, 5 decades", "5 modes, 5 decades"):
         V, values = line(lam, name)
-        assert values[[0, -1]] == pytest.approx([1.0, 11.0**-0.5], abs=0.02)
-        assert line(star, name)[1][0] == pytest.approx(0.5, abs=0.02)
+        assert close(values[[0, -1]], [1.0, 11.0**-0.5], rel=0.02, scale=1.0)
+        assert close(line(star, name)[1][0], 0.5, rel=0.02, scale=1.0)
     paper = vr.contact(vr.Scene(11.0, 1.0, 1.0), 11.0 * V, delta=0.0)  # T_epsilon is 11 T_sigma
-    assert np.allclose(line(epsilon, "1 mode")[1], paper.epsilon, rtol=tol.FIGURE)
+    assert close(line(epsilon, "1 mode")[1], paper.epsilon, rel=tol.FIGURE)
 
 
 def test_law_of_pairs_splits_the_moment():
     """Half in like bodies, nothing in a rigid or an elastic base."""
     lines = law_of_pairs().axes[3].get_lines()
     for whole, half, share in zip(lines[::2], lines[1::2], (0.5, 0.0, 0.0), strict=False):
-        assert np.allclose(half.get_ydata(), share * whole.get_ydata(), rtol=tol.FIGURE)
+        assert close(half.get_ydata(), share * whole.get_ydata(), rel=tol.FIGURE)
     assert (lines[7].get_ydata() < lines[6].get_ydata()).all()
 
 
@@ -230,7 +231,7 @@ def test_broad_stresses_carry_the_load():
     for above, below in zip(pressure.get_lines()[:4], shear.get_lines()[:4], strict=True):
         x, p = map(np.asarray, above.get_data())
         area = 0.5 * ((p[1:] + p[:-1]) * np.diff(x)).sum()
-        assert area == pytest.approx(0.25 * np.pi, rel=1e-3)  # of an ellipse of length and height 1
+        assert close(area, 0.25 * np.pi, rel=1e-3)  # of an ellipse of length and height 1
         assert (below.get_ydata() <= p * (1.0 + tol.FIGURE)).all()
 
 

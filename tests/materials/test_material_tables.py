@@ -9,10 +9,13 @@ import numpy as np
 import precise
 import pytest
 import tolerances as tol
+from closeness import close
 
 import viscoroll as vr
 from viscoroll import rolling_contact
 from viscoroll.contact_fields import FIELDS
+from viscoroll.kernels.law import inverses
+from viscoroll.kernels.law.inverses import inverses_of
 from viscoroll.kernels.law.stick import differences
 from viscoroll.kernels.material.functions import at_contact, standard
 from viscoroll.kernels.material.tabulated import tabulated
@@ -100,12 +103,12 @@ def test_the_table_against_ratios(alpha):
             assert z * error[7] <= tol.TABLE_B_SLOPE * b or alpha > tol.SLOPES_OF_B
             D = z * 10.0 ** rng.uniform(-15.0, -1.0)
             rises = (np.array(differences(z, z - D, D, each)) for each in (by_ratios, by_table))
-            np.testing.assert_allclose(*rises, rtol=tol.TABLE_SLOPE)
+            assert close(*rises, rel=tol.TABLE_SLOPE)
 
 
 def test_no_number_stays_no_number():
     assert np.isnan(at_contact(np.nan, tabulated(11.0))).all()
-    assert at_contact(np.inf, tabulated(11.0))[:4] == pytest.approx(at_contact(np.inf, standard(11.0))[:4])
+    assert close(at_contact(np.inf, tabulated(11.0))[:4], at_contact(np.inf, standard(11.0))[:4], rel=tol.TABLE)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -118,7 +121,7 @@ def test_motions_of_one_material_are_those_of_an_alpha_each(alpha):
     tabled = vr.ensemble(one, V0, omega0, t, **options)
     rationed = vr.ensemble(one.replace(alpha=np.full(20, alpha)), V0, omega0, t, **options)
     for field in ("V", "omega", "x"):
-        np.testing.assert_allclose(getattr(tabled, field), getattr(rationed, field), rtol=tol.KINDS, atol=1e-300)
+        assert close(getattr(tabled, field), getattr(rationed, field), rel=tol.KINDS)
     for n in (0, 7):
         alone = vr.roll(one, V0[n], omega0[n], t, rtol=1e-9)
         part = vr.ensemble(one, V0[n : n + 2], omega0[n : n + 2], t, threads=1, **options)
@@ -160,6 +163,19 @@ def test_from_several_threads():
     assert all(np.array_equal(Q, found[0]) for Q in found)
 
 
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one table")
+def test_threads_keep_tables_for_later_calls(monkeypatch):
+    """Once a process: each thread of each call made its own."""
+    made = []
+    monkeypatch.setattr(inverses, "inverses_of", lambda given: made.append(given) or inverses_of(given))
+    monkeypatch.setenv("VISCOROLL_THREADS", "2")
+    monkeypatch.setattr(rolling_contact, "_BLOCK", MANY)
+    V, delta, _ = states(vr.Scene(24.5, KAPPA, MU), 2 * MANY, seed=16)
+    for _ in range(2):
+        vr.contact(vr.Scene(24.5, KAPPA, MU), V, delta=delta)
+    assert len(made) == 1
+
+
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_full_slip_begins_at_delta_star(alpha):
     """At the delta_star that the call itself reports, and at no other's beyond a few units in the last place."""
@@ -187,7 +203,7 @@ def test_signs_rest_and_omega():
     assert np.array_equal(turned.beta, base.beta)
     still = vr.contact(SCENE, V, delta=0.0)
     assert np.all(still.Q == 0.0)
-    np.testing.assert_allclose(still.beta, 1.0, rtol=tol.SLICE)
+    assert close(still.beta, 1.0, rel=tol.SLICE)
     assert still.beta.max() <= 1.0
     omega = V * (1.0 + delta)
     by_omega = vr.contact(SCENE, V, omega=omega)

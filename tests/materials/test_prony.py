@@ -6,8 +6,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 import tolerances as tol
+from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from precise import series_slope
 from refusals import refused
 
 import viscoroll as vr
@@ -33,9 +35,9 @@ def random_series(modes: int, decades: float, size: float, seed: int) -> vr.Pron
 
 def test_one_mode_is_the_standard_linear_solid():
     p = vr.Prony(E=[10.0], tau=[1.0 / 11.0])
-    assert (p.alpha, p.J.item(), p.T.item()) == pytest.approx((11.0, 10.0 / 11.0, 1.0), rel=tol.SERIES_FORMS)
+    assert close((p.alpha, p.J.item(), p.T.item()), (11.0, 10.0 / 11.0, 1.0), rel=tol.SERIES_FORMS)
     back = vr.Prony.creep(J=[10.0 / 11.0], T=[1.0], alpha=11.0)
-    assert (back.E.item(), back.tau.item()) == pytest.approx((10.0, 1.0 / 11.0), rel=tol.SERIES_FORMS)
+    assert close((back.E.item(), back.tau.item()), (10.0, 1.0 / 11.0), rel=tol.SERIES_FORMS)
 
 
 @settings(max_examples=60, deadline=None)
@@ -49,10 +51,10 @@ def test_forms_belong_together(drawn):
     assert abs(known.Q.T @ known.t - known.e).max() <= tol.SERIES_ORTHOGONAL * known.e.max()
     assert (m.b < m.a).all()
     assert (m.a[:-1] < m.b[1:]).all()
-    assert p.T_mean == pytest.approx((m.J / m.b).sum(), rel=tol.SERIES_FORMS)
+    assert close(p.T_mean, (m.J / m.b).sum(), rel=tol.SERIES_FORMS)
     back = vr.Prony.creep(m.J, 1.0 / m.b, alpha=p.alpha)
-    np.testing.assert_allclose(back.tau, p.tau, rtol=tol.SERIES_BACK)
-    np.testing.assert_allclose(back.E, p.E, rtol=tol.SERIES_BACK)
+    assert close(back.tau, p.tau, rel=tol.SERIES_BACK)
+    assert close(back.E, p.E, rel=tol.SERIES_BACK)
 
 
 @pytest.mark.parametrize(
@@ -167,7 +169,7 @@ def test_a_mode_split_in_two_is_one_mode():
     V = np.geomspace(1e-3, 1e2, 20)
     for name in ("lam", "epsilon", "Q", "M"):
         values = (getattr(vr.contact(scene(p), V, delta=1e-4), name) for p in (one, two))
-        np.testing.assert_allclose(*values, rtol=tol.SERIES_SPLIT)
+        assert close(*values, rel=tol.SERIES_SPLIT)
 
 
 @pytest.mark.parametrize("unit", [2.0**40, 3.7e-9])
@@ -178,11 +180,39 @@ def test_the_unit_of_time_is_free(unit):
     here = vr.contact(scene(WIDE), V, delta=1e-3, slopes=True)
     there = vr.contact(scene(far), V / unit, delta=1e-3, slopes=True)
     for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M"):
-        np.testing.assert_allclose(getattr(there, name), getattr(here, name), rtol=tol.UNIT)
-    np.testing.assert_allclose(there.zeta / unit, here.zeta, rtol=tol.UNIT)
-    for name in ("dQ_dV", "dM_dV", "dQ_domega"):
-        size = abs(getattr(here, name)).max()
-        np.testing.assert_allclose(getattr(there, name) / unit, getattr(here, name), atol=tol.UNIT * size)
+        assert close(getattr(there, name), getattr(here, name), rel=tol.UNIT)
+    assert close(there.zeta / unit, here.zeta, rel=tol.UNIT)
+    assert close(there.dM_dV / unit, here.dM_dV, rel=tol.UNIT, scale=here.M / V)
+    assert close(there.dQ_domega / unit, here.dQ_domega, rel=tol.UNIT)
+    assert close(there.dQ_dV / unit, here.dQ_dV, rel=tol.SERIES_SLOPE, scale=0.3 / V)
+
+
+#: sizes of a contact, from the fastest time to the slowest, and stick zones: wide, where values and slopes change from
+#: differences to integrals, and slight creep
+SIZES, STUCK = (1e-10, 3e-7, 1e-4, 0.02, 1.0, 50.0), (0.5, 0.93, 0.994)
+
+
+def slope_errors():
+    """Off, exact and mu/V of dQ_dV at fixed delta."""
+    with mp.workdps(DIGITS):
+        rates = raw.rates(mp, WIDE.E.tolist(), WIDE.tau.tolist())
+    for zeta in SIZES:
+        for share in STUCK:
+            V, delta, exact = series_slope(rates, 10.0, 0.3, zeta, share * zeta)
+            found = vr.contact(scene(WIDE), float(V), delta=float(delta), fields="dQ_dV").dQ_dV
+            yield abs(float(found - exact)), abs(float(exact)), 0.3 / float(V)
+
+
+def test_slopes_of_a_series_against_50_digits():
+    for off, _, size in slope_errors():
+        assert off <= tol.SERIES_SLOPE * size
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one table; dQ_dV is a difference of table slopes")
+def test_slopes_of_a_series_keep_their_digits_at_slight_creep():
+    """As those of one relaxation time do."""
+    for off, exact, _ in slope_errors():
+        assert off <= tol.SLOPE_SLIGHT * exact
 
 
 @settings(max_examples=20, deadline=None)
@@ -196,18 +226,18 @@ def test_states_alone_and_in_company(drawn, speed, s):
     alone = vr.contact(one, V, delta=delta)
     many = vr.contact(one, np.full(MANY, V), delta=delta)
     for name in ("lam", "epsilon", "delta_star", "Q", "M"):
-        assert getattr(many, name)[-1] == pytest.approx(getattr(alone, name), rel=tol.SERIES_STATES)
+        assert close(getattr(many, name)[-1], getattr(alone, name), rel=tol.SERIES_STATES)
     material, unit = p.in_own_time()
     assert p.in_own_time()[0] is material  # every call of contact asks
     table, zeta = record(material), alone.zeta / unit
     g, h = generators(zeta, table)
     g_eta, h_eta = generators(alone.beta * zeta, table)
     own = V * unit
-    assert (zeta * zeta + 2.0 * zeta * h) * (20.0 * own) ** 2 == pytest.approx(1.0, rel=tol.SERIES_STATES)
+    assert close((zeta * zeta + 2.0 * zeta * h) * (20.0 * own) ** 2, 1.0, rel=tol.SERIES_STATES)
     eta = alone.beta * zeta
-    assert (zeta + g - eta - g_eta) * 0.3 * own == pytest.approx(delta, rel=tol.SERIES_CLOSURE)
+    assert close((zeta + g - eta - g_eta) * 0.3 * own, delta, rel=tol.SERIES_CLOSURE)
     share = (eta * eta + 2.0 * eta * h_eta) / (zeta * zeta + 2.0 * zeta * h)
-    assert 1.0 - share == pytest.approx(alone.Q / 0.3, rel=tol.SERIES_CLOSURE)
+    assert close(1.0 - share, alone.Q / 0.3, rel=tol.SERIES_CLOSURE)
 
 
 @pytest.mark.parametrize("V", [1e-3, 0.1, 3.0, 1e3])
@@ -225,8 +255,8 @@ def test_stresses_close(V):
         load, traction = load + (found.p * per).sum(), traction + (found.tau * per).sum()
         assert (found.tau >= 0.0).all()
         assert (found.tau <= 0.3 * found.p * (1.0 + 1e-14)).all()
-    assert load == pytest.approx(1.0 / 320.0, rel=tol.SERIES_STRESS)  # P/(E' l0) = l0/(32 R)
-    assert traction / load == pytest.approx(state.Q, rel=tol.SERIES_STRESS)
+    assert close(load, 1.0 / 320.0, rel=tol.SERIES_STRESS)  # P/(E' l0) = l0/(32 R)
+    assert close(traction / load, state.Q, rel=tol.SERIES_STRESS)
 
 
 # --- two bodies ---
@@ -244,15 +274,15 @@ def test_swapped_bodies_swap_their_moments():
     soft, stiff = vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7])
     here = shares(scene(vr.Bodies(soft, stiff, 0.3)), SPEEDS)
     there = shares(scene(vr.Bodies(stiff, soft, 0.7)), SPEEDS)
-    np.testing.assert_allclose(here[0], there[1], rtol=tol.BODIES)
-    np.testing.assert_allclose(here[1], there[0], rtol=tol.BODIES)
-    np.testing.assert_allclose(here[0] + here[1], here[2], rtol=tol.BODIES)
+    assert close(here[0], there[1], rel=tol.BODIES)
+    assert close(here[1], there[0], rel=tol.BODIES)
+    assert close(here[0] + here[1], here[2], rel=tol.BODIES)
     assert (np.minimum(here[0], here[1]) > 0.0).all()
     state, again = (
         vr.contact(scene(b), 0.3, delta=1e-3) for b in (vr.Bodies(soft, stiff, 0.3), vr.Bodies(stiff, soft, 0.7))
     )
     for name in ("lam", "epsilon", "delta_star", "beta", "Q", "M"):
-        assert getattr(state, name) == pytest.approx(getattr(again, name), rel=tol.BODIES)
+        assert close(getattr(state, name), getattr(again, name), rel=tol.BODIES)
 
 
 def test_like_bodies_are_one_material():
@@ -270,7 +300,7 @@ def test_all_of_M_is_that_of_the_body_that_yields(rigid):
     p = vr.Prony([2.0, 5.0], [1.0, 1e-3])
     pair = vr.Bodies(p, vr.Prony.elastic(), 1.0) if rigid else vr.Bodies(vr.Prony.elastic(), p, 0.0)
     half, other, M = shares(scene(pair), SPEEDS)
-    np.testing.assert_allclose(M, vr.contact(scene(p), SPEEDS, delta=0.0, fields="M").M, rtol=tol.BODIES)
+    assert close(M, vr.contact(scene(p), SPEEDS, delta=0.0, fields="M").M, rel=tol.BODIES)
     assert np.array_equal(half if rigid else other, np.zeros(SPEEDS.size))
 
 
@@ -282,17 +312,17 @@ def test_elastic_partner_of_a_standard_linear_solid_is_another_one(share):
     softer = vr.Scene(alpha=alpha / (alpha - share * (alpha - 1.0)), kappa=10.0, mu=0.3)
     here, there = vr.contact(scene(pair), SPEEDS, delta=1e-4), vr.contact(softer, SPEEDS, delta=1e-4)
     for name in ("lam", "epsilon", "delta_star", "Q", "M"):
-        np.testing.assert_allclose(getattr(here, name), getattr(there, name), rtol=tol.BODIES)
+        assert close(getattr(here, name), getattr(there, name), rel=tol.BODIES)
     assert np.array_equal(here.M_half_space, np.zeros(SPEEDS.size))
-    assert scene(pair).alpha == pytest.approx(softer.alpha, rel=tol.SERIES_FORMS)
+    assert close(scene(pair).alpha, softer.alpha, rel=tol.SERIES_FORMS)
 
 
 def test_shares_of_modes_close_in_the_slow_and_the_fast_limit():
     """Slow: M_h/M = sum of its J T over that of all.  Where a body has the fast modes alone, fast rolling is its."""
     slow, fast = vr.Prony.creep([0.5], [1.0]), vr.Prony.creep([0.6], [1e-6])
     half, _, M = shares(scene(vr.Bodies(slow, fast, 0.5)), np.array([1e-9, 1e5]))
-    assert half[0] / M[0] == pytest.approx(0.6e-6 / (0.5 + 0.6e-6), rel=tol.BODIES_LIMIT)
-    assert half[1] / M[1] == pytest.approx(1.0, abs=tol.BODIES_LIMIT)
+    assert close(half[0] / M[0], 0.6e-6 / (0.5 + 0.6e-6), rel=tol.BODIES_LIMIT)
+    assert close(half[1] / M[1], 1.0, rel=tol.BODIES_LIMIT, scale=1.0)
 
 
 def test_two_elastic_bodies_take_nothing():
@@ -311,8 +341,8 @@ def test_many_states_of_two_bodies():
     for n in range(2 * SPEEDS.size + 3):
         alone = vr.contact(scene(UNLIKE), V[n], delta=1e-4)
         for name in (*PARTS, "Q", "M", "lam"):
-            assert getattr(many, name)[n] == pytest.approx(getattr(alone, name), rel=tol.BODIES), (name, V[n])
-        assert alone.M_half_space + alone.M_cylinder == pytest.approx(alone.M, rel=tol.BODIES)
+            assert close(getattr(many, name)[n], getattr(alone, name), rel=tol.BODIES, what=(name, V[n]))
+        assert close(alone.M_half_space + alone.M_cylinder, alone.M, rel=tol.BODIES)
     only = vr.contact(scene(UNLIKE), V, delta=1e-4, fields="M_cylinder")
     assert np.array_equal(only.M_cylinder, many.M_cylinder)
 
@@ -331,7 +361,7 @@ def test_slopes_of_the_parts_of_M():
     assert (abs(whole - slopes.dM_dV) <= tol.BODIES * slopes.M / V).all()
     rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
     half_space, cylinder = 0.7 * UNLIKE.half_space.T_mean, 0.3 * UNLIKE.cylinder.T_mean
-    assert (rest.dM_half_space_dV, rest.dM_cylinder_dV) == pytest.approx((half_space, cylinder), rel=tol.BODIES)
+    assert close((rest.dM_half_space_dV, rest.dM_cylinder_dV), (half_space, cylinder), rel=tol.BODIES)
     like = vr.contact(scene(WIDE), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV"))
     assert like.dM_cylinder_dV == 0.5 * like.dM_dV
     with pytest.raises(AttributeError, match="not computed"):
@@ -347,12 +377,11 @@ def test_the_fastest_rolling(V):
         z = np.sqrt(1.0 / series_of.alpha) / (20.0 * V)
         terms = series_of.J / series_of.T * (np.log(2.0 * series_of.T) - np.log(z) - np.euler_gamma)
         rise = 0.5 * series_of.alpha * z
-        assert state.epsilon == pytest.approx(rise * terms.sum(), rel=tol.BODIES)
+        assert close(state.epsilon, rise * terms.sum(), rel=tol.BODIES)
         m_over_z = rise * (terms.sum() + 0.25 * (series_of.J / series_of.T).sum())
-        assert state.M == pytest.approx(V * z * m_over_z, rel=tol.BODIES)
-        assert (
-            state.M_half_space + state.M_cylinder == pytest.approx(state.M, rel=tol.BODIES) if law is UNLIKE else True
-        )
+        assert close(state.M, V * z * m_over_z, rel=tol.BODIES)
+        if law is UNLIKE:
+            assert close(state.M_half_space + state.M_cylinder, state.M, rel=tol.BODIES)
 
 
 def test_bodies_refused():
@@ -374,7 +403,7 @@ def test_slip_is_lost_and_regained_in_two_bands():
     motion = vr.roll(two, 5000.0, 5000.0, np.geomspace(1.0, 1e9, 50))
     assert [switch.regime for switch in motion.switches[:3]] == ["full slip", "partial slip", "full slip"]
     V = [motion.at([switch.t]).V.item() for switch in motion.switches[:3]]
-    assert V == pytest.approx([1264.0, 804.0, 0.0840], rel=tol.SERIES_BANDS)
+    assert close(V, [1264.0, 804.0, 0.0840], rel=tol.SERIES_BANDS)
 
 
 def test_motions_of_one_mode_are_those_of_its_alpha():
@@ -383,15 +412,15 @@ def test_motions_of_one_mode_are_those_of_its_alpha():
     for V0, omega0 in vr.PAPER_STARTS.values():
         old = vr.roll(vr.PAPER_SECTION_5_ROUNDED, V0, omega0, t)
         new = vr.roll(vr.PAPER_SECTION_5_ROUNDED.replace(material=p), V0, omega0, t)
-        np.testing.assert_allclose(new.V, old.V, atol=tol.SERIES_MOTION)
-        assert new.onset_time == pytest.approx(old.onset_time, rel=tol.SERIES_MOTION)
+        assert close(new.V, old.V, rel=tol.SERIES_MOTION, scale=1.0)
+        assert close(new.onset_time, old.onset_time, rel=tol.SERIES_MOTION)
         far = vr.roll(
             vr.PAPER_SECTION_5_ROUNDED.replace(material=p.slower(1e4), gamma=1.1e4 * 1e-8),
             V0 / 1e4, omega0 / 1e4, t * 1e4,
         )  # fmt: skip
-        np.testing.assert_allclose(far.V * 1e4, old.V, atol=tol.SERIES_MOTION)
-        np.testing.assert_allclose(far.x, old.x, atol=tol.SERIES_MOTION)
-        assert far.switches[0].t / 1e4 == pytest.approx(old.switches[0].t, rel=tol.SERIES_MOTION)
+        assert close(far.V * 1e4, old.V, rel=tol.SERIES_MOTION, scale=1.0)
+        assert close(far.x, old.x, rel=tol.SERIES_MOTION, scale=1.0)
+        assert close(far.switches[0].t / 1e4, old.switches[0].t, rel=tol.SERIES_MOTION)
 
 
 def test_flow_map_of_a_series_and_its_unit():

@@ -1,13 +1,16 @@
 """The benchmark runs at smoke sizes: results complete, errors sane.  Its times are of no interest here."""
 
 import json
+import re
+import tomllib
 from pathlib import Path
 
 import pytest
 import tolerances as tol
-from places import RESULTS
+from places import PIPELINE, RESULTS, ROOT
 from processes import made, stage, stage_refused
 
+CONFIG = PIPELINE / "config/production.toml"
 OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
 
 
@@ -92,6 +95,28 @@ def test_first_calls(folder):
     assert full["peak_mb"] < empty["peak_mb"]
     assert full["files"] == empty["files"] == 1
     assert 0.0 < full["cache_mb"] == empty["cache_mb"]
+
+
+def test_last_release(tmp_path):
+    """Told for every case, here of a release that is this commit; a clone without the commit says so."""
+    section = tomllib.loads(CONFIG.read_text(encoding="utf-8"))["bench"]["last_release"]
+
+    def at(commit: str) -> tuple[str | Path, ...]:
+        config = tmp_path / "config.toml"
+        text = CONFIG.read_text(encoding="utf-8").replace(section["commit"], commit).replace("200_000", "5000")
+        config.write_text(text, encoding="utf-8")
+        return "last-release", "--quick", "--config", config, "-o", tmp_path, "--figures", tmp_path
+
+    assert "no commit 0000000 here; a shallow clone has few" in stage_refused("bench", *at("0000000"))
+    if not (ROOT / ".git").exists():
+        pytest.skip("not a clone")
+    said = made("bench", *at("HEAD"))
+    found = json.loads((tmp_path / "bench-last-release.json").read_text(encoding="utf-8"))["measured"]
+    assert found.keys() == section["cases"].keys()
+    for case, row in found.items():
+        assert min(row.values()) > 0.0
+        word = "BEYOND" if row["ratio"] > section["allowed"] else "within"
+        assert re.search(rf"contact, {re.escape(case)}: .* in 0.1.0: [0-9.]+ times, {word} 1.15\n", said)
 
 
 def test_committed_error_of_the_map_is_below_the_stated_one():

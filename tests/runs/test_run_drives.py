@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from closeness import close
 from refusals import refused
 
 import viscoroll as vr
@@ -94,7 +95,7 @@ def test_a_cylinder_is_driven_in_si_units(read):
         )  # fmt: skip
         for name in run.settings.fields:
             expected = getattr(m, name)
-            assert columns[name][n] == pytest.approx(expected, rel=tol.RUN_SI, abs=tol.RUN_SI * np.abs(expected).max())
+            assert close(columns[name][n], expected, rel=tol.RUN_SI, scale=np.abs(expected).max())
 
 
 def test_a_store_holds_the_drive(read, tmp_path):
@@ -108,7 +109,7 @@ def test_a_store_holds_the_drive(read, tmp_path):
         assert np.array_equal(kept["force"].values, motions.force)
         assert kept["work_torque"].attrs["units"] == "1"
     found = open_summaries(tmp_path / "s.zarr")
-    assert found["work_torque_mean"].values == pytest.approx(motions.work_torque.mean(axis=0))
+    assert close(found["work_torque_mean"].values, motions.work_torque.mean(axis=0), rel=tol.MOMENT)
     assert np.isnan(found["slip_loss_mean"].values).all()  # shares of an energy that is not there
     assert (found["slip_energy_mean"].values > 0.0).all()
 
@@ -121,7 +122,7 @@ def test_si_summaries_have_units(read, tmp_path):
     assert units == {"force": "N m-1", "torque": "N m m-1", "work_force": "J m-1", "slip_energy": "J m-1"}
     values, motions = roll_block(run, 0)
     load = values["m"] * 9.81 * np.cos(values["drive_slope"])
-    assert found["force_max"].values == pytest.approx((motions.force * load[:, None]).max(axis=0))
+    assert close(found["force_max"].values, (motions.force * load[:, None]).max(axis=0), rel=tol.SCENE)
 
 
 def test_the_digest_holds_the_drive(read):
@@ -268,4 +269,4 @@ def test_a_prescribed_speed_of_a_cylinder_in_si_units(read):
         m = roller.roll(0.014, None, [0.5, 1.0, 2.0], omega=([0.0, 1.0], [0.05, 0.2]))
         for name in ("V", "omega", "x", "torque", "work_torque"):
             expected = getattr(m, name)
-            assert columns[name][n] == pytest.approx(expected, rel=tol.RUN_SI, abs=tol.RUN_SI * np.abs(expected).max())
+            assert close(columns[name][n], expected, rel=tol.RUN_SI, scale=np.abs(expected).max())

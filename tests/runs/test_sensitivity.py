@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from closeness import close
 from places import DOCS
 from refusals import refused
 from scipy import stats
@@ -217,7 +218,7 @@ def test_what_some_motions_lack_is_refused_and_said():
     count = re.fullmatch(r"onset_time: (\d+) of 256 motions have no value", lacking)
     starts = np.linspace(0.0, 0.9, 500)
     late = np.isnan(vr.ensemble(vr.PAPER_SECTION_5, 1.0, starts, 1.2e-4).onset_time).mean()
-    assert int(count[1]) / 256 == pytest.approx(late, rel=tol.SENSITIVITY_SHARE)
+    assert close(int(count[1]) / 256, late, rel=tol.SENSITIVITY_SHARE)
     assert np.isnan(indices["V_S1"][0]).all()
     assert np.isfinite(indices["V_S1"][1]).all()
 
@@ -258,10 +259,10 @@ def test_bars_are_the_indices(sliding):
     axes = figure.axes[0]
     first, total = ([bar.get_height() for bar in axes.containers[k]] for k in (1, 3))
     order = np.argsort(-np.maximum(sliding["V_ST"][-1], sliding["x_ST"][-1]).values, kind="stable")
-    assert np.allclose(first, sliding["V_S1"][-1].values[order], rtol=tol.FIGURE, atol=tol.FIGURE)
-    assert np.allclose(total, sliding["V_ST"][-1].values[order], rtol=tol.FIGURE, atol=tol.FIGURE)
+    assert close(first, sliding["V_S1"][-1].values[order], rel=tol.FIGURE, scale=1.0)
+    assert close(total, sliding["V_ST"][-1].values[order], rel=tol.FIGURE, scale=1.0)
     low, high = axes.containers[0].lines[2][0].get_segments()[0][:, 1]
-    assert high - low == pytest.approx(2.0 * sliding["V_S1_conf"][-1].values[order[0]], rel=tol.FIGURE)
+    assert close(high - low, 2.0 * sliding["V_S1_conf"][-1].values[order[0]], rel=tol.FIGURE)
     labels = {"V0": "$V_0$", "mu": r"$\mu$"}
     shown = [text.get_text() for text in axes.get_xticklabels()]
     assert shown[:2] == [labels[name] for name in sliding["input"].values[order[:2]]]

@@ -119,7 +119,7 @@ def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = numb
     group = parser.add_argument_group(
         "scene",
         "a preset or a file, changed by any of the parameters; or --alpha, --kappa and --mu alone.\n"
-        "With a [cylinder] in the file all that is given and told is in SI units: m/s, rad/s, s, N/m, N m/m",
+        "If the file has a [cylinder] section, all inputs and outputs are in SI units: m/s, rad/s, s, N/m, N m/m",
     )
     base = group.add_mutually_exclusive_group()
     base.add_argument(
@@ -127,7 +127,7 @@ def add_scene_options(parser: ArgumentParser, value: Callable[[str], Any] = numb
     )
     base.add_argument("--scene", metavar="FILE.toml", help="a file with [scene], [cylinder] (SI) or preset")
     for name in PARAMETERS:
-        default = {"gamma": " (what moves needs it)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")
+        default = {"gamma": " (required for roll and ensemble)", "j": " (default 0.5, a solid cylinder)"}.get(name, "")
         symbol = SYMBOLS[name]
         group.add_argument(f"--{name}", type=value, help=f"{symbol.long_name}, {symbol.range}{default}")
 

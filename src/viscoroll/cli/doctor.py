@@ -10,11 +10,14 @@ import warnings
 from argparse import Namespace
 from collections.abc import Iterator
 from importlib import metadata
+from pathlib import Path
 from typing import Any
 
 from .. import __version__
 
-_BASE = ("numpy", "scipy", "numba", "llvmlite", "h5py", "h5netcdf", "xarray", "matplotlib", "msgspec", "tqdm")
+_BASE = (
+    "numpy", "scipy", "numba", "llvmlite", "h5py", "h5netcdf", "xarray", "matplotlib", "msgspec", "tqdm", "filelock",
+)  # fmt: skip
 #: extra -> what it brings
 _EXTRAS = {"runs": ("zarr", "SALib"), "cluster": ("distributed",)}
 
@@ -41,7 +44,8 @@ def _doctor(arguments: Namespace) -> int:
 
 def _lines() -> Iterator[tuple[str, str]]:
     from ..blocks import thread_count
-    from ..kernels.compile.cache import cache_root, sources_digest
+    from ..kernels.compile.cache import sources_digest
+    from ..kernels.compile.folder import cache_root
 
     yield "viscoroll", f"{__version__}, in {os.path.dirname(os.path.dirname(__file__))}"
     yield "python", f"{platform.python_version()} ({sys.executable})"
@@ -57,7 +61,7 @@ def _lines() -> Iterator[tuple[str, str]]:
     kept = [path for path in folder.glob("*") if path.is_file()] if folder.is_dir() else []
     size = sum(path.stat().st_size for path in kept) / 1e6
     state = f"{len(kept)} compiled functions, {size:.1f} MB" if kept else "nothing is compiled yet: viscoroll warmup"
-    yield "cache", f"{folder}: {state}" + ("" if _writable(folder) else "; it CANNOT be written")
+    yield "cache", f"{folder}: {state}{_trouble_of(folder)}"
     yield "check", _check()
 
 
@@ -85,8 +89,13 @@ def _version(name: str) -> str | None:
         return None
 
 
-def _writable(folder: Any) -> bool:
-    for path in (folder, *folder.parents):
-        if path.exists():
-            return os.access(path, os.W_OK)
-    return False
+def _trouble_of(folder: Path) -> str:
+    """Why the cache is not used, or cannot be written."""
+    from ..kernels.compile.folder import refuse_shared
+
+    try:
+        refuse_shared(folder)
+    except PermissionError as error:
+        return f"; it is NOT USED: {error.strerror}"
+    there = next((path for path in (folder, *folder.parents) if path.exists()), folder)
+    return "" if os.access(there, os.W_OK) else "; it CANNOT be written"

@@ -27,7 +27,7 @@ def add_drive_options(parser: ArgumentParser, drawn: bool = False) -> None:
     """--force, --torque, --slope, --brake, --omega and --V; ``drawn``: each may be a distribution."""
     may = f"\n{DISTRIBUTIONS.removeprefix('a number, ')} in place of a number" if drawn else ""
     group = parser.add_argument_group("drive", f"SCHEDULE: {SCHEDULE}{may}")
-    slope = "angle in rad, or as 3deg; > 0 pushes along +V, the load is P cos"
+    slope = "slope angle (rad, or e.g. 3deg), positive downhill along +V; the normal load is P cos(slope)"
     group.add_argument("--slope", type=_or_drawn(angle) if drawn else angle, help=slope)
     for name, what in _WHAT.items():
         group.add_argument(f"--{name}", type=_or_drawn(schedule) if drawn else schedule, metavar="SCHEDULE", help=what)

@@ -16,7 +16,7 @@ def add_commands(commands: Any) -> None:
     """Add the group to the program."""
     group = commands.add_parser(
         "material",
-        help="show and draw a material of several relaxation times",
+        help="show, draw and fit a material of several relaxation times",
         description="Materials by the sections [material] and [base] of a TOML file, in SI units.",
         epilog="example:\n  viscoroll material show docs/examples/rubber.toml",
     ).add_subparsers(metavar="COMMAND", required=True)
@@ -79,12 +79,12 @@ def _show(arguments: Namespace) -> int:
 
 
 def _plot(arguments: Namespace) -> int:
-    from ..errors import ParameterError
+    from ..errors import unknown
     from ..materials.file import read_materials
 
     found = read_materials(arguments.file, arguments.temperature)
     if arguments.section not in found:
-        raise ParameterError("section", repr(arguments.section), f"out of {', '.join(found)}, which the file has")
+        raise unknown("section", arguments.section, found, "in the file")
     found[arguments.section].plot(arguments.output)
     return 0
 

@@ -7,7 +7,7 @@ import warnings
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ParameterError
+from ..errors import ParameterError, unknown
 from .arguments import (
     FORMATS,
     add_output_option,
@@ -70,7 +70,7 @@ def _start(arguments: Namespace, drive: dict[str, Any]) -> tuple[float | None, f
     if starts != ["--ic"]:
         raise ParameterError("start", ", ".join(starts) or "nothing", "--V0 and --omega0, or --ic")
     if arguments.ic not in PAPER_STARTS:
-        raise ParameterError("ic", repr(arguments.ic), "out of " + ", ".join(PAPER_STARTS))
+        raise unknown("ic", arguments.ic, PAPER_STARTS, "a start of the paper")
     return PAPER_STARTS[arguments.ic]
 
 

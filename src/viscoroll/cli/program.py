@@ -39,8 +39,9 @@ def parser() -> Parser:
     program = Parser(
         prog="viscoroll",
         description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
-        "material or of another.  Everything is dimensionless but the sections [cylinder], [material] and [base] of a\n"
-        "scene file, and a run file with them (all SI).",
+        "material or of another.\n\n"
+        "If the scene or run file has a [cylinder] section, all inputs and outputs are in SI units.\n"
+        "Otherwise all are dimensionless.",
         epilog="example:\n  viscoroll roll --preset paper-section-5 --ic IC1 --t-end 3e-3",
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")

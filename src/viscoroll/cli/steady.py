@@ -26,7 +26,10 @@ def add_commands(commands: Any) -> None:
     )
     parser.add_argument("--force", type=numbers, help="over P, along V (default 0)")
     parser.add_argument("--torque", type=numbers, help="over P R, along omega (default 0)")
-    parser.add_argument("--slope", type=angles, help="angle in rad, or as 3deg or 0deg:6deg:61; > 0 pushes along +V")
+    slope = (
+        "slope angle (rad, or e.g. 3deg or 0deg:6deg:61), positive downhill along +V; the normal load is P cos(slope)"
+    )
+    parser.add_argument("--slope", type=angles, help=slope)
     parser.add_argument("--V", type=numbers, help="the speed, in place of --force or --torque, which is found")
     add_scene_options(parser)
     add_output_option(parser, *FORMATS)

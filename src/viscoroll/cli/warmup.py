@@ -24,7 +24,7 @@ def _warm_up(arguments: Namespace) -> int:
     from tqdm import tqdm
 
     from ..kernels.compile import notice
-    from ..kernels.compile.cache import cache_root
+    from ..kernels.compile.folder import cache_root
 
     notice.told = True  # by the bar
     began = time.perf_counter()

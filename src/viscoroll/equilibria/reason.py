@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .loads import Loads
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reasons:
     """What is needed to say why; vectors over the loads of a call.
 

@@ -24,7 +24,7 @@ _FIELDS = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loss:
     """Where the power goes, over P R/T_ref (W per m of length where the call was in SI units).
 
@@ -45,7 +45,7 @@ class Loss:
     efficiency: NDArray[np.float64]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Steady(Shown):
     """Equilibria of rolling under load; what :func:`viscoroll.steady` gives back.
 

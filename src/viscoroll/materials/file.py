@@ -117,8 +117,10 @@ def as_toml(material: Material, section: str = "material") -> str:
     series = f"E = {one.E.tolist()}, tau = {one.tau.tolist()}"
     if one.by_creep:
         series = f"J = {one.J.tolist()}, T = {one.T.tolist()}, alpha = {one.alpha!r}"
+    # TOML knows no surrogates, and DEL only escaped
+    name = json.dumps(material.name, ensure_ascii=False).replace("\x7f", r"\u007f")
     values: dict[str, Any] = {
-        "name": json.dumps(material.name), "E": material.E, "nu": material.nu,
+        "name": name, "E": material.E, "nu": material.nu,
         "creep" if one.by_creep else "prony": f"{{ {series} }}", "T_ref": material.T_ref,
     }  # fmt: skip
     if material.density is not None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..blocks import flattened, run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
-from ..errors import ParameterError
+from ..errors import ParameterError, unknown
 from ..materials.prony_array import MaterialArray
 from ..materials.tables import record
 from ..scene import PARAMETERS, Scene, checked_scene
@@ -155,7 +155,7 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
     names = (fields,) if isinstance(fields, str) else tuple(fields)
     for name in names:
         if name not in FIELDS:
-            raise ParameterError("fields", repr(name), "out of " + ", ".join(FIELDS))
+            raise unknown("fields", name, FIELDS, "a field")
     return names
 
 

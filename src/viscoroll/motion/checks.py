@@ -28,8 +28,16 @@ def output_times(t: ArrayLike) -> NDArray[np.float64]:
     backward = np.flatnonzero(np.diff(times) < 0.0)
     if backward.size:
         at = backward[0]
-        raise ParameterError("t", f"..., {times[at]:.6g}, {times[at + 1]:.6g}, ...", "in ascending order")
+        place = f"{times[at]:.6g}, {times[at + 1]:.6g} at rows {at}, {at + 1}"
+        raise ParameterError("t", place, "in ascending order")
     return times
+
+
+def refuse_many(name: str, shape: tuple[int, ...]) -> None:
+    """Raise ParameterError for an array where roll wants one number."""
+    if shape:
+        sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
+        raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
 
 
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _JUDGED = 256
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Ensemble(Shown):
     """Motions 0 ... n - 1 at common output times; everything dimensionless.
 

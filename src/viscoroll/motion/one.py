@@ -35,7 +35,7 @@ class Switch(NamedTuple):
     regime: str
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Motion(Shown):
     """One motion of the cylinder; everything dimensionless.
 
@@ -45,7 +45,8 @@ class Motion(Shown):
     x, angle : distance travelled over R, and angle turned in radians, both 0 at t = 0.
     delta : creep ratio (infinite where V = 0 while sliding).
     regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by a brake, or by a
-        prescribed speed of 0 (both 0); see ``REGIMES``.
+        prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing stops: a driven motion is told to be
+        at rest where V has decayed to less than doubles hold.
     switches : every change of regime, located to rounding; under a drive to a small part of ``rtol``.
     reversals : times at which V changes its sign under a drive.
     force, torque : over P and P R: what acted, or what a prescribed speed needed; without the brake.
@@ -211,19 +212,29 @@ def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[st
         return unit_of(described(name))
 
     rows = [Row("t", f"{motion.t.size} times to {motion.t[-1]:.6g}", unit("t"))]
-    for name in ("V", "omega", "x"):
-        values = getattr(motion, name)
-        rows.append(Row(name, f"{values[0]:.6g} to {values[-1]:.6g}", unit(name)))
+    rows += [Row(name, _course(motion.t, getattr(motion, name)), unit(name)) for name in ("V", "omega", "x")]
     for name, given in motion.drive.given.items():
         rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", unit(name)))
     if not np.isnan(motion.onset_time):
         rows.append(Row("onset of partial slip", f"t = {motion.onset_time:.6g}", unit("t")))
     if motion.switches:
         last = motion.switches[-1]
-        rows.append(Row("changes of regime", f"{len(motion.switches)}, the last to {last.regime} at t = {last.t:.6g}"))
+        died = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(motion.rest_time) else ""
+        when = f"t = {last.t:.6g} {unit('t')}".rstrip()
+        rows.append(Row("changes of regime", f"{len(motion.switches)}, the last to {last.regime} at {when}{died}"))
     if motion.reversals.size:
         rows.append(Row("reversals of V", str(motion.reversals.size)))
     return "Motion", [*rows, Row("ended", f"{motion.message} ({motion.steps} steps)")]
+
+
+def _course(t: NDArray, values: NDArray) -> str:
+    """The first and the last value that was reached, and one between them that is larger in size with its time."""
+    reached, at = values[~np.isnan(values)], int(np.nanargmax(np.abs(values)))
+    first, most, last = (f"{value:.6g}" for value in (reached[0], values[at], reached[-1]))
+    if t.size == 1:
+        return first
+    peak = "" if most in (first, last) else f"largest {most} (at t = {t[at]:.6g}), "
+    return f"first {first}, {peak}last {last}"
 
 
 def _with_gaps(values: NDArray, reached: NDArray[np.bool_]) -> NDArray:

@@ -13,7 +13,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from ..checks import checked
-from ..drive import Feedback
+from ..drive import Feedback, refuse_more_than_t
 from ..errors import ParameterError
 
 #: a callable is fitted by polynomials of this many terms; a piece is halved as often as this before it is a jump
@@ -63,6 +63,7 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
     if isinstance(given, Feedback):
         given = given.value
     if callable(given):
+        refuse_more_than_t(name, given)
         return _fitted(name, given, end, rtol, low)
     if isinstance(given, tuple) and len(given) == 2:
         return _linear(name, *given, low)

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..drive import Feedback
-from ..errors import MotionStatus, ParameterError
+from ..errors import MotionStatus
 from ..scene import Scene, checked_scene
 from ..typed import Numbers
-from .checks import controls, output_times, start_speeds
+from .checks import controls, output_times, refuse_many, start_speeds
 from .driven import Drive
 from .one import Motion, integrated
 from .rolling import Inputs, rolled
@@ -110,9 +110,8 @@ def roll(
     given = [0.0 if value is None else value for value in (V0, omega0)] if drive.prescribes else [V0, omega0]
     speeds = start_speeds(*given)
     tilt = np.asarray(0.0 if slope is None else slope)
-    for name, value in (("scene", scene), ("V0", speeds[0]), ("omega0", speeds[1]), ("slope", tilt)):
-        if value.shape != ():
-            raise ParameterError(name, f"array of shape {value.shape}", "one motion's; for many use ensemble")
+    for name, value in (("the scene", scene), ("V0", speeds[0]), ("omega0", speeds[1]), ("slope", tilt)):
+        refuse_many(name, value.shape)
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
     inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive)

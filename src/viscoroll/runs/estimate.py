@@ -48,24 +48,35 @@ class Estimate:
 
 
 def estimate(run: Run, threads: int | None = None) -> Estimate:
-    """Roll some motions of the first block and scale up."""
+    """Roll some motions of the first block and scale up.
+
+    They are rolled twice, and the second time counts: what a process does once, as to compile, to import and to fill
+    tables, would be scaled up with them.
+    """
     workers = min(thread_count(threads), run.blocks)
     trial = min(run.block, _TRIAL[run.method])
     few = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
-    roll_block(replace(run, settings=msgspec.structs.replace(run.settings, block=min(trial, 16))), 0)  # compiles
+    _work(few)
     begun = time.perf_counter()
-    values, motions = roll_block(few, 0)
-    summary = summarise(motions, run.settings.summaries, scales(values))
-    chunks = zarr_files.chunks(columns_of(run, values, motions), 0, trial, trial) if run.settings.keep == "all" else {}
+    chunks, record = _work(few)
     seconds = time.perf_counter() - begun
-    record = len(encoded(Record("", {}, summary=summary)))
-    stored = sum(map(len, chunks.values())) * (run.settings.n / trial) + record * run.blocks
+    stored = chunks * (run.settings.n / trial) + record * run.blocks
     resident = _most_resident() - trial * run.bytes_a_motion
     memory = resident + workers * run.block * run.bytes_a_motion
+    motions_a_worker = min(-(-run.blocks // workers) * run.block, run.settings.n)
     return Estimate(
-        run.settings.n, run.blocks, run.block, run.method, workers, trial,
-        seconds * run.settings.n / trial / workers, memory, stored,
+        run.settings.n, run.blocks, run.block, run.method, workers, trial, seconds * motions_a_worker / trial, memory,
+        stored,
     )  # fmt: skip
+
+
+def _work(run: Run) -> tuple[int, int]:
+    """What a worker does with the first block, but for the writing: bytes of its motions and of its record."""
+    values, motions = roll_block(run, 0)
+    summary = summarise(motions, run.settings.summaries, scales(values))
+    every, count = run.settings.keep == "all", run.block
+    chunks = zarr_files.chunks(columns_of(run, values, motions), 0, count, count) if every else {}
+    return sum(map(len, chunks.values())), len(encoded(Record("", {}, summary=summary)))
 
 
 def _most_resident() -> float:

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config import preset
-from ..errors import ParameterError
+from ..errors import ParameterError, unknown
 from ..materials.file import SECTIONS as MATERIALS
 from ..materials.file import as_toml, materials_of
 from ..materials.prony import Prony
@@ -71,7 +71,7 @@ class RunSection(msgspec.Struct, frozen=True):
     quantiles: tuple[Share, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
     """What a run file asks for.
 
@@ -219,11 +219,10 @@ def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.floa
     """Output times; what msgspec cannot check of [run] is checked here."""
     from ..tables import spread
 
-    for key, allowed in (("fields", FIELDS), ("summaries", tuple(QUANTITIES))):
+    for key, allowed, kind in (("fields", FIELDS, "a field"), ("summaries", tuple(QUANTITIES), "a summary")):
         for name in getattr(settings, key):
             if name not in allowed:
-                problem = f"{key} = ..., {name!r}, ...: must be out of {', '.join(allowed)}"
-                raise fault(path, "run", key, problem)
+                raise fault(path, "run", key, str(unknown(key, name, allowed, kind)))
     if not settings.summaries:
         raise fault(path, "run", "summaries", "summaries = []: must name at least one quantity")
     if settings.method == "flow" and is_driven(inputs):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..checks import number
 from ..errors import MotionStatus, ParameterError
 from ..motion.batch import ensemble
-from ..motion.checks import output_times
+from ..motion.checks import output_times, refuse_many
 from ..motion.driven import Drive, bare
 from ..motion.many import Ensemble
 from ..motion.many import card_of as ensemble_card
@@ -34,7 +34,7 @@ _ROWS = ("V", "omega", "x", "angle", "force", "torque", "work_force", "work_torq
 _SCALED = {*_ROWS, "slip_loss", "rolling_loss", "V0", "omega0", "onset_time", "rest_time"}
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionSI(Shown):
     """One motion of a cylinder in SI units, per m of its length.
 
@@ -148,7 +148,7 @@ class MotionSI(Shown):
         return motion_dataset(self, attributes).assign_attrs(_about(self.cylinder))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EnsembleSI(Shown):
     """Motions of cylinders in SI units; as :class:`viscoroll.motion.Ensemble`, with its names.
 
@@ -229,6 +229,8 @@ def roll_of(
     rest: float | None, max_steps: int,
 ) -> MotionSI:  # fmt: skip
     """``Cylinder.roll``."""
+    for name in ("R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "load"):
+        refuse_many(name, np.shape(getattr(cylinder, name)))
     drive = drive._replace(slope=None if drive.slope is None else number("slope", drive.slope))
     scene, one, times, given = _asked(cylinder, t, drive)
     V0, omega0 = (
@@ -278,7 +280,7 @@ def ensemble_of(
     scene, one, times, given = _asked(cylinder, t, drive)
     V0, omega0 = (over(name, speed, one) for name, speed in zip(("V0", "omega0"), start, strict=True))
     if rest is not None and np.ndim(one.speed):
-        raise ParameterError("rest", rest, "None", "rest counts in R/T_ref: give it with one R for all motions")
+        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     rest = None if rest is None else over("V", number("rest", rest, low=0.0, strict=True), one)
     _look_at_waves(cylinder, scene, start, (V0, omega0))
     if options.get("speed") is not None:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..checks import checked
-from ..drive import Feedback, slope_factor
+from ..drive import Feedback, refuse_more_than_t, slope_factor
 from ..errors import ParameterError
 from ..symbols import attributes as dimensionless
 
@@ -152,6 +152,7 @@ def over(name: str, given: Any, one: Units) -> Any:
     if callable(given):
         if unit.ndim:
             raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
+        refuse_more_than_t(name, given)
         return lambda t: checked(f"{name}(t)", given(t * one.T), low=low) / unit
     if isinstance(given, tuple) and len(given) == 2:
         times, values = checked(f"times of {name}", given[0], low=0.0), checked(f"values of {name}", given[1], low=low)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import __version__
 from ..checks import checked
-from ..errors import ParameterError
+from ..errors import ParameterError, unknown
 from ..files import replacing, write_text
 from ..symbols import PAPER, SYMBOLS
 from . import schema, store
@@ -64,7 +64,7 @@ def export(
 def check_format(format: str, path: str | PathLike[str]) -> None:
     """Raise ParameterError unless ``format`` is known and ``path`` ends as its files do."""
     if format not in FORMATS:
-        raise ParameterError("format", repr(format), f"out of {', '.join(FORMATS)}")
+        raise unknown("format", format, FORMATS, "a format")
     suffix, _ = FORMATS[format]
     if Path(path).suffix != suffix:
         raise ParameterError("path", path, f"a name that ends in {suffix} for format {format}")
@@ -76,7 +76,7 @@ def _at_alphas(table: xr.Dataset, wanted: NDArray) -> xr.Dataset:
     if wanted.ndim != 1 or not wanted.size:
         raise ParameterError("alpha", f"an array of shape {wanted.shape}", "one alpha or a vector of them")
     nodes = table["alpha"].values
-    same = np.isclose(wanted[:, np.newaxis], nodes, rtol=_SAME_ALPHA, atol=0.0)
+    same = np.abs(wanted[:, np.newaxis] - nodes) <= _SAME_ALPHA * nodes
     missing = wanted[~same.any(axis=1)]
     if missing.size:
         raise ParameterError("alpha", f"{missing[0]:g}", f"one that the table holds: {_listed(nodes)}")

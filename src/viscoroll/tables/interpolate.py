@@ -1,4 +1,4 @@
-"""Values between the nodes: tensor cubic splines for the atlas, linear for literal tables."""
+"""Values between the nodes: tensor cubic splines for the atlas, linear for the others."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..blocks import flattened
 from ..checks import broadcast_shape, checked
-from ..errors import OutOfTableError, ParameterError
+from ..errors import OutOfTableError, ParameterError, unknown
 from ..rolling_contact import Values
 from . import schema
 from .grid import ATLAS_MAPS
@@ -81,7 +81,7 @@ class Interpolant:
         names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
         for name in names:
             if name not in known:
-                raise ParameterError("fields", repr(name), "out of " + ", ".join(known))
+                raise unknown("fields", name, known, "a field of this table")
         return names
 
     def _checked_points(
@@ -129,7 +129,8 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     table : Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
     fields : names out of the table's fields; default all.
     **points : ``alpha``, ``kappa_V``, ``s`` for an atlas (``s`` only where beta or Q_over_mu
-        is asked for), ``V``, ``delta``, ``alpha`` for a literal table; they broadcast.
+        is asked for), ``V``, ``delta``, ``alpha`` for a literal table, ``V``, ``delta`` for that of a
+        material; they broadcast.
 
     Returns
     -------
@@ -150,7 +151,7 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     -----
     Atlas: tensor not-a-knot cubic spline in (ln alpha, ln kappa V, u = 1 - sqrt(1 - s)); the
     errors are those stored in the table, which a single point may exceed by up to 1.5 times
-    (``tests/tables/test_tables.py``).  Literal tables: linear in V, delta and alpha, what
+    (``tests/tables/test_tables.py``).  The others: linear in V, delta and alpha, what
     other tools do by default; a higher order would ring at the kink |delta| = delta_star,
     which crosses their cells.  Each call builds the splines anew, which takes most of its time;
     keep an :class:`Interpolant` for repeated calls.

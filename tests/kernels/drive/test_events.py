@@ -7,8 +7,9 @@ from itertools import permutations
 import numpy as np
 import pytest
 import tolerances as tol
+from closeness import close
 
-from viscoroll.kernels.drive.events import first_event
+from viscoroll.kernels.drive.events import first_event, place_of
 from viscoroll.kernels.drive.nodes import EVENT, INTERPOLANTS, ROWS
 from viscoroll.kernels.drive.records import EVENTS, NO_EVENT, Work
 from viscoroll.kernels.motion.collocation import NODES, N
@@ -34,7 +35,14 @@ def test_the_earlier_of_two_between_the_same_nodes(shares):
     for first, second in permutations(range(EVENTS), 2):
         event, v = first_event(work_of({first: early, second: late}))
         assert event == first
-        assert v == pytest.approx(early, rel=tol.EVENT_PLACE)
+        assert close(v, early, rel=tol.EVENT_PLACE)
+
+
+@pytest.mark.parametrize("share", np.linspace(0.05, 0.95, 7))
+def test_the_place_of_an_event(share):
+    for node in range(1, N + 1):
+        v = 1.0 + NODES[node - 1] + share * (NODES[node] - NODES[node - 1])
+        assert close(place_of(0, node, work_of({0: v})), v, rel=tol.EVENT_PLACE, scale=1.0)
 
 
 def test_the_earlier_of_two_between_other_nodes():

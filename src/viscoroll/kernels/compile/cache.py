@@ -3,19 +3,14 @@
 numba's own cache stamps a function with the file it is defined in and does not notice a change in a
 function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
 sources, their coefficient table and the versions of numba and llvmlite.  It holds one file for each function,
-signature and choice of numba's settings, behind a SHA-256 of itself: anything unreadable is compiled anew and
-replaced, never trusted and never fatal.
-
-The cache lives in ``$VISCOROLL_CACHE_DIR``, else in ``$XDG_CACHE_HOME/viscoroll``, else in
-``~/.cache/viscoroll``.
+signature and choice of numba's settings, behind a SHA-256 of itself.  Anything unreadable, or that others may have
+written (:mod:`folder`), is compiled anew and replaced, never trusted and never fatal.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 import pickle
-import secrets
 import sys
 import warnings
 import zlib
@@ -29,6 +24,8 @@ import numba
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
+from .folder import cache_root, read_own, write_own
+
 #: where all kernels lie
 HERE = Path(__file__).parents[1]
 #: settings of numba (environment: NUMBA_...) that its machine code follows, beside those of the processor
@@ -38,14 +35,6 @@ _SETTINGS = (
     "LLVM_REFPRUNE_FLAGS",
 )  # fmt: skip
 _DIGEST_SIZE = hashlib.sha256().digest_size
-
-
-def cache_root() -> Path:
-    """Folder that holds every cache of the package."""
-    if chosen := os.environ.get("VISCOROLL_CACHE_DIR"):
-        return Path(chosen)
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "viscoroll"
 
 
 @lru_cache(maxsize=1)
@@ -75,8 +64,8 @@ class DiskCache:
         """The machine code for this signature, or None."""
         target.refresh()
         try:
-            stored = self._path(signature, target.codegen()).read_bytes()
-        except OSError:  # not there, or not to be read: saving will say so
+            stored = read_own(self._path(signature, target.codegen()))
+        except OSError:  # not there, not to be read or not ours alone: saving will say so
             return None
         digest, content = stored[:_DIGEST_SIZE], stored[_DIGEST_SIZE:]
         if hashlib.sha256(content).digest() == digest:
@@ -86,21 +75,14 @@ class DiskCache:
         return None  # save_overload then replaces the file
 
     def save_overload(self, signature: Any, compiled: CompileResult) -> None:
-        """Store machine code: the file is whole or not there."""
+        """Store machine code."""
         if compiled.library.has_dynamic_globals:
             return  # addresses of this process
-        path = self._path(signature, compiled.codegen)
-        temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
+        content = zlib.compress(dumps(compiled._reduce()), 1)
         try:
-            content = zlib.compress(dumps(compiled._reduce()), 1)
-            self._folder.mkdir(parents=True, exist_ok=True)
-            temporary.write_bytes(hashlib.sha256(content).digest() + content)
-            os.replace(temporary, path)
+            write_own(self._path(signature, compiled.codegen), hashlib.sha256(content).digest() + content)
         except OSError as error:
-            note_trouble(f"compiled kernels are not cached ({error})")
-        finally:
-            with suppress(OSError):
-                temporary.unlink()
+            note_trouble(f"compiled kernels are not cached ({self._folder}: {error.strerror})")
 
     def flush(self) -> None:
         """``recompile`` of numba's dispatcher wants this: nothing is held in memory."""

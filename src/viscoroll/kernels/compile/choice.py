@@ -20,7 +20,7 @@ def by_record(at: int, *versions: tuple[type, Callable], otherwise: Callable | N
     def chosen(kind: type) -> Callable:
         found = known.get(kind, otherwise)
         if found is None:
-            raise TypeError(f"{kind.__name__}: not out of " + ", ".join(one.__name__ for one in known))
+            raise TypeError(f"{kind.__name__}: must be one of " + ", ".join(one.__name__ for one in known))
         return found
 
     if numba.config.DISABLE_JIT:

@@ -32,12 +32,12 @@ _NOT_NEEDED = ("InlineClosureLikes", "InlineInlinables", "InlineOverloads", "Wit
 class EntryPipeline:
     """What numba calls to compile a kernel that Python calls."""
 
-    def __init__(self, seconds: float, *given: Any) -> None:
-        self._seconds, self._given = seconds, given
+    def __init__(self, *given: Any) -> None:
+        self._given = given
 
     def compile_extra(self, function: Callable) -> Any:
         """What numba makes of the function."""
-        tell(self._seconds)
+        tell()
         with _garbage_kept():
             return self._compiled(function)
 

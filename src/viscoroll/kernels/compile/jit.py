@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Callable
 
 import numba
@@ -11,9 +10,7 @@ from .cache import DiskCache
 from .deferred import EntryPipeline, defer
 
 
-def kernel(
-    function: Callable | None = None, *, inline: bool = False, allocates: bool = False, seconds: float = 0.0
-) -> Callable:
+def kernel(function: Callable | None = None, *, inline: bool = False, allocates: bool = False) -> Callable:
     """Compile ``function`` with numba, lazily, cached on disk.
 
     LLVM is granted no numerical freedom: a result then depends on the source alone, not on what
@@ -23,14 +20,13 @@ def kernel(
     function costs as much as a polynomial, and LLVM by itself does not always spare it.
     ``allocates`` says that arrays are made or assigned as a whole.  Without it no references are
     counted; numba counts those of constant tables too, which took a fifth of the time of a motion.
-    ``seconds`` is what compiling takes where Python calls this kernel, to be told to who waits.
     """
     if function is None:
-        return lambda f: kernel(f, inline=inline, allocates=allocates, seconds=seconds)
+        return lambda f: kernel(f, inline=inline, allocates=allocates)
     options = {"error_model": "numpy", "nogil": True, "forceinline": inline, "_nrt": allocates}
     if numba.config.DISABLE_JIT:
         return numba.njit(function, **options)
-    whole = numba.njit(function, pipeline_class=partial(EntryPipeline, seconds), **options)
+    whole = numba.njit(function, pipeline_class=EntryPipeline, **options)
     whole._cache = DiskCache(function)
     defer(whole, options)
     return whole

@@ -10,14 +10,15 @@ import sys
 told = False
 
 
-def tell(seconds: float) -> None:
-    """Say, once a process, that compiling begins and takes so long; nothing below a second."""
+def tell() -> None:
+    """Say, once a process, that compiling begins: the first kernel does not know how many follow."""
     global told
-    if told or seconds < 1.0 or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker():
+    if told or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker():
         return
     told = True
     print(
-        f"viscoroll: compiling kernels, once for this machine, about {seconds:.0f} s; `viscoroll warmup` does it ahead",
+        "viscoroll: compiling kernels, up to half a minute for each new kind of call, once for this machine; "
+        "`viscoroll warmup` does it ahead",
         file=sys.stderr,
         flush=True,
     )

@@ -54,10 +54,10 @@ def enter(V, omega, clock, case):
     material, kappa, mu, _ = scene
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
-    slip, s, limit = omega - V, 0.0, 0.0
+    slip, s, limit, status = omega - V, 0.0, 0.0, OK
     sigma = 1.0 if slip >= 0.0 else -1.0
     if V > 0.0:
-        lam, _ = contact_length(kappa * V, material)
+        lam, status = contact_length(kappa * V, material)
         s = 2.0 * kappa * V / lam
         g, _ = generators(1.0 / s, material)
         limit = 0.5 * mu * lam * (1.0 + g * s) / kappa * V
@@ -66,10 +66,10 @@ def enter(V, omega, clock, case):
         # at V = 0 the frame is that which V turns to
         if V == 0.0 and here(State(s, omega), frame, clock, case)[1].s_rate < 0.0:
             direction, omega, sigma = -direction, -omega, -sigma
-        return State(s, omega), Frame(True, direction, sigma, 0.0, False), OK
+        return State(s, omega), Frame(True, direction, sigma, 0.0, False), status
     zeta = 1.0 / s
-    _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
-    return State(s, sigma * (D * s)), Frame(False, direction, sigma, 0.0, False), status
+    _, D, stick_status = stick_length(zeta, abs(slip) / V / (mu * V), material)
+    return State(s, sigma * (D * s)), Frame(False, direction, sigma, 0.0, False), max(status, stick_status)
 
 
 @kernel

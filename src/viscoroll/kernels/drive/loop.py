@@ -39,7 +39,7 @@ def _drive_of(drives, gamma, i, pieces):
     return Gains(drives.gains[0, n], drives.gains[1, n], drives.gains[2, n], drives.gains[3, n])
 
 
-@kernel(allocates=True, seconds=15)
+@kernel(allocates=True)
 def drive_loop(batch, drives, t, limits, rows, out, info, notes):
     """All motions of a batch; ``rows`` picks output quantities into out[quantity, motion, time].
 

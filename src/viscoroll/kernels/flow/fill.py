@@ -10,7 +10,7 @@ from .slow import lambda_table, slow_table
 FILLED, HELD, SLIPS = range(3)
 
 
-@kernel(seconds=20)  # with the rest of the map, and the motions that measure it
+@kernel
 def fill_curves(parts, scene):
     """Fill all ``parts`` of a map but entries and layers; FILLED, or what stands against it."""
     if not (slide_table(1.0, scene, parts.slide_up) and slide_table(-1.0, scene, parts.slide_down)):

@@ -187,7 +187,7 @@ def flow_motion(V0, omega0, tau_out, request, flow, out):
     return status, onset, resting
 
 
-@kernel(allocates=True, seconds=3)
+@kernel(allocates=True)
 def flow_loop(flow, gamma, rest, V0, omega0, t, rows, answer, start, stop):
     """Motions start..stop into ``answer``; those that are not served get the status NOT_SERVED and no output.
 

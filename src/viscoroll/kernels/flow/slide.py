@@ -36,7 +36,7 @@ def slide_table(sign, scene, table):
         T, X = integrate_bin(time, T, rows[_T]), integrate_bin(path, X, rows[_X])
         for n in range(N):
             V = node(b, n, _LOW) / kappa
-            rows[_L, n], _ = stick_limit(V, scene)
+            rows[_L, n], _, _ = stick_limit(V, scene)
             rows[_I, n] = 2.0 * mu * rows[_T, n] - V * (1.0 - j) + sign * j * rows[_L, n]
             if not rows[_I, n] > last_I:
                 return False

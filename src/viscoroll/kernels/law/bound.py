@@ -130,14 +130,14 @@ def _three(scene):
     return scene[_MATERIAL], scene[_MATERIAL + 1], scene[_MATERIAL + 2]
 
 
-@kernel(allocates=True, seconds=3)
+@kernel(allocates=True)
 def _law_standard(V, omega, out, numbers):
     scene = carray(numbers, _SIZE)
     alpha, T_mean, tau = _three(scene)
     return _law(V, omega, out, scene, Standard(alpha, T_mean, tau))
 
 
-@kernel(allocates=True, seconds=3)
+@kernel(allocates=True)
 def _law_tabulated(V, omega, out, numbers):
     scene = carray(numbers, _SIZE)
     alpha, T_mean, tau = _three(scene)
@@ -145,7 +145,7 @@ def _law_tabulated(V, omega, out, numbers):
     return _law(V, omega, out, scene, material)
 
 
-@kernel(allocates=True, seconds=4)
+@kernel(allocates=True)
 def _law_pair(V, omega, out, numbers):
     scene = carray(numbers, _SIZE)
     alpha, T_mean, tau = _three(scene)
@@ -155,7 +155,7 @@ def _law_pair(V, omega, out, numbers):
     return _law(V, omega, out, scene, material)
 
 
-@kernel(seconds=1)
+@kernel
 def _make_all(material):
     """Make the bins that are not there, in a table that has a row for each."""
     table = material.table

@@ -42,7 +42,7 @@ def _solve(first, count, own, states, need, block, place, some):
         lockstep.solve_roots(_slipping(first, count, states, block, some), some, block, place)
 
 
-@kernel(allocates=True, seconds=3)
+@kernel(allocates=True)
 def state_loop(own, states, need, rows, out, start, stop):
     """``contact_loop`` for fewer states than a block, one after another: the same bits, and less to compile."""
     state, worst = np.empty(len(ROWS)), OK
@@ -53,7 +53,7 @@ def state_loop(own, states, need, rows, out, start, stop):
     return worst
 
 
-@kernel(allocates=True, seconds=5)
+@kernel(allocates=True)
 def contact_loop(own, states, need, rows, out, start, stop):
     """States start..stop; ``rows`` picks the output."""
     state = np.empty(len(ROWS))

@@ -129,7 +129,7 @@ def _parts_of_pair(u, V, inverses, at, out, n):
 _put_parts = by_record(2, (Inverses, _no_parts), (InversesOfPair, _parts_of_pair))
 
 
-@kernel(allocates=True, seconds=4)
+@kernel(allocates=True)
 def inverse_loop(inverses, states, need, rows, out, start, stop):
     """``contact_loop`` at one material; no slopes."""
     state, at, worst = np.empty(len(ROWS)), np.full(len(ROWS), -1), OK

@@ -63,6 +63,7 @@ def inverses_of(material: Standard | Tabulated | Pair) -> Inverses | InversesOfP
 @kernel
 def _make_speed(row, u, inverses):
     """Make the bin of u; returns a status."""
+    quartet.begin(inverses.speed, row)
     worst = OK
     for n in range(quartet.TERMS):
         kappa_V = quartet.node(u, n)
@@ -80,6 +81,7 @@ def _make_speed(row, u, inverses):
 @kernel
 def _make_moments(row, u, inverses):
     """Make the bin of u in the table of the parts of M/V; returns a status."""
+    quartet.begin(inverses.moments, row)
     worst = OK
     for n in range(quartet.TERMS):
         kappa_V = quartet.node(u, n)
@@ -95,6 +97,7 @@ def _make_moments(row, u, inverses):
 @kernel
 def _make_stick(row, y, inverses):
     """Make the bin of y; returns a status."""
+    quartet.begin(inverses.stick, row)
     worst = OK
     for n in range(quartet.TERMS):
         at = quartet.node(y, n)

@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Loads(NamedTuple, Generic[T]):
-    """Q over P, and M over P l0 with its parts in half-space and cylinder."""
+    """Q over P, and M over P R with its parts in half-space and cylinder."""
 
     Q: T
     M: T

@@ -53,7 +53,7 @@ _prepared = by_record(0, (Own, _as_given), (Series, _with_room))
 _material_of = by_record(0, (Own, _own), (Solved, _shared))
 
 
-@kernel(allocates=True, seconds=2)
+@kernel(allocates=True)
 def stress_loop(given, points, p, tau, start, stop):
     """p/E' and |tau|/E' at points start..stop; ``given``: an alpha each, or the modes of one material."""
     prepared = _prepared(given)

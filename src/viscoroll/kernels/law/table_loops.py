@@ -23,7 +23,7 @@ LITERAL_PLANE = ("lam", "epsilon", "M", "delta_star")
 LITERAL_VOLUME = ("beta", "Q")
 
 
-@kernel(seconds=3)
+@kernel
 def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     """Pairs start..stop of (alpha, kappa_V): ``plane`` (4, pairs), ``volume`` (2, pairs, s)."""
     worst = OK
@@ -50,7 +50,7 @@ def atlas_loop(alpha, kappa_V, s, plane, volume, start, stop):
     return worst
 
 
-@kernel(allocates=True, seconds=5)
+@kernel(allocates=True)
 def literal_loop(V, delta, alpha, kappa, mu, plane, volume, start, stop):
     """Pairs start..stop of (V, alpha): ``plane`` (4, pairs), ``volume`` (2, pairs, delta)."""
     need = Need(True, True, True, True, False)

@@ -262,7 +262,7 @@ def _set_alpha(alpha, series):
     series.e[0] = series.t[0] = np.sqrt((alpha - 1.0) / alpha)
 
 
-@kernel(allocates=True, seconds=2)
+@kernel(allocates=True)
 def unsteady_loop(series, alpha, zeta, out, start, stop):
     """N at an array of zeta; ``alpha``: none, or one each, of which ``series`` is then the one mode."""
     work = room(series)

@@ -71,7 +71,7 @@ def fill_bins(z, parts, work, row, table, table_of_parts):
 _fill = by_record(1, (Series, fill_bin), (Parts, fill_bin_of_parts))
 
 
-@kernel(allocates=True, seconds=3)
+@kernel(allocates=True)
 def fill(series, first, stop, table):
     """Make the bins first..stop of z, of a material, or of the parts that two bodies have in it."""
     work = room(series)

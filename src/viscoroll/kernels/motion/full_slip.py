@@ -78,14 +78,14 @@ def edge_of_stick(s, scene):
 
 @kernel
 def stick_limit(V, scene):
-    """(delta_star |V|, zeta) at V; the stick band is |omega - V| < delta_star |V|."""
+    """(delta_star |V|, zeta, status) at V; the stick band is |omega - V| < delta_star |V|."""
     material, kappa, mu, _ = scene
     speed = abs(V)
     kappa_V = kappa * speed
-    lam, _ = contact_length(kappa_V, material)
+    lam, status = contact_length(kappa_V, material)
     zeta = lam / (2.0 * kappa_V)
     g, _ = generators(zeta, material)
-    return 0.5 * mu * lam * (1.0 + g / zeta) / kappa * speed, zeta
+    return 0.5 * mu * lam * (1.0 + g / zeta) / kappa * speed, zeta, status
 
 
 @kernel

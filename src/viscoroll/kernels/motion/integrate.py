@@ -69,17 +69,16 @@ def start(V, omega, scene):
     V, omega = direction * V, direction * omega
     slip = omega - V
     sigma = 1.0 if slip >= 0.0 else -1.0
-    limit, zeta = stick_limit(V, scene)
+    limit, zeta, status = stick_limit(V, scene)
     if V == 0.0 or abs(slip) >= limit:
         s = 1.0 / zeta if V > 0.0 else 0.0
-        return State(s, V - j * omega, 0.0, 0.0, 0.0, 0.0), Frame(FULL, direction, sigma), OK
+        return State(s, V - j * omega, 0.0, 0.0, 0.0, 0.0), Frame(FULL, direction, sigma), status
     if np.log(zeta) > FAR:
         y, D = rolling(V + j * omega, scene)
-        status = OK
     else:
         y = np.log(zeta)
-        _, D, status = stick_length(zeta, abs(slip) / V / (mu * V), material)
-        D *= sigma
+        _, D, stick_status = stick_length(zeta, abs(slip) / V / (mu * V), material)
+        D, status = D * sigma, max(status, stick_status)
     return State(y, D, 0.0, 0.0, 0.0, 0.0), Frame(PARTIAL, direction, sigma), status
 
 

@@ -38,7 +38,7 @@ def keep(i, rows, one, result, out, info):
     info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result
 
 
-@kernel(allocates=True, seconds=12)
+@kernel(allocates=True)
 def motion_loop(batch, t, limits, rows, out, info, notes, start, stop):
     """Motions start..stop; ``rows`` picks the output quantities of ``integrate`` into out[quantity, motion, time].
 

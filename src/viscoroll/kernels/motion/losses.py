@@ -94,7 +94,7 @@ def add_losses(scene, gamma, V0, omega0, t, edges, points, out):
         out[ROLLING_LOSS, m] = kinetic_energy_lost(V0, omega0, out[0, m], out[1, m], scene.j) - lost
 
 
-@kernel(allocates=True, seconds=15)
+@kernel(allocates=True)
 def loss_loop(batch, t, limits, rows, out, info, start, stop):
     """Motions start..stop; as ``motion_loop``, but ``rows`` may name those of :mod:`losses` too."""
     motions, limits = Batch(*batch), Limits(*limits)

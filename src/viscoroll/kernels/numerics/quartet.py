@@ -89,6 +89,12 @@ def node(x, n):
 
 
 @kernel(inline=True)
+def begin(table, row):
+    """Take the bin out of a row: it holds none until :func:`finish`, which may never come."""
+    table[row, 0] = np.nan
+
+
+@kernel(inline=True)
 def put(table, row, n, a, b, c, d):
     """Values of the functions at node ``n``."""
     at = FIRST + 4 * n

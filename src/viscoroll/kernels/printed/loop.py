@@ -53,7 +53,7 @@ def direct_state(alpha, state, out):
     return max(status, stick_status)
 
 
-@kernel(allocates=True, seconds=2)
+@kernel(allocates=True)
 def direct_loop(own, states, need, rows, out, start, stop):
     """States start..stop; arguments as of ``contact_loop`` (``need`` is not used)."""
     state = np.empty(len(ROWS))

@@ -77,7 +77,7 @@ class Solids:
 
     @property
     def T_ref(self) -> float:
-        """What times are counted in, s, as of a :class:`viscoroll.pair.Pair`."""
+        """What times are counted in, s, as of a :class:`viscoroll.materials.pair.Pair`."""
         return (self.base if self.base and not self.cylinder.relaxes else self.cylinder).T_ref
 
     def law(self, values: Mapping[str, Any], plane: str) -> tuple[Any, Any]:

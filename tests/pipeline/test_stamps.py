@@ -1,0 +1,97 @@
+"""Results say of which kernels they are, and pages where those are not this tree's."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+from places import RESULTS
+
+from pipeline import stamps
+from pipeline.document.__main__ import BLOCKS, filled
+
+OTHER = "0123456789abcdef"
+SENTENCE = "Measured at kernels `01234567`, not those of this version.\n"
+
+
+KERNEL = '@njit\ndef law(x):\n    """Doubled."""\n    return 2.0 * x\n'
+digest_of = stamps.kernels_digest.__wrapped__
+
+
+@pytest.fixture
+def results(tmp_path):
+    """The committed ones, as if all were of the kernels named."""
+
+    def restamped(digest):
+        for path in RESULTS.glob("*.json"):
+            text = re.sub(r'"kernels": "\w+"', f'"kernels": "{digest}"', path.read_text(encoding="utf-8"))
+            (tmp_path / path.name).write_text(text, encoding="utf-8")
+        return tmp_path
+
+    return restamped
+
+
+def block(name, folder):
+    return filled(f"<!-- measured:{name} -->\n<!-- end -->\n", [folder], "page")
+
+
+def test_words_outdate_no_result(tmp_path):
+    kernels = shutil.copytree(stamps.KERNELS, tmp_path / "kernels", ignore=shutil.ignore_patterns("__pycache__"))
+    for path in kernels.rglob("*.py"):
+        text = re.sub(r'"""(?=\w)', '"""In other words. ', path.read_text(encoding="utf-8"))
+        path.write_text(f"# a comment\n\n{text}\n\n", encoding="utf-8")
+    assert digest_of(kernels) == stamps.kernels_digest()
+
+
+@pytest.mark.parametrize(("old", "new"), [("2.0", "3.0"), ("*", "/"), ("@njit", ""), ("law", "flow")])
+def test_what_computes_outdates_it(tmp_path, old, new):
+    file = tmp_path / "law.py"
+    file.write_text(KERNEL, encoding="utf-8")
+    before = digest_of(tmp_path)
+    file.write_text(KERNEL.replace(old, new), encoding="utf-8")
+    assert digest_of(tmp_path) != before
+
+
+def test_a_coefficient_and_a_name_outdate_it(tmp_path):
+    ratios, table = np.array([1.0, 2.0]), tmp_path / "ratios.npy"
+    np.save(table, ratios)
+    digests = {digest_of(tmp_path)}
+    np.save(table, np.nextafter(ratios, 3.0))
+    digests.add(digest_of(tmp_path))
+    table.rename(tmp_path / "other.npy")
+    digests.add(digest_of(tmp_path))
+    assert len(digests) == 3
+
+
+@pytest.mark.parametrize("name", [name for name, (stage, _) in BLOCKS.items() if stage != "document"])
+def test_a_block_says_where_it_is_of_other_kernels(name, results):
+    said = block(name, results(OTHER))
+    assert said.count("of this version") == said.count(SENTENCE) == 1
+    assert said.replace(f"\n{SENTENCE}", "") == block(name, results(stamps.kernels_digest()))
+
+
+def test_parts_of_other_kernels_are_named(results):
+    folder = results(stamps.kernels_digest())
+    proofs = json.loads((folder / "proofs.json").read_text(encoding="utf-8"))
+    proofs["parts"]["driven"]["machine"]["kernels"] = OTHER
+    (folder / "proofs.json").write_text(json.dumps(proofs), encoding="utf-8")
+    assert "Measured at kernels `01234567` (proofs driven), not those of this version.\n" in block("proofs", folder)
+
+
+def test_results_of_other_kernels_are_found(results):
+    folder = results(stamps.kernels_digest())
+    assert stamps.outdated(folder) == {}
+    (folder / "unstamped.json").write_text("{}", encoding="utf-8")
+    xr.Dataset(attrs={"kernels": OTHER}).to_netcdf(folder / "maps.nc")
+    mutants = json.loads((folder / "mutants.json").read_text(encoding="utf-8"))
+    next(iter(mutants.values()))["kernels"] = OTHER
+    (folder / "mutants.json").write_text(json.dumps(mutants), encoding="utf-8")
+    assert stamps.outdated(folder) == {"maps.nc": [OTHER], "mutants.json": [OTHER], "unstamped.json": ["unknown"]}
+
+
+def test_every_committed_result_says_its_kernels():
+    assert not any("unknown" in digests for digests in stamps.outdated(RESULTS).values())
