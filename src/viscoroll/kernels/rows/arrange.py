@@ -32,7 +32,7 @@ def _length(row, lam, epsilon, fitted, scratch):
         fitted[0] = 1.0
 
 
-@kernel(allocates=True, seconds=1)
+@kernel(allocates=True)
 def arrange(table):
     """The rows of a table (rows, 24, 7), one after the other."""
     count = table.shape[0]

@@ -209,7 +209,7 @@ def _put_row(row, e0, ends, bench, out):
         out[0, 0, M_HALF_SPACE], out[0, 0, M_CYLINDER] = ends.T_half_space, ends.T_cylinder
 
 
-@kernel(allocates=True, seconds=3)
+@kernel(allocates=True)
 def build(series, e0, ends):
     """The table (rows, 24, 7) of a series of two bodies (``Parts``, without weights where they are alike); N is NaN."""
     work = sloped_room(series)
@@ -228,7 +228,7 @@ def build(series, e0, ends):
     return out
 
 
-@kernel(allocates=True, seconds=2)
+@kernel(allocates=True)
 def build_unsteady(series, e0, table):
     """Fill in N."""
     work, values, fitted, scratch = unsteady_room(series), np.empty(TERMS), np.empty(TERMS), np.empty(TERMS)
