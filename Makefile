@@ -5,7 +5,7 @@ RUN := $(BIN)/python
 CONFIG ?= pipeline/config/production.toml
 SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
 STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
-TABLES := $(addprefix data/tables/,atlas.nc paper.nc rubber.nc rubber-on-steel.nc)
+TABLES := $(addprefix data/tables/,paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools docs test-site site-tools release-check
@@ -23,7 +23,7 @@ setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 demo: out/index.html ## tables, validation, motions, an ensemble of 10^6, figures and a summary page
 	@$(RUN) -m pipeline.demo.summary --config $(CONFIG) --show
 
-tables: $(TABLES) ## build data/tables/*.nc: universal, the paper's, a rubber of a DMA, and that on steel
+tables: $(TABLES) ## build data/tables/*.nc: the law of the paper's material, of a rubber of a DMA, and of that on steel
 $(TABLES) &: pipeline/demo/tabulate.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.tabulate --config $(CONFIG)
 
@@ -38,20 +38,19 @@ out/ensemble.nc: pipeline/demo/ensemble.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.ensemble --config $(CONFIG)
 
 figures: out/figures/figure-5.png ## the paper's figures and more, as PNG under out/figures
-out/figures/figure-5.png: pipeline/demo/figures.py $(TABLES) out/ensemble.nc $(SOURCES) $(STAGE)
+out/figures/figure-5.png: pipeline/demo/figures.py out/ensemble.nc $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.figures --config $(CONFIG)
 
 out/index.html: pipeline/demo/summary.py out/validation.nc out/motions.nc out/ensemble.nc out/figures/figure-5.png
 	$(RUN) -m pipeline.demo.summary --config $(CONFIG)
 
-bench: setup $(TABLES) ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)
+bench: setup ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	$(RUN) -m pipeline.bench --config $(CONFIG)
 	$(RUN) -m pipeline.document
 
-numbers: setup $(TABLES) ## measure again what README and docs state, and put it there (about 10 minutes)
+numbers: setup ## measure again what README and docs state, and put it there (about 10 minutes)
 	$(RUN) -m pipeline.measure --config $(CONFIG)
-	$(RUN) -m pipeline.measure.loading --config $(CONFIG)
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	$(RUN) -m pipeline.document
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
@@ -73,9 +72,9 @@ same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 test: setup ## the whole test suite
 	$(BIN)/pytest -n 2 --dist worksteal
 
-DEBIAN := netcdf-bin libnetcdf-dev octave octave-netcdf r-base-core r-cran-ncdf4
+DEBIAN := gcc g++ gfortran netcdf-bin libnetcdf-dev libnetcdff-dev octave octave-netcdf r-base-core r-cran-ncdf4 nodejs
 SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
-interop: interop-tools $(TABLES) ## the tables in C, Octave, R, Node, ncdump and the CF checker, which it installs
+interop: interop-tools ## laws in C, C++, Fortran, Octave, R, Node, ncdump and the CF checker, which it installs
 	$(BIN)/pytest -rs tests/docs/test_interop.py
 
 # What cannot be installed, without a network say, is told here, and its tests are skipped with that reason.
@@ -83,7 +82,6 @@ interop-tools: setup
 	$(SUDO) apt-get update -qq || echo "interop: Debian's lists of packages stay as they are"
 	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(DEBIAN) >/dev/null \
 	  || echo "interop: not installed: $(DEBIAN)"
-	npm install --silent --no-save --no-package-lock --prefix . h5wasm@0.10.3 || echo "interop: not installed: h5wasm"
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[interop]' \
 	  || echo "interop: not installed: compliance-checker"
 

@@ -64,7 +64,6 @@ numpydoc_show_class_members = False
 nitpicky = True
 nitpick_ignore_regex = [
     (r"py:.*", r"(?!viscoroll).*"),
-    (r"py:.*", r"viscoroll\.tables\.accuracy\.linear_errors"),  # private to the reader
 ]
 
 sphinx_gallery_conf = {

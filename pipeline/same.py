@@ -69,11 +69,11 @@ def parts() -> Iterator[tuple[str, list[Any]]]:
     e = vr.ensemble(scene, V0, omega0, t, method="flow", fields=_ALL)
     yield "flow-map", [getattr(e, field) for field in _ALL]
     yield from _bodies_and_drives(V, delta, V0, omega0, t)
-    atlas = vr.tables.build(vr.tables.AtlasGrid(nodes=(6, 12, 12)))
-    yield "table-atlas", [each.values for each in atlas.data_vars.values()]
     axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
-    literal = vr.tables.build(vr.tables.LiteralGrid(2.9, 0.2, *axes))
-    yield "table-literal", [each.values for each in literal.data_vars.values()]
+    grid = vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)
+    yield "grid", [each.values for each in grid.data_vars.values()]
+    law = vr.tables.law(vr.RUBBER_CYLINDER.material)
+    yield "law", [each.values for each in law.data_vars.values()]
 
 
 def _bodies_and_drives(V: Any, delta: Any, V0: Any, omega0: Any, t: Any) -> Iterator[tuple[str, list[Any]]]:

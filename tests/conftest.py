@@ -8,10 +8,8 @@ import os
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import pytest
-import xarray as xr
 from memory import forget
 
-import viscoroll as vr
 from viscoroll.motion import flow_store
 
 # what a user chose for other work does not reach the tests
@@ -37,11 +35,3 @@ def maps_of_this_file(tmp_path_factory):
         forget()
         yield
     forget()
-
-
-@pytest.fixture(scope="session")
-def small_atlas() -> xr.Dataset:
-    """Quick to build; a test that changes it changes a copy."""
-    return vr.tables.build(
-        vr.tables.AtlasGrid(alpha=(1.0, 20.0), kappa_V=(0.1, 10.0), nodes=(8, 12, 12), allowed=(1e-2, 1e-2))
-    )

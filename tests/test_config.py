@@ -6,13 +6,12 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
 from places import PIPELINE
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.config import read_grids, read_scene
+from viscoroll.config import read_bodies, read_scene
 from viscoroll.materials.file import as_toml, read_materials
 
 PRODUCTION = PIPELINE / "config/production.toml"
@@ -166,45 +165,27 @@ def test_refused_scene(toml):
 
 def test_unreadable(tmp_path):
     for name in ("missing.toml", "."):
-        for read in (read_scene, read_grids):
+        for read in (read_scene, read_bodies):
             refused(partial(read, tmp_path / name), "cannot be read", error=vr.ConfigError)
 
 
-def test_grids_are_those_of_production():
-    built_in, production = read_grids(), read_grids(PRODUCTION)
-    assert built_in["atlas"] == production["atlas"]
-    for name in ("kappa", "mu", "V", "delta", "alpha"):
-        assert np.array_equal(getattr(built_in["paper"], name), getattr(production["paper"], name))
-
-
-def test_grids_of_a_file(toml):
-    content = "[tables.atlas]\nnodes = [8, 9, 10]\n[tables.paper]\nV = [0.1, 0.2]\n[other]\nanything = 1\n"
-    grids = read_grids(toml(content))
-    assert grids["atlas"].nodes == (8, 9, 10)
-    assert grids["paper"].V.tolist() == [0.1, 0.2]
-    assert grids["paper"].delta.size == read_grids()["paper"].delta.size
-
-
-NO_GRIDS = [
-    ("[table.atlas]\nnodes = [8, 8, 8]", ["[tables] is missing", "did you mean 'table'?"]),
-    ("tables = 3", ["section [tables]"]),
-    ("[tables]\npaper = 3", ["section [tables.paper]"]),
-    ("[tables.altas]", ["[tables]", "'altas'", "did you mean 'atlas'?"]),
-    ("[tables.atlas]\nnode = [8, 8, 8]", ["[tables.atlas]", "'node'", "did you mean 'nodes'?"]),
-    ("[tables.atlas]\nnodes = [8, 8]", ["[tables.atlas]", "nodes"]),
-    ("[tables.atlas]\nnodes = [8, 8, 3]", ["nodes = (8, 8, 3)", ">= 4"]),
-    ("[tables.atlas]\nalpha = [0.5, 2.0]", ["alpha = 0.5", ">= 1"]),
-    ("[tables.paper]\nkapa = 2", ["[tables.paper]", "'kapa'", "did you mean 'kappa'?"]),
-    ("[tables.paper]\nV = 1.0", ["[tables.paper]", "V"]),
-    ("[tables.paper]\nV = { low = 1, hihg = 2, count = 3 }", ["[tables.paper.V]", "did you mean 'high'?"]),
-    ("[tables.paper]\nV = { low = 1, high = 2 }", ["[tables.paper.V]", "missing", "`count`"]),
-    ("[tables.paper]\nV = { low = 0, high = 2, count = 3, spacing = 'log' }", ["[tables.paper]", "low = 0"]),
-    ("[tables.paper]\ndelta = [0.1, 0.0]", ["[tables.paper]", "delta", "increasing"]),
-    ("[tables.paper]\nkappa = 1e200\nmu = 1e-200", ["[tables.paper]", "mu/kappa"]),
-    ("[tables.paper]\nkappa = 1e308\nmu = 1e200", ["[tables.paper]", "kappa |V| = inf", "at most 1e+300"]),
-]
-
-
-def test_refused_grids(toml):
-    for content, words in NO_GRIDS:
-        refused(partial(read_grids, toml(content)), "file.toml", *words, error=vr.ConfigError)
+def test_bodies_of_a_file(toml):
+    """What has a law: materials, else a scene or a cylinder."""
+    rubber = "[material]\nE = 3e6\nnu = 0.5\nprony = { E = [1.0], tau = [0.1] }\n"
+    steel = "[base]\nE = 2e11\nnu = 0.3\n"
+    assert read_bodies(toml(rubber)).base is None
+    assert read_bodies(toml(rubber + steel)).base.E == 2e11
+    cylinder = "[cylinder]\nR = 0.1\nm = 1.0\nmu = 0.2\n"
+    assert read_bodies(toml(cylinder + rubber)) == read_bodies(toml(rubber))
+    papers = read_bodies(toml(cylinder + "E = 2e5\nnu = 0.4\nT_epsilon = 10.0\nT_sigma = 1.0\n"))
+    assert papers.cylinder == vr.Material.sls(2e5, 0.4, 10.0, 1.0)
+    assert read_bodies(toml("[scene]\nalpha = 11\nkappa = 3\nmu = 0.2")) == 11.0
+    series = "[scene]\nprony = { E = [1.0], tau = [0.1] }\nkappa = 3\nmu = 0.2"
+    assert read_bodies(toml(series)) == vr.Prony([1.0], [0.1])
+    for content, temperature, words in (
+        (steel, None, "section [material] is missing"),
+        ("[other]\nx = 1", None, "section [material] is missing"),
+        (series, 20.0, "needs [material] with wlf"),
+        (rubber.replace("3e6", "inf").split("prony")[0] + steel.replace("2e11", "inf"), None, "rigid"),
+    ):
+        refused(partial(read_bodies, toml(content), temperature), "file.toml", words, error=vr.ConfigError)

@@ -27,10 +27,7 @@ from viscoroll.motion import flow_store
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
-GRIDS = (
-    vr.tables.AtlasGrid(nodes=(6, 8, 8), block=(2, 2, 2)),
-    vr.tables.LiteralGrid(kappa=2.91, mu=0.2, V=[0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], alpha=[1.0, 11.0]),
-)
+GRID = {"what": SCENE, "V": [0.1, 0.3, 2.0], "delta": [-0.01, 0.0, 0.03], "alpha": [1.0, 11.0]}
 #: control and status register of SSE: rounding in bits 13-14, denormals are zero in 6, flush to zero in 15
 MODES = {
     "denormals are zero": 0x0040,
@@ -77,11 +74,10 @@ def everything() -> dict[str, np.ndarray]:
         found |= {f"{method} {name}": getattr(many, name) for name in names}
     motion = vr.roll(SCENE, 1.5, 0.5, T)
     found |= {f"roll {name}": getattr(motion, name) for name in ("V", "omega", "x")}
-    for grid in GRIDS:
-        table = vr.tables.build(grid)
-        found |= {f"table {name}": values.values for name, values in table.data_vars.items()}
-        middle = {str(name): axis.values.mean() for name, axis in table.coords.items() if name in grid.axes()}
-        found |= {f"between {k}": v for k, v in vr.tables.interpolate(table, **middle).as_dict().items()}
+    table = vr.tables.build(**GRID)
+    found |= {f"table {name}": values.values for name, values in table.data_vars.items()}
+    middle = {str(name): axis.values.mean() for name, axis in table.coords.items()}
+    found |= {f"between {k}": v for k, v in vr.tables.interpolate(table, **middle).as_dict().items()}
     found["validity"] = SCENE.validity(V[few]).small_contact.value
     return {name: np.array(values) for name, values in found.items()}
 
@@ -235,7 +231,7 @@ def test_arrays_of_any_kind(kind):
     )
     for call in calls:
         assert np.array_equal(call(scenes[0], np.array), call(scenes[1], make))
-    table = vr.tables.build(GRIDS[1])
+    table = vr.tables.build(**GRID)
     plain, made = (
         vr.tables.interpolate(table, V=f(np.array([1.0, 2.0])), delta=0, alpha=f(np.array([1.0, 11.0])))
         for f in (np.array, make)
@@ -272,13 +268,13 @@ def test_empty():
         assert many.V.shape == (0, 1)
         assert many.messages() == {}
     assert SCENE.validity(nothing).under_axis.holds.shape == (0,)
-    table = vr.tables.build(GRIDS[1])
+    table = vr.tables.build(**GRID)
     assert vr.tables.interpolate(table, V=nothing, delta=0.0, alpha=11.0).Q.shape == (0,)
     for shape in ((0,), (0, 3), (2, 0)):
         for method in ("table", "direct"):
             assert vr.contact(SCENE, np.empty(shape), delta=0.1, method=method).Q.shape == shape
     refused(lambda: vr.ensemble(SCENE, 1.0, 1.0, nothing), "t = ")
-    refused(lambda: vr.tables.LiteralGrid(2.91, 0.2, nothing, [0.0], [1.0]), "V = ")
+    refused(lambda: vr.tables.build(SCENE, nothing, [0.0]), "V = ")
 
 
 @pytest.mark.parametrize("name", ["one by one", "slice", "grid", "slopes", "stress", "flow map", "integrated"])

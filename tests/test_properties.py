@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 import viscoroll as vr
 from viscoroll.contact_fields import FIELDS as CONTACT_FIELDS
 from viscoroll.errors import MotionStatus
+from viscoroll.materials.law_table import law_table
 from viscoroll.motion.batch import FIELDS
 from viscoroll.tables import schema
 
@@ -142,7 +143,7 @@ def test_motion(parameters, V0, omega0, t, rtol, rest, method):
 
 
 @long_or_short(60)
-@given(st.dictionaries(st.sampled_from(["V", "delta", "alpha", "kappa_V", "s", "x"]), argument, max_size=4))
+@given(st.dictionaries(st.sampled_from(["V", "delta", "alpha", "x"]), argument, max_size=4))
 def test_interpolate(points):
     for table in tables():
         try:
@@ -150,7 +151,7 @@ def test_interpolate(points):
         except vr.ViscorollError as error:
             own_error(error)
         else:
-            for name in schema.FIELDS[table.attrs[schema.KIND]]:
+            for name in schema.fields_of(table):
                 assert np.isfinite(getattr(found, name)).all(), name
 
 
@@ -159,8 +160,8 @@ def test_interpolate(points):
 def test_grids_cylinders_and_samples(kappa, mu, axes, bounds):
     few = min(kappa, 99) if isinstance(kappa, int) else kappa
     calls = (
-        lambda: vr.tables.LiteralGrid(kappa, mu, *axes),
-        lambda: vr.tables.AtlasGrid(alpha=bounds, kappa_V=axes[0], nodes=axes[1], block=axes[2]),
+        lambda: vr.tables.build(vr.PAPER_SECTION_5, *axes),
+        lambda: vr.tables.spread(*bounds, few),
         lambda: vr.Cylinder(kappa, mu, *axes, *bounds, mu).scene(),
         lambda: vr.PAPER_CYLINDER.validity(mu, kappa),
         lambda: vr.sampling.sample(few, mu, axes[0], V0=axes[1]),
@@ -174,6 +175,6 @@ def test_grids_cylinders_and_samples(kappa, mu, axes, bounds):
 
 def tables(made=[]):  # noqa: B006 - built once
     if not made:
-        made.append(vr.tables.build(vr.tables.AtlasGrid(nodes=(5, 6, 5), block=(2, 2, 2))))
-        made.append(vr.tables.build(vr.tables.LiteralGrid(2.91, 0.2, [0.1, 0.3, 2.0], [-0.01, 0.0, 0.03], [1.0, 11.0])))
+        made.append(vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], [-0.01, 0.0, 0.03]))
+        made.append(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 0.3, 2.0], [-0.01, 0.0, 0.03], [1.0, 11.0]))
     return made

@@ -46,14 +46,18 @@ class Atlas(NamedTuple):
     share: NDArray
 
 
-def atlas_splines(axes: dict[str, NDArray], fields: Any) -> Atlas:
-    """Splines of a table's fields over (alpha, kappa_V, s)."""
-    from viscoroll.tables.grid import ATLAS_MAPS
-
-    mapped = [ATLAS_MAPS[name][0](np.asarray(axes[name])) for name in ("alpha", "kappa_V", "s")]
-    plane = [spline(np.asarray(fields[name]), mapped[:2])[1] for name in ("kappa_M", "kappa_delta_star_over_mu")]
-    knots, share = spline(np.asarray(fields["Q_over_mu"]), mapped)
-    return Atlas(*knots, *plane, share)
+def atlas_of(nodes: tuple[int, int, int], alpha: tuple[float, float], kappa_V: tuple[float, float]) -> Atlas:
+    """Splines of the law over (alpha, kappa V, s): equal ratios and, of s = 1 - (1 - u)^2, equal steps of u."""
+    log_alpha, log_speed = (np.linspace(*np.log(ends), n) for ends, n in zip((alpha, kappa_V), nodes, strict=False))
+    u = np.linspace(0.0, 1.0, nodes[2])
+    scene, V = vr.Scene(np.exp(log_alpha)[:, None, None], 1.0, 1.0), np.exp(log_speed)[:, None]
+    plane = vr.contact(scene, V, delta=0.0, fields=("M", "delta_star"))
+    share = vr.contact(scene, V, delta=u * (2.0 - u) * plane.delta_star, fields="Q").Q
+    share[..., -1] = 1.0
+    axes = [log_alpha, log_speed, u]
+    fits = [spline(values[..., 0], axes[:2])[1] for values in (plane.M, plane.delta_star)]
+    knots, coefficients = spline(share, axes)
+    return Atlas(*knots, *fits, coefficients)
 
 
 def no_atlas() -> Atlas:
@@ -281,9 +285,3 @@ def run(which: int, problem: Any, rtol: float, atlas: Atlas) -> tuple[NDArray, N
     parameters = np.ascontiguousarray(np.array(problem.parameters()).T)
     roll_all(which, parameters, problem.V0, problem.omega0, problem.t, rtol, atlas, scratch(), V, omega)
     return V, omega
-
-
-def load_atlas(path: Any) -> Atlas:
-    """The splines of ``data/tables/atlas.nc``; raises viscoroll.TableError."""
-    table = vr.tables.load(path)
-    return atlas_splines({name: table[name].values for name in ("alpha", "kappa_V", "s")}, table)

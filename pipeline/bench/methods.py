@@ -10,17 +10,18 @@ import tempfile
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 import viscoroll as vr
 
 from ..peers import lsoda_compiled, paper_method, scipy_peers
-from ..stage import ROOT
 from . import baseline
 from .problem import Method, Outcome, Problem
 
-ATLAS = ROOT / "data/tables/atlas.nc"
+#: nodes along alpha, kappa V and s, and the ends of the first two
+ATLAS: Any = ((48, 128, 128), (1.0, 100.0), (1e-3, 1e3))
 #: right-hand sides after which a peer gives up: 15 s of the paper's method, 1 min of scipy's
 _MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000
 
@@ -50,11 +51,7 @@ def _baseline(problem: Problem, rtol: float, which: int) -> Call:
 
 @cache
 def _atlas() -> baseline.Atlas:
-    return baseline.load_atlas(ATLAS)
-
-
-def _atlas_missing() -> str | None:
-    return None if ATLAS.exists() else f"{ATLAS.relative_to(ROOT)} is not there: make tables"
+    return baseline.atlas_of(*ATLAS)
 
 
 def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
@@ -106,7 +103,7 @@ METHODS = (
         note="printed equations by Brent-Dekker in numba, pipeline/bench/baseline.py",
     ),
     Method(
-        "atlas", "3-D atlas spline + RODAS5P", partial(_baseline, which=baseline.ATLAS), _atlas_missing,
+        "atlas", "3-D atlas spline + RODAS5P", partial(_baseline, which=baseline.ATLAS),
         note="ends at kappa V = 1e-3: below, its law is held, 1e-3 in M; pipeline/bench/baseline.py",
     ),
     Method(

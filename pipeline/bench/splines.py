@@ -5,15 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.tables.interpolate import spline_coefficients
-
 from .jit import compiled
 
 
 def spline(values: NDArray, axes: list[NDArray]) -> tuple[tuple[NDArray, ...], NDArray]:
     """Knots and coefficients of the tensor spline through ``values`` on uniform ``axes``."""
-    knots, coefficients = spline_coefficients(values, axes)
-    return tuple(knots), coefficients
+    from scipy.interpolate import make_interp_spline
+
+    knots = []
+    for n, axis in enumerate(axes):
+        one = make_interp_spline(axis, values, k=3, axis=n)
+        knots.append(one.t)
+        values = np.moveaxis(one.c, 0, n)
+    return tuple(knots), np.ascontiguousarray(values)
 
 
 @compiled

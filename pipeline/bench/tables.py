@@ -11,7 +11,7 @@ import viscoroll as vr
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
 
 from ..timing import alternating
-from .baseline import Atlas, atlas_law, atlas_splines
+from .baseline import atlas_law, atlas_of
 from .jit import compiled
 from .law import explicit_batch
 from .splines import at_1, basis, scratch, spline
@@ -75,14 +75,6 @@ def ratio_splines(nodes: int) -> tuple[NDArray, NDArray]:
     _ratio_values(np.exp(axis), values)
     fits = [spline(row, [axis]) for row in values]
     return fits[0][0][0], np.stack([coefficients for _, coefficients in fits])
-
-
-def atlas_of(nodes: tuple[int, int, int], alpha: list[float], kappa_V: list[float]) -> Atlas:
-    """Splines of an atlas with this many nodes."""
-    from viscoroll.tables.build import solve_atlas
-
-    axes = vr.tables.AtlasGrid(alpha=tuple(alpha), kappa_V=tuple(kappa_V), nodes=tuple(nodes)).axes()
-    return atlas_splines(axes, solve_atlas(axes))
 
 
 def tables(sizes: dict[str, Any]) -> dict[str, Any]:

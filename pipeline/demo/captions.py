@@ -36,7 +36,4 @@ SECTIONS: dict[str, dict[str, str]] = {
         "law-of-pairs": "A rubber on its like, on a rigid and an elastic base, and on another rubber.",
         "broad-stresses": "Pressure and shear of a rubber with ten relaxation times.",
     },
-    "How exact the tables are": {
-        "atlas-errors": "Error of interpolation in the universal table, off its nodes.",
-    },
 }  # fmt: skip

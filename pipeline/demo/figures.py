@@ -1,4 +1,4 @@
-"""Stage 5: every figure -> out/figures/*.png; the error maps from the atlas, the distribution from the ensemble.
+"""Stage 5: every figure -> out/figures/*.png; the distribution from the ensemble.
 
 python -m pipeline.demo.figures [--config FILE] [-o FOLDER]
 """
@@ -9,21 +9,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import xarray as xr
 from tqdm import tqdm
 
-import viscoroll as vr
 from viscoroll.errors import FileProblem
 from viscoroll.figures import FIGURES, save
 
 from .. import stage
-
-
-class Figures(msgspec.Struct, forbid_unknown_fields=True):
-    """[figures]: the atlas, seen from the root of the project."""
-
-    atlas: str
 
 
 def load_ensemble(path: Path) -> xr.Dataset:
@@ -40,12 +32,10 @@ def load_ensemble(path: Path) -> xr.Dataset:
         raise FileProblem(path, f"cannot be read ({error}); run pipeline.demo.ensemble first") from error
 
 
-def work(settings: Figures, out: Path) -> stage.Outcome:
+def work(config: Path, out: Path) -> stage.Outcome:
+    del config  # nothing of it
     ensemble = load_ensemble(out / "ensemble.nc")
-    shown: dict[str, tuple[Any, ...]] = {
-        "atlas-errors": (vr.tables.load(stage.ROOT / settings.atlas),),
-        "ensemble": (ensemble, ensemble),
-    }
+    shown: dict[str, tuple[Any, ...]] = {"ensemble": (ensemble, ensemble)}
     folder, files = stage.make_folder(out / "figures"), []
     for name, draw in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):
         files.append(folder / f"{name}.png")
@@ -54,4 +44,4 @@ def work(settings: Figures, out: Path) -> stage.Outcome:
 
 
 if __name__ == "__main__":
-    sys.exit(stage.run("figures", Figures, work, __doc__))
+    sys.exit(stage.run("figures", None, work, __doc__))

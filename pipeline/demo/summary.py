@@ -20,14 +20,14 @@ import msgspec
 import viscoroll as vr
 from viscoroll.errors import FileProblem
 from viscoroll.files import write_text
+from viscoroll.materials.law_table import FUNCTIONS
 from viscoroll.presets import PRESETS
-from viscoroll.tables import schema
 
 from .. import stage
 from .captions import SECTIONS
 
 STAGES = {
-    "tabulate": "Building the tables",
+    "tabulate": "The tables of the law",
     "validate": "Against direct solves of the printed equations",
     "motions": "The paper's motions IC1-IC3",
     "ensemble": "Random starts",
@@ -66,12 +66,10 @@ def records(out: Path) -> dict[str, dict[str, Any]]:
 
 
 def table_facts(path: Path) -> dict[str, Any]:
-    """Size in MB, grid, and the stated interpolation errors of a table file."""
+    """Size in kB, title, and the stated errors of the file of a law."""
     table = vr.tables.load(path)
-    fields = schema.FIELDS[table.attrs[schema.KIND]]
-    errors = {name: float(table[name].attrs["interpolation_error"]) for name in fields}
-    megabytes = path.stat().st_size / 1e6
-    return {"MB": megabytes, "title": table.attrs["title"], "grid": table.attrs["grid"], "errors": errors}
+    errors = {name: float(table[name].attrs["largest_relative_error"]) for name in FUNCTIONS}
+    return {"kB": path.stat().st_size / 1e3, "title": table.attrs["title"], "errors": errors}
 
 
 def rows(pairs: dict[str, Any]) -> str:
@@ -132,9 +130,8 @@ def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
         introduced(found), *pictures(out, found), "<h2>Tables</h2>",
     ]  # fmt: skip
     for path, facts in tables.items():
-        parts.append(f"<h3>{link(path, out)} ({facts['MB']:.1f} MB)</h3>")
-        parts.append(f"<p>{escape(facts['title'])}.  {escape(facts['grid'])}.</p>")
-        parts.append("<p>Largest error of interpolation between the nodes, absolute:</p>" + rows(facts["errors"]))
+        parts.append(f"<h3>{link(path, out)} ({facts['kB']:.0f} kB)</h3><p>{escape(facts['title'])}.</p>")
+        parts.append("<p>Largest error of each function at any speed, relative:</p>" + rows(facts["errors"]))
     report = (out / "validation.txt").read_text(encoding="utf-8")
     parts += [
         "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
@@ -151,7 +148,7 @@ def show(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
     """Print the same in short: files, headline numbers, times."""
     for path, facts in tables.items():
         worst = ", ".join(f"{name} {error:.2g}" for name, error in facts["errors"].items())
-        print(f"{stage.shown(path)} ({facts['MB']:.1f} MB): errors between nodes: {worst}")
+        print(f"{stage.shown(path)} ({facts['kB']:.0f} kB): largest errors, relative: {worst}")
     for name, record in found.items():
         files = [stage.shown(out / file) for file in record["files"]]
         where = f"{len(files)} pictures in {stage.shown(out / 'figures')}" if name == "figures" else ", ".join(files)

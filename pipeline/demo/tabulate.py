@@ -1,8 +1,8 @@
-"""Stage 1: build the tables -> data/tables/atlas.nc, paper.nc, rubber.nc, rubber-on-steel.nc.
+"""Stage 1: the laws of the materials of [tables] -> data/tables/NAME.nc.
 
 python -m pipeline.demo.tabulate [--config FILE] [--tables FOLDER] [-o FOLDER]
 
-Exit code 1 where a measured interpolation error exceeds the one that the configuration allows.
+Exit code 1 where an error that is measured while a file is made exceeds the one that the configuration allows.
 """
 
 from __future__ import annotations
@@ -12,35 +12,65 @@ import time
 from pathlib import Path
 from typing import Any
 
-from viscoroll import tables
-from viscoroll.config import read_grids
+import msgspec
+
+import viscoroll as vr
+from viscoroll.errors import ConfigError
+from viscoroll.materials.file import SUFFIX, materials_of, read_materials
+from viscoroll.materials.law_table import FUNCTIONS
 
 from .. import stage
 
 
-def errors(table: Any) -> dict[str, tuple[float, float]]:
-    """Measured and allowed interpolation error of every field that names an allowed one."""
-    return {
-        str(name): (field.attrs["interpolation_error"], field.attrs["interpolation_error_allowed"])
-        for name, field in table.data_vars.items()
-        if "interpolation_error_allowed" in field.attrs
-    }
+class Tables(msgspec.Struct, forbid_unknown_fields=True):
+    """[tables]: the largest error allowed, and the materials by name."""
+
+    allowed: float
+    laws: dict[str, Law]
+
+
+class Law(msgspec.Struct, forbid_unknown_fields=True):
+    """[tables.laws.NAME]: a material, and that of the base where it is another.
+
+    Each is a file seen from that of the configuration: TOML, netCDF of a material, or the columns of a DMA, which are
+    fitted; or the keys of a section [material].  ``nu`` and ``name`` are for a fit.
+    """
+
+    material: str | dict[str, Any]
+    base: str | dict[str, Any] | None = None
+    nu: float = 0.49
+    name: str = ""
 
 
 def build_all(config: Path, folder: Path) -> stage.Outcome:
-    """Build, save and report every table of the configuration."""
-    outcome = stage.Outcome([])
-    for name, grid in read_grids(config).items():
-        start, path = time.perf_counter(), stage.make_folder(folder) / f"{name}.nc"
-        table = tables.build(grid, progress=True)
-        tables.save(table, path)
+    """Build, save and report every law of the configuration."""
+    outcome, settings = stage.Outcome([]), stage.read_section(config, "tables", Tables)
+    for name, given in settings.laws.items():
+        began, path = time.perf_counter(), stage.make_folder(folder) / f"{name}.nc"
+        base = None if given.base is None else body(config, given.base, given)
+        law = vr.tables.law(body(config, given.material, given), base)
+        vr.tables.save(law, path)
+        worst = max(float(law[function].attrs["largest_relative_error"]) for function in FUNCTIONS)
         outcome.files.append(path)
-        outcome.headline[f"{name}: build and save, s"] = time.perf_counter() - start
-        outcome.headline[f"{name}: size, MB"] = path.stat().st_size / 1e6
-        for field, (measured, allowed) in errors(table).items():
-            outcome.headline[f"{name}: interpolation error of {field} (allowed {allowed:g})"] = measured
-            outcome.failed |= measured > allowed
+        outcome.headline[f"{name}: build, measure and save, s"] = time.perf_counter() - began
+        outcome.headline[f"{name}: size, kB"] = path.stat().st_size / 1e3
+        outcome.headline[f"{name}: largest relative error (allowed {settings.allowed:g})"] = worst
+        outcome.failed |= worst > settings.allowed
+    # law.nc, all alphas of one relaxation time in one file, is to be built here
     return outcome
+
+
+def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
+    """A material of a file, of the keys of a section, or of a fit."""
+    if isinstance(given, dict):
+        return materials_of(config, {"material": given})["material"]
+    path = config.parent / given
+    if path.suffix in (".toml", SUFFIX):
+        return read_materials(path)["material"]
+    try:
+        return vr.fit_prony(*vr.read_dma(path)).material(law.nu, name=law.name or path.stem)
+    except vr.ViscorollError as error:
+        raise ConfigError(config, str(error)) from error
 
 
 if __name__ == "__main__":

@@ -32,7 +32,6 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     },
     "document": {"symbols": symbols.symbols},
     "measure.large": {"large": tables.large},
-    "measure.loading": {"loading": tables.loading, "loading_steps": tables.loading_steps},
     "measure.ensembles": {
         "ensembles": ensembles.rates, "ensembles_cluster": ensembles.cluster, "ensembles_plan": ensembles.plan,
     },

@@ -153,37 +153,6 @@ def paper(results: Results) -> str:
     return listed(columns, rows)
 
 
-def loading(results: Results) -> str:
-    """Errors of the ways to interpolate in the atlas."""
-    ways = {"spline": "tensor cubic spline (not-a-knot)", "six_points": "polynomial through six nodes along each axis"}
-    columns = {"interpolation": "{way}", "β": "{beta!n}", "Q/μ": "{Q!n}", "κM": "{M!n}"}
-    rows = ({"way": text} | results["loading"]["errors"][way] for way, text in ways.items())
-    below = "\nLargest of {points:,} random states, by `pipeline/measure/loading.py`.\n"
-    return listed(columns, rows) + cell(below, results["loading"])
-
-
-def loading_steps(results: Results) -> str:
-    """The way from a state to Q and M through the atlas, with numbers."""
-    formulas = {
-        "kappa_V": "kappa abs(V)",
-        "kappa_delta_star_over_mu": "look up at (alpha, kappa_V)",
-        "delta_star": "(mu/kappa) kappa_delta_star_over_mu",
-        "s": "abs(delta)/delta_star; from 1 on: full slip, beta = 0 and Q_over_mu = 1",
-        "u": "1 - sqrt(1 - s), the coordinate to interpolate in",
-        "beta": "look up at (alpha, kappa_V, u)",
-        "Q_over_mu": "look up at (alpha, kappa_V, u)",
-        "Q": "mu Q_over_mu with the sign of V delta, that of omega - V",
-        "kappa_M": "look up at (alpha, kappa_V)",
-        "M": "kappa_M/kappa with the sign of V",
-    }
-    m = results["loading"]
-    given = ", ".join(
-        f"{name} = {value:g}" for name, value in zip(("alpha", "kappa", "mu", "V", "delta"), m["state"], strict=True)
-    )
-    rows = ((f"`{name}`", formula, f"{m['steps'][name]:.8g}") for name, formula in formulas.items())
-    return f"For {given}:\n\n{table(('name', 'how', 'value'), rows)}"
-
-
 def torture(results: Results) -> str:
     """One table of all its parts."""
     columns = {

@@ -1,4 +1,4 @@
-"""Coverage-guided fuzzing of the loaders: TOML scenes and grids (config.py), and table files (tables/content.py).
+"""Coverage-guided fuzzing of the loaders: TOML scenes and materials (config.py), and table files (tables/store.py).
 
     python -m pipeline.torture.fuzz_loaders toml|table [--seconds N] [--corpus FOLDER]
 
@@ -19,8 +19,7 @@ SCENES = (
     b'preset = "paper-section-5"\n',
     b"[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\ngamma = 1.1e4\nj = 0.5\n",
     b"[cylinder]\nR = 0.1\nm = 35.5\nE = 2e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 1\nmu = 0.2\nplane = 'stress'\n",
-    b"[tables.atlas]\nalpha = [1.0, 9.0]\nnodes = [8, 8, 8]\nblock = [2, 2, 2]\n",
-    b'[tables.paper]\nkappa = 2.91\nV = { low = 1e-3, high = 2.0, count = 5, spacing = "log" }\ndelta = [-0.1, 0.0]\n',
+    b"[material]\nE = 3e6\nnu = 0.5\nprony = { E = [0.3, 0.6], tau = [2e-2, 1e-3] }\n[base]\nE = 2e11\nnu = 0.3\n",
 )
 #: bytes of the largest input: a small table
 LONGEST = 1 << 17
@@ -28,9 +27,9 @@ LONGEST = 1 << 17
 
 def read_toml(path: Path) -> None:
     from viscoroll import ViscorollError
-    from viscoroll.config import read_grids, read_scene
+    from viscoroll.config import read_bodies, read_scene
 
-    for read in (read_scene, read_grids):
+    for read in (read_scene, read_bodies):
         try:
             read(path)
         except ViscorollError as error:
@@ -38,13 +37,12 @@ def read_toml(path: Path) -> None:
 
 
 def read_table(path: Path) -> None:
-    """What ``tables.load`` does behind the seal and the rehearsal, in which a crash of HDF5 harms nobody."""
-    from viscoroll import ViscorollError
-    from viscoroll.tables.content import read
+    from viscoroll import ViscorollError, load_law
+    from viscoroll.tables import load
 
-    for verify in (True, False):
+    for read in (load, load_law):
         try:
-            read(path.read_bytes(), path, verify)
+            read(path)
         except ViscorollError as error:
             own(error)
 
@@ -60,10 +58,11 @@ def seeds(what: str, folder: Path) -> None:
         for n, content in enumerate(SCENES):
             (folder / f"{n}.toml").write_bytes(content)
     else:
-        from viscoroll.tables import AtlasGrid, LiteralGrid, build, save
+        from viscoroll import RUBBER_CYLINDER
+        from viscoroll.tables import build, law, save
 
-        save(build(LiteralGrid(2.91, 0.2, [0.1, 0.2], [0.0, 0.01], [1.0, 11.0])), folder / "literal")
-        save(build(AtlasGrid(nodes=(4, 4, 4))), folder / "atlas")
+        save(build(RUBBER_CYLINDER, [0.1, 0.2], [0.0, 0.01]), folder / "grid")
+        save(law(11.0), folder / "law")
 
 
 def fuzz(what: str, seconds: int, corpus: Path) -> None:
@@ -72,7 +71,7 @@ def fuzz(what: str, seconds: int, corpus: Path) -> None:
 
     with atheris.instrument_imports(include=["viscoroll", "tomllib", "h5netcdf"]):
         import viscoroll.config
-        import viscoroll.tables.content  # noqa: F401
+        import viscoroll.tables.store  # noqa: F401
     seeds(what, corpus)
     read: Callable[[Path], None] = {"toml": read_toml, "table": read_table}[what]
     path = Path(tempfile.mkdtemp()) / "input"

@@ -38,6 +38,7 @@ _HOME = {
     "contact": "rolling_contact",
     "stress": "contact_stress",
     "law": "bound_law",
+    "load_law": "materials.law_file",
     "Law": "bound_law",
     "steady": "equilibria",
     "humps": "equilibria",

@@ -24,6 +24,7 @@ from .errors import ParameterError as ParameterError
 from .errors import TableError as TableError
 from .errors import ViscorollError as ViscorollError
 from .materials.bodies import Bodies as Bodies
+from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material
 from .materials.prony import Prony as Prony
 from .materials.shift import WLF as WLF

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import broadcast_shape, checked, number
 from .errors import ParameterError, one_of
+from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .results import Row, Shown, short
@@ -45,7 +46,8 @@ class Cylinder(InSI, Conversions):
     j : J/(m R^2); 1/2 for a solid cylinder.
     g : gravitational acceleration, m/s^2.
     plane : "strain", or "stress" (then E' = pi E).
-    material : a :class:`Material`, in place of E, nu, T_epsilon and T_sigma.
+    material : a :class:`Material`, in place of E, nu, T_epsilon and T_sigma; or a law of :func:`viscoroll.load_law` of
+        such a material, which brings its ``base`` with it.
     base : the :class:`Material` of the half-space; default: that of the cylinder.
     load : P, N/m; default: the weight m g (Sect. 3.5).  A roller may be pressed with more or less.
 
@@ -71,7 +73,7 @@ class Cylinder(InSI, Conversions):
     j: Any
     g: Any
     plane: Plane
-    material: Material | None
+    material: Material | LawTable | None
     base: Material | None
     #: the load as it was given: :meth:`replace` with another m makes the weight anew
     pressed: Any
@@ -79,8 +81,9 @@ class Cylinder(InSI, Conversions):
     def __init__(
         self, R: ArrayLike, m: ArrayLike, E: ArrayLike | None = None, nu: ArrayLike | None = None,
         T_epsilon: ArrayLike | None = None, T_sigma: ArrayLike | None = None, mu: ArrayLike | None = None,
-        j: ArrayLike = 0.5, g: ArrayLike = 9.81, plane: Plane = "strain", *, material: Material | None = None,
-        base: Material | None = None, load: ArrayLike | None = None, pressed: ArrayLike | None = None,
+        j: ArrayLike = 0.5, g: ArrayLike = 9.81, plane: Plane = "strain", *,
+        material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
+        pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
         given: dict[str, Any] = {
             "R": R, "m": m, "E": E, "nu": nu, "T_epsilon": T_epsilon, "T_sigma": T_sigma, "mu": mu, "j": j, "g": g,
@@ -119,10 +122,23 @@ class Cylinder(InSI, Conversions):
     @cached_property
     def pair(self) -> Pair:
         """Both materials."""
+        if isinstance(self.material, LawTable):
+            return self._pair_of_law(self.material)
         if self.material is not None:
             return Pair(self.material, self.base, self.plane)
         solid: dict[str, Any] = {name: getattr(self, name) for name in _SOLID}
         return Pair(Material.sls(**solid), self.base, self.plane)
+
+    def _pair_of_law(self, law: LawTable) -> Pair:
+        """The bodies of a law; raises ParameterError where it has none in SI units, or they are not those given."""
+        pair = law.pair
+        if pair is None:
+            raise ParameterError("material", "a law without units", "the law of a Material, in SI units")
+        if self.base is not None:
+            raise ParameterError("base", "given", "left out: the law knows its bodies")
+        if self.plane != pair.plane and not pair.like:
+            raise ParameterError("plane", repr(self.plane), f"{pair.plane!r}, as of the law")
+        return Pair(pair.cylinder, pair.base, self.plane)
 
     @property
     def T_ref(self) -> float:
@@ -167,7 +183,7 @@ class Cylinder(InSI, Conversions):
         rows = [Row(name, short(value), _UNITS.get(name, "")) for name, value in given.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:
-                rows.append(Row(name, body.name or repr(body)))
+                rows.append(Row(name, getattr(body, "name", "") or repr(body)))
         return "Cylinder, SI units, per m of length", rows
 
     __repr__, _repr_html_ = Shown.__repr__, Shown._repr_html_
@@ -200,7 +216,8 @@ class Cylinder(InSI, Conversions):
         if self._papers:
             solid: dict[str, Any] = {name: getattr(self, name) for name in (*_SOLID, "R", "m", "mu", "j", "g", "plane")}
             return scene_from_si(**solid, load=self.pressed)
-        return scene_of_pair(self.R, self.m, self.pair, self.mu, self.j, self.g, self.pressed)
+        scene = scene_of_pair(self.R, self.m, self.pair, self.mu, self.j, self.g, self.pressed)
+        return scene.replace(material=self.material) if isinstance(self.material, LawTable) else scene
 
     def validity(self, V: ArrayLike, density: float | None = None, *, omega: ArrayLike | None = None) -> Validity:
         """Which assumptions of the model the contact at speed V strains.

@@ -16,7 +16,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .errors import OutputError
+from .errors import OutputError, TableError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,6 +88,23 @@ def seal_holds(content: bytes) -> bool | None:
     """Whether the bytes of a file are those that were sealed; None where there is no seal."""
     end = content[-_SEAL_SIZE:]
     return end == _seal_of(memoryview(content)[:-_SEAL_SIZE]) if end.startswith(_SEAL) else None
+
+
+def sealed_content(path: str | PathLike[str], most: int, what: str, remedy: str) -> bytes:
+    """The bytes of a file, at ``most`` so many, compared with the seal at their end where there is one.
+
+    ``what`` the file should be, and the ``remedy`` where it is not, in words.  Raises TableError.
+    """
+    place = Path(path)
+    try:
+        if place.is_file() and place.stat().st_size > most:
+            raise TableError(path, f"is no {what}: it is larger than {most} bytes")
+        content = place.read_bytes()
+    except OSError as error:
+        raise TableError(path, f"cannot be read ({error.strerror or error}): it must be a {what}") from error
+    if seal_holds(content) is False:
+        raise TableError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
+    return content
 
 
 def _seal_of(content: bytes | memoryview) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError, one_of
 from .materials.bodies import Bodies
 from .materials.bodies_array import BodiesArray
+from .materials.law_table import LawTable
 from .materials.prony import Prony
 from .materials.prony_array import MaterialArray
 from .materials.prony_forms import HIGHEST_ALPHA
@@ -65,7 +66,7 @@ class Scene:
     j : J/(m R^2), > 0; 1/2 for a solid cylinder.  Not used by contact or stress.
     material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref, in which a series
-        counts its times.
+        counts its times.  A law of :func:`viscoroll.load_law` stands for its material, or its alpha.
 
     Raises
     ------
@@ -79,12 +80,21 @@ class Scene:
     mu: Any = None
     gamma: Any = None
     j: Any = 0.5
-    material: Prony | Bodies | MaterialArray | None = None
+    material: Prony | Bodies | MaterialArray | LawTable | None = None
+    #: the table that was given in place of its material
+    law: LawTable | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         if self.material is not None:
             if self.alpha is not None:
                 raise one_of("alpha", "material", both=True)
+            if isinstance(self.material, LawTable):
+                object.__setattr__(self, "law", self.material)
+                material = self.material.material
+                of_alpha = not isinstance(material, Prony | Bodies)
+                object.__setattr__(self, "alpha", material if of_alpha else None)
+                object.__setattr__(self, "material", None if of_alpha else material)
+        if self.material is not None:
             if not isinstance(self.material, Prony | Bodies | MaterialArray):
                 raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
             object.__setattr__(self, "alpha", self.material.alpha)
@@ -116,6 +126,8 @@ class Scene:
 
     def replace(self, **changes: Any) -> Scene:
         """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
+        if self.law is not None and not changes.keys() & {"alpha", "material"}:
+            changes["material"] = self.law
         if "material" in changes and "alpha" not in changes:
             changes["alpha"] = None
         elif "alpha" in changes and "material" not in changes:

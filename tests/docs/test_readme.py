@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 
 import mpmath
-import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
@@ -92,18 +91,6 @@ def test_forms_of_an_input_are_read(tmp_path):
         (tmp_path / "run.toml").write_text(text, encoding="utf-8")
         inputs = read_run(tmp_path / "run.toml").inputs
         assert "mu" in {*inputs.fixed, *inputs.uncertain}
-
-
-def test_table_snippets_run_on_a_table(tmp_path, monkeypatch):
-    grid = vr.tables.LiteralGrid(kappa=2.91, mu=0.2, V=[0.4, 0.6], delta=np.linspace(-0.02, 0.02, 5), alpha=[8.0, 11.0])
-    (tmp_path / "data/tables").mkdir(parents=True)
-    vr.tables.save(vr.tables.build(grid), tmp_path / "data/tables/paper.nc")
-    monkeypatch.chdir(tmp_path)
-    session: dict = {}
-    for code in blocks(LOADING, "python"):
-        exec(compile(code, "loading/README.md", "exec"), session)
-    assert 0.0 < float(session["beta"]) < 1.0
-    assert session["Q"].shape == (2, 5, 2)
 
 
 def test_relative_links_exist():

@@ -43,17 +43,17 @@ from viscoroll.runs import open_summaries, read_run, run_ensemble
 
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {
-    "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "atlas-errors", "ensemble",
+    "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "ensemble",
     "rolling-resistance", "rolling-equilibria", "law-of-modes", "law-of-pairs", "broad-stresses",
     "wheel-spin", "reversal", "slope", "geometry",
 }  # fmt: skip
 
 
 @pytest.fixture(scope="module")
-def drawn(small_atlas) -> dict[str, Figure]:
+def drawn() -> dict[str, Figure]:
     starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
     few = vr.ensemble(vr.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
-    given = {"atlas-errors": (small_atlas,), "ensemble": (few.summary(), few.to_xarray())}
+    given = {"ensemble": (few.summary(), few.to_xarray())}
     return {name: draw(*given.get(name, ())) for name, draw in FIGURES.items()}
 
 
@@ -270,17 +270,12 @@ def test_import_is_light_and_pyplot_is_left_alone():
 # --- pipeline: motions, ensemble, figures, summary ---
 
 _SMALL = """
-[tables.atlas]
-alpha = [1.0, 20.0]
-kappa_V = [0.1, 10.0]
-nodes = [8, 12, 12]
-allowed = [1e-2, 1e-2]
-[tables.paper]
-V = {{ low = 0.1, high = 2.0, count = 5, spacing = "log" }}
-delta = {{ low = -0.04, high = 0.04, count = 5, spacing = "linear" }}
-alpha = [1.0, 11.0]
+[tables]
+allowed = 1e-12
+[tables.laws.paper]
+material = {{ E = 2.3e5, nu = 0.49, T_epsilon = 10.7, T_sigma = 0.97 }}
 [validate]
-tables = ["{atlas}"]
+tables = ["{law}"]
 states = 500
 stress_states = 1
 table_points = 100
@@ -299,10 +294,8 @@ t = [0.0, 1e-3, 4e-3]
 rtol = 1e-4
 seed = 3
 kept = 40
-[figures]
-atlas = "{atlas}"
 [summary]
-tables = ["{atlas}"]
+tables = ["{law}"]
 """
 
 
@@ -345,7 +338,7 @@ def demo(tmp_path_factory) -> tuple[Path, Path]:
     """Configuration and output folder of a small run of every stage."""
     folder = tmp_path_factory.mktemp("demo")
     config, out = folder / "small.toml", folder / "out"
-    config.write_text(_SMALL.format(atlas=folder / "atlas.nc"), encoding="utf-8")
+    config.write_text(_SMALL.format(law=folder / "paper.nc"), encoding="utf-8")
     printed(_STAGES, folder, "--config", config, "-o", out)
     return config, out
 
@@ -395,7 +388,7 @@ def test_summary_page(demo):
     before = (out / "index.html").stat().st_mtime_ns
     shown = made("demo.summary", "--config", config, "-o", out, "--show")
     assert (out / "index.html").stat().st_mtime_ns == before
-    for word in ("atlas.nc", "motions.nc", "ensemble.nc", "index.html", "time per motion"):
+    for word in ("paper.nc", "motions.nc", "ensemble.nc", "index.html", "time per motion"):
         assert word in shown
 
 
@@ -405,7 +398,6 @@ def test_stage_refuses_in_one_line(demo, tmp_path):
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
         ("motions", '"paper-section-5"', '"paper"', "preset = 'paper'"),
-        ("figures", "[figures]", "[pictures]", "section [figures] is missing"),
         ("summary", "[summary]", "[summary", "is not TOML"),
     ):
         config.write_text(small.replace(old, new), encoding="utf-8")
@@ -419,5 +411,5 @@ def test_stage_says_what_has_to_run_first(demo, tmp_path):
 
 def test_production_configuration_is_read():
     content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
-    assert {"validate", "motions", "ensemble", "figures", "summary"} <= content.keys()
+    assert {"tables", "validate", "motions", "ensemble", "summary"} <= content.keys()
     assert content["ensemble"]["motions"] == 1_000_000

@@ -90,7 +90,5 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     # not ``ensemble`` alone: it might find this map on disk
     yield "flow map", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "motions by a flow map", lambda: ensemble(scene, **start, method="flow", rest=1e-3)
-    literal = tables.LiteralGrid(2.0, 0.2, V=[0.1, 0.2, 0.3], delta=[0.0, 0.1, 0.2], alpha=[2.0, 3.0])
-    yield "tables of one kappa and mu", lambda: tables.build(literal)
-    yield "universal table", lambda: tables.build(tables.AtlasGrid(nodes=(4, 4, 4)))
+    yield "law of a material as a file", lambda: tables.law(modes)
     yield "check of motions", lambda: roll_direct(scene, 1.5, 0.5, np.array([0.0, 3e-3]))

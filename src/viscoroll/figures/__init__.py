@@ -16,7 +16,6 @@ from .distribution import ensemble_distribution
 from .drive import reversal, wheel_spin
 from .geometry import geometry
 from .law import figure_2, figure_3
-from .maps import atlas_errors
 from .material import rolling_resistance
 from .portrait import phase_portrait
 from .run_distributions import run_distributions
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
-    "FIGURES", "atlas_errors", "broad_stresses", "ensemble_distribution", "figure_2", "figure_3", "figure_5",
+    "FIGURES", "broad_stresses", "ensemble_distribution", "figure_2", "figure_3", "figure_5",
     "figure_6", "figure_7", "geometry", "law_of_materials", "law_of_pairs", "phase_portrait", "reversal",
     "rolling_equilibria", "rolling_resistance", "run_distributions", "save", "slope_portrait", "sobol_bars",
     "wheel_spin",
@@ -43,7 +42,6 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "figure-6": figure_6,
     "figure-7": figure_7,
     "phase-portrait": phase_portrait,
-    "atlas-errors": atlas_errors,
     "ensemble": ensemble_distribution,
     "rolling-resistance": rolling_resistance,
     "rolling-equilibria": rolling_equilibria,

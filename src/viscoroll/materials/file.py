@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -12,6 +13,7 @@ import msgspec
 
 from ..errors import ConfigError, ParameterError, TableError
 from ..sections import as_struct, fault, read
+from .law_store import is_law, read_law
 from .material import Material
 from .prony import Prony
 from .shift import WLF, Arrhenius
@@ -113,19 +115,20 @@ def materials_of(path: Any, content: Mapping[str, Any], temperature: float | Non
 
 def as_toml(material: Material, section: str = "material") -> str:
     """The section of a TOML file that reads back as this material, to the bit."""
-    one = material.prony
-    series = f"E = {one.E.tolist()}, tau = {one.tau.tolist()}"
-    if one.by_creep:
-        series = f"J = {one.J.tolist()}, T = {one.T.tolist()}, alpha = {one.alpha!r}"
     # TOML knows no surrogates, and DEL only escaped
     name = json.dumps(material.name, ensure_ascii=False).replace("\x7f", r"\u007f")
-    values: dict[str, Any] = {
-        "name": name, "E": material.E, "nu": material.nu,
-        "creep" if one.by_creep else "prony": f"{{ {series} }}", "T_ref": material.T_ref,
-    }  # fmt: skip
-    if material.density is not None:
-        values["density"] = material.density
-    return "\n".join([f"[{section}]", *(f"{name} = {value}" for name, value in values.items()), ""])
+    values: dict[str, Any] = {"name": name, "E": material.E, "nu": material.nu}
+    more = {"T_ref": material.T_ref} | ({} if material.density is None else {"density": material.density})
+    lines = [f"{key} = {value}" for key, value in values.items()]
+    lines += [series_as_toml(material.prony), *(f"{key} = {value}" for key, value in more.items())]
+    return "\n".join([f"[{section}]", *lines, ""])
+
+
+def series_as_toml(series: Prony) -> str:
+    """The key ``prony`` or ``creep`` that reads back as this series, to the bit."""
+    if series.by_creep:
+        return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
+    return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
 
 
 def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
@@ -145,11 +148,22 @@ def _material(path: Any, name: str, content: Any, temperature: float | None) -> 
 
 
 def _stored(path: Any, name: str, given: FileSection) -> Material:
-    """The material of a netCDF file beside ``path``."""
+    """The material of a netCDF file beside ``path``, its own or that of its law."""
+    stored = Path(path).parent / given.file
     try:
-        return Material.from_netcdf(Path(path).parent / given.file)
+        return _of_law(stored) if is_law(stored) else Material.from_netcdf(stored)
     except TableError as error:
         raise fault(path, name, "file", str(error)) from error
+
+
+def _of_law(path: Path) -> Material:
+    """The one material that the file of a law names; raises TableError of a pair, or of a law without units."""
+    found = tomllib.loads(read_law(path).attrs["material"])
+    if not found.keys() & set(SECTIONS):
+        raise TableError(path, "is the law of a material without units: it must be of one with [material]")
+    if "base" in found:
+        raise TableError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
+    return materials_of(path, found)["material"]
 
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:

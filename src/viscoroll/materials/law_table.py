@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import ParameterError
 from .bodies import Bodies
+from .pair import Pair
 from .prony import Prony
 from .prony_forms import Modes
 from .tables import series_of
@@ -29,7 +30,7 @@ _KEPT = 32
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LawTable:
     """The law of one material or pair, whatever the load, speed, creep, radius and friction; arrays are read only.
 
@@ -45,6 +46,7 @@ class LawTable:
     relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the series, slowest first.
     half_space_weight : what of every creep strength is the half-space's.
     T_ref : what times are counted in, s.
+    pair : the bodies in SI units, where it was made of such.
     """
 
     material: float | Prony | Bodies
@@ -60,6 +62,10 @@ class LawTable:
     retardation_time: Floats
     half_space_weight: Floats
     T_ref: float = 1.0
+    pair: Pair | None = None
+
+    def __repr__(self) -> str:
+        return f"LawTable({self.pair or self.material!r})"
 
     @cached_property
     def coefficients(self) -> Floats:
@@ -141,6 +147,17 @@ def _numbers(given: float | Prony | Bodies) -> tuple[float, float, Modes]:
         return given, (given - 1.0) / given, modes
     total = given.total if isinstance(given, Bodies) else given
     return total.alpha, total.T_mean, total.modes
+
+
+def by_modes(given: float | Prony | Bodies, z: Floats) -> Floats:
+    """(5, n): g/z, h/z, the parts of m in half-space and cylinder, and N at every z > 0, by no table."""
+    from ..kernels.rows.build import by_modes
+
+    modes, found = _numbers(given)[2], np.zeros((5, z.size))
+    if modes.a.size:
+        weights = given.half_space_weights if isinstance(given, Bodies) else np.empty(0)
+        by_modes(_parts(modes, weights), z, found)
+    return found
 
 
 def _parts(modes: Modes, weights: Floats) -> Any:

@@ -1,38 +1,21 @@
-"""Tables of the contact law for other tools: build, save, load, interpolate.
-
-:class:`AtlasGrid` asks for the universal table over (alpha, kappa V, s), one for every mu and
-kappa; :class:`LiteralGrid` for Q, beta, ... over (V, delta, alpha) at one kappa and mu;
-:class:`MaterialGrid` for them over (V, delta) of one material of several relaxation times, or of a pair.
+"""Tables of the contact law: files of one material or pair, exact, and grids for look-up blocks of other programs.
 
     import viscoroll as vr
-    atlas = vr.tables.build(vr.tables.AtlasGrid())
-    vr.tables.save(atlas, "atlas.nc")
-    vr.tables.interpolate(vr.tables.load("atlas.nc"), alpha=11.0, kappa_V=0.7, s=0.3).Q_over_mu
+    law = vr.tables.law(vr.RUBBER_CYLINDER.pair)
+    vr.tables.save(law, "rubber.nc")  # for vr.load_law, and any program that reads netCDF
+    vr.tables.export(law, "rubber.h")  # table and evaluator in one header of C
 
-Read in this order: :mod:`grid` (axes and coordinate maps), :mod:`of_material`, :mod:`solving`, :mod:`literal`,
-:mod:`build`, :mod:`schema` (what a file holds), :mod:`survey`, :mod:`content` and :mod:`rehearsal` (what its
-bytes hold, checked), :mod:`store` (atomic save, checked load), :mod:`interpolate`, :mod:`accuracy` (the exact law
-at a table's coordinates), :mod:`export` (formats of other programs).
+    grid = vr.tables.build(vr.RUBBER_CYLINDER, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0, 0.01])
+    vr.tables.export(grid, "rubber.txt")  # Modelica
+
+Read in this order: :mod:`law`, :mod:`build`, :mod:`schema` (what a grid's file holds), :mod:`interpolate`,
+:mod:`store` (atomic save, checked load), :mod:`export` (formats of other programs).
 """
 
-from .build import build
-from .export import check_format, export
-from .grid import AtlasGrid, LiteralGrid, spread
+from .build import build, spread
+from .export import export
 from .interpolate import Interpolant, interpolate
-from .of_material import MaterialGrid
+from .law import law
 from .store import info, load, save
 
-__all__ = [
-    "AtlasGrid",
-    "Interpolant",
-    "LiteralGrid",
-    "MaterialGrid",
-    "build",
-    "check_format",
-    "export",
-    "info",
-    "interpolate",
-    "load",
-    "save",
-    "spread",
-]
+__all__ = ["Interpolant", "build", "export", "info", "interpolate", "law", "load", "save", "spread"]

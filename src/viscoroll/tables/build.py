@@ -1,185 +1,202 @@
-"""Root-solve the contact law on a grid and measure what interpolation makes of it."""
+"""The contact law on a grid: what look-up blocks of other programs read."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from ..checks import checked, number
+from ..contact_fields import OF_BODIES
+from ..cylinder import Cylinder
 from ..errors import ParameterError
+from ..materials.law_file import described, law_of
+from ..materials.law_table import LawTable
+from ..rolling_contact import contact
+from ..scene import HIGHEST_ALPHA, Scene
 from . import schema
-from .grid import ATLAS_MAPS, AtlasGrid, LiteralGrid, u_of_s
-from .interpolate import spline_coefficients, spline_on_grid
-from .literal import literal, of_material
-from .of_material import MaterialGrid
-from .solving import SEED, off_nodes, run, tolerances
+from .interpolate import Interpolant
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Distances from u = 1, in steps, of the extra sample in the last cell, where the law is least smooth.
-_NEAR_FULL_SLIP = (0.3, 0.1, 0.03, 0.01)
-_SAMPLE = (
-    "tensor product, over the axes, of the middle and a random point of every cell, and points close to s = 1; "
-    f"generator seed {SEED}; a single point may exceed its block's entry by up to 1.5 times"
-)
+_MAX_NODES = 50_000_000
+#: Random points that a stated error is the largest over, and their seed: it can be had again.
+SAMPLE, SEED = 100_000, 20260102
+_OF_A_CYLINDER = ("R", "m", "mu", "load")
+
+
+def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> NDArray[np.float64]:
+    """``count`` values from ``low`` to ``high``, both exact, in equal steps or equal ratios.
+
+    Raises
+    ------
+    ParameterError
+        An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
+    """
+    if spacing not in ("linear", "log"):
+        raise ParameterError("spacing", repr(spacing), "'linear' or 'log'")
+    low = number("low", low, low=0.0 if spacing == "log" else -np.inf, strict=True)
+    high = number("high", high)
+    if not high > low:
+        raise ParameterError("high", high, f"> low = {low:g}")
+    if high - low == np.inf:
+        raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
+    if not isinstance(count, int) or not 2 <= count <= _MAX_NODES:
+        raise ParameterError("count", count, f"an integer in [2, {_MAX_NODES}]")
+    return (np.geomspace if spacing == "log" else np.linspace)(low, high, count)
 
 
 def build(
-    grid: AtlasGrid | LiteralGrid | MaterialGrid,
+    what: Scene | Cylinder | LawTable | xr.Dataset,
+    V: ArrayLike,
+    delta: ArrayLike,
+    alpha: ArrayLike | None = None,
     *,
-    threads: int | None = None,
-    progress: bool = False,
     command: str | None = None,
 ) -> xr.Dataset:
-    """Table of the contact law on ``grid``, with its measured interpolation errors.
+    """Table of the contact over (V, delta) or (V, delta, alpha), with what interpolation makes of it.
 
     Parameters
     ----------
-    grid : :class:`AtlasGrid` -> beta and Q/mu over (alpha, kappa_V, s), lam, epsilon,
-        kappa M and kappa delta_star/mu over (alpha, kappa_V), error maps over blocks of cells;
-        :class:`LiteralGrid` -> beta and Q over (V, delta, alpha), lam, epsilon, M and
-        delta_star over (V, alpha); :class:`MaterialGrid` -> the same without alpha, and the parts of M in
-        either body.
-    threads : default ``$VISCOROLL_THREADS``, else all cores; the result does not depend on it.
-    progress : draw a progress bar after the first second.
+    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; a law, of :func:`viscoroll.load_law` or
+        :func:`viscoroll.tables.law`: then kappa = mu = 1: V is kappa V, delta kappa delta/mu, Q Q/mu and M
+        kappa M.  Its numbers are single.
+    V : speeds of the axis, > 0, strictly increasing; for V < 0 see the signs of Eqs. (17), (18).
+    delta : creep ratios, any sign, strictly increasing.
+    alpha : strictly increasing, in place of that of a scene without a material.
     command : recorded in ``history``; default: the command line of this process.
 
     Returns
     -------
     xarray.Dataset
-        Everything dimensionless; units, symbols, equations and measured errors in the attributes.
+        beta and Q over all axes; lam, epsilon, M, its parts in both bodies and delta_star over V (and alpha); units,
+        symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.  ``spline_error`` of a field is
+        the largest absolute error of :func:`interpolate`, ``linear_error`` that of linear interpolation in the axes as
+        they stand, over 10^5 random points in random cells.
 
     Raises
     ------
     ParameterError
-        If ``grid`` is no grid.
-    ConvergenceError
-        If a solve hits its iteration cap.
+        Where ``what`` is none of these or has arrays, an axis is out of range or does not increase.
 
     Notes
     -----
-    Nodes are root solves, good to 1e-12 of the largest value of each field; a random point between
-    them is off by no more than 1.5 times what the error maps state (``tests/tables/test_tables.py``).
+    For programs that look up tables.  The file of a law is smaller and exact (:func:`viscoroll.tables.law`).
     """
-    if isinstance(grid, AtlasGrid):
-        return _atlas(grid, threads, progress, command)
-    if isinstance(grid, LiteralGrid):
-        return literal(grid, threads, progress, command)
-    if isinstance(grid, MaterialGrid):
-        return of_material(grid, command)
-    raise ParameterError("grid", f"a {type(grid).__name__}", "an AtlasGrid, a LiteralGrid or a MaterialGrid")
-
-
-def solve_atlas(
-    axes: dict[str, NDArray], threads: int | None = None, label: str | None = None
-) -> dict[str, NDArray[np.float64]]:
-    """Fields of the atlas on the tensor product of ``axes`` (alpha, kappa_V, s), by root solves.
-
-    Raises
-    ------
-    ConvergenceError
-        If a solve hits its iteration cap.
-    """
-    from ..kernels.law.table_loops import ATLAS_PLANE, ATLAS_VOLUME, atlas_loop
-
-    alpha, kappa_V, s = axes.values()
-    pairs = alpha.size * kappa_V.size
-    plane = np.empty((len(ATLAS_PLANE), pairs))
-    volume = np.empty((len(ATLAS_VOLUME), pairs, s.size))
-    run(lambda start, stop: atlas_loop(alpha, kappa_V, s, plane, volume, start, stop), pairs, threads, label)
-    fields: dict[str, NDArray] = {
-        name: row.reshape(alpha.size, kappa_V.size) for name, row in zip(ATLAS_PLANE, plane, strict=True)
-    }
-    for name, row in zip(ATLAS_VOLUME, volume, strict=True):
-        fields[name] = row.reshape(alpha.size, kappa_V.size, s.size)
-    return fields
-
-
-def atlas_errors(
-    axes: dict[str, NDArray], fields: dict[str, NDArray], threads: int | None = None, label: str | None = None
-) -> tuple[dict[str, NDArray], dict[str, NDArray]]:
-    """|spline - root solve| off the nodes: the sample's spline coordinates, and the errors by field.
-
-    The sample is the tensor product, over the axes, of the middle and a random point of each
-    cell, plus points close to s = 1.
-    """
-    random = np.random.default_rng(SEED)
-    mapped = {name: ATLAS_MAPS[name][0](nodes) for name, nodes in axes.items()}
-    sample = {name: off_nodes(nodes, random) for name, nodes in mapped.items()}
-    close = 1.0 - np.array(_NEAR_FULL_SLIP) * (1.0 - mapped["s"][-2])
-    sample["s"] = np.sort(np.concatenate([sample["s"], close]))
-    points = {name: ATLAS_MAPS[name][1](values) for name, values in sample.items()}
-    # what a user passes is s, not u: the spline must be asked at the u that s gives back
-    sample["s"] = u_of_s(points["s"])
-    exact = solve_atlas(points, threads, label)
-    errors = {}
-    for name, values in fields.items():
-        dims = schema.VARIABLES["atlas"][name]
-        knots, coefficients = spline_coefficients(values, [mapped[dim] for dim in dims])
-        errors[name] = np.abs(spline_on_grid(knots, coefficients, [sample[dim] for dim in dims]) - exact[name])
-    return sample, errors
-
-
-def _block_edges(nodes: NDArray, cells: int) -> NDArray:
-    """Every ``cells``-th node and the last one."""
-    return np.append(nodes[:-1:cells], nodes[-1])
-
-
-def _block_maxima(errors: NDArray, sample: list[NDArray], edges: list[NDArray]) -> NDArray:
-    """Largest error in each block of cells."""
-    for n, (points, edge) in enumerate(zip(sample, edges, strict=True)):
-        errors = np.maximum.reduceat(errors, np.searchsorted(points, edge[:-1]), axis=n)
-    return errors
-
-
-def _atlas(grid: AtlasGrid, threads: int | None, progress: bool, command: str | None) -> xr.Dataset:
     import xarray as xr
 
-    axes = grid.axes()
-    fields = solve_atlas(axes, threads, "atlas: nodes" if progress else None)
-    sample, errors = atlas_errors(axes, fields, threads, "atlas: error map" if progress else None)
-    coordinates = {name: schema.variable(name, (name,), nodes, **_spacing(name)) for name, nodes in axes.items()}
-    variables = {}
-    allowed = dict(zip(("Q_over_mu", "beta"), grid.allowed, strict=True))
-    for name, values in fields.items():
-        extra = {"interpolation_error": float(errors[name].max())}
-        if name in allowed:
-            extra["interpolation_error_allowed"] = float(allowed[name])
-        variables[name] = schema.variable(name, schema.VARIABLES["atlas"][name], values, **extra)
-    _add_error_maps(grid, sample, errors, coordinates, variables)
-    measured = {name: error.max() for name, error in errors.items()}
-    attributes = schema.global_attributes(
-        "atlas",
-        "Contact of a viscoelastic cylinder rolling with partial slip: universal table in similarity variables",
-        "alpha and kappa_V in equal ratios; s = 1 - (1 - u)^2 with u uniform on [0, 1]; nodes "
-        + " x ".join(f"{nodes.size} ({name})" for name, nodes in axes.items()),
-        tolerances("of the tensor cubic spline", measured, allowed),
-        command,
-    )
-    return xr.Dataset(variables, coordinates, attributes)
+    what = _single(what)
+    axes = {"V": increasing("V", V, low=0.0, strict=True), "delta": increasing("delta", delta)}
+    if alpha is not None:
+        if isinstance(what, Cylinder) or what.material is not None:
+            raise ParameterError("alpha", "given", "left out: the material has its own")
+        axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
+    if math.prod(nodes.size for nodes in axes.values()) > _MAX_NODES:
+        raise ParameterError(", ".join(axes), "their product", f"at most {_MAX_NODES} nodes in all")
+    grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
+    fields = _fields(what, grid, schema.VOLUME) | {
+        name: np.take(values, 0, axis=1) for name, values in _fields(what, plane, schema.PLANE).items()
+    }
+    units = _units(what)
+    flat = tuple(name for name in axes if name != "delta")
+    data = {
+        name: schema.variable(name, flat if name in schema.PLANE else tuple(axes), values, units.get(name, "1"))
+        for name, values in fields.items()
+    }
+    coordinates = {name: schema.variable(name, (name,), nodes, units.get(name, "1")) for name, nodes in axes.items()}
+    table = xr.Dataset(data, coordinates, schema.global_attributes(_title(what), _shape(axes), command))
+    table.attrs |= {name: value for name, value in _constants(what).items() if name not in axes}
+    _state_errors(table, what)
+    return table
 
 
-def _spacing(name: str) -> dict[str, str]:
-    return {"spacing": "s = 1 - (1 - u)^2, u uniform" if name == "s" else f"uniform in ln {name}"}
+def increasing(name: str, nodes: Any, **bound: Any) -> NDArray[np.float64]:
+    """Nodes of an axis as a vector of its own; raises ParameterError where they are out of range or do not increase."""
+    axis = np.atleast_1d(checked(name, nodes, **bound)).copy()
+    if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
+        raise ParameterError(name, f"an array of shape {axis.shape}", "one-dimensional and strictly increasing")
+    return axis
 
 
-def _add_error_maps(
-    grid: AtlasGrid, sample: dict[str, NDArray], errors: dict[str, NDArray], coordinates: dict, variables: dict
-) -> None:
-    """Error maps, and the middles and edges of their blocks, into the two dictionaries."""
-    edges = {}
-    for (name, nodes), cells in zip(grid.axes().items(), grid.block, strict=True):
-        forward, back = ATLAS_MAPS[name]
-        edges[name] = forward(_block_edges(nodes, cells))
-        blocks = {
-            f"block_{name}": back(0.5 * (edges[name][1:] + edges[name][:-1])),
-            f"block_{name}_edge": _block_edges(nodes, cells),
+def _single(what: Any) -> Scene | Cylinder:
+    """What has the contact: a law at kappa = mu = 1."""
+    if getattr(what, "attrs", {}).get(schema.KIND) == "law":
+        what = law_of(what, "law")
+    if isinstance(what, LawTable):
+        what = Scene(kappa=1.0, mu=1.0, material=what)
+    if not isinstance(what, Scene | Cylinder):
+        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law")
+    shape = (what if isinstance(what, Scene) else what.scene()).shape
+    if shape:
+        raise ParameterError("what", f"of shape {shape}", "one scene, of single numbers")
+    return what
+
+
+def _fields(what: Scene | Cylinder, at: dict[str, NDArray], names: tuple[str, ...]) -> dict[str, NDArray]:
+    """Fields at V, perhaps delta, and perhaps an alpha each."""
+    creep = at.get("delta", np.zeros(1))
+    V = at["V"]
+    if isinstance(what, Cylinder):
+        return what.contact(V, delta=creep, fields=names).as_dict()
+    scene = what.replace(alpha=at["alpha"]) if "alpha" in at else what
+    return contact(scene, V, delta=creep, fields=names).as_dict()
+
+
+def _state_errors(table: xr.Dataset, what: Scene | Cylinder) -> None:
+    """Put the errors of both ways to interpolate into the attributes of the fields."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    random = np.random.default_rng(SEED)
+    points = {name: _between(table[name].values, random) for name in schema.axes_of(table)}
+    exact = _fields(what, points, schema.VOLUME + schema.PLANE)
+    look_up = Interpolant(table)
+    for name in schema.fields_of(table):
+        field = table[name].squeeze()
+        dims = [str(dim) for dim in field.dims]
+        linear = field.values
+        if dims:
+            linear = RegularGridInterpolator([table[dim].values for dim in dims], field.values)(
+                np.column_stack([points[dim] for dim in dims])
+            )
+        smooth = getattr(look_up(name, **{str(dim): points[str(dim)] for dim in table[name].dims}), name)
+        table[name].attrs |= {
+            "spline_error": float(np.abs(smooth - exact[name]).max()),
+            "linear_error": float(np.abs(linear - exact[name]).max()),
         }
-        coordinates |= {block: schema.variable(block, (block,), values) for block, values in blocks.items()}
-    for name in ("beta", "Q_over_mu"):
-        maxima = _block_maxima(errors[name], list(sample.values()), list(edges.values()))
-        variables[f"error_{name}"] = schema.variable(
-            f"error_{name}", schema.VARIABLES["atlas"][f"error_{name}"], maxima, sample=_SAMPLE
-        )
+
+
+def _between(nodes: NDArray, random: np.random.Generator) -> NDArray[np.float64]:
+    """Random points within random cells of an axis; its node where it has only one."""
+    if nodes.size == 1:
+        return np.full(SAMPLE, nodes[0])
+    cell = random.integers(nodes.size - 1, size=SAMPLE)
+    return nodes[cell] + random.random(SAMPLE) * (nodes[cell + 1] - nodes[cell])
+
+
+def _units(what: Scene | Cylinder) -> dict[str, str]:
+    if isinstance(what, Scene):
+        return {}
+    from ..si.units import QUANTITIES
+
+    return {name: QUANTITIES[name].units for name in ("V", "Q", "M", *OF_BODIES)}
+
+
+def _title(what: Scene | Cylinder) -> str:
+    units = "in SI units, per m of length" if isinstance(what, Cylinder) else "dimensionless"
+    return f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
+
+
+def _constants(what: Scene | Cylinder) -> dict[str, Any]:
+    """Its numbers, and its materials in words."""
+    if isinstance(what, Scene):
+        numbers = {name: float(value) for name, value in what.numbers.items() if name in ("alpha", "kappa", "mu")}
+        return numbers | ({} if what.material is None else {"material": described(what.material)})
+    return {name: float(getattr(what, name)) for name in _OF_A_CYLINDER} | {"material": described(what.pair)}
+
+
+def _shape(axes: dict[str, NDArray]) -> str:
+    return ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())

@@ -1,4 +1,4 @@
-"""Values between the nodes: tensor cubic splines for the atlas, linear for the others."""
+"""Values between the nodes of a grid: tensor cubic splines."""
 
 from __future__ import annotations
 
@@ -11,35 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from ..blocks import flattened
 from ..checks import broadcast_shape, checked
 from ..errors import OutOfTableError, ParameterError, unknown
-from ..rolling_contact import Values
+from ..results import Values
 from . import schema
-from .grid import ATLAS_MAPS
 
 if TYPE_CHECKING:
     import xarray as xr
-
-CUBIC = 3
-
-
-def spline_coefficients(values: NDArray, axes: list[NDArray]) -> tuple[list[NDArray], NDArray]:
-    """Knots of each axis and coefficients of the tensor not-a-knot cubic through ``values``."""
-    from scipy.interpolate import make_interp_spline
-
-    knots = []
-    for n, axis in enumerate(axes):
-        spline = make_interp_spline(axis, values, k=CUBIC, axis=n)
-        knots.append(spline.t)
-        values = np.moveaxis(spline.c, 0, n)
-    return knots, np.ascontiguousarray(values)
-
-
-def spline_on_grid(knots: list[NDArray], coefficients: NDArray, axes: list[NDArray]) -> NDArray:
-    """The spline on the tensor product of ``axes``: one dimension at a time, far cheaper than point by point."""
-    from scipy.interpolate import BSpline
-
-    for n, (t, x) in enumerate(zip(knots, axes, strict=True)):
-        coefficients = BSpline(t, coefficients, CUBIC, axis=n)(x)
-    return coefficients
 
 
 class Interpolant:
@@ -50,7 +26,7 @@ class Interpolant:
     Parameters
     ----------
     table : a Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
-        Coefficients are made once a field, at its first use, from the values of that time.
+        Splines are made once a field, at its first use, from the values of that time.
 
     Raises
     ------
@@ -59,8 +35,10 @@ class Interpolant:
     """
 
     def __init__(self, table: xr.Dataset) -> None:
-        self.kind = schema.check(table, "interpolate")
-        self._table = table
+        schema.check(table, "interpolate")
+        self._table, self._axes = table, schema.axes_of(table)
+        # files before 1.2 state the errors of linear interpolation in V, delta and alpha
+        self._linear = table.attrs[schema.KIND] in ("literal", "material")
         self._evaluators: dict[str, Any] = {}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
@@ -69,15 +47,17 @@ class Interpolant:
         flat, shape = self._checked_points(points, names)
         results = {}
         for name in names:
-            dims = schema.VARIABLES[self.kind][name]
-            columns = [flat[dim] for dim in dims]
-            xi = np.column_stack([np.broadcast_to(column, (int(np.prod(shape)),)) for column in columns])
-            values = self._evaluator(name)(xi).reshape(shape)
+            dims, evaluator = self._evaluator(name)
+            if dims:
+                columns = [np.broadcast_to(flat[dim], (int(np.prod(shape)),)) for dim in dims]
+                values = evaluator(np.column_stack(columns)).reshape(shape)
+            else:
+                values = np.full(shape, evaluator)
             results[name] = values if shape else values.item()
-        return Values(results)
+        return Values(results, title="Interpolated")
 
     def _field_names(self, fields: Iterable[str] | None) -> tuple[str, ...]:
-        known = schema.FIELDS[self.kind]
+        known = schema.fields_of(self._table)
         names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
         for name in names:
             if name not in known:
@@ -88,10 +68,10 @@ class Interpolant:
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
     ) -> tuple[dict[str, NDArray], tuple[int, ...]]:
         """Flattened coordinates in which the interpolation runs, and the shape of the answer."""
-        axes = schema.AXES[self.kind]
-        needed = {dim for name in names for dim in schema.VARIABLES[self.kind][name]}
-        if not needed <= points.keys() or not points.keys() <= set(axes):
-            allowed = f"{', '.join(axes)} (needed for these fields: {', '.join(a for a in axes if a in needed)})"
+        needed = {str(dim) for name in names for dim in self._table[name].dims}
+        if not needed <= points.keys() or not points.keys() <= set(self._axes):
+            wanted = ", ".join(axis for axis in self._axes if axis in needed)
+            allowed = f"{', '.join(self._axes)} (needed for these fields: {wanted})"
             raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
         arrays = {name: checked(name, value) for name, value in points.items()}
         shape = broadcast_shape(**arrays)
@@ -102,35 +82,49 @@ class Interpolant:
                 raise OutOfTableError(name, array[outside].flat[0] if array.ndim else float(array), low, high)
         return {name: self._mapped(name, flattened(array, shape)) for name, array in arrays.items()}, shape
 
-    def _mapped(self, name: str, values: NDArray) -> NDArray:
-        return ATLAS_MAPS[name][0](values) if self.kind == "atlas" else values
+    def _mapped(self, name: str, values: NDArray) -> NDArray[np.float64]:
+        """The coordinate of an axis in which the law is smooth."""
+        if self._linear or name == "delta":
+            return values
+        return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
-    def _evaluator(self, name: str) -> Any:
+    def _evaluator(self, name: str) -> tuple[tuple[str, ...], Any]:
         if name not in self._evaluators:
-            self._evaluators[name] = self._new_evaluator(name)
+            field = self._table[name].squeeze()  # an axis of one node has one value
+            dims = tuple(map(str, field.dims))
+            axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
+            self._evaluators[name] = dims, self._new_evaluator(field.values, axes)
         return self._evaluators[name]
 
-    def _new_evaluator(self, name: str) -> Any:
-        from scipy.interpolate import NdBSpline, RegularGridInterpolator
+    def _new_evaluator(self, values: NDArray, axes: list[NDArray]) -> Any:
+        from scipy.interpolate import RegularGridInterpolator
 
-        values = self._table[name].values
-        axes = [self._mapped(dim, self._table[dim].values) for dim in schema.VARIABLES[self.kind][name]]
-        if self.kind == "atlas":
-            knots, coefficients = spline_coefficients(values, axes)
-            return NdBSpline(tuple(knots), coefficients, CUBIC)
-        return RegularGridInterpolator(tuple(axes), values, method="linear")
+        if not axes:
+            return values.item()
+        return RegularGridInterpolator(tuple(axes), values) if self._linear else spline(values, axes)
+
+
+def spline(values: NDArray, axes: list[NDArray]) -> Any:
+    """The tensor spline through values on a grid: cubic, not-a-knot, along two or three nodes of lower degree."""
+    from scipy.interpolate import NdBSpline, make_interp_spline
+
+    knots, degrees = [], tuple(min(3, axis.size - 1) for axis in axes)
+    for n, axis in enumerate(axes):
+        one = make_interp_spline(axis, values, k=degrees[n], axis=n)
+        knots.append(one.t)
+        values = np.moveaxis(one.c, 0, n)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees)
 
 
 def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
-    """Fields of a table between its nodes; nothing is extrapolated.
+    """Fields of a grid between its nodes; nothing is extrapolated.
 
     Parameters
     ----------
     table : Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
     fields : names out of the table's fields; default all.
-    **points : ``alpha``, ``kappa_V``, ``s`` for an atlas (``s`` only where beta or Q_over_mu
-        is asked for), ``V``, ``delta``, ``alpha`` for a literal table, ``V``, ``delta`` for that of a
-        material; they broadcast.
+    **points : ``V``, ``delta`` and, where the table has it, ``alpha``, in the table's units; they broadcast.
+        ``delta`` only where beta or Q is asked for.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
 
     Returns
     -------
@@ -149,11 +143,10 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
 
     Notes
     -----
-    Atlas: tensor not-a-knot cubic spline in (ln alpha, ln kappa V, u = 1 - sqrt(1 - s)); the
-    errors are those stored in the table, which a single point may exceed by up to 1.5 times
-    (``tests/tables/test_tables.py``).  The others: linear in V, delta and alpha, what
-    other tools do by default; a higher order would ring at the kink |delta| = delta_star,
-    which crosses their cells.  Each call builds the splines anew, which takes most of its time;
-    keep an :class:`Interpolant` for repeated calls.
+    Tensor not-a-knot cubic spline in ln V, delta and ln alpha; the error at random points is stated in
+    ``spline_error`` of each field, which another point may exceed (``tests/tables/test_grids.py``).  Tables over
+    (V, delta) of earlier versions are interpolated linearly, as their files state.  Each call builds the splines anew,
+    which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
+    (:func:`viscoroll.tables.law`, :func:`viscoroll.contact`) has none of these errors.
     """
     return Interpolant(table)(fields, **points)

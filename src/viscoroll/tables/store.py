@@ -2,32 +2,41 @@
 
 from __future__ import annotations
 
+import io
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import TableError
-from ..files import seal_holds, write_dataset
+from ..files import sealed_content, write_dataset
+from ..materials import law_store
 from . import schema
-from .content import HASH, content_hash, read
-from .rehearsal import rehearse
-from .survey import EXPECTED, MAX_BYTES, require_whole
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+#: No table is larger.
+_MOST_BYTES = 1 << 31
+
+
+def is_law(table: Any) -> bool:
+    """Whether a dataset is the law of a material, and no grid."""
+    return getattr(table, "attrs", {}).get(schema.KIND) == "law"
+
+
+def check(table: Any, path: Any) -> None:
+    """Refuse what is neither a law nor a grid; raises TableError."""
+    (law_store.check if is_law(table) else schema.check)(table, path)
 
 
 def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
-    """Write a table as netCDF-4/HDF5: whole and synced, or not at all.
+    """Write a law or a grid as netCDF-4/HDF5: whole and synced, or not at all.
 
-    Every array carries Fletcher-32 checksums, the file a SHA-256 over its content and, behind
-    its end, one over its bytes.
+    Behind its end the file carries a SHA-256 over its bytes, which other programs do not see.
 
     Parameters
     ----------
-    table : a Dataset of :func:`build` or :func:`load`.
+    table : a Dataset of :func:`law`, :func:`build` or :func:`load`.
     path : file to write; a file of that name is replaced.
 
     Raises
@@ -35,71 +44,53 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     OutputError
         If it cannot be written there; a file of that name is left as it was.
     TableError
-        If ``table`` is not a table.
+        If ``table`` is neither.
 
     Notes
     -----
-    :func:`load` gives back the same values, bit for bit (``tests/tables/test_tables.py``).
+    :func:`load` gives back the same values, bit for bit (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``).
     """
-    schema.check(table, path)
-    stamped = table.copy()
-    for variable in stamped.variables.values():
+    check(table, path)
+    plain = table.copy()
+    for variable in plain.variables.values():
         variable.encoding = {}
-    stamped.attrs[HASH] = content_hash(table)
-    write_dataset(stamped, path, sealed=True)
+    # the noise of coefficients does not compress
+    encoding = {str(name): {"_FillValue": None} for name in plain.variables} if is_law(plain) else None
+    write_dataset(plain, path, encoding, sealed=True)
 
 
-def load(path: str | PathLike[str], *, verify: bool = True) -> xr.Dataset:
-    """Read a table into memory and close the file.
-
-    A file as :func:`save` left it carries the SHA-256 of its bytes, which is compared before
-    anything is parsed.  One without, which another program has written or edited, is first read
-    in a process of its own, with bounds on time and memory, which takes about a second.
+def load(path: str | PathLike[str]) -> xr.Dataset:
+    """Read a law or a grid, of any version since 0.1.0, into memory and close the file.
 
     Parameters
     ----------
-    path : file written by :func:`save`.
-    verify : compare bytes and content with the SHA-256s stored in the file; where False, a
-        file that has been edited is read nevertheless, but still not one that is no table.
+    path : file written by :func:`save`.  The SHA-256 at its end is compared before anything is parsed; a file that
+        another program has written or edited has none, and is read for what it holds.
 
     Returns
     -------
     xarray.Dataset
-        The table as it was saved, bit for bit (``tests/tables/test_tables.py``).
+        As it was saved, bit for bit.
 
     Raises
     ------
     TableError
-        A file that is missing, not HDF5, truncated or damaged, of another major schema
-        version, not a table, or whose content differs from its hash.
+        A file that is missing, cut or damaged, of another major schema version, or no table.
     """
-    content = _content(Path(path))
-    sealed = seal_holds(content)
-    if verify and sealed is False:
-        raise TableError(path, "is damaged: its bytes differ from the SHA-256 at their end; rebuild it")
-    if not sealed:
-        require_whole(content, path)
-        rehearse(content, path, verify)
-    return read(content, path, verify)
+    import xarray as xr
 
-
-def _content(path: Path) -> bytes:
-    """All bytes of an HDF5 file of bounded size: what is parsed is what was verified."""
+    content = sealed_content(path, _MOST_BYTES, "table of viscoroll", "build it again")
     try:
-        if not path.is_file():
-            raise TableError(path, f"{'is not a file' if path.exists() else 'does not exist'}: {EXPECTED}")
-        if path.stat().st_size > MAX_BYTES:
-            raise TableError(path, f"is larger than {MAX_BYTES} bytes: {EXPECTED}")
-        content = path.read_bytes()
-    except OSError as error:
-        raise TableError(path, f"cannot be read ({error.strerror}): {EXPECTED}") from error
-    if not content.startswith(_SIGNATURE):
-        raise TableError(path, f"is not an HDF5 file: {EXPECTED}")
-    return content
+        table = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False)
+    except Exception as error:  # libraries raise many kinds
+        problem = f"is damaged, or no table of viscoroll ({' '.join(str(error).split()):.120}): build it again"
+        raise TableError(path, problem) from error
+    check(table, path)
+    return table
 
 
 def info(path: str | PathLike[str]) -> str:
-    """What the table at ``path`` holds: grid, fields, stated errors, who made it with what.
+    """What the law or the grid at ``path`` holds, its stated errors, who made it with what.
 
     Raises
     ------
@@ -107,27 +98,21 @@ def info(path: str | PathLike[str]) -> str:
         As :func:`load`.
     """
     table = load(path)
-    kind, about, size = table.attrs[schema.KIND], table.attrs, Path(path).stat().st_size / 1e6
-    lines = [
-        f"{path}: {kind} table, schema {about['schema_version']}, {size:.2f} MB, content verified",
-        about["title"],
-        "",
-        *(f"  {axis:<8} {table[axis].size:>5} nodes in [{table[axis].values[0]:g}, {table[axis].values[-1]:g}]"
-          for axis in schema.AXES[kind]),
-        *(f"  {name:<8} = {table[name].item():g}" for name in ("kappa", "mu") if name in table.coords),
-        "",
-        f"  {'field':<25}{'over':<22}{'equation':<18}interpolation error (allowed)",
-        *(_field_line(table[name]) for name in schema.FIELDS[kind]),
-        "",
-    ]  # fmt: skip
-    lines += about["material"].splitlines() if kind == "material" else []
-    lines += [
-        f"{key}: {about[key]}" for key in ("grid", "tolerances", "comment", "source", "software", "history", HASH)
-    ]
-    return "\n".join(lines)
+    about, size = table.attrs, Path(path).stat().st_size / 1e3
+    lines = [f"{path}: {about[schema.KIND]}, {size:.0f} kB", about["title"], ""]
+    if is_law(table):
+        lines += [f"  {'function':<14}largest relative error"]
+        lines += [f"  {name:<14}{table[name].attrs['largest_relative_error']:.1e}" for name in law_store.MEANING]
+    else:
+        axes = {axis: table[axis].values for axis in schema.axes_of(table)}
+        lines += [f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items()]
+        lines += ["", f"  {'field':<26}{'over':<18}error between the nodes"]
+        lines += [_field_line(table[name]) for name in schema.fields_of(table)]
+    keys = ("material", "comment", "source", "history", law_store.CHECKSUM)
+    return "\n".join([*lines, "", *(f"{key}: {about[key]}" for key in keys if key in about)])
 
 
 def _field_line(field: xr.DataArray) -> str:
-    error, allowed = (field.attrs.get(key) for key in ("interpolation_error", "interpolation_error_allowed"))
-    stated = "" if error is None else f"{error:.2g}" + ("" if allowed is None else f" ({allowed:.2g})")
-    return f"  {field.name!s:<25}{', '.join(map(str, field.dims)):<22}{field.attrs['equation']:<18}{stated}"
+    names = {"spline_error": "spline", "linear_error": "linear", "interpolation_error": "stated"}
+    errors = ", ".join(f"{word} {field.attrs[key]:.2g}" for key, word in names.items() if key in field.attrs)
+    return f"  {field.name!s:<26}{', '.join(map(str, field.dims)):<18}{errors}"

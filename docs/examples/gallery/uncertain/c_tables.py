@@ -1,12 +1,15 @@
 """
-The contact law as a table
-==========================
+The law in C, Octave and on grids
+=================================
 
-For programs that only interpolate, the law is written into a netCDF file with units,
-equations and the measured error of interpolation.  Here a table of one rubber roller, and
-what linear look-up in it is worth.
+Offline the law of a material is written once: here as a header of C, and as a file that
+Octave reads.  Both have the digits of the package.  A grid, for programs that can only look
+up, has not.
 """
 
+import shutil
+import subprocess
+import tempfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -14,35 +17,64 @@ import numpy as np
 
 import viscoroll as vr
 
-rubber = vr.Material(
-    E=3e6, nu=0.5, prony=vr.Prony(E=[0.4, 0.6, 1.5], tau=[1e-1, 1e-3, 1e-5])
-)
-grid = vr.tables.MaterialGrid(
-    rubber,
-    kappa=20.0,
-    mu=0.5,
-    V=vr.tables.spread(1e-2, 1e4, 60, "log"),
-    delta=np.linspace(-0.03, 0.03, 61),
-)
-vr.tables.save(vr.tables.build(grid), "rubber.nc")
-table = vr.tables.load("rubber.nc")
+rubber = vr.Prony(E=[0.4, 0.6, 1.5], tau=[1e-1, 1e-3, 1e-5])
+law, folder = vr.tables.law(rubber), Path(tempfile.mkdtemp())
+scene = vr.Scene(material=rubber, kappa=20.0, mu=0.5)
+exact = vr.contact(scene, 3.0, omega=3.01, slopes=True)
+print(f"{exact.Q:.15f} {exact.M:.15f} {exact.dQ_dV:.12f}")
 
-V = np.geomspace(1e-2, 1e4, 400)
-scene = vr.Scene(material=rubber.prony, kappa=20.0, mu=0.5)
-looked_up = table.Q.interp(V=V, delta=0.0053)
-exact = vr.contact(scene, V, delta=0.0053, fields="Q").Q
+# %%
+# In C: the table and its evaluator are one header, ``rubber.h``.
+vr.tables.export(law, folder / "rubber.h")
+(folder / "state.c").write_text(
+    """
+#include <stdio.h>
+#include "rubber.h"
+int main(void) {
+  vr_state s;
+  vr_slopes d;
+  vr_contact_slopes(&rubber, 20.0, 0.5, 3.0, 3.01 - 3.0, &s, &d);
+  printf("%.15f %.15f %.12f\\n", s.Q, s.M, d.dQ_dV);
+  return 0;
+}
+"""
+)
+for command in (["cc", "-std=c99", "-O2", "state.c", "-o", "state", "-lm"], ["./state"]):
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+print(done.stdout)
+
+# %%
+# In Octave, by ``read_law.m`` (:doc:`/loading/README`).
+vr.tables.save(law, folder / "rubber.nc")
+here = Path.cwd().resolve()
+root = next(path for path in (here, *here.parents) if (path / "docs/loading").exists())
+shutil.copy(root / "docs/loading/read_law.m", folder)
+code = "s = read_law('rubber.nc')(20, 0.5, 3, 3.01 - 3); printf('%.15f %.15f', s.Q, s.M)"
+if shutil.which("octave-cli"):
+    done = subprocess.run(
+        ["octave-cli", "--eval", code],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    print(done.stdout)
+
+# %%
+# A grid for look-up blocks, and what linear look-up in it is worth.
+V = vr.tables.spread(1e-2, 1e4, 60, "log")
+grid = vr.tables.build(scene, V, np.linspace(-0.03, 0.03, 61))
+speeds = np.geomspace(1e-2, 1e4, 400)
+looked_up = grid.Q.interp(V=speeds, delta=0.0053)
+truth = vr.contact(scene, speeds, delta=0.0053, fields="Q").Q
 
 figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(6.4, 5.0), sharex=True, layout="constrained"
 )
-top.semilogx(V, exact, label="law")
-top.semilogx(V, looked_up, "--", label="linear in the table")
-bottom.loglog(V, np.abs(looked_up - exact), color="0.3")
+top.semilogx(speeds, truth, label="law")
+top.semilogx(speeds, looked_up, "--", label="linear in the grid")
+bottom.loglog(speeds, np.abs(looked_up - truth), color="0.3")
 top.set(ylabel="Q, over load")
 top.legend(frameon=False)
 bottom.set(xlabel="V, in R/T_ref", ylabel="error of Q")
-Path("rubber.nc").unlink()
-
-# %%
-# Tables are made for C, Modelica, MATLAB and others (:doc:`/loading/README`).  In Python
-# ``vr.contact`` is exact and needs no file.
+shutil.rmtree(folder)

@@ -241,3 +241,17 @@ def build_unsteady(series, e0, table):
         fit(row, TERMS, _ROUNDING_OF_N, values, fitted, scratch)
         for n in range(TERMS):
             table[row, n, N] = fitted[n]
+
+
+@kernel(allocates=True)
+def by_modes(series, z, out):
+    """g/z, h/z, the parts of m and N at every z by the formulas of the modes: what errors of a table are told by."""
+    work, slow = sloped_room(series), unsteady_room(series)
+    for first in range(0, z.size, LANES):
+        last = z.size - 1
+        places = z[first], z[min(first + 1, last)], z[min(first + 2, last)], z[min(first + 3, last)]
+        functions(places, series, work)
+        for n in range(first, min(first + LANES, z.size)):
+            for f in range(FUNCTIONS):
+                out[f, n] = work.found[2 * LANES * f + n - first]
+            out[FUNCTIONS, n] = unsteady(z[n], series, slow)

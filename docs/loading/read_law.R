@@ -1,0 +1,83 @@
+# contact <- read_law("rubber.nc");  contact(kappa, mu, V, slip)      slip = omega - V
+# With ncdf4, which gives arrays as [power, octave].
+library(ncdf4)
+
+read_law <- function(path) {
+  file <- nc_open(path)
+  law <- sapply(c("e0", "alpha", "fast_limit"), function(name) ncvar_get(file, name), simplify = FALSE)
+  names <- c("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
+  law$c <- sapply(names, function(name) ncvar_get(file, name), simplify = FALSE)
+  nc_close(file)
+  function(kappa, mu, V, slip) contact_state(law, kappa, mu, V, slip)
+}
+
+# Row 0 is that of the slow end.
+place <- function(law, x) {
+  e <- if (x > 0) floor(log2(x)) + 1 else law$e0
+  if (e <= law$e0) return(list(row = 0, t = x * 2^-law$e0, dt_dx = 2^-law$e0))
+  t <- 4 * (x / 2^e) - 3
+  list(row = e - law$e0, t = t, dt_dx = (t + 3) / x)
+}
+value <- function(law, name, p) sum(law$c[[name]][, p$row + 1] * p$t^(0:23))
+fast <- function(law, p) p$row >= ncol(law$c$lam)
+
+speed <- function(law, u) {
+  p <- place(law, u)
+  if (!fast(law, p)) return(sapply(names(law$c)[1:5], function(name) value(law, name, p)))
+  z <- 0.5 / (u * sqrt(law$alpha))
+  half <- 0.5 * law$alpha * z
+  W <- law$fast_limit[1, ]
+  C <- law$fast_limit[2, ]
+  m <- half * z * (C - W * (log(z) - 0.25))
+  c(lam = law$alpha^-0.5, epsilon = half * (C[1] - W[1] * log(z)), m_half_space = m[2], m_cylinder = m[3],
+    N = 0.25 * (law$alpha - 1) * z^2)
+}
+
+stick <- function(law, v) {
+  p <- place(law, v)
+  if (!fast(law, p)) return(c(value(law, "share", p), value(law, "press", p)))
+  share <- 1 - 0.5 * law$alpha / v * (law$fast_limit[2, 1] + law$fast_limit[1, 1] * log(v))
+  c(share, law$alpha * share^2)
+}
+
+# Mean slope of press between v1 and v2.
+secant <- function(law, v1, v2) {
+  a <- place(law, v1)
+  b <- place(law, v2)
+  if (fast(law, b)) {
+    W <- law$fast_limit[1, 1]
+    C <- law$fast_limit[2, 1]
+    x <- (v2 - v1) / v1
+    shares <- 2 - 0.5 * law$alpha * ((C + W * log(v1)) / v1 + (C + W * log(v2)) / v2)
+    return(0.5 * law$alpha^2 * shares * (C - W * ((if (x > 0) log1p(x) / x else 1) - log(v1))) / v1 / v2)
+  }
+  if (a$row == b$row) return(chord(law, a, b$t) * a$dt_dx)
+  part <- min(max((2^(law$e0 + b$row - 1) - v1) / (v2 - v1), 0), 1)
+  part * chord(law, a, 1) * a$dt_dx + (1 - part) * chord(law, b, -1) * b$dt_dx
+}
+chord <- function(law, p, s) {
+  total <- last <- law$c$press[24, p$row + 1]
+  for (k in 23:2) {
+    last <- last * p$t + law$c$press[k, p$row + 1]
+    total <- total * s + last
+  }
+  total
+}
+
+contact_state <- function(law, kappa, mu, V, slip) {
+  u <- kappa * abs(V)
+  f <- as.list(speed(law, u))
+  L <- f$lam * (1 + f$epsilon)
+  delta <- if (slip == 0) 0 else abs(slip / V)
+  D <- 2 * kappa * delta / mu
+  w <- L - D
+  s <- list(lam = f$lam, epsilon = f$epsilon, delta_star = 0.5 * mu * L / kappa, beta = 0, Q = sign(slip) * mu,
+            M = V * (f$m_half_space + f$m_cylinder), M_half_space = V * f$m_half_space,
+            M_cylinder = V * f$m_cylinder, N = f$N)
+  if (!(delta < s$delta_star && w > 0)) return(s)
+  at <- stick(law, 2 * u / w)
+  q <- if (D < L / 8) D * ((2 * L - D) * at[2] - 2 * u * L / w * secant(law, 2 * u / L, 2 * u / w)) else 1 - w^2 * at[2]
+  s$beta <- min(at[1] * w / f$lam, 1)
+  s$Q <- sign(slip) * mu * min(q, 1)
+  s
+}

@@ -1,0 +1,73 @@
+"""contact = read_law("rubber.nc");  contact(kappa, mu, V, slip), arrays too.  slip = omega - V.
+
+Without viscoroll: numpy, and xarray, h5py or netCDF4 to open the file.
+"""
+
+import numpy as np
+import xarray as xr
+
+FUNCTIONS = "lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press"
+
+
+def read_law(path):
+    with xr.open_dataset(path, engine="h5netcdf") as file:
+        c = np.stack([file[name].values for name in FUNCTIONS])  # [function, octave, power]
+        numbers = int(file.e0), float(file.alpha), file.fast_limit.values
+    return lambda kappa, mu, V, slip: state(c, *numbers, *np.broadcast_arrays(kappa, mu, V, slip))
+
+
+def place(x, e0):
+    """Row, argument and its slope; row 0 is that of the slow end."""
+    m, e = np.frexp(x)
+    row = np.where(x == 0.0, 0, np.maximum(e - e0, 0))
+    t = np.where(row == 0, np.ldexp(x, -e0), 4.0 * m - 3.0)
+    return row, t, np.where(row == 0, 2.0**-e0, np.ldexp(4.0, -e))
+
+
+def value(c, row, t):
+    return np.polynomial.polynomial.polyval(t, c[np.minimum(row, len(c) - 1)].T, tensor=False)
+
+
+def chord(c, row, t, s):
+    """(p(t) - p(s))/(t - s)."""
+    c = c[np.minimum(row, len(c) - 1)]
+    last = total = c[..., -1]
+    for k in range(c.shape[-1] - 2, 0, -1):
+        last = last * t + c[..., k]
+        total = total * s + last
+    return total
+
+
+@np.errstate(all="ignore")
+def state(c, e0, alpha, limit, kappa, mu, V, slip):
+    (W, C), rows = limit[0], c.shape[1]
+    u = kappa * np.abs(V)
+    row, t, _ = place(u, e0)
+    z = 0.5 / (u * np.sqrt(alpha))
+    half, log = 0.5 * alpha * z, np.log(z)
+    fast = [alpha**-0.5, half * (C - W * log), *(half * z * (C - W * (log - 0.25)) for W, C in limit[1:])]
+    fast.append(0.25 * (alpha - 1.0) * z * z)
+    lam, epsilon, half_space, cylinder, N = (np.where(row < rows, value(one, row, t), end) for one, end in zip(c, fast))
+    L = lam * (1.0 + epsilon)
+    delta = np.where(slip == 0.0, 0.0, np.abs(slip / V))
+    D = 2.0 * kappa * delta / mu
+    slips = ~((delta < 0.5 * mu * L / kappa) & (D < L))
+    w = np.where(slips, L, L - D)
+    v1, v2 = 2.0 * u / L, 2.0 * u / w
+    (r1, t1, p1), (r2, t2, p2) = place(v1, e0), place(v2, e0)
+    bracket = [(C + W * np.log(v)) / v for v in (v1, v2)]
+    share = np.where(r2 < rows, value(c[5], r2, t2), 1.0 - 0.5 * alpha * bracket[1])
+    press = np.where(r2 < rows, value(c[6], r2, t2), alpha * share**2)
+    part = np.clip((np.ldexp(1.0, e0 + r2 - 1) - v1) / (v2 - v1), 0.0, 1.0)
+    two = part * chord(c[6], r1, t1, 1.0) * p1 + (1.0 - part) * chord(c[6], r2, t2, -1.0) * p2
+    x = (v2 - v1) / v1
+    beyond = C - W * (np.where(x > 0.0, np.log1p(x) / x, 1.0) - np.log(v1))
+    beyond *= 0.5 * alpha**2 * (2.0 - 0.5 * alpha * sum(bracket)) / v1 / v2
+    S = np.where(r2 >= rows, beyond, np.where(r1 == r2, chord(c[6], r1, t1, t2) * p1, two))
+    q = np.where(D < L / 8.0, D * ((2.0 * L - D) * press - 2.0 * u * L / w * S), 1.0 - w * w * press)
+    return {
+        "lam": lam, "epsilon": epsilon, "delta_star": 0.5 * mu * L / kappa,
+        "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)),
+        "Q": np.sign(slip) * mu * np.where(slips, 1.0, np.minimum(q, 1.0)),
+        "M": V * (half_space + cylinder), "M_half_space": V * half_space, "M_cylinder": V * cylinder, "N": N,
+    }  # fmt: skip

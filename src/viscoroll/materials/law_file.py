@@ -1,0 +1,160 @@
+"""The law of one material or pair as a dataset and a file: of a :class:`LawTable`, and back bit for bit."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import __version__
+from ..errors import ConfigError, ParameterError, TableError
+from ..symbols import PAPER
+from .bodies import Bodies
+from .file import as_toml, materials_of, series_as_toml, series_of
+from .law_store import CHECKSUM, MEANING, OTHERS, REMEDY, SCHEMA, VERSION, checksum, read_law
+from .law_table import FUNCTIONS, LawTable, law_table
+from .pair import Pair
+from .prony import Prony
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+COMMENT = (
+    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
+    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. u = kappa |V|; "
+    "L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; D >= L: full slip, |Q| = mu, beta = 0."
+    " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < L/8: "
+    "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
+    "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of omega - V. Fast limit: "
+    "z = 1/(2 u sqrt(alpha)), W and C of fast_limit: lam = alpha^-1/2, epsilon = (alpha z/2)(C - W ln z), "
+    "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = 1/v: "
+    "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u a_T, N times a_T^2."
+)
+
+
+def table_of(material: Any, base: Any = None) -> LawTable:
+    """The law of a Prony, Bodies, alpha, Material (on a ``base``), Pair, or of a law that there is already."""
+    if isinstance(material, LawTable):
+        if base is not None:
+            raise ParameterError("base", "given", "left out: a law knows its bodies")
+        return material
+    if not hasattr(material, "T_ref"):
+        if base is not None:
+            raise ParameterError("base", "given", "left out unless material is a Material")
+        return law_table(material)
+    pair = material if isinstance(material, Pair) and base is None else Pair(material, base)
+    return replace(law_table(pair.law), T_ref=pair.T_ref, pair=pair)
+
+
+def as_dataset(table: LawTable, errors: Mapping[str, float]) -> xr.Dataset:
+    """All that a file holds; ``errors``: largest relative error by function."""
+    import xarray as xr
+
+    data = {}
+    for n, (name, meaning) in enumerate(MEANING.items()):
+        about: dict[str, Any] = {"long_name": f"coefficients of powers of t: {meaning}"}
+        about["largest_relative_error"] = errors[name]
+        data[name] = xr.Variable(("octave", "power"), table.coefficients[:, :, n], about)
+    for name, (dims, meaning) in OTHERS.items():
+        value = np.int32(table.e0) if name == "e0" else getattr(table, name)
+        data[name] = xr.Variable(dims, value, {"long_name": meaning})
+    data["T_ref"].attrs["units"] = "s"  # the others have none
+    found = xr.Dataset(
+        data,
+        attrs={
+            "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {name_of(table)}",
+            "summary": "The contact law of one material or pair as polynomials, one an octave of speed: any speed, "
+            "creep, kappa and mu, by two look-ups and no iteration.",
+            "keywords": "rolling contact, viscoelasticity, rolling resistance", "viscoroll_table": "law",
+            SCHEMA: np.int32(VERSION), "bodies": "unlike" if table.unlike else "alike",
+            "material": described(table.pair or table.material),
+            "comment": COMMENT, "references": PAPER, "source": f"viscoroll {__version__}",
+            "date_created": datetime.now(UTC).isoformat(timespec="seconds"), "license": "BSD-3-Clause",
+        },
+    )  # fmt: skip
+    return found.assign_attrs({CHECKSUM: checksum(found)})
+
+
+def name_of(table: LawTable) -> str:
+    """The bodies in words."""
+    if table.pair is None:
+        return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
+    bodies = (table.pair.cylinder, table.pair.base)
+    return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
+
+
+def load_law(path: str | PathLike[str]) -> LawTable:
+    """The law of one material or pair from a file, to stand wherever a Prony or Bodies stands.
+
+    Parameters
+    ----------
+    path : file of :func:`viscoroll.tables.save` or of ``viscoroll tables law``.
+
+    Returns
+    -------
+    LawTable
+        Bit for bit that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
+        :class:`viscoroll.Cylinder`, it stands for its :class:`viscoroll.Material`, and for the base where it has one.
+
+    Raises
+    ------
+    TableError
+        A file that is missing, cut or damaged in any byte, no law, or of another schema.
+    """
+    return law_of(read_law(path), path)
+
+
+def law_of(found: xr.Dataset, path: Any) -> LawTable:
+    """The law of a dataset that was checked; raises TableError where it does not name its material."""
+    try:
+        given = _material_of(found.attrs["material"], path)
+        numbers: dict[str, Any] = {name: found[name].values for name in OTHERS}
+        for name, value in numbers.items():
+            numbers[name] = int(value) if name == "e0" else float(value) if not value.ndim else _frozen(value)
+        coefficients = _frozen(np.stack([found[name].values for name in FUNCTIONS], axis=-1))
+        pair = given if isinstance(given, Pair) else None
+        return LawTable(
+            given_coefficients=coefficients, **numbers, unlike=found.attrs["bodies"] == "unlike",
+            material=given if pair is None else pair.law, pair=pair,
+        )  # fmt: skip
+    except (ConfigError, ParameterError, KeyError, TypeError, ValueError) as error:
+        text = " ".join(str(error).split())
+        raise TableError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
+
+
+def _frozen(values: Any) -> Any:
+    values = np.ascontiguousarray(values, np.float64)
+    values.flags.writeable = False
+    return values
+
+
+def described(given: Any) -> str:
+    """A pair, Bodies, a series or an alpha as TOML that reads back to the bit: as in scene files, or dimensionless."""
+    if isinstance(given, Pair):
+        text = as_toml(given.cylinder)
+        text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
+        return f'plane = "{given.plane}"\n{text}'
+    if isinstance(given, Bodies):
+        parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "half_space"))
+        return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
+    return f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
+
+
+def _material_of(text: str, path: Any) -> Any:
+    """What :func:`described` wrote: a pair, Bodies, a Prony series or an alpha."""
+    content = tomllib.loads(text)
+    if "material" in content:
+        found = materials_of(path, content)
+        return Pair(found["material"], found.get("base"), content["plane"])
+    if "bodies" in content:
+        given = content["bodies"]
+        parts = (given[name] for name in ("cylinder", "half_space"))
+        series: Any = (series_of(path, "bodies", one.get("prony"), one.get("creep")) for one in parts)
+        return Bodies(*series, given["share"])  # type: ignore[call-arg]
+    given = content["scene"]
+    return given["alpha"] if "alpha" in given else series_of(path, "scene", given.get("prony"), given.get("creep"))

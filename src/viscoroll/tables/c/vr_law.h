@@ -1,0 +1,159 @@
+/* The contact law of viscoelastic cylinders that roll with partial slip, from the table of one material or pair.
+ *
+ * C99 and C++, one header, no allocation, no state, thread safe; of libm: frexp, log, log1p, sqrt, fabs, fmin, fmax.
+ * Dimensionless: V in R/T_ref, forces over the load P, moments over P R.  V and slip = omega - V have any sign.
+ *
+ *     vr_state s = vr_contact(&rubber, kappa, mu, V, slip);
+ *     vr_slopes d;
+ *     vr_contact_slopes(&rubber, kappa, mu, V, slip, &s, &d);
+ */
+#ifndef VR_LAW_H
+#define VR_LAW_H
+#include <math.h>
+
+enum { VR_TERMS = 24, VR_FUNCTIONS = 7 };
+/* functions of kappa |V|, then of v = 1/F(eta) */
+enum { VR_LAM, VR_EPSILON, VR_M_HALF_SPACE, VR_M_CYLINDER, VR_N, VR_SHARE, VR_PRESS };
+
+typedef struct {
+  int rows, e0;                /* row 0: x in [0, 2^e0); row n: x in [2^(e0+n-1), 2^(e0+n)); beyond: the fast limit */
+  double alpha, limit[3][2];   /* sum J_j/T_j and sum J_j/T_j (ln 2 T_j - 0.5772...): of all, half-space, cylinder */
+  const double (*c)[VR_TERMS][VR_FUNCTIONS]; /* coefficients of powers of t */
+} vr_law;
+
+typedef struct { double lam, epsilon, delta_star, beta, Q, M, M_half_space, M_cylinder, N; } vr_state;
+/* dQ_dV at fixed omega, dQ_domega at fixed V; at V = 0 they are not finite */
+typedef struct { double dQ_dV, dQ_domega, dM_dV, dM_half_space_dV, dM_cylinder_dV; } vr_slopes;
+
+typedef struct { int row; double t, dt_dx; } vr_place; /* polynomial and its argument; row -1: the fast limit */
+
+static inline vr_place vr_at(const vr_law *law, double x) {
+  int e;
+  double m = frexp(x, &e);
+  vr_place p;
+  p.row = e - law->e0;
+  if (p.row <= 0 || x == 0.0) p.row = 0, p.dt_dx = ldexp(1.0, -law->e0), p.t = x * p.dt_dx;
+  else if (p.row >= law->rows) p.row = -1, p.t = p.dt_dx = 0.0;
+  else p.t = 4.0 * m - 3.0, p.dt_dx = (p.t + 3.0) / x;
+  return p;
+}
+
+/* values of the functions first to first + count - 1 at a place */
+static inline void vr_values(const double c[VR_TERMS][VR_FUNCTIONS], double t, int first, int count, double *out) {
+  double even[5] = {0.0}, odd[5] = {0.0}, q = t * t;
+  int k, f;
+  for (k = VR_TERMS - 2; k >= 0; k -= 2)
+    for (f = 0; f < count; f++)
+      even[f] = even[f] * q + c[k][first + f], odd[f] = odd[f] * q + c[k + 1][first + f];
+  for (f = 0; f < count; f++) out[f] = even[f] + t * odd[f];
+}
+
+static inline double vr_slope(const double c[VR_TERMS][VR_FUNCTIONS], double t, int f) {
+  double even = 0.0, odd = 0.0, q = t * t;
+  int k;
+  for (k = VR_TERMS - 1; k > 0; k -= 2) {
+    odd = odd * q + k * c[k][f];
+    if (k > 1) even = even * q + (k - 1) * c[k - 1][f];
+  }
+  return odd + t * even;
+}
+
+/* lam, epsilon, M_half_space/V, M_cylinder/V, N at u = kappa |V|; slope, if not NULL: d/du of the third and fourth */
+static inline void vr_speed(const vr_law *law, double u, double out[5], double *slope) {
+  vr_place p = vr_at(law, u);
+  int f;
+  if (p.row >= 0) {
+    vr_values(law->c[p.row], p.t, VR_LAM, 5, out);
+    for (f = 0; slope && f < 2; f++) slope[f] = vr_slope(law->c[p.row], p.t, VR_M_HALF_SPACE + f) * p.dt_dx;
+    return;
+  }
+  double z = 0.5 / (u * sqrt(law->alpha)), half = 0.5 * law->alpha * z, ln = log(z);
+  out[VR_LAM] = 1.0 / sqrt(law->alpha);
+  out[VR_EPSILON] = half * (law->limit[0][1] - law->limit[0][0] * ln);
+  for (f = 0; f < 2; f++) {
+    const double *l = law->limit[f + 1];
+    double m = l[1] - l[0] * (ln - 0.25);
+    out[VR_M_HALF_SPACE + f] = half * z * m;
+    if (slope) slope[f] = -half * z * (2.0 * m - l[0]) / u;
+  }
+  out[VR_N] = 0.25 * (law->alpha - 1.0) * z * z;
+}
+
+/* eta/F and H/F^2 at v = 1/F; slope, if not NULL: d/dv of the second */
+static inline void vr_stick(const vr_law *law, double v, double out[2], double *slope) {
+  vr_place p = vr_at(law, v);
+  if (p.row >= 0) {
+    vr_values(law->c[p.row], p.t, VR_SHARE, 2, out);
+    if (slope) *slope = vr_slope(law->c[p.row], p.t, VR_PRESS) * p.dt_dx;
+    return;
+  }
+  double y = 1.0 / v, b = law->limit[0][1] - law->limit[0][0] * log(y);
+  out[0] = 1.0 - 0.5 * law->alpha * y * b, out[1] = law->alpha * out[0] * out[0];
+  if (slope) *slope = law->alpha * out[0] * (law->alpha * y) * y * (b - law->limit[0][0]);
+}
+
+/* (H/F^2 at v2 less that at v1)/(v2 - v1), v1 <= v2 < 2 v1, without cancellation */
+static inline double vr_secant(const vr_law *law, double v1, double v2) {
+  vr_place p[2];
+  double part = 1.0, total = 0.0, to[2];
+  int n, k;
+  p[0] = vr_at(law, v1), p[1] = vr_at(law, v2), to[0] = p[1].t, to[1] = -1.0;
+  if (p[1].row < 0) {
+    double x = (v2 - v1) / v1, y1 = 1.0 / v1, y2 = 1.0 / v2, half = 0.5 * law->alpha;
+    const double *l = law->limit[0];
+    double slope = half * (l[1] - l[0] * (log(y1) + (x > 0.0 ? log1p(x) / x : 1.0)));
+    double shares = 2.0 - half * (y1 * (l[1] - l[0] * log(y1)) + y2 * (l[1] - l[0] * log(y2)));
+    return law->alpha * shares * slope * y1 * y2;
+  }
+  if (p[0].row != p[1].row) {
+    double edge = ldexp(1.0, law->e0 + p[1].row - 1);
+    part = fmin(fmax((edge - v1) / (v2 - v1), 0.0), 1.0), to[0] = 1.0;
+  }
+  for (n = 0; n < 2 && (n == 0 || p[0].row != p[1].row); n++) {
+    const double(*c)[VR_FUNCTIONS] = law->c[p[n].row];
+    double last = c[VR_TERMS - 1][VR_PRESS], sum = last;
+    for (k = VR_TERMS - 2; k > 0; k--) last = last * p[n].t + c[k][VR_PRESS], sum = sum * to[n] + last;
+    total += (n ? 1.0 - part : part) * sum * p[n].dt_dx;
+  }
+  return total;
+}
+
+static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double slip,
+                            vr_state *s, vr_slopes *d) {
+  double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q;
+  double sign = (slip > 0.0) - (slip < 0.0), delta = slip == 0.0 ? 0.0 : fabs(slip / V);
+  vr_speed(law, u, f, d ? m : (double *)0);
+  double L = f[VR_LAM] * (1.0 + f[VR_EPSILON]), D = 2.0 * kappa * delta / mu, w = L - D;
+  s->lam = f[VR_LAM], s->epsilon = f[VR_EPSILON], s->N = f[VR_N], s->delta_star = 0.5 * mu * L / kappa;
+  s->M_half_space = V * f[VR_M_HALF_SPACE], s->M_cylinder = V * f[VR_M_CYLINDER];
+  s->M = V * (f[VR_M_HALF_SPACE] + f[VR_M_CYLINDER]);
+  if (d) {
+    d->dM_half_space_dV = f[VR_M_HALF_SPACE] + u * m[0], d->dM_cylinder_dV = f[VR_M_CYLINDER] + u * m[1];
+    d->dM_dV = d->dM_half_space_dV + d->dM_cylinder_dV, d->dQ_dV = d->dQ_domega = 0.0;
+  }
+  s->beta = 0.0, s->Q = sign * mu;
+  if (!(delta < s->delta_star && w > 0.0)) return; /* full slip */
+  double v1 = 2.0 * u / L, v2 = 2.0 * u / w;
+  vr_stick(law, v2, b, d ? &p2 : (double *)0);
+  if (D < 0.125 * L) q = D * ((2.0 * L - D) * b[1] - (2.0 * u * L / w) * vr_secant(law, v1, v2));
+  else q = 1.0 - w * w * b[1];
+  s->beta = fmin(b[0] * w / f[VR_LAM], 1.0), s->Q = sign * mu * fmin(q, 1.0);
+  if (d) {
+    vr_stick(law, v1, a, &p1);
+    double A1 = a[1] - 0.5 * v1 * p1, A2 = b[1] - 0.5 * v2 * p2;
+    d->dQ_domega = 4.0 * kappa * w * A2 / fabs(V); /* then dQ_dV at fixed delta, and what delta changes */
+    d->dQ_dV = sign * (V < 0.0 ? -2.0 : 2.0) * mu * kappa * w * (A2 * p1 / A1 - p2) - (1.0 + slip / V) * d->dQ_domega;
+  }
+}
+
+static inline vr_state vr_contact(const vr_law *law, double kappa, double mu, double V, double slip) {
+  vr_state s;
+  vr_solve(law, kappa, mu, V, slip, &s, (vr_slopes *)0);
+  return s;
+}
+
+static inline void vr_contact_slopes(const vr_law *law, double kappa, double mu, double V, double slip,
+                                     vr_state *s, vr_slopes *d) {
+  vr_solve(law, kappa, mu, V, slip, s, d);
+}
+#endif

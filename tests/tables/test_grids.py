@@ -1,0 +1,300 @@
+"""The contact on grids for other programs: nodes, stated errors, formats, and files of every version."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import re
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from closeness import close
+from numpy.typing import NDArray
+from places import ROOT
+from refusals import refused
+from scipy import io
+
+import viscoroll as vr
+from viscoroll import files
+from viscoroll.materials.law_table import law_table
+from viscoroll.tables import schema
+
+V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
+PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)
+WHAT = {
+    "scene": vr.PAPER_SECTION_5,
+    "alphas": vr.PAPER_SECTION_5,
+    "cylinder": vr.RUBBER_CYLINDER,
+    "law": law_table(PAIR),
+}
+SUFFIXES = (".csv", ".txt", ".mat")
+
+
+def built(name: str) -> xr.Dataset:
+    return vr.tables.build(WHAT[name], V, DELTA, ALPHA if name == "alphas" else None, command="made by a test")
+
+
+@pytest.fixture(scope="module", params=list(WHAT))
+def name(request) -> str:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def table(name) -> xr.Dataset:
+    return built(name)
+
+
+@pytest.fixture(scope="module")
+def alphas() -> xr.Dataset:
+    return built("alphas")
+
+
+@pytest.fixture
+def saved(alphas, tmp_path) -> Path:
+    vr.tables.save(alphas, tmp_path / "grid.nc")
+    return tmp_path / "grid.nc"
+
+
+def exact(name: str, points: dict[str, NDArray], fields: tuple[str, ...]) -> dict[str, NDArray]:
+    if name == "cylinder":
+        return vr.RUBBER_CYLINDER.contact(points["V"], delta=points["delta"], fields=fields).as_dict()
+    scene = vr.PAPER_SECTION_5.replace(alpha=points["alpha"]) if name == "alphas" else WHAT[name]
+    scene = vr.Scene(kappa=1.0, mu=1.0, material=PAIR) if name == "law" else scene
+    return vr.contact(scene, points["V"], delta=points["delta"], fields=fields).as_dict()
+
+
+def test_nodes_are_the_contact(name, table):
+    points = {axis: table[axis].values for axis in schema.axes_of(table)}
+    grid = dict(zip(points, np.meshgrid(*points.values(), indexing="ij"), strict=True))
+    for field, values in exact(name, grid, schema.VOLUME).items():
+        assert np.array_equal(table[field].values, values), field
+    for field, values in exact(name, grid, schema.PLANE).items():
+        assert np.array_equal(table[field].values, values[:, 0]), field
+
+
+def test_what_it_says(name, table):
+    for variable in table.variables.values():
+        assert all(variable.attrs[key] for key in ("long_name", "units", "symbol", "reference"))
+    assert (table.Q.attrs["units"], table.V.attrs["units"]) == (
+        ("N m-1", "m s-1") if name == "cylinder" else ("1", "1")
+    )
+    assert "law" in table.attrs["comment"]
+    assert table.attrs["history"].endswith("made by a test")
+    assert ("material" in table.attrs) == (name in ("cylinder", "law"))
+    assert ("alpha" in table.attrs) == (name in ("scene", "law"))
+
+
+def test_stated_errors_are_those_of_other_points(name, table):
+    random, count = np.random.default_rng(5), 20_000
+    points = {axis: random.uniform(*table[axis].values[[0, -1]], count) for axis in schema.axes_of(table)}
+    points["V"] = np.exp(random.uniform(*np.log(V[[0, -1]]), count)).clip(V[0], V[-1])
+    truth = exact(name, points, schema.VOLUME + schema.PLANE)
+    found = vr.tables.interpolate(table, **points)
+    linear = table.interp({axis: xr.DataArray(values) for axis, values in points.items()})
+    for field in schema.fields_of(table):
+        for way, values in (("spline", getattr(found, field)), ("linear", linear[field].values)):
+            stated, error = table[field].attrs[f"{way}_error"], np.abs(values - truth[field]).max()
+            assert tol.GRID_LESS * stated <= error <= tol.GRID_MORE * stated, (field, way)
+
+
+def test_interpolation(table):
+    axes = schema.axes_of(table)
+    points = dict(zip(axes, np.meshgrid(*(table[axis].values for axis in axes), indexing="ij"), strict=True))
+    found = vr.tables.interpolate(table, **points)
+    for field in schema.fields_of(table):
+        expected = table[field].broadcast_like(table.beta).transpose(*axes).values
+        assert close(getattr(found, field), expected, rel=tol.TABLE_SPLINE_NODE, scale=np.abs(expected).max()), field
+    middle = {axis: float(table[axis].values[1]) for axis in axes}
+    one = vr.tables.interpolate(table, "M", V=middle["V"], **({"alpha": middle["alpha"]} if "alpha" in axes else {}))
+    assert isinstance(one.M, float)
+
+
+def test_axes_of_few_nodes():
+    for few in ([0.5], [0.4, 0.5], [0.4, 0.5, 0.6]):
+        table = vr.tables.build(vr.PAPER_SECTION_5, few, [0.0, 0.01], 11.0)
+        found = vr.tables.interpolate(table, "Q", V=0.5, delta=0.01, alpha=11.0)
+        assert close(found.Q, table.Q.sel(V=0.5, delta=0.01, alpha=11.0).item(), rel=tol.TABLE_SPLINE_NODE)
+
+
+def test_refused_points(alphas):
+    good = {"V": 0.5, "delta": 0.01, "alpha": 2.0}
+    for points, text in (
+        ({"alpha": 17.0}, "alpha = 17: must be within the table's range [1, 16]"),
+        ({"V": [0.1, 1e-4]}, "V = 0.0001: must be within the table's range [0.01, 2]"),
+    ):
+        call = partial(vr.tables.interpolate, alphas, **good | points)
+        assert refused(call, error=vr.OutOfTableError) == text
+    for fields, points, text in (
+        ("zeta", good, "'zeta'"),
+        (None, {"V": 2.0, "alpha": 1.0}, "V, delta, alpha"),
+        (None, good | {"s": 1.0}, "V, delta"),
+        (None, good | {"alpha": np.nan}, "alpha = nan"),
+        (None, good | {"V": [1.0, 2.0], "alpha": [2.0] * 3}, "broadcast"),
+    ):
+        refused(partial(vr.tables.interpolate, alphas, fields, **points), text)
+    for thing in (None, xr.Dataset(), vr.tables.law(11.0)):
+        refused(partial(vr.tables.interpolate, thing, V=1.0), "no table of viscoroll", error=vr.TableError)
+
+
+def test_refused_grids():
+    good = {"what": vr.PAPER_SECTION_5, "V": V, "delta": DELTA}
+    for changes, words in (
+        ({"what": 11.0}, "what = 11.0: must be a Scene, a Cylinder or a law"),
+        ({"what": vr.PAPER_SECTION_5.replace(mu=[0.1, 0.2])}, "what = of shape (2,)"),
+        ({"what": vr.RUBBER_CYLINDER, "alpha": ALPHA}, "alpha = given: must be left out"),
+        ({"what": law_table(11.0), "alpha": [0.5]}, "alpha = 0.5"),
+        ({"V": [0.0, 1.0]}, "V = 0"),
+        ({"V": [[1.0]]}, "V = an array of shape (1, 1)"),
+        ({"V": []}, "V = "),
+        ({"V": [1e300]}, "kappa |V|"),
+        ({"delta": [0.1, 0.0]}, "delta"),
+        ({"V": np.arange(1.0, 1e4), "delta": np.arange(1e4)}, "at most"),
+    ):
+        refused(partial(vr.tables.build, **good | changes), words)
+    for options, words in (
+        ((5.0, 5.0, 3), "high = 5.0: must be > low = 5"), ((0.0, 1.0, 3, "log"), "low = 0.0: must be finite and > 0"),
+        ((1.0, np.inf, 3), "high = inf"), ((1.0, 2.0, 1), "count = 1"), ((1.0, 2.0, 3, "lag"), "spacing = 'lag'"),
+    ):  # fmt: skip
+        refused(partial(vr.tables.spread, *options), words)
+
+
+# --- files ---
+
+
+def test_save_load_identity(table, tmp_path):
+    vr.tables.save(table, tmp_path / "t.nc")
+    xr.testing.assert_identical(vr.tables.load(tmp_path / "t.nc"), table)
+    assert [path.name for path in tmp_path.iterdir()] == ["t.nc"]
+    told = vr.tables.info(tmp_path / "t.nc")
+    for words in ("grid, ", "21 nodes in [0.01, 2]", "spline", "linear", "history: "):
+        assert words in told
+
+
+@pytest.mark.parametrize("kind", ["atlas", "literal"])
+def test_files_of_the_first_version(kind, tmp_path):
+    path = tmp_path / f"{kind}.nc"
+    path.write_bytes(gzip.decompress((ROOT / f"tests/tables/files/{kind}-0.1.0.nc.gz").read_bytes()))
+    table = vr.tables.load(path)
+    assert "stated" in vr.tables.info(path)
+    if kind == "atlas":
+        scene, points = vr.Scene(5.0, 1.0, 1.0), {"alpha": 5.0, "kappa_V": 0.7, "s": 0.3}
+        star = vr.contact(scene, 0.7, delta=0.0).delta_star
+        truth, name = vr.contact(scene, 0.7, delta=0.3 * star).Q, "Q_over_mu"
+    else:
+        points = {"alpha": 3.0, "V": 0.3, "delta": 0.011}
+        truth, name = vr.contact(vr.Scene(3.0, 2.91, 0.2), 0.3, delta=0.011).Q, "Q"
+    found = getattr(vr.tables.interpolate(table, name, **points), name)
+    assert abs(found - truth) <= table[name].attrs["interpolation_error"]
+    for suffix in (".csv", ".mat"):
+        vr.tables.export(table, path.with_suffix(suffix))
+
+
+def test_damage(saved):
+    content = saved.read_bytes()
+    for share in (0.001, 0.5, 0.99):
+        saved.write_bytes(content[: int(share * len(content))])
+        refused(partial(vr.tables.load, saved), str(saved), "is damaged", error=vr.TableError)
+    for position in np.random.default_rng(3).integers(0, 8 * (len(content) - 200), 30):
+        damaged = bytearray(content)
+        damaged[position // 8] ^= 1 << position % 8
+        saved.write_bytes(damaged)
+        refused(partial(vr.tables.load, saved), "the SHA-256 at their end", error=vr.TableError)
+
+
+def test_what_is_no_table(alphas, saved, tmp_path):
+    for changed, words in (
+        (alphas.drop_vars("beta"), "variable 'beta' is missing"),
+        (alphas.assign(Q=alphas.Q * np.nan), "finite"),
+        (alphas.assign_attrs(schema_version="2.0"), "is a table of schema 2.0, and this viscoroll"),
+        (alphas.assign_attrs(viscoroll_table="other"), "is no table of viscoroll"),
+        (alphas.transpose("alpha", "V", "delta"), "has dimensions"),
+        (alphas.isel(V=slice(None, None, -1)), "must increase"),
+    ):
+        refused(partial(vr.tables.save, changed, tmp_path / "x.nc"), words, error=vr.TableError)
+        changed.to_netcdf(saved, engine="h5netcdf")
+        assert files.seal_holds(saved.read_bytes()) is None
+        refused(partial(vr.tables.load, saved), str(saved), words, error=vr.TableError)
+    assert [path.name for path in tmp_path.iterdir()] == ["grid.nc"]
+
+
+def test_unwritable_targets(alphas, tmp_path):
+    occupied = tmp_path / "file"
+    occupied.write_text("keep")
+    for target in (occupied / "t.nc", tmp_path, tmp_path / "none/t.nc"):
+        refused(partial(vr.tables.save, alphas, target), str(target), "cannot be written", error=vr.OutputError)
+    for suffix in (".csv", ".mat"):
+        call = partial(vr.tables.export, alphas, tmp_path / f"none/t{suffix}")
+        refused(call, "cannot be written", error=vr.OutputError)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+# --- formats of other programs ---
+
+
+def test_netcdf3_and_csv_hold_the_same_bits(table, tmp_path):
+    vr.tables.export(table, tmp_path / "t.nc", "netcdf3")
+    with io.netcdf_file(tmp_path / "t.nc", mmap=False) as file:
+        assert file.version_byte == 2
+        for key, variable in table.variables.items():
+            assert np.array_equal(file.variables[key][...], variable.values)
+    vr.tables.export(table, tmp_path / "t.csv")
+    with (tmp_path / "t.csv").open(newline="") as text:
+        names, *rows = csv.reader(text)
+    columns = dict(zip(names, np.array(rows, dtype=float).T, strict=True))
+    for key in (*schema.axes_of(table), *schema.fields_of(table)):
+        wide = table[key].broadcast_like(table.beta).transpose(*schema.axes_of(table))
+        assert np.array_equal(columns[key], wide.values.ravel()), key
+
+
+def read_modelica(path: Path) -> tuple[dict[str, float], dict[str, NDArray]]:
+    """Stated errors and matrices of a table text, read as Modelica's standard tables do: "#" starts a comment."""
+    text = path.read_text()
+    assert text.startswith("#1\n")
+    errors = {name: float(value) for name, value in re.findall(r"^# error_(\w+) = (\S+)$", text, re.MULTILINE)}
+    words = re.sub("#.*", "", text).split()
+    matrices: dict[str, NDArray] = {}
+    while words:
+        kind, head, *words = words
+        name, rows, columns = re.fullmatch(r"(\w+)\((\d+),(\d+)\)", head).groups()
+        assert kind == "double"
+        size = int(rows) * int(columns)
+        matrices[name] = np.array(words[:size], dtype=float).reshape(int(rows), int(columns))
+        words = words[size:]
+    return errors, matrices
+
+
+def test_modelica(name, table, tmp_path):
+    if name == "alphas":
+        refused(partial(vr.tables.export, table, tmp_path / "t.txt"), "two inputs")
+        table = table.sel(alpha=[4.0])
+    vr.tables.export(table, tmp_path / "t.txt")
+    errors, matrices = read_modelica(tmp_path / "t.txt")
+    Q, M = matrices["Q"], matrices["M"]
+    assert np.array_equal(Q[1:, 1:], table.Q.values.reshape(V.size, DELTA.size))
+    assert np.array_equal(M, np.column_stack([V, table.M.values.ravel()]))
+    assert np.array_equal(Q[1:, 0], V)
+    assert np.array_equal(Q[0, 1:], DELTA)
+    assert errors == {key: float(f"{table[key].attrs['linear_error']:.3g}") for key in ("Q", "M")}
+
+
+def test_matlab(table, tmp_path):
+    vr.tables.export(table, tmp_path / "t.mat")
+    content = io.loadmat(tmp_path / "t.mat", simplify_cells=True)["viscoroll"]
+    for key in (*schema.axes_of(table), *schema.fields_of(table)):
+        assert np.array_equal(content[key], table[key].values)
+    assert content["dimensions"]["Q"] == ", ".join(schema.axes_of(table))
+    assert content["linear_error"]["beta"] == table.beta.attrs["linear_error"]
+
+
+def test_refused_formats(alphas, tmp_path):
+    for file, form, words in (
+        ("t.h", None, "a name that ends in .nc, .csv, .txt, .mat for a grid"),
+        ("t.nc", "excel", "format = 'excel'"),
+        ("t.csv", "netcdf3", "format = 'netcdf3'"),
+    ):
+        refused(partial(vr.tables.export, alphas, tmp_path / file, form), words)
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,270 @@
+"""Laws as files: the bits of their material, wherever a material stands, and damage that is told."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll import files
+from viscoroll.config import read_bodies, read_body
+from viscoroll.materials.law_file import table_of
+from viscoroll.materials.law_store import checksum
+from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
+from viscoroll.validation.table_check import check_table
+
+SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
+RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)
+STEEL = vr.Material.elastic(2e11, 0.3, name="steel")
+GIVEN: dict[str, tuple[Any, ...]] = {
+    "alpha": (11.0,), "elastic": (1.0,), "series": (SERIES,),
+    "creep": (vr.Prony.creep([0.3, 0.6], [1.0, 1e-2]),),
+    "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3),), "like bodies": (vr.Bodies(SERIES, SERIES),),
+    "material": (RUBBER,), "on steel": (RUBBER, STEEL), "on a rigid base": (RUBBER, vr.Material.rigid()),
+    "steel on it": (STEEL, RUBBER), "pair": (vr.RUBBER_CYLINDER.replace(base=STEEL, plane="stress").pair,),
+}  # fmt: skip
+V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
+WORDS = "write it again by `viscoroll tables law`"
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("law") / "rubber.nc"
+    vr.tables.save(vr.tables.law(RUBBER), path)
+    return path
+
+
+@pytest.fixture
+def copy(saved: Path, tmp_path: Path) -> Path:
+    """The same file, to be changed."""
+    path = tmp_path / "copy.nc"
+    path.write_bytes(saved.read_bytes())
+    return path
+
+
+def same(one: LawTable, other: LawTable) -> None:
+    for field in fields(LawTable):
+        name = "coefficients" if field.name == "given_coefficients" else field.name
+        first, second = getattr(one, name), getattr(other, name)
+        equal = np.array_equal(first, second) if isinstance(first, np.ndarray) else first == second
+        assert equal, name
+
+
+# --- what a file holds ---
+
+
+@pytest.mark.parametrize("name", GIVEN)
+def test_a_file_has_the_bits_of_its_material(tmp_path, name):
+    path, table = tmp_path / "law.nc", table_of(*GIVEN[name])
+    vr.tables.save(vr.tables.law(*GIVEN[name]), path)
+    loaded = vr.load_law(path)
+    same(loaded, table)
+    assert not loaded.coefficients.flags.writeable
+    assert [path.name for path in tmp_path.iterdir()] == ["law.nc"]
+    material = {"alpha": table.material} if isinstance(table.material, float) else {"material": table.material}
+    one, other = vr.Scene(kappa=20.0, mu=0.3, material=loaded), vr.Scene(kappa=20.0, mu=0.3, **material)
+    assert one == other
+    assert hash(one) == hash(other)
+    states = (vr.contact(scene, V, delta=DELTA, slopes=True).as_dict() for scene in (one, other))
+    for (field, first), second in zip(next(states).items(), next(states).values(), strict=True):
+        assert np.array_equal(first, second, equal_nan=True), field
+
+
+def test_a_law_is_made_once_and_taken_as_it_is():
+    table = law_table(SERIES)
+    assert law_table(SERIES) is table
+    assert table_of(table) is table
+    assert vr.Scene(kappa=20.0, mu=0.3, material=table).law is table
+
+
+@pytest.mark.parametrize("name", ["alpha", "series", "on steel"])
+def test_stated_errors_are_those_of_other_places(name):
+    law = vr.tables.law(*GIVEN[name])
+    assert all(law[function].attrs["largest_relative_error"] < tol.LAW_STATED for function in FUNCTIONS)
+    assert [check.name for seed in range(2) for check in check_table(law, 3000, seed) if not check.passed] == []
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_wrong_numbers_are_found(function):
+    law = vr.tables.law(SERIES).copy(deep=True)
+    law[function].values[10, 0] *= 1.0 + tol.CLI_WRONG
+    failed = [check.name for check in check_table(law, 3000, 0) if not check.passed]
+    assert len(failed) == 1
+    assert failed[0].endswith(f": {function}")
+
+
+def test_attributes_are_complete(saved):
+    law = vr.tables.load(saved)
+    assert all(variable.attrs["long_name"] for variable in law.variables.values())
+    assert [name for name, variable in law.variables.items() if "units" in variable.attrs] == ["T_ref"]
+    for key in ("Conventions", "title", "summary", "comment", "references", "source", "date_created", "license"):
+        assert law.attrs[key], key
+    with h5py.File(saved) as file:
+        assert np.issubdtype(
+            file.attrs["law_schema"].dtype, np.integer
+        )  # netCDF's C library reads text of one kind only
+    told = vr.tables.info(saved)
+    for words in ("law", 'name = "a \\"rubber\\""', "largest relative error", "sha256_of_numbers"):
+        assert words in told
+
+
+def test_sizes(tmp_path):
+    """Files of one relaxation time and of 16 over 15 decades: coefficients, and some 30 kB of frame."""
+    broad = vr.Prony(0.3 * 1.3 ** np.arange(16), 10.0 ** -np.arange(16.0))
+    for given, most in ((11.0, 85_000), (broad, 140_000)):
+        vr.tables.save(vr.tables.law(given), tmp_path / "law.nc")
+        assert (tmp_path / "law.nc").stat().st_size < most
+
+
+# --- wherever a material stands ---
+
+
+@pytest.mark.parametrize("name", ["material", "on steel", "pair"])
+def test_a_cylinder_of_a_law(tmp_path, name):
+    vr.tables.save(vr.tables.law(*GIVEN[name]), tmp_path / "law.nc")
+    law = vr.load_law(tmp_path / "law.nc")
+    pair = table_of(*GIVEN[name]).pair
+    by_law = vr.Cylinder(R=0.1, m=30.0, mu=0.3, material=law, plane=pair.plane)
+    own = by_law.replace(material=pair.cylinder, base=pair.base)
+    assert by_law.scene() == own.scene()
+    assert by_law.scene().law is law
+    assert (by_law.T_ref, by_law.E_prime, by_law.l0) == (own.T_ref, own.E_prime, own.l0)
+    for field, value in by_law.contact(0.3, delta=1e-3).as_dict().items():
+        assert value == getattr(own.contact(0.3, delta=1e-3), field), field
+    assert by_law.roll(0.2, 0.0, [1e-2]).V[-1] == own.roll(0.2, 0.0, [1e-2]).V[-1]
+    assert by_law.replace(mu=0.2).scene().law is law
+
+
+def test_a_scene_keeps_its_law():
+    table = law_table(SERIES)
+    scene = vr.Scene(kappa=20.0, mu=0.3, material=table)
+    assert scene.replace(mu=0.2).law is table
+    assert scene.replace(alpha=3.0).law is None
+    assert scene.replace(material=vr.Prony([1.0], [1.0])).law is None
+    assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
+
+
+def test_scene_files_and_material_files(saved, tmp_path):
+    (tmp_path / "rubber.nc").write_bytes(saved.read_bytes())
+    cylinder = "[cylinder]\nR = 0.1\nm = 30.0\nmu = 0.3\n"
+    path = tmp_path / "scene.toml"
+    path.write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
+    assert read_body(path).material == RUBBER
+    assert read_bodies(path) == table_of(RUBBER).pair
+    vr.tables.save(vr.tables.law(RUBBER, STEEL), tmp_path / "rubber.nc")
+    refused(partial(read_body, path), "line 2", "law of a pair: give one material", error=vr.ConfigError)
+    vr.tables.save(vr.tables.law(11.0), tmp_path / "rubber.nc")
+    refused(partial(read_body, path), "line 2", "without units", error=vr.ConfigError)
+
+
+def test_refused():
+    law, roller = law_table(SERIES), {"R": 0.1, "m": 30.0, "mu": 0.3}
+    in_si = table_of(RUBBER, STEEL)
+    for call, words in (
+        (partial(vr.Scene, kappa=20.0, mu=0.3, alpha=3.0, material=law), "alpha and material are both given"),
+        (partial(vr.Cylinder, **roller, material=law), "material = a law without units"),
+        (partial(vr.Cylinder, **roller, material=in_si, base=STEEL), "base = given: must be left out"),
+        (partial(vr.Cylinder, **roller, material=in_si, plane="stress"), "plane = 'stress'"),
+        (partial(vr.tables.law, law, STEEL), "base = given"),
+        (partial(vr.tables.law, SERIES, STEEL), "base = given"),
+        (partial(vr.tables.law, vr.Material.rigid(), vr.Material.rigid()), "rigid"),
+    ):
+        refused(call, words)
+
+
+# --- files that are refused ---
+
+
+def error_of(path: Path) -> str:
+    return refused(partial(vr.load_law, path), str(path), error=vr.TableError)
+
+
+def test_cut_and_flipped(copy):
+    content = copy.read_bytes()
+    for share in (0.0, 0.001, 0.1, 0.5, 0.9, 0.99):
+        copy.write_bytes(content[: int(share * len(content))])
+        assert WORDS in error_of(copy), share
+    for position in np.random.default_rng(3).integers(0, 8 * (len(content) - 200), 40):
+        damaged = bytearray(content)
+        damaged[position // 8] ^= 1 << position % 8
+        copy.write_bytes(damaged)
+        assert error_of(copy).endswith(f"differ from the SHA-256 at their end; {WORDS}")
+
+
+def test_no_law(copy, tmp_path):
+    assert "cannot be read" in error_of(tmp_path / "none.nc")
+    assert "cannot be read" in error_of(tmp_path)
+    copy.write_bytes(b"V,delta\n1,2\n")
+    assert WORDS in error_of(copy)
+    RUBBER.to_netcdf(copy)
+    assert error_of(copy).endswith("is no law file of viscoroll: `viscoroll tables law` writes one")
+    vr.tables.save(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 0.2], [0.0, 0.01]), copy)
+    assert "is no law file" in error_of(copy)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda file: file.attrs.__setitem__("law_schema", 2), "schema 2, and this viscoroll"),
+        (lambda file: file.attrs.__setitem__("law_schema", "1"), "schema 1, and this viscoroll"),
+        (lambda file: file.attrs.__delitem__("law_schema"), "schema None"),
+        (lambda file: file["press"].__setitem__((3, 5), 0.125), "its numbers are not those of its sha256_of_numbers"),
+        (lambda file: file["e0"].__setitem__((), 7), "its numbers are not those"),
+        (lambda file: file.attrs.__setitem__("sha256_of_numbers", "0" * 64), "its numbers are not those"),
+        (lambda file: file.__delitem__("share"), "variable 'share' is missing"),
+        (lambda file: file.attrs.__setitem__("material", "[material]\nE = 3.0"), "is no whole law file"),
+        (lambda file: file.attrs.__setitem__("material", "not TOML"), "is no whole law file"),
+        (lambda file: file.attrs.__delitem__("material"), "is no whole law file"),
+    ],
+)
+def test_edited_by_another_program(copy, change, words):
+    with h5py.File(copy, "a") as file:
+        change(file)
+    assert words in error_of(copy)
+
+
+def test_rewritten_by_another_program(copy, saved):
+    """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own programs write."""
+    with xr.open_dataset(saved, engine="h5netcdf", decode_times=False) as file:
+        file.load().to_netcdf(copy, engine="h5netcdf")
+    assert files.seal_holds(copy.read_bytes()) is None
+    same(vr.load_law(copy), vr.load_law(saved))
+
+
+# --- other formats ---
+
+
+def test_json_has_the_same_bits(saved, tmp_path):
+    law = vr.tables.load(saved)
+    vr.tables.export(law, tmp_path / "rubber.json")
+    found = json.loads((tmp_path / "rubber.json").read_text())
+    assert found["law_schema"] == 1
+    for name, variable in law.variables.items():
+        assert np.array_equal(np.array(found[name]), variable.values), name
+    read = {name: xr.Variable(law[name].dims, np.array(found[name])) for name in law.variables}
+    assert checksum(xr.Dataset(read)) == found["sha256_of_numbers"]
+
+
+def test_refused_exports(saved, tmp_path):
+    law = vr.tables.load(saved)
+    for name, form, words in (
+        ("rubber.csv", None, "a name that ends in .h, .json or .nc for a law"),
+        ("my-rubber.h", None, "named as a variable of C may be"),
+        ("rubber.h", "netcdf3", "format = 'netcdf3'"),
+        ("rubber.nc", "excel", "format = 'excel'"),
+    ):
+        refused(partial(vr.tables.export, law, tmp_path / name, form), words)
+    wrong = law.assign(press=law.press * 2.0)
+    refused(partial(vr.tables.export, wrong, tmp_path / "rubber.h"), "its numbers are not those", error=vr.TableError)
+    refused(partial(vr.tables.save, wrong, tmp_path / "rubber.nc"), "its numbers are not those", error=vr.TableError)
+    assert not list(tmp_path.iterdir())
