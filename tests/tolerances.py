@@ -45,6 +45,9 @@ TABLE_SPLINE_NODE = 1e-13
 #: bound.
 GRID_MORE, GRID_LESS = 1.5, 0.3
 
+#: Motions of pipeline/demo/runtime.py from the file, of Radau at rtol 1e-8; by a coarse grid they are further off.
+DEMO_FILE = 1e-7
+
 # --- examples in other programs (test_interop.py) ---
 #: Readers of a law's file against ``contact`` with the same coefficients; other orders of summation, beta a thousandth
 #: away from full slip.

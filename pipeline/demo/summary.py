@@ -1,4 +1,4 @@
-"""Stage 6: one page over all that was made -> out/index.html.
+"""Stage 7: one page over all that was made -> out/index.html.
 
     python -m pipeline.demo.summary [--config FILE] [-o FOLDER] [--show]
 
@@ -29,6 +29,7 @@ from .captions import SECTIONS
 STAGES = {
     "tabulate": "The tables of the law",
     "validate": "Against direct solves of the printed equations",
+    "runtime": "Motions from the file, from root solves and from a grid",
     "motions": "The paper's motions IC1-IC3",
     "ensemble": "Random starts",
     "figures": "Figures",
@@ -138,6 +139,9 @@ def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
         rows(found["validate"]["headline"]),
         f"<p>{', '.join(link(out / file, out) for file in found['validate']['files'])}</p>",
         f"<pre>{escape(report)}</pre>",
+        "<h2>Offline and runtime</h2><p>The same motions by one integrator with the law of the file that the first "
+        "stage wrote, and with splines in a grid; root solves of the printed equations are the truth.</p>",
+        rows(found["runtime"]["headline"]), f"<p>{link(out / found['runtime']['files'][0], out)}</p>",
         f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
         rows({STAGES[name]: record["seconds"] for name, record in found.items()}), "</body></html>",
     ]  # fmt: skip

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -81,15 +81,14 @@ class Scene:
     gamma: Any = None
     j: Any = 0.5
     material: Prony | Bodies | MaterialArray | LawTable | None = None
-    #: the table that was given in place of its material
-    law: LawTable | None = field(default=None, init=False)
+    _law: ClassVar[LawTable | None] = None
 
     def __post_init__(self) -> None:
         if self.material is not None:
             if self.alpha is not None:
                 raise one_of("alpha", "material", both=True)
             if isinstance(self.material, LawTable):
-                object.__setattr__(self, "law", self.material)
+                object.__setattr__(self, "_law", self.material)
                 material = self.material.material
                 of_alpha = not isinstance(material, Prony | Bodies)
                 object.__setattr__(self, "alpha", material if of_alpha else None)
@@ -112,6 +111,11 @@ class Scene:
                 _refuse_ratio(arrays["mu"], arrays["kappa"])
         for name, array in arrays.items():
             object.__setattr__(self, name, frozen(array))
+
+    @property
+    def law(self) -> LawTable | None:
+        """The law that was given in place of its material."""
+        return self._law
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import tomllib
 from html import escape
@@ -281,6 +282,14 @@ stress_states = 1
 table_points = 100
 times = 5
 seed = 0
+[runtime]
+law = "{law}"
+end = 1e-4
+times = 3
+rtol = 1e-8
+V = [1e-3, 2.0, 30]
+delta = [0.04, 31]
+allowed = 1e-6
 [motions]
 preset = "paper-section-5"
 end = 4e-3
@@ -303,7 +312,7 @@ tables = ["{law}"]
 _STAGES = """
 import runpy, sys
 folder, *options = sys.argv[1:]
-for name in ("tabulate", "validate", "motions", "ensemble", "figures", "summary"):
+for name in ("tabulate", "validate", "runtime", "motions", "ensemble", "figures", "summary"):
     sys.argv = [name, *options, *(["--tables", folder] if name == "tabulate" else [])]
     try:
         runpy.run_module(f"pipeline.demo.{name}", run_name="__main__")
@@ -345,12 +354,22 @@ def demo(tmp_path_factory) -> tuple[Path, Path]:
 
 def test_stages_leave_records(demo):
     _, out = demo
-    for name in ("tabulate", "validate", "motions", "ensemble", "figures"):
+    for name in ("tabulate", "validate", "runtime", "motions", "ensemble", "figures"):
         record = json.loads((out / f"stages/{name}.json").read_text(encoding="utf-8"))
         assert record["stage"] == name
         assert record["seconds"] >= 0.0
         assert not record["failed"]
         assert all((out / file).exists() for file in record["files"])
+
+
+def test_motions_from_the_file_are_those_of_root_solves(demo):
+    rows = list(csv.DictReader((demo[1] / "runtime.csv").read_text().splitlines()))
+    assert {row["start"] for row in rows} == set(vr.PAPER_STARTS)
+    by = {
+        name: max(float(row["error"]) for row in rows if row["law by"] == name)
+        for name in {row["law by"] for row in rows}
+    }
+    assert by["the file of the law"] < tol.DEMO_FILE < by["a grid of Q and M, splines"]
 
 
 def test_motions_file(demo):
@@ -411,5 +430,5 @@ def test_stage_says_what_has_to_run_first(demo, tmp_path):
 
 def test_production_configuration_is_read():
     content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
-    assert {"tables", "validate", "motions", "ensemble", "summary"} <= content.keys()
+    assert {"tables", "validate", "runtime", "motions", "ensemble", "summary"} <= content.keys()
     assert content["ensemble"]["motions"] == 1_000_000
