@@ -26,7 +26,7 @@ class Tables(msgspec.Struct, forbid_unknown_fields=True):
     """[tables]: the largest error allowed, and the materials by name."""
 
     allowed: float
-    laws: dict[str, Law]
+    laws: dict[str, dict]
 
 
 class Law(msgspec.Struct, forbid_unknown_fields=True):
@@ -36,8 +36,8 @@ class Law(msgspec.Struct, forbid_unknown_fields=True):
     fitted; or the keys of a section [material].  ``nu`` and ``name`` are for a fit.
     """
 
-    material: str | dict[str, Any]
-    base: str | dict[str, Any] | None = None
+    material: str | dict
+    base: str | dict | None = None
     nu: float = 0.49
     name: str = ""
 
@@ -45,7 +45,8 @@ class Law(msgspec.Struct, forbid_unknown_fields=True):
 def build_all(config: Path, folder: Path) -> stage.Outcome:
     """Build, save and report every law of the configuration."""
     outcome, settings = stage.Outcome([]), stage.read_section(config, "tables", Tables)
-    for name, given in settings.laws.items():
+    for name, section in settings.laws.items():
+        given = read_law(config, name, section)
         began, path = time.perf_counter(), stage.make_folder(folder) / f"{name}.nc"
         base = None if given.base is None else body(config, given.base, given)
         law = vr.tables.law(body(config, given.material, given), base)
@@ -58,6 +59,14 @@ def build_all(config: Path, folder: Path) -> stage.Outcome:
         outcome.failed |= worst > settings.allowed
     # law.nc, all alphas of one relaxation time in one file, is to be built here
     return outcome
+
+
+def read_law(config: Path, name: str, section: dict[str, Any]) -> Law:
+    """One of [tables.laws]; raises ConfigError."""
+    try:
+        return msgspec.convert(section, Law)
+    except msgspec.ValidationError as error:
+        raise ConfigError(config, f"[tables.laws.{name}] {error}") from error
 
 
 def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
