@@ -17,6 +17,7 @@ sys.path.insert(0, str(HERE))  # gallery_images below, imported by name so that 
 from sphinx_gallery.sorting import ExplicitOrder  # noqa: E402
 
 import viscoroll  # noqa: E402
+from viscoroll.config import read_bodies  # noqa: E402
 
 warnings.simplefilter("ignore", viscoroll.ModelWarning)  # pages on the paper's example say it in words
 os.environ["VISCOROLL_QUIET"] = "1"  # no word about compiling in the output of an example
@@ -90,7 +91,7 @@ sphinx_gallery_conf = {
 html_theme = "pydata_sphinx_theme"
 html_title = "viscoroll"
 html_logo = html_favicon = "_static/mark.svg"
-html_static_path = ["_static"]
+html_static_path = ["_static", "loading/read_law.js"]
 html_css_files = ["viscoroll.css"]
 html_show_sourcelink = False
 html_copy_source = False
@@ -166,7 +167,16 @@ def spoken(app: Any, what: str, name: str, thing: Any, options: Any, lines: list
     lines[:] = "``".join(text).split("\n")
 
 
+def write_law(app: Any, error: Exception | None) -> None:
+    """The law that live.md computes with, as a script, for a page that is opened from a disk may not fetch."""
+    if error is None:
+        path = Path(app.outdir) / "_static/rubber.json"
+        viscoroll.tables.export(viscoroll.tables.law(read_bodies(HERE / "examples/rubber.toml")), path)
+        path.with_suffix(".js").write_text(f"const RUBBER = {path.read_text(encoding='utf-8')};\n", encoding="utf-8")
+
+
 def setup(app: Any) -> dict[str, bool]:
     app.connect("source-read", read)
+    app.connect("build-finished", write_law)
     app.connect("autodoc-process-docstring", spoken, priority=400)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import html
 import importlib.util
+import json
 import os
 import re
 import shutil
@@ -16,11 +17,15 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import numpy as np
 import pytest
+import tolerances as tol
+from closeness import close
 from filelock import FileLock
 from places import ROOT
 
 import viscoroll as vr
+from viscoroll.config import read_bodies
 
 SITE = ROOT / "docs/_build/html"
 NEEDED = (
@@ -204,3 +209,44 @@ def test_search_finds_roll(browse):
     assert not wrong, "\n".join(wrong)
     results = re.search(r'id="search-results">.*', page, re.S)[0]
     assert re.search(r'href="api/viscoroll\.roll\.html', results)
+
+
+#: sets the sliders of live.html to states, and notes the numbers that it shows
+SLIDERS = """<!DOCTYPE html><link rel="icon" href="/_static/mark.svg"><pre id="found"></pre><iframe src="/live.html"></iframe>
+<script>
+addEventListener("load", () => {{
+  const place = document.querySelector("iframe").contentDocument.getElementById("law");
+  document.getElementById("found").textContent = JSON.stringify({states}.map((state) => {{
+    for (const [name, value] of Object.entries(state)) {{
+      const slider = place.querySelector(`[name=${{name}}]`);
+      slider.value = value;
+      slider.dispatchEvent(new Event("input"));
+    }}
+    return Object.fromEntries([...place.querySelectorAll("data")].map((shown) => [shown.id, Number(shown.value)]));
+  }}));
+}});
+</script>
+"""
+
+
+def test_the_page_that_computes_has_the_contact_of_the_package(browse):
+    random, count = np.random.default_rng(5), 60
+    places = {"u": (-3.0, 9.0), "creep": (-0.3, 0.3), "mu": (-2.0, 0.0)}
+    columns = {name: random.uniform(*ends, count) for name, ends in places.items()}
+    columns["creep"][::3] *= 1e-3
+    states = [dict(zip(columns, map(float, state), strict=True)) for state in zip(*columns.values(), strict=True)]
+    browse.probe.write_text(SLIDERS.format(states=json.dumps(states)), encoding="utf-8")
+    page, wrong = browse("probe.html")
+    assert not wrong, "\n".join(wrong)
+    shown = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', page, re.S)[1]))
+    found = {name: np.array([one[name] for one in shown]) for name in shown[0]}
+    assert close(found["creep"], columns["creep"], rel=tol.INTEROP)
+    assert close(np.log10(found["u"]), columns["u"], rel=tol.INTEROP)
+    scene = vr.Scene(kappa=1.0, mu=found["mu"], material=read_bodies(ROOT / "docs/examples/rubber.toml").law)
+    exact = vr.contact(scene, found["u"], delta=found["creep"])
+    assert exact.full_slip.any()
+    assert not exact.full_slip.all()
+    for name in ("lam", "epsilon", "delta_star", "Q", "M"):
+        assert close(found[name], getattr(exact, name), rel=tol.INTEROP), name
+    # full slip is where beta has no digits but those of its condition
+    assert close(found["beta"], exact.beta, rel=tol.INTEROP, scale=1.0)
