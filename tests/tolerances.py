@@ -524,3 +524,22 @@ TRANSIENT_ERROR = 6e-3
 #: v where a straight line through the nodes of a panel passes 0: its interpolant in powers of t rounds at 2^-53 of the
 #: terms of its coefficients, 1,800 together; measured 4.8e-14 over 4,000 places.
 EVENT_PLACE = 2e-13
+
+# --- fmu/test_fmu.py ---
+#: A few roundings of the last place.
+FMU_ROUNDED = 1e-14
+#: Forces of an element against the law: omega R - v of an FMU and omega - V of the law round apart, which is amplified
+#: by V over the creep at which the contact slips.
+FMU_FORCES = 1e-10
+#: and its slopes.
+FMU_SLOPES = 1e-9
+#: Slopes against quotients of differences.
+FMU_QUOTIENTS = 1e-6
+#: A roller as co-simulation at rtol 1e-8 against ``roll`` at 1e-11, of the largest of V, omega, x.
+FMU_ROLLER = 1e-9
+#: from next to rest, of V itself: the start counts.
+FMU_FROM_REST = 1e-6
+#: An element in SciPy's Radau at rtol 1e-9.
+FMU_ELEMENT = 1e-8
+#: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
+FMU_TOOL = 1e-4

@@ -8,7 +8,7 @@ Which error when:
 - :class:`TableError`: a file that is missing, damaged, of another schema, or not a table (or not a material).
 - :class:`OutputError`: a result that cannot be written.
 - :class:`ConfigError`: a TOML file with a misspelt key or a value of the wrong type.
-- :class:`MissingDependencyError`: a package of an extra is not installed.
+- :class:`MissingDependencyError`: a package of an extra, or a program, is not installed.
 - :class:`ConvergenceError`: an iteration that hit its cap.
 
 Kernels never raise; they return a status.  Motions carry one each, with a sentence
@@ -87,11 +87,11 @@ class Interrupted(KeyboardInterrupt):
 
 
 class MissingDependencyError(ViscorollError):
-    """A ``package`` that belongs to an ``extra`` of the installation is not there."""
+    """A ``package`` that belongs to an ``extra`` of the installation is not there, or a program of no extra."""
 
-    def __init__(self, package: str, extra: str) -> None:
+    def __init__(self, package: str, extra: str | None) -> None:
         self.package, self.extra = package, extra
-        super().__init__(f"{package} is not installed: pip install 'viscoroll[{extra}]'")
+        super().__init__(f"{package} is not installed" + (f": pip install 'viscoroll[{extra}]'" if extra else ""))
 
 
 class ConvergenceError(ViscorollError):

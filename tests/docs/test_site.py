@@ -212,7 +212,8 @@ def test_search_finds_roll(browse):
 
 
 #: sets the sliders of live.html to states, and notes the numbers that it shows
-SLIDERS = """<!DOCTYPE html><link rel="icon" href="/_static/mark.svg"><pre id="found"></pre><iframe src="/live.html"></iframe>
+SLIDERS = """<!DOCTYPE html><link rel="icon" href="/_static/mark.svg"><pre id="found"></pre>
+<iframe src="/live.html"></iframe>
 <script>
 addEventListener("load", () => {{
   const place = document.querySelector("iframe").contentDocument.getElementById("law");

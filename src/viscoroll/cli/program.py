@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import Interrupted, ViscorollError
-from . import contact, doctor, ensemble, material, motion, plot, sensitivity, steady, tables, validity, warmup
+from . import contact, doctor, ensemble, fmu, material, motion, plot, sensitivity, steady, tables, validity, warmup
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
@@ -46,7 +46,7 @@ def parser() -> Parser:
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     commands = program.add_subparsers(metavar="COMMAND", required=True)
-    for group in (contact, motion, steady, validity, ensemble, sensitivity, tables, material, plot, warmup, doctor):
+    for group in (contact, motion, steady, validity, ensemble, sensitivity, tables, fmu, material, plot, warmup, doctor):
         group.add_commands(commands)
     return program
 

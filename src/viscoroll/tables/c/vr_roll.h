@@ -13,7 +13,8 @@ typedef struct {
   double kappa, mu, gamma, j;
   double force, torque; /* on the axis, over P and P R */
   double rest;          /* below this speed errors count as at it; > 0 where the motion comes to rest */
-  double V, slip, step; /* state, and the step to try: 0 at the start; from rest start at a V that does not matter, not 0 */
+  double V, slip, x;    /* state and way; from rest start at a V that does not matter, not 0 */
+  double step;          /* to try: 0 at the start */
   long steps, rejected;
 } vr_roller;
 
@@ -42,7 +43,7 @@ static inline int vr_roll(vr_roller *r, double time, double rtol) {
     {-0.1073529058151375, -9.594562251023355, -20.47028614809616},
     {7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160},
     {8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054}};
-  double t = 0.0, h = r->step > 0.0 ? r->step : 1e-6 * time, f[2] = {0.0}, J[2][2] = {{0.0}}, k[6][2], y[2], g[2];
+  double t = 0.0, h = r->step > 0.0 ? r->step : 1e-6 * time, f[2] = {0.0}, J[2][2] = {{0.0}}, k[6][3], y[2], g[2], way;
   int fresh = 1, i, n, m;
   while (t < time) {
     if (r->force == 0.0 && r->torque == 0.0 && fabs(r->V) + fabs(r->slip) < 1e-3 * r->rest) return 0; /* at rest */
@@ -57,14 +58,17 @@ static inline int vr_roll(vr_roller *r, double time, double rtol) {
       for (n = 0; n < 2; n++)
         for (m = 0; m < i; m++) g[n] += C[i][m] * k[m][n] / step;
       k[i][0] = (e * g[0] + J[0][1] * g[1]) / det, k[i][1] = (a * g[1] + J[1][0] * g[0]) / det;
+      for (way = y[0], m = 0; m < i; m++) way += C[i][m] * k[m][2] / step;
+      k[i][2] = (way + k[i][0]) / d; /* of x' = V */
     }
+    for (way = r->x + k[5][2], m = 0; m < 5; m++) way += A[5][m] * k[m][2];
     y[0] += k[5][0], y[1] += k[5][1];
     double size = fmax(fmax(fabs(y0[0]), fabs(y[0])), r->rest) + 1e-300, band = 0.5 * r->mu / r->kappa * size; /* delta_star V */
     double w0 = rtol * size, w1 = rtol * fmax(fmax(fabs(y0[1]), fabs(y[1])), band);
     double error = sqrt(0.5 * (k[5][0] / w0 * (k[5][0] / w0) + k[5][1] / w1 * (k[5][1] / w1)));
     double factor = error > 0.0 ? fmin(fmax(0.9 * pow(error, -0.25), 0.2), 5.0) : 5.0;
     if (error <= 1.0) {
-      t = last ? time : t + step, r->V = y[0], r->slip = y[1], fresh = 1, r->steps++;
+      t = last ? time : t + step, r->V = y[0], r->slip = y[1], r->x = way, fresh = 1, r->steps++;
       h = last ? fmax(h, step * fmin(factor, 1.0)) : step * factor;
     } else {
       h = step * fmin(factor, 0.9), r->rejected++;

@@ -1,0 +1,306 @@
+"""FMUs as a tool drives them: the rules of the standard, forces and motions of the package, refusals in words."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from scipy.integrate import solve_ivp
+
+import viscoroll as vr
+from viscoroll import fmu
+from viscoroll.cli import main
+from viscoroll.errors import MissingDependencyError, ParameterError
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+fmpy = pytest.importorskip("fmpy", reason="not installed (make interop): fmpy")
+validation = pytest.importorskip("fmpy.validation")
+
+RUBBER = vr.Material(E=3e6, nu=0.5, prony=vr.Prony(E=[0.4, 0.6, 1.5], tau=[1.0, 1e-2, 1e-4]), T_ref=0.2, name="rubber")
+STEEL = vr.Material(E=2.1e11, nu=0.3, name="steel")
+#: like bodies, and a rubber on steel, of which the cylinder alone loses work
+CYLINDERS = {
+    "alike": vr.Cylinder(R=0.1, m=35.5, material=RUBBER, mu=0.3),
+    "unlike": vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0),
+}
+OUTPUTS = ("force", "torque", "moment_half_space", "moment_cylinder")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """A function from (cylinder, model, version) to its FMU, made once."""
+    folder, made = tmp_path_factory.mktemp("fmu"), {}
+
+    def path(*key):
+        if key not in made:
+            name, model, version = key
+            made[key] = folder / f"{name}-{model}-{version}.fmu"
+            fmu.build(CYLINDERS[name], made[key], model, version)
+        return str(made[key])
+
+    return path
+
+
+class Instance:
+    """An instance of an FMU, in model exchange unless it is for co-simulation; names in place of references."""
+
+    def __init__(self, path, **given):
+        self.about = fmpy.read_model_description(path)
+        self.said = []
+        self.references = {v.name: v.valueReference for v in self.about.modelVariables}
+        self.folder = fmpy.extract(path)
+        self.fmu = fmpy.instantiate_fmu(self.folder, self.about, "ModelExchange", logger=self._note)
+        self.two = self.about.fmiVersion == "2.0"
+        self.set(**given)
+        if self.two:
+            self.fmu.setupExperiment()
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def _note(self, *said):
+        self.said.append(str(said))
+
+    def at(self, names):
+        return [self.references[name] for name in names]
+
+    def set(self, **given):
+        put = self.fmu.setReal if self.two else self.fmu.setFloat64
+        put(self.at(given), list(given.values()))
+
+    def get(self, *names):
+        return np.array((self.fmu.getReal if self.two else self.fmu.getFloat64)(self.at(names)))
+
+    def slopes(self, unknowns, knowns):
+        """A row for each unknown."""
+        columns = [self.fmu.getDirectionalDerivative(self.at(unknowns), self.at([one]), [1.0]) for one in knowns]
+        return np.array(columns).T
+
+
+@contextmanager
+def opened(path, **given):
+    one = Instance(path, **given)
+    try:
+        yield one
+    finally:
+        one.fmu.freeInstance()
+        shutil.rmtree(one.folder)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("model", fmu.MODELS)
+@pytest.mark.parametrize("name", CYLINDERS)
+def test_the_standard_is_kept(built, name, model, version):
+    assert validation.validate_fmu(built(name, model, version)) == []
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("name", CYLINDERS)
+def test_element_has_forces_and_slopes_of_the_law(built, name, version):
+    cylinder = CYLINDERS[name]
+    law, random = vr.law(cylinder.scene()), np.random.default_rng(3)
+    P, R, T = cylinder.load, cylinder.R, cylinder.T_ref
+    with opened(built(name, "ContactElement", version)) as element:
+        for _ in range(100):
+            v = random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-4.0, 2.0)
+            star = cylinder.contact(v, delta=0.0).delta_star
+            omega = v / R * (1.0 + star * random.uniform(-1.3, 1.3))
+            element.set(v=v, omega=omega, load=P)
+            f = law(v * T / R, omega * T, slopes=True)
+            exact = P * np.array(
+                [f.Q - f.M_half_space, -R * (f.Q + f.M_cylinder), R * f.M_half_space, R * f.M_cylinder]
+            )
+            scale = P * np.array([1.0, R, R, R])
+            # omega and v of the law are rounded, which a creep of little counts
+            assert close(element.get(*OUTPUTS), exact, rel=tol.FMU_FORCES, scale=scale)
+            by_v = [f.dQ_dV - f.dM_half_space_dV, -f.dQ_dV - f.dM_cylinder_dV, f.dM_half_space_dV, f.dM_cylinder_dV]
+            slopes = np.column_stack([by_v, [f.dQ_domega, -f.dQ_domega, 0.0, 0.0]]) * scale[:, np.newaxis] * [T / R, T]
+            found = element.slopes(OUTPUTS, ("v", "omega"))
+            assert close(found, slopes, rel=tol.FMU_SLOPES, scale=np.abs(slopes).max(axis=0))
+
+
+@pytest.mark.parametrize("v", [0.3, -2.0, 4e-7, 0.0])
+def test_slopes_of_the_element_are_those_of_its_forces(built, v):
+    """By v, omega and load, below v_min too, where the law is that of v_min."""
+    with opened(built("unlike", "ContactElement", 2)) as element:
+        at = {"v": v, "omega": (v - 1e-3 * max(abs(v), 1e-6)) / CYLINDERS["unlike"].R, "load": 2000.0}
+
+        def forces(**changed):
+            element.set(**(at | changed))
+            return element.get(*OUTPUTS)
+
+        element.set(**at)
+        slopes = element.slopes(OUTPUTS, tuple(at))
+        for column, (name, value) in zip(slopes.T, at.items(), strict=True):
+            h = 1e-5 * (2000.0 if name == "load" else max(abs(v), 1e-6) * (1.0 if name == "v" else 20.0))
+            ends = {k: forces(**{name: value + k * h}) for k in (-2, -1, 1, 2)}
+            quotient = (8.0 * (ends[1] - ends[-1]) - (ends[2] - ends[-2])) / (12.0 * h)
+            assert close(column, quotient, rel=tol.FMU_QUOTIENTS, scale=np.abs(quotient).max()), name
+
+
+def test_no_contact_no_force(built):
+    with opened(built("alike", "ContactElement", 3), load=-5.0, v=1.0) as element:
+        assert not element.get(*OUTPUTS, "contact_length").any()
+
+
+#: thrown, and thrown the other way with a drive: V0, omega0, force on the axis, torque, over the weight
+THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("throw", THROWS)
+@pytest.mark.parametrize("name", CYLINDERS)
+def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
+    cylinder = CYLINDERS[name]
+    V0, omega0, force, torque = THROWS[throw]
+    force, torque, t = force * cylinder.load, torque * cylinder.load * cylinder.R, np.linspace(0.0, 0.5, 11)
+    exact = cylinder.roll(V0, omega0, t, rtol=1e-11, force=force, torque=torque)
+    found = fmpy.simulate_fmu(
+        built(name, "Roller", version), stop_time=t[-1], output_interval=t[1], fmi_type="CoSimulation",
+        start_values={"v0": V0, "omega0": omega0, "drive_force": force, "drive_torque": torque},
+        output=["v", "omega", "x"],
+    )  # fmt: skip
+    assert close(found["time"], t, rel=tol.FMU_ROUNDED, scale=1.0)
+    for column, values in {"v": exact.V, "omega": exact.omega, "x": exact.x}.items():
+        assert close(found[column], values, rel=tol.FMU_ROLLER, scale=np.abs(values).max()), column
+
+
+def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
+    options = {"stop_time": 0.2, "output_interval": 0.1, "fmi_type": "CoSimulation", "output": ["v", "x"]}
+    still = fmpy.simulate_fmu(built("alike", "Roller", 2), start_values={"v0": 0.0}, **options)
+    assert np.abs(still["v"]).max() < 1e-6  # v_min
+    pulled = fmpy.simulate_fmu(built("alike", "Roller", 2), start_values={"v0": 0.0, "drive_force": -20.0}, **options)
+    exact = CYLINDERS["alike"].roll(0.0, 0.0, [0.1, 0.2], rtol=1e-10, force=-20.0)
+    assert close(pulled["v"][1:], exact.V, rel=tol.FMU_FROM_REST)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_roller_by_an_integrator_of_the_tool(built, version):
+    cylinder, t = CYLINDERS["unlike"], np.linspace(0.0, 0.3, 4)
+    found = fmpy.simulate_fmu(
+        built("unlike", "Roller", version), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
+        relative_tolerance=1e-8, output=["v", "omega"],
+    )  # fmt: skip
+    exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
+    assert close(found["v"], exact.V, rel=tol.FMU_TOOL)
+    assert close(found["omega"], exact.omega, rel=tol.FMU_TOOL, scale=np.abs(exact.omega).max())
+
+
+def test_slopes_of_the_roller_are_those_of_its_rates(built):
+    cylinder, knowns = CYLINDERS["alike"], ("v", "slip", "x", "drive_force", "drive_torque")
+    unknowns = ("der_v", "der_slip", "der_x", "v", "slip", "x", "omega")
+    with opened(built("alike", "Roller", 2), v0=1.0, omega0=0.999 / cylinder.R, drive_force=3.0) as roller:
+        slopes = roller.slopes(unknowns, knowns)
+        h, start = 1e-6, roller.get("v", "slip", "x")
+
+        def around(column, by):
+            if column < 3:
+                roller.fmu.setContinuousStates(*_pointer(start + by * np.eye(3)[column]))
+            else:
+                roller.fmu.setContinuousStates(*_pointer(start))
+                roller.set(drive_force=3.0 + by * (column == 3), drive_torque=by * (column == 4))
+            return roller.get(*unknowns)
+
+        for column in range(5):
+            step = h if column < 3 else 1.0
+            quotient = (around(column, step) - around(column, -step)) / (2.0 * step)
+            scale = np.maximum(np.abs(quotient).max(), np.abs(slopes).max() * 1e-6)
+            assert close(slopes[:, column], quotient, rel=tol.FMU_QUOTIENTS, scale=scale), knowns[column]
+
+
+def _pointer(values):
+    import ctypes
+
+    array = np.ascontiguousarray(values)
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), array.size
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_element_in_an_integrator_of_ones_own(built, version):
+    cylinder, t = CYLINDERS["alike"], np.linspace(0.0, 0.6, 7)
+    inertia = np.array([cylinder.m, cylinder.j * cylinder.m * cylinder.R**2])
+    with opened(built("alike", "ContactElement", version)) as element:
+
+        def rates(_, y):
+            element.set(v=y[0], omega=y[1])
+            return element.get("force", "torque") / inertia
+
+        def jacobian(_, y):
+            element.set(v=y[0], omega=y[1])
+            return element.slopes(("force", "torque"), ("v", "omega")) / inertia[:, np.newaxis]
+
+        found = solve_ivp(rates, (0.0, t[-1]), [1.0, 0.0], "Radau", t, jac=jacobian, rtol=1e-9, atol=1e-12)
+    exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
+    assert close(found.y[0], exact.V, rel=tol.FMU_ELEMENT)
+    assert close(found.y[1], exact.omega, rel=tol.FMU_ELEMENT, scale=np.abs(exact.omega).max())
+
+
+def test_adjoint_slopes_are_the_same(built):
+    with opened(built("unlike", "ContactElement", 3), v=0.4, omega=7.9) as element:
+        slopes = element.slopes(OUTPUTS, ("v", "omega", "load"))
+        unknowns, knowns = element.at(OUTPUTS), element.at(("v", "omega", "load"))
+        for row, seed in zip(slopes, np.eye(4), strict=True):
+            found = element.fmu.getAdjointDerivative(unknowns, knowns, seed.tolist(), 3)
+            assert close(np.array(found), row, rel=tol.FMU_ROUNDED)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_what_is_out_of_range_is_refused_in_words(built, version):
+    with opened(built("alike", "ContactElement", version)) as element:
+        for given, said in (({"R": -1.0}, "R = -1: must be > 0"), ({"v": np.nan}, "v = nan: must be finite")):
+            element.set(**given)
+            with pytest.raises(fmpy.fmi1.FMICallException):
+                element.get("force")
+            assert said in element.said[-1]
+            element.set(R=0.1, v=1.0)
+        with pytest.raises(fmpy.fmi1.FMICallException):
+            element.set(force=1.0)
+        assert "that of an input or a parameter" in element.said[-1]
+        element.get("force")
+
+
+def test_program(tmp_path, capsys):
+    law, roller = tmp_path / "law.nc", tmp_path / "roller.fmu"
+    vr.tables.save(vr.tables.law(CYLINDERS["unlike"].pair), law)
+    assert main(["fmu", str(law), "-o", str(roller), "--fmi", "3"]) == 0
+    about = fmpy.read_model_description(str(roller))
+    starts = {v.name: v.start for v in about.modelVariables}
+    assert float(starts["E_prime"]) == CYLINDERS["unlike"].E_prime
+    assert float(starts["T_ref"]) == RUBBER.T_ref
+    toml = "docs/examples/rubber.toml"
+    assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement", "--temperature", "60"]) == 0
+    assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"
+    assert "roller.fmu" in capsys.readouterr().out
+
+
+def test_same_cylinder_same_bytes(tmp_path):
+    for name in ("one.fmu", "other.fmu"):
+        fmu.build(CYLINDERS["alike"], tmp_path / name)
+    assert (tmp_path / "one.fmu").read_bytes() == (tmp_path / "other.fmu").read_bytes()
+
+
+@pytest.mark.parametrize("given", [{"model": "Wheel"}, {"version": 1}])
+def test_other_models_and_versions_are_refused(tmp_path, given):
+    with pytest.raises(ParameterError, match=next(iter(given))):
+        fmu.build(11.0, tmp_path / "a.fmu", **given)
+
+
+def test_an_array_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="mu = an array"):
+        fmu.build(CYLINDERS["alike"].replace(mu=np.array([0.2, 0.3])), tmp_path / "a.fmu")
+
+
+@pytest.mark.parametrize("missing", ["fmpy", "cc"])
+def test_what_is_missing_is_told(tmp_path, monkeypatch, capsys, missing):
+    if missing == "cc":
+        monkeypatch.setenv("PATH", str(tmp_path))
+    else:
+        monkeypatch.setitem(__import__("sys").modules, "fmpy", None)
+    with pytest.raises(MissingDependencyError, match=f"{missing}.* is not installed"):
+        fmu.build(11.0, tmp_path / "a.fmu")
+    assert main(["fmu", "docs/examples/rubber.toml", "-o", str(tmp_path / "a.fmu")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
