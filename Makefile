@@ -55,6 +55,7 @@ bench: setup ## run time against error beside the peers (long; LSODA wants gfort
 numbers: setup ## measure again what README and docs state, and put it there (about 10 minutes)
 	$(RUN) -m pipeline.measure --config $(CONFIG)
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
+	-$(RUN) -m pipeline.measure.outside --config $(CONFIG)
 	$(RUN) -m pipeline.document
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
@@ -77,8 +78,8 @@ test: setup ## the whole test suite
 
 DEBIAN := gcc g++ gfortran netcdf-bin libnetcdf-dev libnetcdff-dev octave octave-netcdf r-base-core r-cran-ncdf4 nodejs
 SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
-interop: interop-tools ## laws in C, C++, Fortran, Octave, R, Node, ncdump and the CF checker, which it installs
-	$(BIN)/pytest -rs tests/docs/test_interop.py
+interop: interop-tools ## laws in C, C++, Fortran, Octave, R, Node, FMUs, ncdump and the CF checker, which it installs
+	$(BIN)/pytest -rs tests/docs/test_interop.py tests/fmu
 
 # What cannot be installed, without a network say, is told here, and its tests are skipped with that reason.
 interop-tools: setup
@@ -86,13 +87,13 @@ interop-tools: setup
 	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(DEBIAN) >/dev/null \
 	  || echo "interop: not installed: $(DEBIAN)"
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[interop]' \
-	  || echo "interop: not installed: compliance-checker"
+	  || echo "interop: not installed: compliance-checker, fmpy"
 
 docs: .venv/docs ## the site, every example of it run: docs/_build/html/index.html (a minute or two)
 	rm -rf docs/_build docs/api docs/gallery docs/tutorial
 	$(RUN) -m sphinx -W --keep-going -n -E -q -b html docs docs/_build/html
 .venv/docs: .venv/stamp
-	$(RUN) -c 'import sphinx_gallery, pydata_sphinx_theme' 2>/dev/null \
+	$(RUN) -c 'import fmpy, sphinx_gallery, pydata_sphinx_theme' 2>/dev/null \
 	  || $(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	touch $@
 

@@ -11,7 +11,12 @@ function law({ lam, epsilon, m_half_space, m_cylinder, N, share, press, e0, alph
     const t = 4 * word[0] - 3;
     return { row, t, dt_dx: (t + 3) / x };
   }
-  const value = (c, { row, t }) => c[row].reduceRight((sum, one) => sum * t + one);
+  function value(c, { row, t }) {
+    const powers = c[row];
+    let sum = 0;
+    for (let k = powers.length - 1; k >= 0; k--) sum = sum * t + powers[k];
+    return sum;
+  }
   function speed(u) {
     const p = place(u);
     if (p.row < rows) return [lam, epsilon, m_half_space, m_cylinder, N].map(c => value(c, p));

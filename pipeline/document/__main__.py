@@ -32,6 +32,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     },
     "document": {"symbols": symbols.symbols},
     "measure.large": {"large": tables.large},
+    "measure.outside": {"page": tables.page, "outside": tables.outside},
     "measure.ensembles": {
         "ensembles": ensembles.rates, "ensembles_cluster": ensembles.cluster, "ensembles_plan": ensembles.plan,
     },

@@ -44,6 +44,19 @@ _TIMES = {
     **_IMPORT,
     "`viscoroll roll`, the whole process, kernels cached": "{time[cli_roll_s]!n} s",
 }
+_PAGE = {
+    "a redraw of four curves with their layout, median of {sizes[redraws]}": "{page[median_ms]!n} ms",
+    "numbers of the page against `vr.contact`, at most": "{page[error]!n}",
+    "the file": "{kilobytes:.0f} kB",
+}
+_OUTSIDE = {
+    "C, gcc -O2, a state; with all slopes": "{states[c_ns]!n} ns; {states[c_slopes_ns]!n} ns",
+    "JavaScript, Node, a state": "{states[node_ns]!n} ns",
+    "FMU: complaints of `validate_fmu`, both models, FMI 2.0 and 3.0": "{fmu[complaints]}",
+    "FMU: a thrown roller as co-simulation against `roll`": "{fmu[roller_error]!n}",
+    "FMU: the contact element in SciPy's Radau at rtol 1e-9, likewise": "{fmu[element_error]!n}",
+    "FMU: largest file, sources inside": "{kilobytes:.0f} kB",
+}
 _MACHINE = (
     "\n{cpu}, {system}, Python {python}, numpy {numpy}, numba {numba}; "
     "viscoroll {viscoroll}, {date}.  Times are medians on one core.\n"
@@ -164,6 +177,18 @@ def torture(results: Results) -> str:
         for row in rows_of(results["torture"]["parts"])
     )
     return listed(columns, rows)
+
+
+def page(results: Results) -> str:
+    """The page that computes."""
+    found = results["outside"]
+    return stated(("what", "measured"), _PAGE, found | {"kilobytes": found["page"]["bytes"] / 1e3})
+
+
+def outside(results: Results) -> str:
+    """The law in C, in Node and in FMUs."""
+    found = results["outside"]
+    return stated(("what", "measured"), _OUTSIDE, found | {"kilobytes": found["fmu"]["bytes"] / 1e3})
 
 
 def large(results: Results) -> str:

@@ -180,10 +180,10 @@ def test_a_roller_of_c(tmp_path):
     (tmp_path / "roll.c").write_text(
         '#include <stdio.h>\n#include "paper.h"\n#include "vr_roll.h"\n'
         "int main(void) {\n"
-        f"  vr_roller a = {{&paper, {kappa}, {mu}, {gamma}, 0.5, 0.0, 0.0, 1e-9, 1.5, -1.0, 0.0, 0, 0}};\n"
-        f"  vr_roller b = {{&paper, {kappa}, {mu}, {gamma}, 0.5, 0.05, 0.0, 1e-6, 1e-9, 0.0, 0.0, 0, 0}};\n"
+        f"  vr_roller a = {{&paper, {kappa}, {mu}, {gamma}, 0.5, 0.0, 0.0, 1e-9, 1.5, -1.0, 0.0, 0.0, 0, 0}};\n"
+        f"  vr_roller b = {{&paper, {kappa}, {mu}, {gamma}, 0.5, 0.05, 0.0, 1e-6, 1e-9, 0.0, 0.0, 0.0, 0, 0}};\n"
         f"  if (vr_roll(&a, {end}, 1e-8) || vr_roll(&b, {end}, 1e-8)) return 1;\n"
-        '  printf("%.17g %.17g %.17g %.17g\\n", a.V, a.V + a.slip, b.V, b.V + b.slip);\n'
+        '  printf("%.17g %.17g %.17g %.17g %.17g %.17g\\n", a.V, a.V + a.slip, a.x, b.V, b.V + b.slip, b.x);\n'
         "  return 0;\n}\n"
     )
     subprocess.run(f"cc -std=c99 {_STRICT} roll.c -o roll -lm", shell=True, cwd=tmp_path, check=True)
@@ -191,7 +191,7 @@ def test_a_roller_of_c(tmp_path):
     scene = vr.Scene(alpha, kappa, mu, gamma)
     throw = vr.roll(scene, 1.5, 0.5, [end], rtol=1e-10)
     pulled = vr.roll(scene, 0.0, 0.0, [end], rtol=1e-10, force=0.05)
-    exact = [throw.V[-1], throw.omega[-1], pulled.V[-1], pulled.omega[-1]]
+    exact = [m[-1] for m in (throw.V, throw.omega, throw.x, pulled.V, pulled.omega, pulled.x)]
     assert close(np.array(done.stdout.split(), dtype=float), np.array(exact), rel=tol.INTEROP_ROLL)
 
 

@@ -100,7 +100,7 @@ def test_relative_links_exist():
                 continue
             name, _, anchor = target.partition("#")
             # pages of the gallery are made from its examples
-            name = re.sub(r"^(gallery|tutorial)/(.+)\.rst$", r"examples/\1/\2.py", name)
+            name = re.sub(r"^(\.\./)?(gallery|tutorial)/(.+)\.rst$", r"\1examples/\2/\3.py", name)
             found = (page.parent / name).resolve() if name else page
             assert found.exists(), (page, target)
             if anchor:

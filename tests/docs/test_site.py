@@ -29,7 +29,8 @@ from viscoroll.config import read_bodies
 
 SITE = ROOT / "docs/_build/html"
 NEEDED = (
-    "myst_parser", "numpydoc", "pydata_sphinx_theme", "sphinx", "sphinx_copybutton", "sphinx_design", "sphinx_gallery",
+    "fmpy", "myst_parser", "numpydoc", "pydata_sphinx_theme", "sphinx", "sphinx_copybutton", "sphinx_design",
+    "sphinx_gallery",
 )  # fmt: skip
 BUILD = "-W --keep-going -n -E -q -b html docs docs/_build/html"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")

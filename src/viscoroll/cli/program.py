@@ -46,7 +46,20 @@ def parser() -> Parser:
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     commands = program.add_subparsers(metavar="COMMAND", required=True)
-    for group in (contact, motion, steady, validity, ensemble, sensitivity, tables, fmu, material, plot, warmup, doctor):
+    for group in (
+        contact,
+        motion,
+        steady,
+        validity,
+        ensemble,
+        sensitivity,
+        tables,
+        fmu,
+        material,
+        plot,
+        warmup,
+        doctor,
+    ):
         group.add_commands(commands)
     return program
 

@@ -1,0 +1,42 @@
+"""
+A roller in another tool
+========================
+
+``viscoroll fmu`` makes an FMU, which Modelica tools, Simulink and others run.  Here it is fmpy that
+runs one: a roller lies still, and a motor pulls for a second.
+"""
+
+import tempfile
+from pathlib import Path
+
+import fmpy
+import matplotlib.pyplot as plt
+import numpy as np
+
+import viscoroll as vr
+from viscoroll import fmu
+
+roller = vr.RUBBER_CYLINDER
+drive = np.array(
+    [(0.0, 0.0, 5.0), (1.0, 0.0, 5.0), (1.0, 0.0, 0.0), (3.0, 0.0, 0.0)],
+    dtype=[("time", float), ("drive_force", float), ("drive_torque", float)],
+)  # s, N, N m
+with tempfile.TemporaryDirectory() as folder:
+    path = Path(folder) / "roller.fmu"
+    fmu.build(roller, path)  # or: viscoroll fmu rubber.toml -o roller.fmu
+    found = fmpy.simulate_fmu(
+        str(path), stop_time=3.0, output_interval=0.02, fmi_type="CoSimulation", input=drive,
+        start_values={"v0": 0.0}, output=["v", "omega", "traction"],
+    )  # fmt: skip
+
+figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
+axes.plot(found["time"], found["v"], label="v, m/s")
+axes.plot(found["time"], roller.R * found["omega"], "--", label="omega R, m/s")
+axes.set(xlabel="t, s")
+axes.legend()
+print(f"v = {found['v'][-1]:.6f} m/s after 3 s")
+
+# %%
+# ``Roller`` takes its own steps between those of the tool.  ``--model ContactElement`` is the contact
+# alone, from v, omega and load to force and torque with their slopes, for a mechanism that has the
+# cylinder already.
