@@ -132,7 +132,7 @@ def survived(folder: Path, expected: dict[str, str]) -> bool:
 
 
 def values_hash(path: Path) -> str:
-    """Of a sealed table: names and values alone, as ``date_created`` tells when it was made."""
+    """Of a sealed table: names and values alone, as ``history`` tells when it was made."""
     if not seal_holds(path.read_bytes()):
         raise TableError(path, "has no seal that holds")
     return fingerprint(tables.load(path).drop_attrs())

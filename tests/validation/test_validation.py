@@ -14,7 +14,7 @@ from processes import made, stage, stage_refused
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.materials.law_store import checksum
+from viscoroll.materials.law_store import checksum, content_of
 from viscoroll.validation import Check, Report, report_dataset, stresses, validate
 from viscoroll.validation.direct_motion import roll_direct
 from viscoroll.validation.motions import motion_checks
@@ -174,7 +174,7 @@ def test_stage_passes_then_fails(tmp_path, law):
     assert (out / "stages/validate.json").exists()
     wrong = law.copy(deep=True)
     wrong["press"].values[9] *= 1.0 + tol.CLI_WRONG
-    vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(wrong)), tmp_path / "law.nc")
+    vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(content_of(wrong).numbers)), tmp_path / "law.nc")
     result = stage("demo.validate", "--config", settings, "-o", out)
     assert result.returncode == 1
     assert "EXCEEDED" in result.stdout

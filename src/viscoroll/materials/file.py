@@ -158,7 +158,7 @@ def _stored(path: Any, name: str, given: FileSection) -> Material:
 
 def _of_law(path: Path) -> Material:
     """The one material that the file of a law names; raises TableError of a pair, or of a law without units."""
-    found = tomllib.loads(read_law(path).attrs["material"])
+    found = tomllib.loads(read_law(path).attributes["material"])
     if not found.keys() & set(SECTIONS):
         raise TableError(path, "is the law of a material without units: it must be of one with [material]")
     if "base" in found:

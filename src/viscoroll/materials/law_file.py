@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,7 +18,7 @@ from ..errors import ConfigError, ParameterError, TableError
 from ..symbols import PAPER
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
-from .law_store import CHECKSUM, MEANING, OTHERS, REMEDY, SCHEMA, VERSION, checksum, read_law
+from .law_store import CHECKSUM, MEANING, OTHERS, REMEDY, SCHEMA, VERSION, Content, checksum, content_of, read_law
 from .law_table import FUNCTIONS, LawTable, law_table
 from .pair import Pair
 from .prony import Prony
@@ -74,10 +76,10 @@ def as_dataset(table: LawTable, errors: Mapping[str, float]) -> xr.Dataset:
             SCHEMA: np.int32(VERSION), "bodies": "unlike" if table.unlike else "alike",
             "material": described(table.pair or table.material),
             "comment": COMMENT, "references": PAPER, "source": f"viscoroll {__version__}",
-            "date_created": datetime.now(UTC).isoformat(timespec="seconds"), "license": "BSD-3-Clause",
+            "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
         },
     )  # fmt: skip
-    return found.assign_attrs({CHECKSUM: checksum(found)})
+    return found.assign_attrs({CHECKSUM: checksum(content_of(found).numbers)})
 
 
 def name_of(table: LawTable) -> str:
@@ -109,17 +111,18 @@ def load_law(path: str | PathLike[str]) -> LawTable:
     return law_of(read_law(path), path)
 
 
-def law_of(found: xr.Dataset, path: Any) -> LawTable:
-    """The law of a dataset that was checked; raises TableError where it does not name its material."""
+def law_of(content: Content, path: Any) -> LawTable:
+    """The law of what was checked; raises TableError where it does not name its material."""
+    found, attributes = content
     try:
-        given = _material_of(found.attrs["material"], path)
-        numbers: dict[str, Any] = {name: found[name].values for name in OTHERS}
+        given = _material_of(attributes["material"], path)
+        numbers: dict[str, Any] = {name: np.asarray(found[name]) for name in OTHERS}
         for name, value in numbers.items():
             numbers[name] = int(value) if name == "e0" else float(value) if not value.ndim else _frozen(value)
-        coefficients = _frozen(np.stack([found[name].values for name in FUNCTIONS], axis=-1))
+        coefficients = _frozen(np.stack([found[name] for name in FUNCTIONS], axis=-1))
         pair = given if isinstance(given, Pair) else None
         return LawTable(
-            given_coefficients=coefficients, **numbers, unlike=found.attrs["bodies"] == "unlike",
+            given_coefficients=coefficients, **numbers, unlike=attributes["bodies"] == "unlike",
             material=given if pair is None else pair.law, pair=pair,
         )  # fmt: skip
     except (ConfigError, ParameterError, KeyError, TypeError, ValueError) as error:

@@ -13,6 +13,7 @@ from ..contact_fields import OF_BODIES
 from ..cylinder import Cylinder
 from ..errors import ParameterError
 from ..materials.law_file import described, law_of
+from ..materials.law_store import content_of
 from ..materials.law_table import LawTable
 from ..rolling_contact import contact
 from ..scene import HIGHEST_ALPHA, Scene
@@ -125,7 +126,7 @@ def increasing(name: str, nodes: Any, **bound: Any) -> NDArray[np.float64]:
 def _single(what: Any) -> Scene | Cylinder:
     """What has the contact: a law at kappa = mu = 1."""
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
-        what = law_of(what, "law")
+        what = law_of(content_of(what), "law")
     if isinstance(what, LawTable):
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..errors import ParameterError
 from ..files import write_text
 from ..materials.law_file import as_dataset, law_of, table_of
-from ..materials.law_store import CHECKSUM, check
+from ..materials.law_store import CHECKSUM, check, content_of
 from ..materials.law_table import FUNCTIONS, LawTable, by_modes
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def _polynomial(table: LawTable, function: int, x: NDArray) -> NDArray[np.float6
 
 def export_law(found: xr.Dataset, path: Path) -> None:
     """Write a law as a header of C, table and evaluator in one, or as JSON; by the suffix."""
-    check(found, "export")
+    check(content_of(found), "export")
     if path.suffix not in FORMATS:
         raise ParameterError("path", path, f"a name that ends in {', '.join(FORMATS)} or .nc for a law")
     write_text(path, FORMATS[path.suffix](found, path))
@@ -102,7 +102,7 @@ def _header(found: xr.Dataset, path: Path) -> str:
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
-    table = law_of(found, path)
+    table = law_of(content_of(found), path)
     octaves = ",\n".join(
         "{" + ",\n ".join("{" + _numbers(powers) + "}" for powers in octave) + "}" for octave in table.coefficients
     )

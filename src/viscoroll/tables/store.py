@@ -26,7 +26,10 @@ def is_law(table: Any) -> bool:
 
 def check(table: Any, path: Any) -> None:
     """Refuse what is neither a law nor a grid; raises TableError."""
-    (law_store.check if is_law(table) else schema.check)(table, path)
+    if is_law(table):
+        law_store.check(law_store.content_of(table), path)
+    else:
+        schema.check(table, path)
 
 
 def save(table: xr.Dataset, path: str | PathLike[str]) -> None:

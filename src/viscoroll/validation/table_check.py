@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import ParameterError, TableError
 from ..materials.law_file import law_of
+from ..materials.law_store import content_of
 from ..materials.law_table import FUNCTIONS
 from ..tables.law import measured_errors
 from ..tables.store import is_law
@@ -46,7 +47,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     source = table.encoding.get("source", "table")
     if not is_law(table):
         raise TableError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")
-    found = measured_errors(law_of(table, source), count, seed)
+    found = measured_errors(law_of(content_of(table), source), count, seed)
     return [
         Check(
             f"{table.attrs['title']}: {name}", found[name],
