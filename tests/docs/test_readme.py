@@ -46,6 +46,15 @@ def test_first_pages_run(page, capsys):
     assert "small_contact  yes " in capsys.readouterr().out
 
 
+def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for code in blocks(ROOT / "docs/offline_runtime.md", "python"):
+        exec(compile(code, "offline_runtime.md", "exec"), {})
+    worst, way = map(float, capsys.readouterr().out.split())
+    assert worst < tol.LAW_STATED
+    assert way == vr.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0).x[-1]
+
+
 def test_howto_blocks_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session: dict = {}

@@ -178,6 +178,11 @@ def test_refused():
         (partial(vr.tables.law, law, STEEL), "base = given"),
         (partial(vr.tables.law, SERIES, STEEL), "base = given"),
         (partial(vr.tables.law, vr.Material.rigid(), vr.Material.rigid()), "rigid"),
+        (partial(vr.tables.law, "rubber"), "material = of type str: must be a Prony, Bodies, a Material"),
+        (partial(vr.tables.law, vr.Prony([[1.0], [2.0]], [1.0])), "material = of type PronyArray"),
+        (partial(vr.tables.law, vr.RUBBER_CYLINDER, STEEL), "base = given"),
+        (partial(vr.tables.law, 0.5), "alpha = 0.5"),
+        (partial(vr.tables.law, float("nan")), "alpha = nan"),
     ):
         refused(call, words)
 

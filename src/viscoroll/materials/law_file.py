@@ -8,20 +8,24 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
+from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import __version__
+from ..checks import checked
 from ..errors import ConfigError, ParameterError, TableError
 from ..symbols import PAPER
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_store import CHECKSUM, MEANING, OTHERS, REMEDY, SCHEMA, VERSION, Content, checksum, content_of, read_law
 from .law_table import FUNCTIONS, LawTable, law_table
+from .material import Material
 from .pair import Pair
 from .prony import Prony
+from .prony_forms import HIGHEST_ALPHA
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,16 +45,19 @@ COMMENT = (
 
 def table_of(material: Any, base: Any = None) -> LawTable:
     """The law of a Prony, Bodies, alpha, Material (on a ``base``), Pair, or of a law that there is already."""
-    if isinstance(material, LawTable):
-        if base is not None:
-            raise ParameterError("base", "given", "left out: a law knows its bodies")
-        return material
-    if not hasattr(material, "T_ref"):
-        if base is not None:
-            raise ParameterError("base", "given", "left out unless material is a Material")
+    if base is not None and not isinstance(material, Material):
+        raise ParameterError("base", "given", "left out unless material is a Material")
+    if isinstance(material, LawTable | Prony | Bodies):
         return law_table(material)
-    pair = material if isinstance(material, Pair) and base is None else Pair(material, base)
-    return replace(law_table(pair.law), T_ref=pair.T_ref, pair=pair)
+    if isinstance(material, Material):
+        material = Pair(material, base)
+    if isinstance(material, Pair):
+        pair = material
+        return replace(law_table(pair.law), T_ref=pair.T_ref, pair=pair)
+    if not isinstance(material, Real):
+        allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
+        raise ParameterError("material", f"of type {type(material).__name__}", allowed)
+    return law_table(float(checked("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
 
 
 def as_dataset(table: LawTable, errors: Mapping[str, float]) -> xr.Dataset:

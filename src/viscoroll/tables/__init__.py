@@ -1,7 +1,7 @@
 """Tables of the contact law: files of one material or pair, exact, and grids for look-up blocks of other programs.
 
     import viscoroll as vr
-    law = vr.tables.law(vr.RUBBER_CYLINDER.pair)
+    law = vr.tables.law(vr.RUBBER_CYLINDER)
     vr.tables.save(law, "rubber.nc")  # for vr.load_law, and any program that reads netCDF
     vr.tables.export(law, "rubber.h")  # table and evaluator in one header of C
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cylinder import Cylinder
 from ..errors import ParameterError
 from ..files import write_text
 from ..materials.law_file import as_dataset, law_of, table_of
@@ -32,7 +33,7 @@ def law(material: Any, base: Any = None) -> xr.Dataset:
 
     Parameters
     ----------
-    material : a :class:`viscoroll.Prony`, :class:`viscoroll.Bodies`, :class:`viscoroll.Material`, ``pair`` of a
+    material : a :class:`viscoroll.Prony`, :class:`viscoroll.Bodies`, :class:`viscoroll.Material`, that of a
         :class:`viscoroll.Cylinder`, or alpha >= 1, of a solid with T_epsilon = 1.
     base : the :class:`viscoroll.Material` of the half-space where it is another.
 
@@ -49,7 +50,7 @@ def law(material: Any, base: Any = None) -> xr.Dataset:
     ParameterError
         What is no material.
     """
-    table = table_of(material, base)
+    table = table_of(material.pair if isinstance(material, Cylinder) else material, base)
     return as_dataset(table, measured_errors(table))
 
 
