@@ -404,7 +404,7 @@ def test_stage_refuses_in_one_line(demo, tmp_path):
     for name, old, new, words in (
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
-        ("motions", '"paper-section-5"', '"paper"', "preset = 'paper'"),
+        ("motions", '"paper-section-5"', '"paper"', "preset: 'paper' is not"),
         ("figures", "[figures]", "[pictures]", "section [figures] is missing"),
         ("summary", "[summary]", "[summary", "is not TOML"),
     ):

@@ -6,6 +6,7 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
+from ..results import unit_of
 from . import plot
 from .arguments import FORMATS, add_output_option, count, output_path
 
@@ -69,7 +70,8 @@ def _sheet(indices: xr.Dataset, *, provenance: bool = False) -> Sheet:
     else:
         for key in ("base_points", "seed", "source", "versions", "run_file"):
             columns[key] = np.full(len(rows), about[key], object)
-    return Sheet(_heading(about), {"confidence": about["confidence"]}, columns)
+    unit = unit_of(indices["t"].attrs)
+    return Sheet(_heading(about), {"confidence": about["confidence"]}, columns, {"t": unit} if unit else {})
 
 
 def _heading(about: dict[str, Any]) -> tuple[str, ...]:

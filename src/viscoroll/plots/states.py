@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import LINES, THIN, axis, new_figure
+from ..contact_fields import OF_BODIES
+from .style import LINES, THIN, axis, log_ticks, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 #: fields that are drawn where they are there, in this order
-_FIELDS = ("Q", "M", "M_half_space", "M_cylinder", "beta", "epsilon", "lam", "length", "delta_star", "kappa_M", "N")
+_FIELDS = (
+    "Q", "M", "C_rr", "beta", "epsilon", "lam", "M_half_space", "M_cylinder", "length", "delta_star", "kappa_M", "N",
+)  # fmt: skip
 _MOST = 6
 #: of a second axis
 _CURVES = 4
@@ -45,7 +48,13 @@ def over_axes(data: xr.Dataset) -> Figure:
             text = ", ".join(f"{axis(data[key])} = {_at(data, key, place):.4g}" for key, place in n.items())
             box.plot(x, values.values, label=text or None, **line)
         box.set(xlabel=axis(data[first]) if first in data.coords else first, ylabel=axis(data[name]))
-        box.set_xscale(_scale(x))
+        if name == "C_rr" or (name == "M" and data[name].attrs.get("units", "1") == "1"):
+            box.set_title("coefficient of rolling resistance", fontsize="small")
+        if _rises_by_factors(x):
+            box.set_xscale("log")
+            log_ticks(box.xaxis)
+        else:
+            box.locator_params(axis="x", nbins=6)
     for box in boxes.ravel()[len(names) :]:
         box.remove()
     if others:
@@ -79,14 +88,18 @@ def equilibria(data: xr.Dataset) -> Figure:
     for which, face, text in ((stable, colour, "stable"), (~stable, "white", "not stable")):
         held = which & np.isfinite(V)
         box.plot(load[held], V[held], "o", color=colour, markerfacecolor=face, markersize=4, label=text)
-    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale=_scale(_finite(data["V"])))
+    speeds = _finite(data["V"])
+    wide = speeds.min() > 0.0 and speeds.max() > 100.0 * speeds.min()
+    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale="log" if wide else "linear")
     box.legend(frameon=False)
     return figure
 
 
 def _shown(data: xr.Dataset) -> list[str]:
-    """Fields that vary; all of them where none does."""
-    names = [name for name in _FIELDS if name in data.data_vars and data[name].ndim]
+    """Fields that vary; all of them where none does.  Of like bodies without the parts of M, half of it each."""
+    like = set(OF_BODIES) <= set(data) and data["M_cylinder"].equals(data["M_half_space"])
+    fields = [name for name in _FIELDS if not (like and name in OF_BODIES)]
+    names = [name for name in fields if name in data.data_vars and data[name].ndim]
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
 
@@ -107,7 +120,10 @@ def _at(data: xr.Dataset, name: str, place: int) -> float:
     return float(data[name].values[place]) if name in data.coords else float(place)
 
 
-def _scale(x: NDArray[Any]) -> str:
-    """A logarithm where the axis is spaced so, or nearly."""
-    wide = x.size > 2 and x.min() > 0.0 and x.max() > 100.0 * x.min()
-    return "log" if wide else "linear"
+def _rises_by_factors(x: NDArray[Any]) -> bool:
+    """Whether places lie more evenly on a logarithmic axis than on a linear one."""
+    places = np.unique(x)
+    if places.size < 3 or places[0] <= 0.0:
+        return False
+    linear, logarithmic = np.diff(places), np.diff(np.log(places))
+    return bool(logarithmic.std() / logarithmic.mean() < linear.std() / linear.mean())

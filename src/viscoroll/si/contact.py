@@ -13,6 +13,9 @@ from ..rolling_contact import contact
 from ..typed import Numbers
 from .units import QUANTITIES, Cylinder, Units, over, to_si, units_of
 
+#: what a cylinder has beside the fields of a scene, and of which of these it is made
+OWN = {"length": "lam", "C_rr": "M"}
+
 
 def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Numbers | None, **options: Any) -> Values:
     """``Cylinder.contact``."""
@@ -22,19 +25,20 @@ def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Num
     fields = options.pop("fields")
     asked = (fields,) if isinstance(fields, str) else None if fields is None else tuple(fields)
     if asked is not None:
-        asked = tuple(dict.fromkeys("lam" if name == "length" else name for name in asked))
+        asked = tuple(dict.fromkeys(OWN.get(name, name) for name in asked))
     speeds = {"V": over("V", V, one), "omega": over("omega", omega, one), "delta": delta}
     found = contact(cylinder.scene(), **speeds, fields=asked, **options).as_dict()
     names = list(found) if fields is None else [fields] if isinstance(fields, str) else list(fields)
     if fields is None:
-        names.insert(names.index("lam") + 1, "length")
+        for name, of in OWN.items():
+            names.insert(names.index(of) + 1, name)
         # of like bodies they are M/2 each: what force and moment on the cylinder take
         found |= {name: 0.5 * found["M"] for name in OF_BODIES if name not in found}
         names += [name for name in OF_BODIES if name not in names]
     if options.get("slopes"):
-        names += [name for name in found if name not in names and name != "lam"]
+        names += [name for name in found if name not in names and name not in OWN.values()]
     given = {"V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    return in_si({name: found["lam" if name == "length" else name] for name in names}, one, given, labels=labels)
+    return in_si({name: found[OWN.get(name, name)] for name in names}, one, given, labels=labels)
 
 
 def stress_of(cylinder: Cylinder, x: Numbers, V: Numbers, omega: Numbers | None, delta: Numbers | None) -> Values:

@@ -33,14 +33,14 @@ class InSI:
         Parameters
         ----------
         V, omega : m/s and rad/s.  delta : creep ratio (omega R - V)/V, in place of omega.
-        fields, slopes, method : as there, and ``length`` among the fields.
+        fields, slopes, method : as there, and among the fields ``length`` and ``C_rr``.
 
         Returns
         -------
         Values
             ``length`` of the contact in m; ``Q`` in N/m; ``M``, ``M_half_space`` and ``M_cylinder`` in N m/m; slopes of
-            these; ratios as there.  Force and moment on the cylinder, Eqs. (20), (21), are Q - M_half_space/R and
-            Q R + M_cylinder.
+            these; ratios as there, and ``C_rr`` = M/(P R), the coefficient of rolling resistance.  Force and moment on
+            the cylinder, Eqs. (20), (21), are Q - M_half_space/R and Q R + M_cylinder.
 
         Raises
         ------
