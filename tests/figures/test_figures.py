@@ -236,9 +236,18 @@ def test_broad_stresses_carry_the_load():
 
 
 def test_a_start_that_rolls_and_a_scene_that_never_stops():
-    figure_5(starts={"rolling": (1.0, 1.0)})
-    figure_6(start=(1.0, 1.0))
-    phase_portrait(vr.PAPER_SECTION_5.replace(alpha=1.0))
+    """Neither has an onset of stick to look at more closely; on an elastic scene nothing slows what rolls."""
+    (axes,) = figure_5(starts={"rolling": (1.0, 1.0)}).axes
+    assert axes.child_axes == []
+    V, omega = (line.get_ydata() for line in axes.get_lines()[:2])
+    assert close(omega, V, rel=1e-2)
+    assert V[0] == 1.0 > V[-1] > 0.0
+    assert len(figure_6(start=(1.0, 1.0)).axes) == 1
+    _, right = phase_portrait(vr.PAPER_SECTION_5.replace(alpha=1.0)).axes
+    rolling = [line for line in right.get_lines() if line.get_zorder() == 3]
+    assert len(rolling) == 2
+    for line in rolling:
+        assert (np.asarray(line.get_ydata()) == 0.0).all()
 
 
 def test_save_is_whole_or_not_at_all(drawn, tmp_path):
