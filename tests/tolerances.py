@@ -217,6 +217,8 @@ BENCH_REFERENCE = 1e-9
 BENCH_LAW = 1e-9
 #: Splines of an atlas with 8 x 16 x 16 nodes; measured 5e-3.
 BENCH_COARSE_ATLAS = 0.05
+#: A ratio in two digits, of times in three: rounded by 5 % and twice 0.5 % at most.
+TWO_DIGITS = 0.06
 #: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.
 BENCH_NOT_IN_MAP = 0.01
 

@@ -183,6 +183,10 @@ def test_figure_6_and_7_at_the_four_times():
         tau, bound = line(panel, r"$|\tau|/E'$")[1], line(panel, r"$\mu p/E'$")[1]
         assert (tau <= bound * (1.0 + tol.FIGURE)).all()
     assert r"$\beta$ = 0.981" in panels[1].get_title()
+    (why,) = (text.get_text() for text in panels[0].texts)
+    assert r"prints $\beta$ = 0.45" in why
+    assert "$1.512" in why
+    assert not figure_7(times=(1.52e-4, 4e-4, 24e-4, 29e-4)).axes[0].texts
 
 
 def test_rolling_resistance_shifts_with_temperature():
