@@ -255,5 +255,6 @@ def test_a_contact_tells_the_coefficient_of_rolling_resistance():
     assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), rel=tol.SI_MOTION)
     assert np.array_equal(c.C_rr, bare.M)
     assert ROLLER.contact(V=1.0, delta=0.0, fields="C_rr").as_dict().keys() == {"C_rr"}
+    refused(lambda: ROLLER.contact(V=1.0, delta=0.0, fields="Crr"), "'Crr' is not a field", "length, C_rr")
     for shown in (c, bare):
         assert "coefficient of rolling resistance" in {axes.get_title() for axes in shown.plot().axes}

@@ -91,7 +91,7 @@ def _with_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
     t, values = data["t"].values, data[name].values
     if f"drive_{name}_time" not in data:
         return t, values
-    corners, given = data[f"drive_{name}_time"].values, data[f"drive_{name}"].values
+    corners, given = (data[key].values.ravel() for key in (f"drive_{name}_time", f"drive_{name}"))
     jumps = corners[1:][np.diff(corners) == 0.0]
     kept = (np.abs(t[:, None] - jumps) > _AT_A_JUMP * t[-1]).all(axis=1)
     within = (corners >= t[0]) & (corners <= t[-1])

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from ..checks import checked
-from ..contact_fields import OF_BODIES
+from ..contact_fields import KNOWN, OF_BODIES
 from ..contact_stress import stress
+from ..errors import unknown
 from ..labels import Labels, unlabelled
 from ..results import Values
 from ..rolling_contact import contact
@@ -24,6 +25,9 @@ def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Num
     V, omega, delta = plain["V"], plain["omega"], plain["delta"]
     fields = options.pop("fields")
     asked = (fields,) if isinstance(fields, str) else None if fields is None else tuple(fields)
+    for name in asked or ():
+        if name not in (*KNOWN, *OWN):
+            raise unknown("fields", name, (*KNOWN, *OWN), "a field")
     if asked is not None:
         asked = tuple(dict.fromkeys(OWN.get(name, name) for name in asked))
     speeds = {"V": over("V", V, one), "omega": over("omega", omega, one), "delta": delta}
