@@ -6,7 +6,6 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
-from ..results import unit_of
 from . import plot
 from .arguments import FORMATS, add_output_option, count, output_path
 
@@ -59,6 +58,7 @@ def _sheet(indices: xr.Dataset, *, provenance: bool = False) -> Sheet:
     """A row for each quantity, time and input: to four decimals, or in full with seed, versions and run file."""
     import numpy as np
 
+    from ..results import unit_of
     from .output import Sheet
 
     rows = [row for name in indices if str(name).endswith("_S1") for row in _rows(indices, str(name)[: -len("_S1")])]
