@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 #: a_T against 20 C of a rubber whose glass transition is at -60 C, with the universal constants of Williams, Landel
 #: and Ferry, 17.44 and 51.6 K
 _TEMPERATURES = {"-20 °C": 952.0, "20 °C": 1.0, "60 °C": 0.0254}
-_SPEEDS = (1e-3, 1e3)
+_SPEEDS = (1e-3, 1e2)
 
 
 def rolling_resistance(
