@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_fields import OF_BODIES
 from .style import LINES, THIN, axis, log_ticks, new_figure
 
 if TYPE_CHECKING:
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
 _FIELDS = (
     "Q", "M", "C_rr", "beta", "epsilon", "lam", "M_half_space", "M_cylinder", "length", "delta_star", "kappa_M", "N",
 )  # fmt: skip
+_PARTS = ("M_half_space", "M_cylinder")
 _MOST = 6
 #: of a second axis
 _CURVES = 4
@@ -97,8 +97,8 @@ def equilibria(data: xr.Dataset) -> Figure:
 
 def _shown(data: xr.Dataset) -> list[str]:
     """Fields that vary; all of them where none does.  Of like bodies without the parts of M, half of it each."""
-    like = set(OF_BODIES) <= set(data) and data["M_cylinder"].equals(data["M_half_space"])
-    fields = [name for name in _FIELDS if not (like and name in OF_BODIES)]
+    like = set(_PARTS) <= set(data) and data["M_cylinder"].equals(data["M_half_space"])
+    fields = [name for name in _FIELDS if not (like and name in _PARTS)]
     names = [name for name in fields if name in data.data_vars and data[name].ndim]
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
