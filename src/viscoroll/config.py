@@ -227,4 +227,4 @@ def _materials(path: Path, given: MaterialTable) -> dict[str, Any]:
         return read_materials(path)
     from .dma import fit_prony, read_dma
 
-    return {"material": fit_prony(*read_dma(path)).material(given.nu, name=given.name or path.stem)}
+    return {"material": fit_prony(*read_dma(path), source=path.name).material(given.nu, name=given.name or path.stem)}

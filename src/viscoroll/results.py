@@ -123,7 +123,8 @@ class Values(Shown):
     """Named results of one call; a name that was not asked for is an AttributeError.
 
     given : the arguments over which they were computed, by name.
-    units : unit of each that has one; title : what they are; labels : those of the arguments.
+    units : unit of each that has one; title : what they are; labels : those of the arguments; about : attributes of
+    the dataset.
     """
 
     def __init__(
@@ -133,7 +134,9 @@ class Values(Shown):
         units: dict[str, str] | None = None,
         title: str = "Contact",
         labels: Labels | None = None,
+        about: dict[str, Any] | None = None,
     ) -> None:
+        self._about = about or {}
         self._values = values if labels is None else {name: labels.of(name, value) for name, value in values.items()}
         self._given, self._units, self._title, self._labels = given or {}, units or {}, title, labels
 
@@ -180,7 +183,7 @@ class Values(Shown):
             data[name] = xr.Variable(dims if array.ndim else (), kept, self._attributes(name))
         if not labels:
             coordinates = {name: ((name,), values, self._attributes(name)) for name, values in coordinates.items()}
-        return xr.Dataset(data, coordinates, attrs={"title": self._title})
+        return xr.Dataset(data, coordinates, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
         found = attributes(name)

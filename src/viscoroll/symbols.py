@@ -9,6 +9,9 @@ PAPER = (
     "Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
 )
 
+#: attribute of a dataset over V: between which speeds its material was measured
+MEASURED = "measured_V"
+
 
 class Symbol(NamedTuple):
     """A quantity: LaTeX symbol, long name, range, equation of the paper, and where the package computes it.

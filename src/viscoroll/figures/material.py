@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dma import Fit, fit_prony
-from ..plots.style import LINES, new_figure
+from ..plots.style import LINES, dashed, new_figure
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label
+from ..validity import held_speeds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,11 +49,14 @@ def rolling_resistance(
         left.loglog(fit.omega, data, marker, color=line["color"], markersize=3, fillstyle="none", label=f"${name}$")
         left.loglog(omega, fitted, label=f"${name}$, fit", **line)
     V = np.geomspace(*_SPEEDS, 241)
+    low, high = held_speeds(fit.prony, fit.omega[0] * fit.T_ref, fit.omega[-1] * fit.T_ref)
     for (name, a_T), line in zip(factors.items(), LINES, strict=False):
-        scene = Scene(material=fit.prony.slower(a_T), kappa=kappa, mu=1.0)
-        right.semilogx(V, contact(scene, V * fit.T_ref / R, delta=0.0, fields="M").M, label=name, **line)
+        scene, speed = Scene(material=fit.prony.slower(a_T), kappa=kappa, mu=1.0), R / (kappa * a_T * fit.T_ref)
+        M = contact(scene, V * fit.T_ref / R, delta=0.0, fields="M").M
+        dashed(right, V, M, (low * speed, high * speed), label=name, **line)
+    right.set(xscale="log", ylim=(0.0, None))
     left.set(xlabel=r"$\omega$, rad/s", ylabel=f"$E'$, $E''$, {unit}", title="a) master curve")
-    right.set(xlabel="speed, m/s", ylabel=label("M"), title="b) rolling resistance over load", ylim=(0.0, None))
+    right.set(title="b) rolling resistance over load; dashed: beyond the data", xlabel="speed, m/s", ylabel=label("M"))
     for axes in (left, right):
         axes.legend(frameon=False)
     return figure

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ import msgspec
 from ..errors import ConfigError, ParameterError, TableError
 from ..sections import as_struct, fault, read
 from .material import Material
+from .measured import Measured
 from .prony import Prony
 from .shift import WLF, Arrhenius
 from .store import SUFFIX
@@ -32,15 +34,18 @@ class MaterialSection(msgspec.Struct):
     T_ref: float | None = None
     name: str = ""
     density: float | None = None
+    thickness: float | None = None
+    measured: dict[str, Any] | None = None
     wlf: dict[str, Any] | None = None
     arrhenius: dict[str, Any] | None = None
     temperature: float | None = None
 
 
 class FileSection(msgspec.Struct):
-    """[material] or [base] of a netCDF file, and a temperature."""
+    """[material] or [base] of a netCDF or TOML file, a thickness, and a temperature."""
 
     file: str
+    thickness: float | None = None
     wlf: dict[str, Any] | None = None
     arrhenius: dict[str, Any] | None = None
     temperature: float | None = None
@@ -59,6 +64,15 @@ class CreepSection(msgspec.Struct):
     J: list[float]
     T: list[float]
     alpha: float | None = None
+
+
+class MeasuredSection(msgspec.Struct):
+    """measured = { low = ..., high = ..., misfit = ... }, perhaps with source."""
+
+    low: float
+    high: float
+    misfit: float
+    source: str = ""
 
 
 class WLFSection(msgspec.Struct):
@@ -117,15 +131,22 @@ def as_toml(material: Material, section: str = "material") -> str:
     series = f"E = {one.E.tolist()}, tau = {one.tau.tolist()}"
     if one.by_creep:
         series = f"J = {one.J.tolist()}, T = {one.T.tolist()}, alpha = {one.alpha!r}"
-    # TOML knows no surrogates, and DEL only escaped
-    name = json.dumps(material.name, ensure_ascii=False).replace("\x7f", r"\u007f")
+    measured = material.measured and (
+        f"{{ low = {material.measured.low}, high = {material.measured.high}, misfit = {material.measured.misfit}, "
+        f"source = {_text(material.measured.source)} }}"
+    )
     values: dict[str, Any] = {
-        "name": name, "E": material.E, "nu": material.nu,
+        "name": _text(material.name), "E": material.E, "nu": material.nu,
         "creep" if one.by_creep else "prony": f"{{ {series} }}", "T_ref": material.T_ref,
+        "density": material.density, "thickness": material.thickness, "measured": measured,
     }  # fmt: skip
-    if material.density is not None:
-        values["density"] = material.density
-    return "\n".join([f"[{section}]", *(f"{name} = {value}" for name, value in values.items()), ""])
+    lines = (f"{name} = {value}" for name, value in values.items() if value is not None)
+    return "\n".join([f"[{section}]", *lines, ""])
+
+
+def _text(given: str) -> str:
+    # TOML knows no surrogates, and DEL only escaped
+    return json.dumps(given, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 
 def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
@@ -134,6 +155,8 @@ def _material(path: Any, name: str, content: Any, temperature: float | None) -> 
     try:
         shift = _shift(path, name, given)
         found = _stored(path, name, given) if stored else _unshifted(path, name, given)
+        if stored and given.thickness is not None:
+            found = replace(found, thickness=given.thickness)
         at = given.temperature if temperature is None or shift is None else temperature
         if at is None:
             return found
@@ -145,15 +168,27 @@ def _material(path: Any, name: str, content: Any, temperature: float | None) -> 
 
 
 def _stored(path: Any, name: str, given: FileSection) -> Material:
-    """The material of a netCDF file beside ``path``."""
+    """The material of a file beside ``path``: netCDF, or TOML with a section of this name or [material]."""
+    beside = Path(path).parent / given.file
     try:
-        return Material.from_netcdf(Path(path).parent / given.file)
-    except TableError as error:
+        if beside.suffix == SUFFIX:
+            return Material.from_netcdf(beside)
+        content = read(beside)
+        section = name if name in content else "material"
+        if section not in content:
+            raise fault(beside, "", "material", "section [material] is missing: it needs E and nu")
+        if isinstance(content[section], dict) and "file" in content[section]:
+            raise fault(beside, section, "file", "file: must not name a file again")
+        return _material(beside, section, content[section], None)
+    except (ConfigError, TableError) as error:
         raise fault(path, name, "file", str(error)) from error
 
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
-    more: dict[str, Any] = {"name": given.name, "density": given.density}
+    more: dict[str, Any] = {"name": given.name, "density": given.density, "thickness": given.thickness}
+    if given.measured is not None:
+        band = as_struct(path, f"{name}.measured", given.measured, MeasuredSection)
+        more["measured"] = Measured(**msgspec.structs.asdict(band))
     series = series_of(path, name, given.prony, given.creep)
     if given.T_epsilon is not None or given.T_sigma is not None:
         if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:

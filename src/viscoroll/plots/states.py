@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import LINES, THIN, axis, log_ticks, new_figure
+from ..symbols import MEASURED
+from .style import LINES, THIN, axis, dashed, log_ticks, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +34,9 @@ def over_axes(data: xr.Dataset) -> Figure:
     """Each field over the first axis, a curve for some values of the second, at the middle of any other."""
     first, *others = axes_of(data)
     rest = {name: data.sizes[name] // 2 for name in others[1:]}
-    title = str(data.attrs.get("title", "Contact"))
+    title, held = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
+    if held is not None:
+        title += "; dashed: beyond what was measured"
     if rest:
         title += ", at " + ", ".join(f"{axis(data[name])} = {data[name].values[n]:.4g}" for name, n in rest.items())
     data = data.isel(rest)
@@ -46,7 +49,7 @@ def over_axes(data: xr.Dataset) -> Figure:
         for n, line in _picked(data, others[:1]):
             values = data[name].isel(n) if n and set(n) <= set(data[name].dims) else data[name]
             text = ", ".join(f"{axis(data[key])} = {_at(data, key, place):.4g}" for key, place in n.items())
-            box.plot(x, values.values, label=text or None, **line)
+            dashed(box, x, values.values, held, label=text or None, **line)
         box.set(xlabel=axis(data[first]) if first in data.coords else first, ylabel=axis(data[name]))
         if name == "C_rr" or (name == "M" and data[name].attrs.get("units", "1") == "1"):
             box.set_title("coefficient of rolling resistance", fontsize="small")

@@ -12,6 +12,7 @@ from ..typed import Driving, Numbers
 if TYPE_CHECKING:
     from ..equilibria import Steady
     from ..motion.single import Acting, Schedule
+    from ..validity import Validity
     from .motion import EnsembleSI, MotionSI
 
 
@@ -79,6 +80,33 @@ class InSI:
         from .contact import stress_of
 
         return stress_of(self, x, V, omega, delta)
+
+    def validity(self, V: Numbers, density: float | None = None, *, omega: Numbers | None = None) -> Validity:
+        """Which assumptions of the model the contact at speed V strains.
+
+        Parameters
+        ----------
+        V : speed of the axis, m/s.
+        density : of the cylinder, and of the base where they are alike, kg/m^3; default: as the materials have
+            it; without it the speed of shear waves is not known.
+        omega : rad/s; without it the creep is not known.
+
+        Returns
+        -------
+        Validity
+            As :meth:`Scene.validity`; ``quasistatic`` compares the speed of the axis, and that of the
+            circumference where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of
+            long times, of the bodies whose density is known.  ``bodies`` holds Dundurs' constant, ``measured`` 1/s at
+            which the contact is passed, and ``thick`` its length over the thickness of the layer.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite speeds, a density that is not one positive number.
+        """
+        from .validity import validity_of
+
+        return validity_of(self, V, density, omega)
 
     def steady(
         self,
