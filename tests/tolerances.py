@@ -529,3 +529,24 @@ TRANSIENT_ERROR = 6e-3
 #: v where a straight line through the nodes of a panel passes 0: its interpolant in powers of t rounds at 2^-53 of the
 #: terms of its coefficients, 1,800 together; measured 4.8e-14 over 4,000 places.
 EVENT_PLACE = 2e-13
+
+# --- callables as polynomials (motion/test_fitted.py) ---
+#: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to its slope at 0.
+CALLABLE_VALUES, CALLABLE_PIECES = 25_000, 100
+#: A tenth of rtol, by what was seen in some ten places a node: twice that elsewhere.
+CALLABLE_SHARE = 0.2
+#: Of the largest value of all: what counts as no less than so large; five times what the rounding of t = 1 makes of the
+#: steepest slope, 5e5 of that value.
+CALLABLE_FOOT, CALLABLE_ROUNDING = 1e-6, 5e-10
+#: Place of a corner between two straight lines.
+CALLABLE_CORNER = 1e-13
+#: Steps of motions under callables, up to 330; those from rest once took 100,000.
+CALLABLE_STEPS = 500
+#: Tables of 4,000 to 10,000 values: h^2/8 of the second derivative.
+CALLABLE_TABLE = 1e-5
+#: A jump a number's distance away.
+CALLABLE_JUMP = 1e-14
+
+# --- setting out (motion/test_sets_out.py) ---
+#: Faint drives against one of 1e-9, which is not quite linear.
+FAINT = 1e-7
