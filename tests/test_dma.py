@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from processes import printed
 from refusals import refused
 
 import viscoroll as vr
+from viscoroll.dma import choose
 from viscoroll.dma.spectrum import FLOOR
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
@@ -319,6 +321,24 @@ def test_forms_of_a_file(tmp_path, text, factors):
     )
 
 
+def test_units_are_asked_for(tmp_path):
+    """What a file does not say is said by ``units``, or taken as usual with a word; what it says stands."""
+    file = tmp_path / "dma.txt"
+    file.write_text("f, E_stor, E_loss\n1,2,3\n", encoding="utf-8")
+    with pytest.warns(vr.ModelWarning, match=r"without a unit are taken in Hz \(frequency\) and Pa"):
+        assert close(vr.read_dma(file), [[2.0 * np.pi], [2.0], [3.0]], rel=1e-15)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], rel=1e-15)
+        file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n", encoding="utf-8")
+        assert close(vr.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], rel=1e-15)
+    file.write_text("omega [rad/s], E_stor, E_loss\n1,2,3\n", encoding="utf-8")
+    with pytest.warns(vr.ModelWarning, match="Pa"):
+        assert close(vr.read_dma(file), [[1.0], [2.0], [3.0]], rel=1e-15)
+    for units in (("Hz",), ("MPa", "Hz"), ("Hz", "psi"), "Hz", ("Hz", 1.0)):
+        refused(lambda units=units: vr.read_dma(file, units=units), "units", "must be (frequency, moduli)")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -359,6 +379,39 @@ def test_what_the_contact_sees_of_the_data():
     assert not found.holds[[0, -1]].any()
     cold = replace(cylinder, material=fit.material(0.5).at(0.0, lambda _: 100.0))
     assert close(fit.validity(cold, V / 100.0).value, found.value, rel=1e-12)
-    assert "the data reach from 0.063 to" in found.sentence
+    assert "was measured from 0.0628 to 628 rad/s" in found.sentence
     other = replace(cylinder, material=vr.Material.elastic(1e6, 0.5))
-    refused(lambda: fit.validity(other, V), "cylinder", "of the material of this fit")
+    refused(lambda: fit.validity(other, V), "cylinder", "with this fit's material")
+
+
+def test_a_steel_roller_on_a_fitted_belt_and_a_series_of_rollers():
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
+    rollers = vr.Cylinder(R=[0.05, 0.1], m=30.0, material=vr.Material.rigid(), base=fit.material(0.5), mu=0.5)
+    V = np.geomspace(1e-3, 10.0, 5)[:, None]
+    found = fit.validity(rollers, V)
+    for n, R in enumerate(rollers.R):
+        one = fit.validity(rollers.replace(R=R), V[:, 0])
+        assert close(found.value[:, n], one.value, rel=1e-14)
+        assert np.array_equal(found.holds[:, n], one.holds)
+    assert close(rollers.validity(V).measured.value, found.value, rel=1e-12)
+
+
+def test_what_was_measured_stays_with_the_material():
+    data = vr.read_dma(ROOT / "docs/examples/dma.csv")
+    fit = vr.fit_prony(*data, source="dma.csv")
+    assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv")
+    poor = vr.fit_prony(*data, 1)
+    assert max(poor.misfit) > 0.05
+    cylinder = vr.Cylinder(R=0.1, m=30.0, material=poor.material(0.5), mu=0.5)
+    assert not cylinder.validity(0.1).measured.holds
+    assert "25 points" in cylinder.validity(0.1).measured.sentence
+
+
+def test_whoever_waits_for_a_fit_sees_a_bar(monkeypatch, capsys):
+    monkeypatch.setattr(choose, "_WAIT", 0.0)
+    monkeypatch.delenv("VISCOROLL_QUIET")
+    vr.fit_prony(*GOOD)
+    assert "fit_prony" in capsys.readouterr().err
+    monkeypatch.setenv("VISCOROLL_QUIET", "1")
+    vr.fit_prony(*GOOD)
+    assert capsys.readouterr().err == ""

@@ -1,4 +1,4 @@
-"""Whatever is asked of the public interface: an answer without NaN, or one of the package's own errors.
+"""Whatever is asked of the public interface: an answer without NaN, or, of what it refuses, one of its own errors.
 
 Short here; ``make fuzz`` runs it for ten minutes (``FUZZ_SECONDS``).
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import time
-import warnings
 
 import numpy as np
 import pytest
@@ -21,19 +20,46 @@ from viscoroll.materials.law_table import law_table
 from viscoroll.motion.batch import FIELDS
 from viscoroll.tables import schema
 
-#: seconds for each of the five tests; 0: the short profile
-SECONDS = float(os.environ.get("FUZZ_SECONDS", "0")) / 5.0
+#: seconds for each of the six tests; 0: the short profile
+SECONDS = float(os.environ.get("FUZZ_SECONDS", "0")) / 6.0
 #: a motion that takes longer hangs
 STEPS = 5000
+ENDED = {MotionStatus.DONE, MotionStatus.RESTED}
+SCENE = vr.PAPER_SECTION_5
+
+
+def tens(low, high):
+    """Numbers whose logarithm is drawn."""
+    return st.floats(low, high).map(lambda p: 10.0**p)
+
+
+def one_or_three(numbers):
+    return numbers | st.lists(numbers, min_size=3, max_size=3)
+
+
+# --- what is accepted: every example reaches the law ---
+
+alphas = st.just(1.0) | tens(-12.0, 0.0).map(lambda above: 1.0 + above) | tens(0.0, 6.0)
+series = st.lists(st.tuples(tens(-2.0, 4.0), tens(-6.0, 0.0)), min_size=1, max_size=4).map(
+    lambda modes: vr.Prony(*np.transpose(modes))
+)
+#: the contact hardly longer than the radius
+others = {"kappa": tens(-1.0, 6.0), "mu": tens(-3.0, 2.0), "gamma": tens(-6.0, 6.0), "j": st.floats(0.05, 3.0)}
+of_alpha = st.builds(vr.Scene, alphas, **others)
+scenes = of_alpha | st.builds(vr.Scene, material=series, **others)
+arrays = st.builds(vr.Scene, one_or_three(alphas), **{name: one_or_three(values) for name, values in others.items()})
+signs = st.sampled_from([-1.0, 1.0])
+speeds = st.sampled_from([0.0, -0.0]) | st.builds(np.multiply, signs, tens(-3.0, 3.0) | tens(-150.0, 95.0))
+creeps = st.just(0.0) | st.builds(np.multiply, signs, tens(-5.0, 2.0) | tens(-150.0, 99.0))
+times = st.lists(st.just(0.0) | tens(-6.0, 6.0), min_size=1, max_size=4).map(sorted)
+
+# --- what is not, mostly ---
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 usual = st.floats(1e-3, 1e3) | st.floats(-1e3, -1e-3) | st.sampled_from([0.0, -0.0, 1.0, -1.0])
 odd = st.sampled_from(["fast", None, True, 1j, [], [[1.0], [1.0, 2.0]], 10**400, {}, b"1", np.array([object()])])
 number = usual | any_float | st.integers(-(10**20), 10**20)
 argument = number | st.lists(usual, max_size=4) | st.lists(number, max_size=3) | odd
-alpha = st.floats(1.0, 1e6) | st.floats(0.0, 12.0).map(lambda p: 1.0 + 10.0**-p) | argument
-positive = st.floats(-6.0, 6.0).map(lambda p: 10.0**p) | argument
-ratio = st.floats(0.05, 3.0) | argument
 
 
 def long_or_short(examples: int):
@@ -52,47 +78,23 @@ def long_or_short(examples: int):
     return decorate
 
 
-@pytest.fixture(autouse=True, scope="module")
-def no_warning_counts():
-    """Of numpy and scipy on odd objects; NaN is looked for in the results."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        yield
-
-
-def own_error(error: vr.ViscorollError) -> None:
-    """In one line that says something."""
-    text = str(error)
-    assert text
-    assert "\n" not in text
-
-
-def scene_of(parameters) -> vr.Scene | None:
-    try:
-        return vr.Scene(*parameters)
-    except vr.ParameterError as error:
-        own_error(error)
-        return None
-
-
-scenes = st.tuples(alpha, positive, positive, positive, ratio)
-
-
 @long_or_short(150)
-@given(scenes, argument, argument, st.booleans(), st.sampled_from(["table", "direct"]), st.booleans())
-def test_contact(parameters, V, creep, is_omega, method, slopes):
-    if (scene := scene_of(parameters)) is None:
-        return
+@given(scenes | arrays, one_or_three(speeds), one_or_three(creeps), st.booleans(), st.booleans())
+def test_contact(scene, V, creep, is_omega, slopes):
+    state = vr.contact(scene, V, **{"omega" if is_omega else "delta": creep}, slopes=slopes)
+    check_state(scene, state)
+
+
+@long_or_short(50)
+@given(of_alpha, st.builds(np.multiply, signs, tens(-3.0, 3.0)), creeps)
+def test_contact_as_printed(scene, V, delta):
     try:
-        state = vr.contact(scene, V, **{"omega" if is_omega else "delta": creep}, method=method, slopes=slopes)
-    except vr.ConvergenceError as error:
-        if method != "direct":  # the printed equations do not serve every speed
-            raise
+        check_state(scene, vr.contact(scene, V, delta=delta, method="direct"))
+    except vr.ConvergenceError as error:  # the printed equations do not serve every speed
         own_error(error)
-        return
-    except vr.ViscorollError as error:
-        own_error(error)
-        return
+
+
+def check_state(scene, state):
     for name, values in state.as_dict().items():
         assert not np.isnan(values).any(), name
     for name in set(CONTACT_FIELDS) - {"zeta", "delta"}:
@@ -103,68 +105,92 @@ def test_contact(parameters, V, creep, is_omega, method, slopes):
 
 
 @long_or_short(100)
-@given(scenes, argument, argument, argument, st.booleans())
-def test_stress_and_validity(parameters, x, V, creep, is_omega):
-    if (scene := scene_of(parameters)) is None:
-        return
-    try:
-        found = vr.stress(scene, x, V, **{"omega" if is_omega else "delta": creep})
-        assert np.isfinite([found.p, found.tau]).all()
-        assert np.all(np.asarray(found.p) >= 0.0)
-        assert np.all(np.abs(found.tau) <= scene.mu * np.asarray(found.p) * (1.0 + 1e-15))
-        assert str(scene.validity(V))
-    except vr.ViscorollError as error:
-        own_error(error)
+@given(scenes, one_or_three(speeds), one_or_three(speeds), creeps, st.booleans())
+def test_stress_and_validity(scene, x, V, creep, is_omega):
+    found = vr.stress(scene, x, V, **{"omega" if is_omega else "delta": creep})
+    assert np.isfinite([found.p, found.tau]).all()
+    assert np.all(np.asarray(found.p) >= 0.0)
+    assert np.all(np.abs(found.tau) <= scene.mu * np.asarray(found.p) * (1.0 + 1e-15))
+    assert str(scene.validity(V))
 
 
 @long_or_short(100)
 @given(
-    scenes, argument, argument, st.lists(st.floats(0.0, 1e6), max_size=4).map(sorted) | argument,
-    st.floats(1e-11, 1e-3) | argument, st.none() | positive, st.sampled_from(["auto", "flow", "integrate"]),
-)  # fmt: skip
-def test_motion(parameters, V0, omega0, t, rtol, rest, method):
-    if (scene := scene_of(parameters)) is None:
-        return
+    scenes,
+    speeds,
+    speeds,
+    times,
+    tens(-11.0, -3.0),
+    st.none() | tens(-6.0, 3.0),
+    st.sampled_from(["auto", "integrate"]),
+)
+def test_motion(scene, V0, omega0, t, rtol, rest, method):
     options = {"rtol": rtol, "rest": rest, "max_steps": STEPS}
-    try:
-        many = vr.ensemble(scene, V0, omega0, t, method=method, fields=FIELDS, **options)
-        allowed = {MotionStatus.DONE, MotionStatus.RESTED, MotionStatus.STEP_LIMIT}
-        fastest = max(np.max(np.abs(speed), initial=0.0) for speed in (V0, omega0))
-        if np.max(scene.kappa, initial=0.0) * fastest > 1e100:  # squares of zeta underflow: reported, not yet cured
-            allowed |= {MotionStatus.STEP_TOO_SMALL}
-        assert set(many.status) <= allowed
-        done = many.status <= MotionStatus.RESTED
-        for name in ("V", "omega", "x", "angle"):
-            assert np.isfinite(getattr(many, name)[done]).all(), name
-        one = vr.roll(scene, V0, omega0, t, **options)
-        assert one.status == many.status[0] or method != "integrate"
-    except vr.ViscorollError as error:
-        own_error(error)
+    many = vr.ensemble(scene, V0, omega0, t, method=method, fields=FIELDS, **options)
+    assert set(many.status) <= ENDED
+    for name in ("V", "omega", "x", "angle"):
+        assert np.isfinite(getattr(many, name)).all(), name
+    one = vr.roll(scene, V0, omega0, t, **options)
+    assert one.status == many.status[0] or method != "integrate"
+
+
+@pytest.mark.parametrize(
+    ("scene", "V0", "omega0", "t"),
+    [
+        (vr.Scene(1.1, 1e-6, 6.3e3, 0.0143, 0.05), 0.0, 1.0, 6.3e3),  # the step limit
+        (vr.Scene(1.53e4, 3.66e-4, 4.66, 1.0, 0.817), -1.0, -1.0, 273.7),  # steps too small
+        (vr.Scene(2.0, 1e5, 1.0, 1.0, 1.0), 1e99, 1e99, 1.0),  # an infinite path
+    ],
+)
+@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one engine")
+def test_motion_of_long_contacts_and_at_the_largest_speeds(scene, V0, omega0, t):
+    many = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-11, max_steps=STEPS, fields=("x",))
+    assert set(many.status) <= ENDED
+    assert np.isfinite(many.x).all()
 
 
 @long_or_short(60)
-@given(st.dictionaries(st.sampled_from(["V", "delta", "alpha", "x"]), argument, max_size=4))
-def test_interpolate(points):
+@given(st.lists(st.floats(0.0, 1.0), min_size=3, max_size=3))
+def test_interpolate(shares):
     for table in tables():
-        try:
-            found = vr.tables.interpolate(table, **points)
-        except vr.ViscorollError as error:
-            own_error(error)
-        else:
-            for name in schema.fields_of(table):
-                assert np.isfinite(getattr(found, name)).all(), name
+        points = {}
+        for axis, share in zip(schema.axes_of(table), shares, strict=False):
+            low, high = table[axis].values[[0, -1]]
+            points[axis] = min(max(low + share * (high - low), low), high)
+        found = vr.tables.interpolate(table, **points)
+        for name in schema.fields_of(table):
+            assert np.isfinite(getattr(found, name)).all(), name
 
 
-@long_or_short(60)
-@given(argument, argument, st.lists(argument, min_size=3, max_size=3), st.lists(number, min_size=2, max_size=2))
-def test_grids_cylinders_and_samples(kappa, mu, axes, bounds):
-    few = min(kappa, 99) if isinstance(kappa, int) else kappa
+# --- refusals ---
+
+
+def own_error(error: vr.ViscorollError) -> None:
+    """In one line that says something."""
+    text = str(error)
+    assert text
+    assert "\n" not in text
+
+
+@pytest.mark.filterwarnings("ignore")  # of numpy on odd objects
+@long_or_short(200)
+@given(st.lists(argument, min_size=6, max_size=6), st.lists(number, min_size=2, max_size=2))
+def test_anything(a, bounds):
+    few = min(a[0], 99) if isinstance(a[0], int) else a[0]
     calls = (
-        lambda: vr.tables.build(vr.PAPER_SECTION_5, *axes),
+        lambda: vr.Scene(*a[:5]),
+        lambda: vr.contact(SCENE, a[0], delta=a[1]),
+        lambda: vr.contact(SCENE, a[2], omega=a[3], slopes=True),
+        lambda: vr.stress(SCENE, a[0], a[1], delta=a[2]),
+        lambda: SCENE.validity(a[0], a[1]),
+        lambda: vr.ensemble(SCENE, a[0], a[1], a[2], rtol=a[3], rest=a[4], max_steps=STEPS),
+        lambda: vr.roll(SCENE, a[0], a[1], a[2], max_steps=STEPS),
+        lambda: vr.tables.build(SCENE, V=a[0], delta=a[1], alpha=a[2]),
         lambda: vr.tables.spread(*bounds, few),
-        lambda: vr.Cylinder(kappa, mu, *axes, *bounds, mu).scene(),
-        lambda: vr.PAPER_CYLINDER.validity(mu, kappa),
-        lambda: vr.sampling.sample(few, mu, axes[0], V0=axes[1]),
+        lambda: vr.Cylinder(*a[:5], *bounds, a[5]).scene(),
+        lambda: vr.PAPER_CYLINDER.validity(a[1], a[0]),
+        lambda: vr.sampling.sample(few, a[1], a[2], V0=a[3]),
+        *(lambda table=table: vr.tables.interpolate(table, alpha=a[0], V=a[1], delta=a[2]) for table in tables()),
     )
     for call in calls:
         try:

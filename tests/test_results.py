@@ -164,10 +164,23 @@ def test_plot_writes_where_it_is_told(results, tmp_path):
 
 
 def test_a_table_of_pandas_knows_its_units(results):
-    units = results["motion in SI"].to_pandas().attrs["units"]
-    assert units["t"] == "s"
-    assert units["V"] == "m s-1"
-    assert "delta" not in units
+    """In the names of its columns, and so in the CSV; what has none stands bare."""
+    table = results["motion in SI"].to_pandas()
+    header = table.to_csv().splitlines()[0].split(",")
+    assert header == ["t [s]", "V [m s-1]", "omega [rad s-1]", "x [m]", "angle [rad]", "delta", "regime"]
+    assert np.array_equal(table["V [m s-1]"], results["motion in SI"].V)
+
+
+def test_a_table_of_pandas_has_a_row_each(results):
+    """Of a driven motion too, whose drive has corners of its own; of a single state."""
+    driven = results["driven"]
+    table = driven.to_pandas()
+    assert np.array_equal(table["torque"], driven.torque)
+    assert table.index.to_numpy().tolist() == driven.t.tolist()
+    many = ROLLER.ensemble([1.0, 2.0], 0.0, [0.1, 0.2], torque=([0.0, 1.0], [0.0, 3.0]))
+    assert many.to_pandas().index.names == ["motion", "t [s]"]
+    assert len(many.to_pandas()) == 4
+    assert vr.contact(SCENE, 1.0, delta=0.01).to_pandas()["M"].tolist() == [vr.contact(SCENE, 1.0, delta=0.01).M]
 
 
 def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
@@ -209,3 +222,39 @@ def test_a_validity_is_a_card(results):
     assert repr(found.steady) == f"yes: {found.steady.sentence}"
     assert repr(found.plane).startswith("?: ")
     assert repr(found.creep).startswith("no: ")
+
+
+def test_a_torque_that_jumps_is_drawn_with_both_sides():
+    """In a figure of few output times too: the schedule's corners, and beside it what does not jump."""
+    gain = -2.0
+    schedule = ([0.0, 1.0, 1.0, 2.0, 2.0, 2.2, 2.2], [3.0, 3.0, 0.0, 0.0, 5.0, 5.0, 0.0])
+    m = ROLLER.roll(
+        0.0, 0.0, [0.0, 0.5, 1.0, 3.0], torque=schedule, force=vr.Feedback(([0.0, 0.7], [0.0, 4.0]), V=gain)
+    )
+    *_, force, torque = m.plot().axes
+    t, drawn = torque.lines[0].get_data()
+    assert drawn.max() == 5.0
+    assert all(np.isin(sides, drawn[t == when]).all() for when, sides in ((1.0, (3.0, 0.0)), (2.2, (5.0, 0.0))))
+    assert all(lasts == 0.0 or rise == 0.0 for lasts, rise in zip(np.diff(t), np.diff(drawn), strict=True))
+    t, drawn = force.lines[0].get_data()
+    assert close(drawn[t == 0.7], 4.0 + gain * np.interp(0.7, m.t, m.V), rel=tol.FIGURE)
+    assert close(drawn[t == 3.0], m.force[-1], rel=tol.FIGURE)
+
+
+def test_speeds_that_rise_by_factors_have_a_logarithmic_axis():
+    for V, scale in (([0.1, 1.0, 10.0], "log"), ([1.0, 2.0, 5.0, 10.0], "log"), (np.linspace(1e-3, 1.0, 50), "linear")):
+        figure = ROLLER.contact(V=V, delta=0.0).plot()
+        assert {axes.get_xscale() for axes in figure.axes} == {scale}, V
+
+
+def test_a_contact_tells_the_coefficient_of_rolling_resistance():
+    c, bare = (
+        ROLLER.contact(V=[0.1, 1.0], delta=0.0),
+        vr.contact(ROLLER.scene(), ROLLER.V_from_si([0.1, 1.0]), delta=0.0),
+    )
+    assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), rel=tol.SI_MOTION)
+    assert np.array_equal(c.C_rr, bare.M)
+    assert ROLLER.contact(V=1.0, delta=0.0, fields="C_rr").as_dict().keys() == {"C_rr"}
+    refused(lambda: ROLLER.contact(V=1.0, delta=0.0, fields="Crr"), "'Crr' is not a field", "length, C_rr")
+    for shown in (c, bare):
+        assert "coefficient of rolling resistance" in {axes.get_title() for axes in shown.plot().axes}

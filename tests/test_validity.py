@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,7 +13,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.validity import REACH_LIMIT, WAVE_LIMIT, coupling
+from viscoroll.validity import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
 
 SCENE = vr.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
@@ -185,6 +186,34 @@ def test_waves_of_a_pair():
         assert "not known" not in found.sentence
     found = pair(RUBBER, vr.Material.elastic(2e11, 0.3)).validity(1.0).quasistatic
     assert found.sentence.endswith("the density of the base is not known")
+
+
+def test_how_thick_the_layer_is():
+    """Contact length over the thickness of the thinnest body that deforms; steel may be as thin as it likes."""
+    thin = replace(RUBBER, thickness=0.02)
+    for material, base in ((thin, None), (thin, STEEL), (STEEL, thin), (vr.Material.rigid(), thin)):
+        cylinder = pair(material, base)
+        found = cylinder.validity([0.0, 1.0]).thick
+        length = cylinder.contact([0.0, 1.0], delta=0.0, fields="length").length
+        assert close(found.value, length / 0.02, rel=tol.CONTACT)
+        assert np.array_equal(found.holds, length <= THICK_LIMIT * 0.02)
+        assert "not known" not in found.sentence
+    found = pair(RUBBER, replace(RUBBER, E=1e6, thickness=0.02)).validity(0.0).thick
+    assert "the thickness of the cylinder is not known" in found.sentence
+    for cylinder in (pair(RUBBER, None), vr.RUBBER_CYLINDER):
+        assert cylinder.validity(0.0).thick == (None, None, "thickness not known: the law is that of a half-space")
+
+
+def test_validity_of_a_series_of_cylinders():
+    """Retardation times, radii and loads of each: as of single ones."""
+    T = np.array([0.1, 0.2])
+    many = vr.Cylinder(R=[0.1, 0.2], m=35.5, E=2.3e5, nu=0.49, T_epsilon=T, T_sigma=0.01, mu=0.2, load=[300.0, 400.0])
+    found = many.validity(0.5, 1130.0, omega=1.0)
+    for n in range(2):
+        one = many.replace(R=many.R[n], T_epsilon=T[n], load=many.load[n]).validity(0.5, 1130.0, omega=1.0)
+        for name in ("small_contact", "under_axis", "quasistatic", "steady", "creep"):
+            value = np.broadcast_to(getattr(found, name).value, (2,))[n]
+            assert close(value, getattr(one, name).value, rel=tol.PAIR)
 
 
 def test_print_says_whether_each_holds_and_failed_names_what_does_not():

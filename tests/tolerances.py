@@ -207,13 +207,15 @@ FIGURE_CURVE = 5e-3
 BENCH_OWN = 3e-5
 #: Those of the peers at loose tolerances, 1e-4 or 1e-3, relative to speeds down to 1e-8: only that they solve the same
 #: problem; measured 0.07.
-BENCH_PEER = 1.0
+BENCH_PEER = 0.2
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: Q and M against 50 digits (the printed forms: 1e-10 where the slip is slight); measured 5e-16.
 BENCH_LAW = 1e-9
 #: Splines of an atlas with 8 x 16 x 16 nodes; measured 5e-3.
 BENCH_COARSE_ATLAS = 0.05
+#: A ratio in two digits, of times in three: rounded by 5 % and twice 0.5 % at most.
+TWO_DIGITS = 0.06
 #: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.
 BENCH_NOT_IN_MAP = 0.01
 
@@ -543,3 +545,23 @@ FMU_FROM_REST = 1e-6
 FMU_ELEMENT = 1e-8
 #: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
 FMU_TOOL = 1e-4
+# --- callables as polynomials (motion/test_fitted.py) ---
+#: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to its slope at 0.
+CALLABLE_VALUES, CALLABLE_PIECES = 25_000, 100
+#: A tenth of rtol, by what was seen in some ten places a node: twice that elsewhere.
+CALLABLE_SHARE = 0.2
+#: Of the largest value of all: what counts as no less than so large; five times what the rounding of t = 1 makes of the
+#: steepest slope, 5e5 of that value.
+CALLABLE_FOOT, CALLABLE_ROUNDING = 1e-6, 5e-10
+#: Place of a corner between two straight lines.
+CALLABLE_CORNER = 1e-13
+#: Steps of motions under callables, up to 330; those from rest once took 100,000.
+CALLABLE_STEPS = 500
+#: Tables of 4,000 to 10,000 values: h^2/8 of the second derivative.
+CALLABLE_TABLE = 1e-5
+#: A jump a number's distance away.
+CALLABLE_JUMP = 1e-14
+
+# --- setting out (motion/test_sets_out.py) ---
+#: Faint drives against one of 1e-9, which is not quite linear.
+FAINT = 1e-7

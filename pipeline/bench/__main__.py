@@ -51,7 +51,7 @@ def main() -> int:
     arguments = options.parse_args()
     chosen = arguments.parts or list(PARTS)
     if unknown := set(chosen) - PARTS.keys():
-        options.error(f"unknown part {', '.join(sorted(unknown))}: must be out of {', '.join(PARTS)}")
+        options.error(f"unknown part {', '.join(sorted(unknown))}; choose from {', '.join(PARTS)}")
 
     def work() -> None:
         for part in chosen:

@@ -77,7 +77,7 @@ def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
     if path.suffix in (".toml", SUFFIX):
         return read_materials(path)["material"]
     try:
-        return vr.fit_prony(*vr.read_dma(path)).material(law.nu, name=law.name or path.stem)
+        return vr.fit_prony(*vr.read_dma(path), source=path.name).material(law.nu, name=law.name or path.stem)
     except vr.ViscorollError as error:
         raise ConfigError(config, str(error)) from error
 

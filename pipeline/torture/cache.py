@@ -6,6 +6,7 @@ call depends on whether it sees the function called, and a function out of the c
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 import subprocess
@@ -101,7 +102,14 @@ class Caches:
         for _ in tqdm(range(count), desc="caches with gaps", delay=1.0, leave=False):
             cache = self.folder / "gaps"
             shutil.copytree(self.folder / "first", cache)
-            for path in sorted(cache.rglob("*.nbi")):
-                if self.rng.random() < _REMOVED:
-                    path.unlink()
+            gap(cache, self.rng)
             yield self.outcome(cache)
+
+
+def gap(cache: Path, rng: np.random.Generator) -> None:
+    """Remove a part of a cache's files; raises FileNotFoundError where there is none."""
+    files = sorted(cache.rglob("*.nbc"))
+    if not files:
+        raise FileNotFoundError(f"no compiled kernels in {cache}")
+    for path in rng.choice(files, math.ceil(_REMOVED * len(files)), replace=False):
+        path.unlink()

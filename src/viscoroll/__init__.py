@@ -23,6 +23,7 @@ _HOME = {
     "Prony": "materials.prony",
     "Bodies": "materials.bodies",
     "Material": "materials.material",
+    "Measured": "materials.measured",
     "WLF": "materials.shift",
     "Arrhenius": "materials.shift",
     "PAPER_CYLINDER": "presets",

@@ -26,6 +26,7 @@ from .errors import ViscorollError as ViscorollError
 from .materials.bodies import Bodies as Bodies
 from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material
+from .materials.measured import Measured as Measured
 from .materials.prony import Prony as Prony
 from .materials.shift import WLF as WLF
 from .materials.shift import Arrhenius as Arrhenius

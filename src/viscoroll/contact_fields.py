@@ -12,6 +12,7 @@ SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: on request alone
 UNSTEADY = "N"
+KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
 
 
 def field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: str) -> tuple[str, ...]:
@@ -26,10 +27,9 @@ def field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: 
         raise ParameterError("method", repr(method), "'table' or 'direct'")
     default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
     names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-    known = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
     for name in names:
-        if name not in known:
-            raise unknown("fields", name, known, "a field")
+        if name not in KNOWN:
+            raise unknown("fields", name, KNOWN, "a field")
     if slopes:
         names += tuple(name for name in default_slopes if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):

@@ -10,17 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import broadcast_shape, checked, number
+from .checks import broadcast_shape, checked
 from .errors import ParameterError, one_of
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
+from .materials.measured import Measured
 from .materials.pair import Pair, Plane, effective_modulus
 from .results import Row, Shown, short
 from .scene import Scene, frozen, same
 from .si.conversions import Conversions
 from .si.methods import InSI
 from .si.scaling import contact_length, scene_from_si, scene_of_pair, scene_of_solids
-from .validity import Validity, coupling, inertia
+from .si.validity import deforming
+from .validity import MISFIT_LIMIT, held_speeds
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
@@ -219,59 +221,27 @@ class Cylinder(InSI, Conversions):
         scene = scene_of_pair(self.R, self.m, self.pair, self.mu, self.j, self.g, self.pressed)
         return scene.replace(material=self.material) if isinstance(self.material, LawTable) else scene
 
-    def validity(self, V: ArrayLike, density: float | None = None, *, omega: ArrayLike | None = None) -> Validity:
-        """Which assumptions of the model the contact at speed V strains.
+    @cached_property
+    def _measured(self) -> dict[str, Measured]:
+        """What the bodies were measured by, where they tell."""
+        return {name: body.measured for name, body in deforming(self).items() if body.measured is not None}
 
-        Parameters
-        ----------
-        V : speed of the axis, m/s.
-        density : of the cylinder, and of the base where they are alike, kg/m^3; default: as the materials have
-            it; without it the speed of shear waves is not known.
-        omega : rad/s; without it the creep is not known.
+    @cached_property
+    def _held(self) -> tuple[float, float] | None:
+        """|V|/l0 between which the contact asks for what all bodies' data hold, 1/s; None where nothing is known."""
+        if not self._measured:
+            return None
+        series, T = self.scene().series, self.T_ref
+        assert series is not None  # bodies that tell are materials
+        ends = max(data.low for data in self._measured.values()), min(data.high for data in self._measured.values())
+        low, high = held_speeds(series, *(rate * T for rate in ends))
+        return low / T, high / T
 
-        Returns
-        -------
-        Validity
-            As :meth:`Scene.validity`; ``quasistatic`` compares the speed of the axis, and that of the
-            circumference where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of
-            long times, of the bodies whose density is known.  ``bodies`` holds Dundurs' constant.
-
-        Raises
-        ------
-        ParameterError
-            NaN or infinite speeds, a density that is not one positive number.
-        """
-        if density is not None:
-            density = number("density", density, low=0.0, strict=True)
-        speed, spin = checked("V", V), None if omega is None else checked("omega", omega)
-        fastest = np.abs(speed) if spin is None else np.maximum(np.abs(speed), np.abs(spin) * self.R)
-        slow = inertia(*self._slowness(fastest, density))
-        long = "a long cylinder, or one held between walls (plane strain)"
-        constants = (0.0, 0.0) if self._papers else self.pair.dundurs
-        return self.scene()._validity(
-            speed * (self.T_ref / self.R), None if spin is None else spin * self.T_ref, slow,
-            coupling(*constants, like=self._papers or self.pair.like),
-            long if self.plane == "strain" else "a thin disc (plane stress)",
-        )  # fmt: skip
-
-    def _slowness(self, speed: NDArray[np.float64], density: float | None) -> tuple[Any, list[str]]:
-        """(Speed over that of the slowest shear wave, or None; bodies whose density is not known)."""
-        ratios, unknown = [], []
-        for name, G, weight in self._weighed(density):
-            if weight is None:
-                unknown.append(name)
-            else:  # in this order V = 0 gives 0 at any density
-                with np.errstate(over="ignore"):
-                    ratios.append(speed * np.sqrt(1.0 / G) * math.sqrt(weight))
-        return (np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None), unknown
-
-    def _weighed(self, density: float | None) -> list[tuple[str, Any, float | None]]:
-        """The different bodies that deform, their shear moduli and densities."""
-        if self._papers:
-            return [("the material", self.E / (2.0 * (1.0 + self.nu)), density)]
-        first, second = self.pair.cylinder, self.pair.half_space
-        own = first.density if density is None else density
-        if self.pair.like:
-            return [("the material", first.G, second.density if own is None else own)]
-        bodies = [("the cylinder", first, own), ("the base", second, second.density)]
-        return [(name, body.G, weight) for name, body, weight in bodies if weight is not None or not body.is_rigid]
+    @cached_property
+    def _known_speeds(self) -> tuple[float, float] | None:
+        """|V| between which every one of the cylinders is held by data, m/s; (inf, 0) of a fit that misses them."""
+        if self._held is None:
+            return None
+        if any(data.misfit > MISFIT_LIMIT for data in self._measured.values()):
+            return math.inf, 0.0
+        return self._held[0] * float(np.max(self.l0)), self._held[1] * float(np.min(self.l0))

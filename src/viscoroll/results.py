@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -44,14 +44,15 @@ class Shown:
     def to_pandas(self) -> pd.DataFrame:
         """The dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
 
-        ``attrs["units"]`` holds the unit of each column and level of the index that has one.
+        What has a unit bears it in its name, as "V [m s-1]": pandas writes names alone into files.  What lies over
+        other axes, as the corners of a drive, is left out.
         """
         data = self.to_xarray()
-        table = data.to_dataframe()
-        names = [name for name in (*table.index.names, *table.columns) if name in data.variables]
-        units = {str(name): str(data[name].attrs.get("units", "1")) for name in names}
-        table.attrs["units"] = {name: unit for name, unit in units.items() if unit != "1"}
-        return table
+        over = max((each.dims for each in data.values()), key=len)
+        data = data[[name for name, each in data.items() if set(each.dims) <= set(over)]]
+        data = data if over else data.expand_dims("state")
+        names = {name: column(str(name), unit_of(data[name].attrs)) for name in data.variables}
+        return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Draw it; a figure of matplotlib.
@@ -94,9 +95,15 @@ def as_html(title: str, rows: list[Row]) -> str:
     return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
 
 
-def unit_of(described: dict[str, Any]) -> str:
+def unit_of(described: Mapping[Any, Any]) -> str:
     """The unit among the attributes of a quantity, "" of a number."""
-    return "" if described["units"] == "1" else str(described["units"])
+    unit = str(described.get("units", "1"))
+    return "" if unit == "1" else unit
+
+
+def column(name: str, unit: str) -> str:
+    """The name of a column: what stands in it, and its unit if it has one."""
+    return f"{name} [{unit}]" if unit else name
 
 
 def short(value: Any) -> str:
@@ -116,7 +123,8 @@ class Values(Shown):
     """Named results of one call; a name that was not asked for is an AttributeError.
 
     given : the arguments over which they were computed, by name.
-    units : unit of each that has one; title : what they are; labels : those of the arguments.
+    units : unit of each that has one; title : what they are; labels : those of the arguments; about : attributes of
+    the dataset.
     """
 
     def __init__(
@@ -126,7 +134,9 @@ class Values(Shown):
         units: dict[str, str] | None = None,
         title: str = "Contact",
         labels: Labels | None = None,
+        about: dict[str, Any] | None = None,
     ) -> None:
+        self._about = about or {}
         self._values = values if labels is None else {name: labels.of(name, value) for name, value in values.items()}
         self._given, self._units, self._title, self._labels = given or {}, units or {}, title, labels
 
@@ -173,7 +183,7 @@ class Values(Shown):
             data[name] = xr.Variable(dims if array.ndim else (), kept, self._attributes(name))
         if not labels:
             coordinates = {name: ((name,), values, self._attributes(name)) for name, values in coordinates.items()}
-        return xr.Dataset(data, coordinates, attrs={"title": self._title})
+        return xr.Dataset(data, coordinates, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
         found = attributes(name)

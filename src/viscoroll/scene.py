@@ -16,7 +16,7 @@ from .materials.law_table import LawTable
 from .materials.prony import Prony
 from .materials.prony_array import MaterialArray
 from .materials.prony_forms import HIGHEST_ALPHA
-from .validity import Assumption, Validity, coupling, inertia, judge, steadiness, strained, unlike_speeds
+from .validity import Strained, Validity, judge, steadiness, strained, unlike_speeds
 
 
 def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -40,6 +40,10 @@ def same(one: Any, other: Any) -> bool:
 
 #: of mu/kappa, in which delta_star is measured
 RATIO_RANGE = (1e-290, 1e290)
+
+
+def _in_own_time(series: Prony) -> tuple[float | Prony, float]:
+    return series.in_own_time() if series.E.size else (1.0, 1.0)
 
 
 def _short(value: Any) -> str:
@@ -156,7 +160,7 @@ class Scene:
             if isinstance(self.material, BodiesArray) and self.material.like:
                 return self.material.cylinder, 1.0
             return self.alpha if self.material is None else self.material, 1.0
-        return self.series.in_own_time() if self.series.E.size else (1.0, 1.0)
+        return _in_own_time(self.series)
 
     @property
     def kernel_material(self) -> Any:
@@ -186,19 +190,15 @@ class Scene:
         Raises
         ------
         ParameterError
-            NaN or infinite speeds, shapes that do not broadcast, a material each.
+            NaN or infinite speeds, shapes that do not broadcast.
         """
-        plane = "the cylinder is long or held between walls (plane strain), or a thin disc"
-        return self._validity(V, omega, inertia(None), coupling(), plane)
+        return self._validity(V, omega)[0]
 
-    def _validity(
-        self, V: ArrayLike, omega: ArrayLike | None, slow: Assumption, bodies: Assumption, plane: str
-    ) -> Validity:
+    def _validity(self, V: ArrayLike, omega: ArrayLike | None) -> tuple[Validity, Strained]:
+        """Also what the contact strains, for what a cylinder adds."""
         given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
-        if isinstance(self.material, MaterialArray):
-            raise ParameterError("material", repr(self.material), "one material, as material[i]")
         broadcast_shape(**given, **{name: np.asarray(value) for name, value in self.numbers.items()})
-        material, unit = self.in_own_time()
+        material, unit = self._own_times()
         found = strained(material, self.kappa, given["V"] * unit)
         nu = None
         if self.gamma is not None:
@@ -209,7 +209,16 @@ class Scene:
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
             full_slip = np.abs(delta) >= self.mu * np.asarray(found.reach)
-        return judge(found, slow, steadiness(nu), unlike_speeds(delta, full_slip), bodies, plane)
+        return judge(found, steadiness(nu), unlike_speeds(delta, full_slip)), found
+
+    def _own_times(self) -> tuple[Any, Any]:
+        """As :meth:`in_own_time`, of a material each as arrays."""
+        if not isinstance(self.material, MaterialArray):
+            return self.in_own_time()
+        own = np.empty((2, len(self.material)), object)
+        for n, one in enumerate(self.material):
+            own[:, n] = _in_own_time(one.total if isinstance(one, Bodies) else one)
+        return own[0], own[1].astype(np.float64)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):

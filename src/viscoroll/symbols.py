@@ -9,6 +9,9 @@ PAPER = (
     "Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
 )
 
+#: attribute of a dataset over V: between which speeds its material was measured
+MEASURED = "measured_V"
+
 
 class Symbol(NamedTuple):
     """A quantity: LaTeX symbol, long name, range, equation of the paper, and where the package computes it.
@@ -61,6 +64,13 @@ SYMBOLS = {
     ),
     "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
     "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/material/standard.py"),
+    "C_rr": Symbol(
+        r"C_\mathrm{rr}",
+        "coefficient of rolling resistance M/(P R); M of a scene is this",
+        "finite",
+        "Eq. (16)",
+        "si/contact.py",
+    ),
     "force": Symbol("f", "force along V over load", "finite", "", "kernels/drive/load.py"),
     "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "kernels/drive/load.py"),
     "brake": Symbol("B", "most torque that a brake takes over load times radius", ">= 0", "", "kernels/drive/load.py"),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .materials.measured import Measured
 from .materials.prony import Prony
 from .materials.tables import record, unsteadiness
 from .results import Row, as_html, as_text
@@ -28,6 +29,11 @@ _STEPS, _FAST_OCTAVES, _SLOW_OCTAVES = 8, 8, 12
 DUNDURS_LIMIT = 0.05
 #: in full slip cylinder and half-space pass the contact at speeds that differ by this share; M takes one speed for both
 CREEP_LIMIT = 0.3
+#: contact length over the thickness of a layer, up to which the length is within 5 % of that on a half-space of any
+#: Poisson's ratio (pipeline/prove/layer.py)
+THICK_LIMIT = 0.7
+#: root mean square of relative errors up to which a fit counts as the material that was measured
+MISFIT_LIMIT = 0.05
 
 
 class Assumption(NamedTuple):
@@ -65,6 +71,9 @@ class Validity(NamedTuple):
     creep : value: |delta|; where the contact slips fully the two bodies pass it at different speeds, and the rolling
         moment is that of the axis' speed for both.  Needs omega.
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
+    measured : value: 1/s at which the contact is passed, :func:`passage`, against the frequencies that the data of each
+        body hold; needs a material's ``measured``.
+    thick : value: contact length over the thickness of the thinnest layer; needs a material's ``thickness``.
     plane : not to be seen from V.
 
     Examples
@@ -82,6 +91,8 @@ class Validity(NamedTuple):
     steady: Assumption
     creep: Assumption
     bodies: Assumption
+    measured: Assumption
+    thick: Assumption
     plane: Assumption
 
     @property
@@ -101,15 +112,19 @@ class Validity(NamedTuple):
 
 
 class Strained(NamedTuple):
-    """What the contact at a speed strains: lam (1 + epsilon)/(2 kappa), epsilon, and max|N| from rest to that speed."""
+    """What the contact at a speed strains: lam (1 + epsilon)/(2 kappa), epsilon, and max|N| from rest to that speed.
+
+    And lam itself.
+    """
 
     reach: Any
     epsilon: Any
     unsteady: Any
+    lam: Any
 
 
 def strained(material: Any, kappa: Any, V: NDArray[np.float64]) -> Strained:
-    """Broadcast over the arguments; ``material``: alphas, or a series."""
+    """Broadcast over the arguments; ``material``: alphas, a series, or series."""
     from .kernels.law.length import contact_length
     from .kernels.material.functions import generators, standard
 
@@ -121,11 +136,35 @@ def strained(material: Any, kappa: Any, V: NDArray[np.float64]) -> Strained:
             zeta = 0.5 * lam / u
             # it underflows beyond all speeds, where the contact is that of the instantaneous modulus
             epsilon = generators(zeta, material)[0] / zeta if zeta > 0.0 else 0.0
-        return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, _largest_N(given, zeta))
+        return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, _largest_N(given, zeta), lam)
 
     points = np.broadcast(material, kappa, V)
     values = [state(given, float(kappa), float(V)) for given, kappa, V in points]
-    return Strained(*np.array(values).reshape(*points.shape, 3).transpose(-1, *range(points.ndim)))
+    return Strained(*np.array(values).reshape(*points.shape, 4).transpose(-1, *range(points.ndim)))
+
+
+def passage(V: Any, length: Any) -> Any:
+    """What a contact asks of its material: the rate at which a point passes it, 1/s, of a speed and a length.
+
+    The law holds where the material is known at angular frequencies of this size.  At its front edge every contact has
+    a layer that is passed in less: modes faster than the passage act there as far as they go.
+    """
+    return np.abs(V) / length
+
+
+def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
+    """kappa V at which the contact is passed at two rates; all over T_ref."""
+    from .kernels.material.functions import generators
+
+    if not series.E.size:
+        return low, high
+    own, unit = series.in_own_time()
+
+    def speed(rate: float) -> float:
+        zeta = 0.5 / (rate * unit)
+        return rate / math.sqrt(1.0 + 2.0 * generators(zeta, record(own))[1] / zeta)  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
+
+    return speed(low), speed(high)
 
 
 def _largest_N(material: float | Prony, zeta: float) -> float:
@@ -169,7 +208,7 @@ def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:
     """Whether both bodies pass the contact at about one speed; None where the creep is not known."""
     if delta is None:
         return Assumption(None, None, "both bodies pass the contact at about one speed; give omega to see whether")
-    size = np.abs(delta)
+    size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
     most = float(np.max(size, initial=0.0, where=full_slip))
     return Assumption(
         ~full_slip | (size <= CREEP_LIMIT), size,
@@ -212,11 +251,36 @@ def coupling(long: float | None = None, instant: float | None = None, *, like: b
     )  # fmt: skip
 
 
-def judge(
-    found: Strained, slow: Assumption, steady: Assumption, creep: Assumption, bodies: Assumption, plane: str
-) -> Validity:
-    """Numbers put into words."""
-    reach, epsilon, _ = found
+def measurement(seen: Any, records: Mapping[str, Measured]) -> Assumption:
+    """Whether the data of each body hold the rate at which its contact is passed; None where there are none."""
+    if not records:
+        return Assumption(None, None, "nothing is known of the frequencies that the material was measured at")
+    ends = dict.fromkeys(f"{end:.2g}" for end in (np.min(seen, initial=np.inf), np.max(seen, initial=0.0)))
+    sentence = f"the contact is passed at {' to '.join(ends)} 1/s, the layer at its front edge faster"
+    holds = np.full(np.shape(seen), True)[()]
+    for body, data in records.items():
+        holds = holds & (data.low <= seen) & (seen <= data.high) & (data.misfit <= MISFIT_LIMIT)
+        sentence += f"; {body} was measured from {data}"
+    return Assumption(holds, seen, sentence)
+
+
+def thickness(length: Any, layers: Mapping[str, float | None]) -> Assumption:
+    """Contact length over the thickness of the thinnest of the layers; None where none is known."""
+    thin = min((given for given in layers.values() if given is not None), default=None)
+    if thin is None:
+        return Assumption(None, None, "thickness not known: the law is that of a half-space")
+    unknown = [f"the thickness of {body} is not known" for body, given in layers.items() if given is None]
+    ratio = length / thin
+    return Assumption(
+        ratio <= THICK_LIMIT, ratio,
+        f"the contact is {np.max(ratio, initial=0.0):.2g} times as long as the layer is thick; up to {THICK_LIMIT:g} "
+        "its length is within 5 % of that on a half-space" + "".join(f"; {text}" for text in unknown),
+    )  # fmt: skip
+
+
+def judge(found: Strained, steady: Assumption, creep: Assumption) -> Validity:
+    """Numbers put into words; what only a cylinder in SI units knows is not known."""
+    reach, epsilon = found.reach, found.epsilon
     far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
     small = Assumption(
         reach <= REACH_LIMIT, reach,
@@ -228,4 +292,7 @@ def judge(
         f"epsilon = {ahead:.2g}: the contact "
         + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
     )  # fmt: skip
-    return Validity(small, under, slow, steady, creep, bodies, Assumption(None, None, plane))
+    plane = Assumption(None, None, "the cylinder is long or held between walls (plane strain), or a thin disc")
+    return Validity(
+        small, under, inertia(None), steady, creep, coupling(), measurement(None, {}), thickness(None, {}), plane
+    )

@@ -61,6 +61,8 @@ def test_howto_blocks_run(tmp_path, monkeypatch):
     for n, code in enumerate(blocks(ROOT / "docs/howto.md", "python")):
         exec(compile(code, f"howto.md, block {n + 1}", "exec"), session)
     assert (tmp_path / "motion.nc").exists()
+    # the controller with a state holds what it was told to
+    assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
 
 
 def test_howto_scene_files_are_read(tmp_path):

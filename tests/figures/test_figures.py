@@ -184,6 +184,10 @@ def test_figure_6_and_7_at_the_four_times():
         tau, bound = line(panel, r"$|\tau|/E'$")[1], line(panel, r"$\mu p/E'$")[1]
         assert (tau <= bound * (1.0 + tol.FIGURE)).all()
     assert r"$\beta$ = 0.981" in panels[1].get_title()
+    (why,) = (text.get_text() for text in panels[0].texts)
+    assert r"prints $\beta$ = 0.45" in why
+    assert "$1.512" in why
+    assert not figure_7(times=(1.52e-4, 4e-4, 24e-4, 29e-4)).axes[0].texts
 
 
 def test_rolling_resistance_shifts_with_temperature():
@@ -237,9 +241,18 @@ def test_broad_stresses_carry_the_load():
 
 
 def test_a_start_that_rolls_and_a_scene_that_never_stops():
-    figure_5(starts={"rolling": (1.0, 1.0)})
-    figure_6(start=(1.0, 1.0))
-    phase_portrait(vr.PAPER_SECTION_5.replace(alpha=1.0))
+    """Neither has an onset of stick to look at more closely; on an elastic scene nothing slows what rolls."""
+    (axes,) = figure_5(starts={"rolling": (1.0, 1.0)}).axes
+    assert axes.child_axes == []
+    V, omega = (line.get_ydata() for line in axes.get_lines()[:2])
+    assert close(omega, V, rel=1e-2)
+    assert V[0] == 1.0 > V[-1] > 0.0
+    assert len(figure_6(start=(1.0, 1.0)).axes) == 1
+    _, right = phase_portrait(vr.PAPER_SECTION_5.replace(alpha=1.0)).axes
+    rolling = [line for line in right.get_lines() if line.get_zorder() == 3]
+    assert len(rolling) == 2
+    for line in rolling:
+        assert (np.asarray(line.get_ydata()) == 0.0).all()
 
 
 def test_save_is_whole_or_not_at_all(drawn, tmp_path):
@@ -416,7 +429,7 @@ def test_stage_refuses_in_one_line(demo, tmp_path):
     for name, old, new, words in (
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
-        ("motions", '"paper-section-5"', '"paper"', "preset: 'paper'"),
+        ("motions", '"paper-section-5"', '"paper"', "preset: 'paper' is not"),
         ("summary", "[summary]", "[summary", "is not TOML"),
     ):
         config.write_text(small.replace(old, new), encoding="utf-8")

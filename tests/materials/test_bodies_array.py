@@ -162,6 +162,14 @@ def test_exported_with_both_bodies():
     assert stored.share.values.tolist() == [0.6] * COUNT
 
 
+def test_validity_of_a_pair_each():
+    pairs = vr.Bodies(vr.Prony([[1.0], [3.0]], [1.0]), vr.Prony([2.0], [0.01]), 0.3)
+    found = vr.Scene(material=pairs, kappa=10.0, mu=0.2, gamma=0.1).validity([0.3, 2.0]).steady
+    for n, V in enumerate((0.3, 2.0)):
+        one = vr.Scene(material=pairs[n], kappa=10.0, mu=0.2, gamma=0.1).validity(V).steady
+        assert close(found.value[n], one.value, rel=tol.PAIR)
+
+
 def test_refused():
     many, few = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), vr.Prony([[1.0]] * 3, [1.0])
     scene, wide = (
@@ -176,7 +184,6 @@ def test_refused():
         (lambda: vr.Bodies(many, 11.0), ("half_space = 11.0", "a Prony series")),
         (lambda: vr.Bodies(many, many, [[0.1, 0.5]]), ("share", "one for each pair")),
         (lambda: vr.Scene(material=vr.Bodies(many, many, 0.4), kappa=[1.0] * 3, mu=0.1), ("shapes", "alpha (2,)")),
-        (lambda: scene.validity(0.3), ("material = <2 pairs", "one material")),
         (lambda: vr.law(scene), ("material = <2 pairs", "one material")),
         (lambda: vr.roll(scene, 1.0, 1.0, T), ("scene", "one motion")),
         (lambda: vr.ensemble(scene, 1.0, 1.0, T, method="flow"), ("method = 'flow'",)),

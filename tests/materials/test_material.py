@@ -293,6 +293,9 @@ STORED = (
     vr.Material(3e6, 0.5, vr.Prony.creep([0.3, 0.69], [3.0, 1e-5], alpha=100.00000000000001)),
     vr.Material.elastic(2e11, 0.3),
     vr.Material.rigid(name="ideal"),
+    vr.Material(
+        2e6, 0.5, vr.Prony([2.0], [1e-3]), thickness=0.02 / 3.0, measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f")
+    ),
 )
 
 
@@ -325,6 +328,45 @@ def test_a_temperature_beside_a_stored_material(tmp_path):
     warm = STORED[0].at(30.0, vr.WLF(T0=20.0))
     assert read_materials(tmp_path / "warm.toml") == {"material": warm}
     assert read_materials(tmp_path / "warm.toml", 40.0) == {"material": STORED[0].at(40.0, vr.WLF(T0=20.0))}
+
+
+def test_a_material_of_another_toml_file(tmp_path):
+    """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside it."""
+    rubber, belt = STORED[0], STORED[1]
+    (tmp_path / "dma.toml").write_text(as_toml(rubber), encoding="utf-8")
+    (tmp_path / "two.toml").write_text(as_toml(rubber) + as_toml(belt, "base"), encoding="utf-8")
+    scene = tmp_path / "scene.toml"
+    scene.write_text('[material]\nfile = "dma.toml"\n[base]\nfile = "dma.toml"\nthickness = 0.006\n')
+    thin = dataclasses.replace(rubber, thickness=0.006)
+    assert read_materials(scene) == {"material": rubber, "base": thin}
+    scene.write_text('[material]\nfile = "two.toml"\n[base]\nfile = "two.toml"\n')
+    assert read_materials(scene) == {"material": rubber, "base": belt}
+    scene.write_text('[base]\nfile = "dma.toml"\nwlf = { T0 = 20.0 }\ntemperature = 30.0\n')
+    assert read_materials(scene) == {"base": rubber.at(30.0, vr.WLF(T0=20.0))}
+    for content, words in (
+        ("[scene]\nalpha = 2.0\n", "section [material] is missing"),
+        ('[material]\nfile = "scene.toml"\n', "must not name a file again"),
+        ("[material]\nE = 1.0\n", "nu"),
+    ):
+        (tmp_path / "dma.toml").write_text(content)
+        refused(partial(read_materials, scene), "line 2: [base]", "dma.toml", words, error=vr.ConfigError)
+
+
+def test_what_was_measured_goes_with_the_temperature():
+    """a_T = 100: the data hold a hundredth of their frequencies."""
+    rubber = dataclasses.replace(STORED[0], measured=vr.Measured(0.1, 300.0, 0.01, "dma.csv"))
+    assert rubber.at(0.0, lambda _: 100.0).measured == vr.Measured(1e-3, 3.0, 0.01, "dma.csv")
+    assert STORED[0].at(0.0, lambda _: 100.0).measured is None
+    assert "0.1 to 300 rad/s, misfit 1 % (dma.csv)" in repr(rubber._card())
+
+
+def test_refused_bands():
+    refused(lambda: vr.Measured(2.0, 1.0, 0.0), "high = 1.0", ">= low = 2")
+    refused(lambda: vr.Measured(0.0, 1.0, 0.0), "low = 0.0")
+    refused(lambda: vr.Measured(1.0, 2.0, -0.1), "misfit = -0.1")
+    refused(lambda: vr.Measured(1.0, 2.0, 0.1, 3), "source = 3")
+    refused(lambda: vr.Material.elastic(1e6, 0.5, measured=(1.0, 2.0)), "measured", "a Measured")
+    refused(lambda: vr.Material.elastic(1e6, 0.5, thickness=0.0), "thickness = 0.0")
 
 
 def test_damaged_materials(tmp_path):

@@ -359,6 +359,34 @@ def test_ensemble_is_roll():
     assert np.array_equal(tilted.V[1], vr.roll(ROLLER, 0.0, 0.0, T, slope=0.02).V)
 
 
+def test_nothing_is_no_drive():
+    """Zeros, however they are written: the integrator of free motions, and its bits; arrays of them count motions."""
+    free = vr.roll(ROLLER, 1.5, 0.5, T)
+    for nothing in ({"slope": 0.0}, {"force": np.float32(0.0)}, {"torque": np.array(0.0)}, {"brake": 0}):
+        m = vr.roll(ROLLER, 1.5, 0.5, T, **nothing)
+        assert np.array_equal(m.V, free.V)
+        assert m.steps == free.steps
+        assert not m.drive.given
+    for nothing in ({"force": np.zeros(3)}, {"slope": [0.0, 0.0, 0.0]}, {"brake": np.zeros(3)}):
+        e = vr.ensemble(ROLLER, 1.5, 0.5, T, **nothing)
+        assert len(e) == 3
+        assert np.array_equal(e.V[2], free.V)
+    with pytest.raises(vr.ParameterError, match="force has shape"):
+        vr.roll(ROLLER, 1.5, 0.5, T, force=np.zeros(3))
+
+
+def test_a_prescribed_speed_of_many_motions():
+    """Start speeds of n motions are n motions, also of the speed that is prescribed for all of them."""
+    for name, start in (("V", {"V0": np.ones(3), "omega0": 0.5}), ("omega", {"V0": 0.5, "omega0": np.ones(3)})):
+        e = vr.ensemble(ROLLER, **start, t=T, **{name: 1.0})
+        m = vr.roll(ROLLER, *(float(np.ravel(each)[0]) for each in start.values()), T, **{name: 1.0})
+        assert e.V.shape == (3, T.size)
+        assert np.array_equal(e.V, np.broadcast_to(m.V, e.V.shape))
+        assert getattr(e, f"{name}0").shape == (3,)
+    with pytest.raises(vr.ParameterError, match="V0"):
+        vr.ensemble(ROLLER, [1.0, 2.0], 0.5, T, V=1.0)
+
+
 REFUSALS = {
     "both": ({"V": 1.0, "omega": 1.0}, "V and omega are both given"),
     "found": ({"omega": 1.0, "torque": 0.1}, "torque"),
@@ -369,7 +397,7 @@ REFUSALS = {
     "shapes": ({"force": ([0.0, 1.0], [0.0, 0.0, 1.0])}, "values (k,)"),
     "steep": ({"slope": 1.6}, "slope"),
     "nan": ({"torque": lambda t: math.nan}, "torque(t)"),
-    "callable": ({"torque": lambda t: float(t > 0.3)}, "jumps near t = 0.3"),
+    "callable": ({"V0": None, "V": lambda t: float(t > 0.3)}, "a jump at t = 0.3"),
     "of the speeds": ({"torque": lambda t, V, w: -V}, "torque is called with t alone, this function takes (t, V, w)"),
     "of nothing": ({"force": vr.Feedback(lambda: 0.1, V=-1.0)}, "force is called with t alone"),
     "rest": ({"force": 0.1, "rest": 1e-3}, "rest"),

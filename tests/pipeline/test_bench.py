@@ -7,8 +7,12 @@ from pathlib import Path
 
 import pytest
 import tolerances as tol
+from closeness import close
 from places import PIPELINE, RESULTS, ROOT
 from processes import made, stage, stage_refused
+
+from pipeline.document.bench import comparison
+from pipeline.results import Results
 
 CONFIG = PIPELINE / "config/production.toml"
 OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
@@ -49,6 +53,15 @@ def test_motions(folder):
     if work["skipped"]:
         assert set(work["skipped"]) <= {"gsl-adams", "gsl-bdf"}, work["skipped"]
         pytest.skip("; ".join(f"{name}: {reason}" for name, reason in work["skipped"].items()))
+
+
+def test_ratios_lead_with_like_against_like():
+    """Peers integrate: the first ratio is to motions that are integrated, a later one to a look-up."""
+    rows = comparison(Results(RESULTS), best=True)
+    (paper,) = (row for row in rows if "the paper's method" in row[1])
+    ratio, _, theirs, ours, looked_up, _ = paper
+    assert close(float(ratio), float(theirs.split()[0]) / float(ours.split()[0]), rel=tol.TWO_DIGITS)
+    assert float(looked_up) > 10.0 * float(ratio)
 
 
 def test_law_tables_and_the_rest(folder):

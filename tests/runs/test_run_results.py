@@ -62,11 +62,11 @@ def test_a_store_shows_itself(store, tmp_path):
 def test_a_table_of_a_store(store):
     found = open_run(store[1])
     table, data = found.to_pandas(), found.summaries
-    assert table.attrs["units"] == {"V": "m s-1", "onset_time": "s", "t": "s"}
-    assert table.loc[("V", 1.0), "mean"] == data.V_mean.values[1]
-    assert table.loc[("V", 0.1), 0.5] == data.V_quantiles.values[1, 0]
+    assert table.index.names == ["quantity", "t [s]"]
+    assert table.loc[("V [m s-1]", 1.0), "mean"] == data.V_mean.values[1]
+    assert table.loc[("V [m s-1]", 0.1), 0.5] == data.V_quantiles.values[1, 0]
     assert list(table.columns) == ["mean", "std", "min", "max", 0.1, 0.5, 0.9]
-    assert np.isfinite(table.loc["onset_time", "mean"].item())
+    assert np.isfinite(table.loc["onset_time [s]", "mean"].item())
 
 
 def test_no_store(tmp_path):

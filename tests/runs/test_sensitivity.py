@@ -301,6 +301,28 @@ def test_command_writes_csv(capsys):
         assert (row["run_file"], row["seed"], row["base_points"]) == (ONSET, "0", "64")
 
 
+def test_csv_of_a_cylinder_has_the_unit_of_time(here):
+    run_of("""
+        [cylinder]
+        R = 0.1
+        m = 35.5
+        E = 2.3e5
+        nu = 0.49
+        T_epsilon = 10.7
+        T_sigma = 0.97
+        mu = { distribution = "uniform", loc = 0.2, scale = 0.1 }
+        [start]
+        V0 = { distribution = "uniform", loc = 0.01, scale = 0.01 }
+        omega0 = 0.0
+        [run]
+        n = 1
+        t = [1e-3]
+        summaries = ["V"]
+        """)
+    assert main(["sensitivity", "run.toml", "-n", "16", "-o", "s.csv"]) == 0
+    assert (here / "s.csv").read_text(encoding="utf-8").startswith("confidence,quantity,t [s],input,")
+
+
 def test_example_of_the_help_runs(here, capsys):
     run_of(ONSET)
     assert main(["sensitivity", "--help"]) == 0

@@ -129,7 +129,7 @@ REFUSED = [
     ({"slope": 1.6}, "slope = 1.6: must be an angle below pi/2"),
     ({"slope": [0.1, 0.2]}, "slope = [0.1, 0.2]: must be a single number"),
     ({"force": "1 N"}, "force = '1 N'"),
-    ({"force": [1.0, 2.0]}, "of 2 motions"),
+    ({"force": [1.0, 2.0]}, "force has shape (2,)"),
     ({"force": ([0.0, 1.0], [0.0])}, "times (2,), values (1,)"),
     ({"force": ([0.0, -1.0], [0.0, 1.0])}, "times of force = -1.0 at row 1"),
     ({"torque": ([2.0, 1.0], [0.0, 1.0])}, "in ascending order (dimensionless: times over 10.7 s"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .arguments import add_output_option, count, number
@@ -51,6 +52,10 @@ def _add_fit(group: Any) -> None:
         epilog="example:\n  viscoroll material fit docs/examples/dma.csv --nu 0.49 -o rubber.toml",
     )
     parser.add_argument("data", metavar="DATA", help="a text file of columns")
+    parser.add_argument(
+        "--units", metavar="F,M", type=lambda text: tuple(text.split(",")),
+        help="of frequency and moduli where the file gives none: Hz,MPa"
+    )  # fmt: skip
     parser.add_argument("--modes", type=count, help="largest number of modes; default: as few as the misfit needs")
     parser.add_argument(
         "--misfit", type=number, default=0.01, help="rms of the relative errors asked for (default 0.01)"
@@ -94,7 +99,8 @@ def _fit(arguments: Namespace) -> int:
     from ..files import write_text
     from ..materials.file import SUFFIX, as_toml
 
-    found = fit_prony(*read_dma(arguments.data), arguments.modes, misfit=arguments.misfit)
+    columns = read_dma(arguments.data, units=arguments.units)
+    found = fit_prony(*columns, arguments.modes, misfit=arguments.misfit, source=Path(arguments.data).name)
     material = found.material(arguments.nu, name=arguments.name)
     if arguments.output is not None and arguments.output.suffix == SUFFIX:
         material.to_netcdf(arguments.output)
@@ -110,7 +116,10 @@ def _text(section: str, material: Material) -> str:
     series, T = material.prony, material.T_ref
     heading = [f"[{section}] {material.name}".rstrip()]
     constants = {"E": material.E, "nu": material.nu}
-    constants |= {} if material.density is None else {"density": material.density}
+    more = {"density": material.density, "thickness": material.thickness}
+    constants |= {name: value for name, value in more.items() if value is not None}
+    if material.measured is not None:
+        heading.append(f"measured from {material.measured}")
     if not series.E.size:
         heading.append("rigid" if material.is_rigid else "elastic")
         return "\n".join([*heading, ", ".join(f"{name} = {value:.10g}" for name, value in constants.items()), ""])

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
+from ..results import column
 from ..si.units import attributes as si_attributes
 from ..symbols import attributes, meaning
 
@@ -62,7 +63,7 @@ class Sheet:
         file = io.StringIO()
         writer = csv.writer(file, lineterminator="\n")
         names = (*self.constants, *self.columns)
-        writer.writerow([f"{name} [{self.units[name]}]" if name in self.units else name for name in names])
+        writer.writerow([column(name, self.units.get(name, "")) for name in names])
         writer.writerows(zip(*columns, strict=True))
         return file.getvalue()
 

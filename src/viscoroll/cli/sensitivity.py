@@ -58,6 +58,7 @@ def _sheet(indices: xr.Dataset, *, provenance: bool = False) -> Sheet:
     """A row for each quantity, time and input: to four decimals, or in full with seed, versions and run file."""
     import numpy as np
 
+    from ..results import unit_of
     from .output import Sheet
 
     rows = [row for name in indices if str(name).endswith("_S1") for row in _rows(indices, str(name)[: -len("_S1")])]
@@ -69,7 +70,8 @@ def _sheet(indices: xr.Dataset, *, provenance: bool = False) -> Sheet:
     else:
         for key in ("base_points", "seed", "source", "versions", "run_file"):
             columns[key] = np.full(len(rows), about[key], object)
-    return Sheet(_heading(about), {"confidence": about["confidence"]}, columns)
+    unit = unit_of(indices["t"].attrs)
+    return Sheet(_heading(about), {"confidence": about["confidence"]}, columns, {"t": unit} if unit else {})
 
 
 def _heading(about: dict[str, Any]) -> tuple[str, ...]:

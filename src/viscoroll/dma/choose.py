@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from itertools import product
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ParameterError
+from ..kernels.compile.notice import is_quiet
 from .curve import Curve
 from .spectrum import Spectrum, has_plateau, misfits, on_times, polished
 
@@ -21,6 +23,9 @@ _DRAWN_IN = -0.5
 _NEAR_BEST = 1.05
 #: calls of the residuals while modes are left out, and at the end; ways to leave one out that are tried
 _CALLS, _LAST_CALLS, _WAYS = 40, 400, 3
+#: seconds without a bar
+_WAIT = 2.0
+T = TypeVar("T")
 
 
 class Chosen(NamedTuple):
@@ -54,9 +59,10 @@ def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
         spectrum, ends = next(start for start in starts if good(start[0]))
     else:
         spectrum, ends = next((start for start in starts if start[0].tau.size >= modes), starts[-1])
-    while spectrum.tau.size > (modes or 1):
+    fewest = modes or 1
+    for _ in _shown(range(spectrum.tau.size - fewest), "modes left out"):
         fewer = _with_one_less(curve, spectrum, ends, good if modes is None else None)
-        if fewer is None:
+        if fewer is None or spectrum.tau.size <= fewest:  # one step may leave out several
             break
         spectrum = fewer
     last = polished(curve, spectrum, ends, _LAST_CALLS)
@@ -67,12 +73,18 @@ def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
 def _starts(curve: Curve, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
     """Spectra on grids further and further, denser and denser, until one reaches the target, and their ends."""
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
-    for margin in MARGINS:
-        for density in DENSITIES:
-            starts += _solid(curve, margin, density)
-            if target is not None and starts and _reaches(curve, starts[-1][0], target):
-                return starts
+    for margin, density in _shown(list(product(MARGINS, DENSITIES)), "grids of times"):
+        starts += _solid(curve, margin, density)
+        if target is not None and starts and _reaches(curve, starts[-1][0], target):
+            break
     return starts
+
+
+def _shown(steps: Sequence[T], what: str) -> Iterable[T]:
+    """Steps with a bar for whoever waits."""
+    from tqdm import tqdm
+
+    return tqdm(steps, desc=f"fit_prony, {what}", delay=_WAIT, leave=False, disable=is_quiet())
 
 
 def _solid(curve: Curve, margin: float, density: float) -> list[tuple[Spectrum, tuple[float, float]]]:

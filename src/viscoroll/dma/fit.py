@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import number
+from ..checks import checked, number
 from ..errors import ParameterError
+from ..materials.measured import Measured
 from ..materials.prony import Prony
 from ..materials.prony_forms import MOST_MODES, WIDEST
+from ..rolling_contact import contact
 from ..typed import Numbers
-from ..validity import Assumption
+from ..validity import Assumption, measurement, passage
 from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
 from .shift import Shifts, master_curve
@@ -55,6 +57,7 @@ class Fit:
     shifts : shift factors of curves at several temperatures, else None.
     omega, storage, loss : the data, sorted and shifted; rad/s and the unit given.
     grid : shortest and longest time that the fit was allowed, s.
+    source : of the data, in words.
     """
 
     E: float
@@ -70,6 +73,7 @@ class Fit:
     storage: NDArray[np.float64] = field(repr=False)
     loss: NDArray[np.float64] = field(repr=False)
     grid: tuple[float, float] = field(repr=False)
+    source: str = ""
 
     @property
     def alpha(self) -> float:
@@ -104,13 +108,21 @@ class Fit:
         curve = Curve(self.omega, self.storage, self.loss)
         return tuple(wider(curve, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2))
 
-    def material(self, nu: float = 0.49, *, name: str = "", density: float | None = None) -> Material:
-        """The fit as a :class:`viscoroll.Material`; the data must have been in Pa.
+    @property
+    def measured(self) -> Measured:
+        """The frequencies of the data, the larger misfit and the source: what a material keeps of them."""
+        source = self.source or f"{self.omega.size} points"
+        return Measured(float(self.omega[0]), float(self.omega[-1]), max(self.misfit), source)
+
+    def material(
+        self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
+    ) -> Material:
+        """The fit as a :class:`viscoroll.Material`, ``measured`` with it; the data must have been in Pa.
 
         Parameters
         ----------
         nu : Poisson's ratio, constant in time.
-        name, density : as there; density in kg/m^3.
+        name, density, thickness : as there; density in kg/m^3, thickness in m.
 
         Raises
         ------
@@ -119,10 +131,13 @@ class Fit:
         """
         from ..materials.material import Material
 
-        return Material(E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density)
+        return Material(
+            E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density, thickness=thickness,
+            measured=self.measured,
+        )  # fmt: skip
 
     def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
-        """Whether the contact of a cylinder of this material sees frequencies that the data hold.
+        """Whether a contact with this material sees frequencies that the data hold, and the fit is near them.
 
         A contact is passed in lam l0/V, which must lie within the times of the data; shifted to another temperature
         (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer that is passed in
@@ -130,7 +145,7 @@ class Fit:
 
         Parameters
         ----------
-        cylinder : of ``material()`` of this fit, at any temperature.
+        cylinder : one, or a series of them, whose material or base is ``material()`` of this fit, at any temperature.
         V : speed of the axis, m/s, any sign.
 
         Returns
@@ -143,18 +158,14 @@ class Fit:
         ParameterError
             A cylinder of another series; NaN or infinite V.
         """
-        if cylinder.pair.cylinder.prony != self.prony:
-            raise ParameterError("cylinder", f"{cylinder.pair.cylinder!r:.60}", "of the material of this fit")
-        a_T = cylinder.pair.cylinder.T_ref / self.T_ref
-        seen = a_T * np.abs(V) / cylinder.contact(V, delta=0.0, fields="length").length
-        low, high = float(self.omega[0]), float(self.omega[-1])
-        fastest = self.prony.tau.min(initial=np.inf) * self.T_ref
-        return Assumption(
-            (low <= seen) & (seen <= high), seen,
-            f"the contact is passed at {np.min(seen, initial=np.inf):.2g} to {np.max(seen, initial=0.0):.2g} 1/s, the "
-            f"layer at its front edge faster, up to {1.0 / fastest:.2g} 1/s of the fastest mode; "
-            f"the data reach from {low:.2g} to {high:.2g} rad/s",
-        )  # fmt: skip
+        bodies = cylinder.pair.cylinder, cylinder.pair.half_space
+        body = next((body for body in bodies if body.prony == self.prony), None)
+        if body is None:
+            raise ParameterError("cylinder", "another", "with this fit's material for its material or base")
+        speed = checked("V", V)
+        lam = contact(cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam").lam
+        seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
+        return measurement(seen, {"the material": self.measured})
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Storage and loss modulus of the data with those of the fit, in a figure of matplotlib.
@@ -207,6 +218,7 @@ def fit_prony(
     temperature: Numbers | None = None,
     reference: float | None = None,
     shift: Numbers | Callable[[float], float] | None = None,
+    source: str = "",
 ) -> Fit:
     """Fit a Prony series to storage and loss modulus.
 
@@ -225,6 +237,7 @@ def fit_prony(
     reference : temperature of the master curve; default the middle one of the curves.
     shift : factors a_T, one a temperature in ascending order, or a function of the temperature; times are a_T times
         those at the reference.  Default: found from the overlap of neighbouring curves.
+    source : of the data, in words; it stays with the material.
 
     Returns
     -------
@@ -257,5 +270,5 @@ def fit_prony(
         E=spectrum.E, T_ref=T_ref, prony=Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref),
         misfit=Misfit(*misfits(curve, spectrum)), target=target, reached=reached,
         kramers_kronig=kramers_kronig(curve), outside=outside, shifts=shifts,
-        omega=curve.omega, storage=curve.storage, loss=curve.loss, grid=grid,
+        omega=curve.omega, storage=curve.storage, loss=curve.loss, grid=grid, source=source,
     )  # fmt: skip

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..materials.prony import Prony
 from ..rolling_contact import contact
 from ..scene import Scene
+from ..validity import passage
 from .choose import grid_of_times
 from .curve import Curve
 from .spectrum import misfits, on_times
@@ -64,7 +65,7 @@ def _seen(prony: Prony, omega: NDArray) -> tuple[NDArray[np.float64], NDArray[np
     low, high = np.log10(omega[0] / np.sqrt(prony.alpha)), np.log10(omega[-1])
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))
     state = _state(prony, 1.0, V)
-    passed = V / state.lam
+    passed = passage(V, state.lam)
     held = (passed >= omega[0]) & (passed <= omega[-1])
     return V[held], state.M[held]
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: The times of the paper's Fig. 7, circles in Fig. 6.
 PAPER_TIMES = (1.52e-4, 4e-4, 24e-4, 30e-4)
+#: beta as the paper prints it at the first of these times
+PAPER_BETA = 0.45
 _SCENE = ("alpha", "kappa", "mu", "gamma")
 _END, _TIMES = 4e-3, 2001
 #: Times are shown in units of 1e-4.
@@ -135,7 +137,21 @@ def figure_7(
     for axes in panels[:, 0]:
         axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
     panels[0, 0].legend(frameon=False, loc="upper left")
+    if (scene, start, times) == (PAPER_SECTION_5, PAPER_STARTS["IC1"], PAPER_TIMES):
+        panels[0, 0].text(0.02, 0.6, _printed(motion), transform=panels[0, 0].transAxes, va="top", fontsize="small")
     return figure
+
+
+def _printed(motion: Motion) -> str:
+    """Why beta at the first of the paper's times is not what the paper prints."""
+    near = motion.at(np.linspace(motion.onset_time, PAPER_TIMES[0], 101))
+    beta = near.contact("beta").beta
+    passed, rise = np.interp(PAPER_BETA, beta, near.t), (beta[-1] - beta[-2]) / (near.t[-1] - near.t[-2])
+    return (
+        f"the paper prints {label('beta')} = {PAPER_BETA},\n"
+        rf"passed at {label('t')} = ${_UNIT * passed:.4g}\times 10^{{-4}}$:"
+        f"\n{label('beta')} climbs here by\n{1e-6 * rise:.1g} in $10^{{-6}}$ of {label('t')}"
+    )
 
 
 def _front_edge(axes: Any, x: NDArray, found: Any, mu: float) -> None:

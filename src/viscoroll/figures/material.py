@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dma import Fit, fit_prony
-from ..plots.style import LINES, new_figure
+from ..plots.style import LINES, dashed, new_figure
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import label
+from ..validity import held_speeds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 #: a_T against 20 C of a rubber whose glass transition is at -60 C, with the universal constants of Williams, Landel
 #: and Ferry, 17.44 and 51.6 K
 _TEMPERATURES = {"-20 °C": 952.0, "20 °C": 1.0, "60 °C": 0.0254}
-_SPEEDS = (1e-3, 1e3)
+_SPEEDS = (1e-3, 1e2)
 
 
 def rolling_resistance(
@@ -48,11 +49,14 @@ def rolling_resistance(
         left.loglog(fit.omega, data, marker, color=line["color"], markersize=3, fillstyle="none", label=f"${name}$")
         left.loglog(omega, fitted, label=f"${name}$, fit", **line)
     V = np.geomspace(*_SPEEDS, 241)
+    low, high = held_speeds(fit.prony, fit.omega[0] * fit.T_ref, fit.omega[-1] * fit.T_ref)
     for (name, a_T), line in zip(factors.items(), LINES, strict=False):
-        scene = Scene(material=fit.prony.slower(a_T), kappa=kappa, mu=1.0)
-        right.semilogx(V, contact(scene, V * fit.T_ref / R, delta=0.0, fields="M").M, label=name, **line)
+        scene, speed = Scene(material=fit.prony.slower(a_T), kappa=kappa, mu=1.0), R / (kappa * a_T * fit.T_ref)
+        M = contact(scene, V * fit.T_ref / R, delta=0.0, fields="M").M
+        dashed(right, V, M, (low * speed, high * speed), label=name, **line)
+    right.set(xscale="log", ylim=(0.0, None))
     left.set(xlabel=r"$\omega$, rad/s", ylabel=f"$E'$, $E''$, {unit}", title="a) master curve")
-    right.set(xlabel="speed, m/s", ylabel=label("M"), title="b) rolling resistance over load", ylim=(0.0, None))
+    right.set(title="b) rolling resistance over load; dashed: beyond the data", xlabel="speed, m/s", ylabel=label("M"))
     for axes in (left, right):
         axes.legend(frameon=False)
     return figure

@@ -128,7 +128,7 @@ class BodiesArray(MaterialArray):
     def __getitem__(self, which: Any) -> Any:
         numbers, share = np.arange(len(self))[which], np.broadcast_to(self.share, self.shape)[which]
         cylinder, half_space = (_picked(body, numbers) for body in (self.cylinder, self.half_space))
-        if isinstance(which, slice):
+        if isinstance(which, slice | np.ndarray):
             return BodiesArray(cylinder, half_space, share, one=self._one)
         return self._one(cylinder, half_space, float(share))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from ..errors import ConfigError, ParameterError, TableError
 from ..sections import as_struct, fault, read
 from .law_store import is_law, read_law
 from .material import Material
+from .measured import Measured
 from .prony import Prony
 from .shift import WLF, Arrhenius
 from .store import SUFFIX
@@ -34,15 +36,18 @@ class MaterialSection(msgspec.Struct):
     T_ref: float | None = None
     name: str = ""
     density: float | None = None
+    thickness: float | None = None
+    measured: dict[str, Any] | None = None
     wlf: dict[str, Any] | None = None
     arrhenius: dict[str, Any] | None = None
     temperature: float | None = None
 
 
 class FileSection(msgspec.Struct):
-    """[material] or [base] of a netCDF file, and a temperature."""
+    """[material] or [base] of a netCDF or TOML file, a thickness, and a temperature."""
 
     file: str
+    thickness: float | None = None
     wlf: dict[str, Any] | None = None
     arrhenius: dict[str, Any] | None = None
     temperature: float | None = None
@@ -61,6 +66,15 @@ class CreepSection(msgspec.Struct):
     J: list[float]
     T: list[float]
     alpha: float | None = None
+
+
+class MeasuredSection(msgspec.Struct):
+    """measured = { low = ..., high = ..., misfit = ... }, perhaps with source."""
+
+    low: float
+    high: float
+    misfit: float
+    source: str = ""
 
 
 class WLFSection(msgspec.Struct):
@@ -115,12 +129,17 @@ def materials_of(path: Any, content: Mapping[str, Any], temperature: float | Non
 
 def as_toml(material: Material, section: str = "material") -> str:
     """The section of a TOML file that reads back as this material, to the bit."""
-    # TOML knows no surrogates, and DEL only escaped
-    name = json.dumps(material.name, ensure_ascii=False).replace("\x7f", r"\u007f")
-    values: dict[str, Any] = {"name": name, "E": material.E, "nu": material.nu}
-    more = {"T_ref": material.T_ref} | ({} if material.density is None else {"density": material.density})
-    lines = [f"{key} = {value}" for key, value in values.items()]
-    lines += [series_as_toml(material.prony), *(f"{key} = {value}" for key, value in more.items())]
+    measured = material.measured and (
+        f"{{ low = {material.measured.low}, high = {material.measured.high}, misfit = {material.measured.misfit}, "
+        f"source = {_text(material.measured.source)} }}"
+    )
+    first: dict[str, Any] = {"name": _text(material.name), "E": material.E, "nu": material.nu}
+    more: dict[str, Any] = {
+        "T_ref": material.T_ref, "density": material.density, "thickness": material.thickness, "measured": measured,
+    }  # fmt: skip
+    lines = [f"{name} = {value}" for name, value in first.items()]
+    lines += [series_as_toml(material.prony)]
+    lines += [f"{name} = {value}" for name, value in more.items() if value is not None]
     return "\n".join([f"[{section}]", *lines, ""])
 
 
@@ -131,12 +150,19 @@ def series_as_toml(series: Prony) -> str:
     return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
 
 
+def _text(given: str) -> str:
+    # TOML knows no surrogates, and DEL only escaped
+    return json.dumps(given, ensure_ascii=False).replace("\x7f", r"\u007f")
+
+
 def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
     stored = isinstance(content, dict) and "file" in content
     given: Any = as_struct(path, name, content, FileSection if stored else MaterialSection)
     try:
         shift = _shift(path, name, given)
         found = _stored(path, name, given) if stored else _unshifted(path, name, given)
+        if stored and given.thickness is not None:
+            found = replace(found, thickness=given.thickness)
         at = given.temperature if temperature is None or shift is None else temperature
         if at is None:
             return found
@@ -148,11 +174,19 @@ def _material(path: Any, name: str, content: Any, temperature: float | None) -> 
 
 
 def _stored(path: Any, name: str, given: FileSection) -> Material:
-    """The material of a netCDF file beside ``path``, its own or that of its law."""
-    stored = Path(path).parent / given.file
+    """The material of a file beside ``path``: netCDF, its own or its law's, or TOML with this section or [material]."""
+    beside = Path(path).parent / given.file
     try:
-        return _of_law(stored) if is_law(stored) else Material.from_netcdf(stored)
-    except TableError as error:
+        if beside.suffix == SUFFIX:
+            return _of_law(beside) if is_law(beside) else Material.from_netcdf(beside)
+        content = read(beside)
+        section = name if name in content else "material"
+        if section not in content:
+            raise fault(beside, "", "material", "section [material] is missing: it needs E and nu")
+        if isinstance(content[section], dict) and "file" in content[section]:
+            raise fault(beside, section, "file", "file: must not name a file again")
+        return _material(beside, section, content[section], None)
+    except (ConfigError, TableError) as error:
         raise fault(path, name, "file", str(error)) from error
 
 
@@ -167,7 +201,10 @@ def _of_law(path: Path) -> Material:
 
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
-    more: dict[str, Any] = {"name": given.name, "density": given.density}
+    more: dict[str, Any] = {"name": given.name, "density": given.density, "thickness": given.thickness}
+    if given.measured is not None:
+        band = as_struct(path, f"{name}.measured", given.measured, MeasuredSection)
+        more["measured"] = Measured(**msgspec.structs.asdict(band))
     series = series_of(path, name, given.prony, given.creep)
     if given.T_epsilon is not None or given.T_sigma is not None:
         if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:

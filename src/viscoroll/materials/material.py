@@ -15,6 +15,7 @@ from ..checks import checked, number
 from ..errors import ParameterError
 from ..results import Row, Shown
 from .importers import FromPrograms, poisson
+from .measured import Measured
 from .prony import Prony
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ class Material(FromPrograms):
     T_ref : what the times of ``prony`` are counted in, s.
     name : in words, for tables and figures.
     density : kg/m^3, to compare speeds with those of waves.
+    thickness : of the layer, on something rigid, m; the law is that of a half-space, and ``validity`` compares.
+    measured : the :class:`Measured` band that it was fitted in; beyond it contacts warn.
 
     Raises
     ------
@@ -53,6 +56,8 @@ class Material(FromPrograms):
     T_ref: float = 1.0
     name: str = ""
     density: float | None = None
+    thickness: float | None = None
+    measured: Measured | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.prony, Prony):
@@ -67,8 +72,11 @@ class Material(FromPrograms):
         object.__setattr__(self, "T_ref", number("T_ref", self.T_ref, low=0.0, strict=True))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        if self.density is not None:
-            object.__setattr__(self, "density", number("density", self.density, low=0.0, strict=True))
+        for name in ("density", "thickness"):
+            if (given := getattr(self, name)) is not None:
+                object.__setattr__(self, name, number(name, given, low=0.0, strict=True))
+        if not isinstance(self.measured, Measured | None):
+            raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -79,7 +87,7 @@ class Material(FromPrograms):
         E : long-time Young's modulus, Pa.
         nu : Poisson's ratio.
         T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.
-        more : ``name`` and ``density``.
+        more : ``name``, ``density`` and ``thickness``.
 
         Raises
         ------
@@ -95,7 +103,7 @@ class Material(FromPrograms):
 
     @classmethod
     def elastic(cls, E: float, nu: float, **more: Any) -> Material:
-        """A material that does not relax: E in Pa, nu; ``name`` and ``density``.
+        """A material that does not relax: E in Pa, nu; ``name``, ``density`` and ``thickness``.
 
         Raises
         ------
@@ -125,7 +133,7 @@ class Material(FromPrograms):
         return self.E / (2.0 * (1.0 + self.nu))
 
     def at(self, temperature: float, shift: Callable[[float], float]) -> Material:
-        """The material at another temperature: every time, that is T_ref, times a_T.
+        """The material at another temperature: every time, that is T_ref, times a_T; what was measured goes with it.
 
         Parameters
         ----------
@@ -139,7 +147,8 @@ class Material(FromPrograms):
             A temperature that the shift does not allow.
         """
         factor = number("a_T", shift(temperature), low=0.0, strict=True)
-        return replace(self, T_ref=self.T_ref * factor)
+        measured = None if self.measured is None else self.measured.shifted(factor)
+        return replace(self, T_ref=self.T_ref * factor, measured=measured)
 
     def storage(self, omega: ArrayLike) -> Any:
         """Storage modulus E', Pa, at angular frequencies >= 0, rad/s.
@@ -191,6 +200,10 @@ class Material(FromPrograms):
             rows.append(Row("relaxation times", f"{slowest} to {fastest}", "s"))
         if self.density is not None:
             rows.append(Row("density", f"{self.density:g}", "kg/m^3"))
+        if self.thickness is not None:
+            rows.append(Row("thickness", f"{self.thickness:g}", "m"))
+        if self.measured is not None:
+            rows.append(Row("measured", str(self.measured)))
         return self.name or "Material", rows
 
     _repr_html_ = Shown._repr_html_

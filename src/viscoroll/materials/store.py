@@ -13,6 +13,7 @@ import numpy as np
 from .. import __version__
 from ..errors import ParameterError, TableError
 from ..files import seal_holds, write_dataset
+from .measured import Measured
 from .prony import Prony
 
 if TYPE_CHECKING:
@@ -35,7 +36,12 @@ _MEANING = {
     "T_ref": ("what the times are counted in", "s"),
     "alpha": ("instantaneous over long-time modulus", "1"),
     "density": ("density", "kg m-3"),
+    "thickness": ("thickness of the layer", "m"),
+    "measured_low": ("first angular frequency of the data", "rad s-1"),
+    "measured_high": ("last angular frequency of the data", "rad s-1"),
+    "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
 }
+_BAND = ("low", "high", "misfit")
 
 
 def as_dataset(material: Any) -> xr.Dataset:
@@ -44,7 +50,9 @@ def as_dataset(material: Any) -> xr.Dataset:
 
     series = material.prony
     constants = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
-    constants |= {} if material.density is None else {"density": material.density}
+    more = {"density": material.density, "thickness": material.thickness}
+    more |= {f"measured_{name}": getattr(material.measured, name, None) for name in _BAND}
+    constants |= {name: value for name, value in more.items() if value is not None}
     data: dict[str, tuple[Any, Any]] = {name: ((), value) for name, value in constants.items()}
     data |= {name: ("mode", getattr(series, name)) for names in _FORMS.values() for name in names}
     described = {
@@ -57,7 +65,7 @@ def as_dataset(material: Any) -> xr.Dataset:
             "Conventions": "CF-1.11", "schema": _SCHEMA, "title": material.name or "linear viscoelastic material",
             "name": material.name, "given": "creep" if series.by_creep else "relaxation",
             "law": "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T T_ref)))/E_long",
-            "source": f"viscoroll {__version__}",
+            "source": f"viscoroll {__version__}", "measured": getattr(material.measured, "source", ""),
         },
     )  # fmt: skip
 
@@ -83,8 +91,10 @@ def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
 
 def _arguments(found: xr.Dataset) -> dict[str, Any]:
     constants: dict[str, Any] = {name: float(found[name]) for name in ("nu", "T_ref")}
-    if "density" in found:
-        constants["density"] = float(found.density)
+    constants |= {name: float(found[name]) for name in ("density", "thickness") if name in found}
+    if "measured_low" in found:
+        band = {name: float(found[f"measured_{name}"]) for name in _BAND}
+        constants["measured"] = Measured(**band, source=found.attrs["measured"])
     strengths, times = (found[name].values.astype(np.float64) for name in _FORMS[found.attrs["given"]])
     creep = found.attrs["given"] == "creep"
     series = Prony.creep(strengths, times, alpha=float(found.alpha)) if creep else Prony(strengths, times)

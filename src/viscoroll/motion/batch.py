@@ -115,7 +115,7 @@ def ensemble(
     if method == "flow" and (scene.shape or ready):
         what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    arrays, count = _inputs(scene, (V0, omega0), ready)
+    arrays, count = _inputs(scene, (V0, omega0), drive, ready)
     material, unit = scene.in_own_time()
     own_time = {} if unit == 1.0 else {"gamma": unit * unit, "V0": unit, "omega0": unit}
     scaled = (array * own_time[name] if name in own_time else array for name, array in arrays.items())
@@ -159,12 +159,12 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
     return names
 
 
-def _inputs(scene: Scene, starts: Any, ready: Prepared | None) -> tuple[dict[str, NDArray], int]:
+def _inputs(scene: Scene, starts: Any, drive: Drive, ready: Prepared | None) -> tuple[dict[str, NDArray], int]:
     """(Parameters and start speeds, how many motions they make)."""
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
     arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
-    drives = {"drive": np.zeros(ready.pieces.shape[0])} if ready and ready.pieces.shape[0] > 1 else {}
-    shape = broadcast_shape(**arrays, **drives)
+    drives = drive.numbers | ({"drive": np.zeros(ready.pieces.shape[0])} if ready and ready.pieces.shape[0] > 1 else {})
+    shape = broadcast_shape(**arrays, **{name: each for name, each in drives.items() if name not in arrays})
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
     return arrays, shape[0] if shape else 1

@@ -49,7 +49,8 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
         rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
-    if not (np.ndim(rtol) == 0 and low <= float(checked("rtol", rtol)) <= high):
+    asked = checked("rtol", rtol)
+    if asked.ndim or not low <= asked <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
     if rest is not None and checked("rest", rest, low=0.0, strict=True).ndim:
         raise ParameterError("rest", rest, "one positive number, or None")

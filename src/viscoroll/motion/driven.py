@@ -12,7 +12,7 @@ from ..drive import Feedback, slope_factor
 from ..errors import ParameterError, one_of
 from ..labels import Labels, unlabelled
 from ..scene import Scene
-from .schedule import Curve, curve, pieces_of, slope_of, start_value
+from .schedule import Curve, curve, is_schedule, pieces_of, slope_of, start_value
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
@@ -20,10 +20,6 @@ ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
 ROWS = STATES + ACTING + LOSSES
 #: a prescribed start may be off by this share of the largest prescribed speed
 _START = 1e-9
-
-
-def _is_zero(given: Any) -> bool:
-    return isinstance(given, float | int) and given == 0.0
 
 
 class Drive(NamedTuple):
@@ -38,13 +34,21 @@ class Drive(NamedTuple):
 
     @property
     def given(self) -> dict[str, Any]:
-        """What is given, by name: not None, and no force or torque that is the number 0."""
-        nothing = {name for name in ("force", "torque") if _is_zero(getattr(self, name))}
-        return {name: each for name, each in self._asdict().items() if each is not None and name not in nothing}
+        """What acts, by name: all that is given but for a force, torque, slope or brake of 0."""
+        still = {name for name, each in self.numbers.items() if name not in ("V", "omega") and not each.any()}
+        return {name: each for name, each in self._asdict().items() if each is not None and name not in still}
+
+    @property
+    def numbers(self) -> dict[str, NDArray[np.float64]]:
+        """What is given as a number, or as one a motion, by name."""
+        return {
+            name: checked(name, each) for name, each in self._asdict().items()
+            if not (each is None or callable(each) or isinstance(each, Feedback) or is_schedule(each))
+        }  # fmt: skip
 
     @property
     def acts(self) -> bool:
-        """Whether there is anything but force and torque 0."""
+        """Whether anything does."""
         return bool(self.given)
 
     @property
@@ -124,7 +128,7 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
         raise one_of("V", "omega", both=True)
     for name, found, own in (("omega", "torque", drive.omega), ("V", "force", drive.V)):
         given = getattr(drive, found)
-        if own is not None and (callable(given) or np.ndim(given) or given != 0.0):
+        if own is not None and found in drive.given:
             sentence = f"{found} is given beside {name}=: leave it out, it is what the prescribed {name} needs"
             raise ParameterError(found, given, "left out", sentence)
     if drive.brake is not None and drive.omega is not None:
@@ -152,11 +156,13 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
 
 
 def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.float64]) -> Any:
-    """The start that a schedule prescribes, a number where it is one for all."""
+    """The start that a schedule prescribes, a number where it is one for all, of as many motions as were given one."""
     scale = float(np.abs(speed.terms).sum(axis=-1).max(initial=0.0))
     if given is not None and not (np.abs(checked(name, given) - start) <= _START * scale).all():
         raise ParameterError(name, given, f"None, or {float(start[0]):.12g} as prescribed")
-    return float(start[0]) if start.size == 1 else start
+    if start.size > 1:
+        return start
+    return float(start[0]) if np.ndim(given) == 0 else np.full(np.shape(given), start[0])
 
 
 def _gains(drive: Drive) -> NDArray[np.float64]:

@@ -118,9 +118,10 @@ class Ensemble(Shown):
         """
         some, V, omega = self.judged()
         parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
-        scene = (
-            self.scene.replace(**parts) if parts and not isinstance(self.scene.material, MaterialArray) else self.scene
-        )
+        if isinstance(self.scene.material, MaterialArray):
+            del parts["alpha"]
+            parts["material"] = self.scene.material[some]
+        scene = self.scene.replace(**parts) if parts else self.scene
         return scene.validity(V, omega=omega)
 
     def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:

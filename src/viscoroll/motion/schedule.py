@@ -5,37 +5,20 @@ A piece runs from ``starts`` to ``ends``; in it x = -1 ... 1 and the value is su
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from ..checks import checked
 from ..drive import Feedback, refuse_more_than_t
 from ..errors import ParameterError
+from .fitted import fitted
 
-#: a callable is fitted by polynomials of this many terms; a piece is halved as often as this before it is a jump
-TERMS, _HALVINGS = 14, 40
-#: share of the tolerance of the motion that a fit may be off, of the largest value so far
-_SHARE = 0.1
 #: of the values of a piece, its first one where that is rounding
 _ROUNDING = 1e-14
-#: roundings of a time that may show in a fit
-_BLUR = 8.0
-#: where a callable is compared with its fit, between the nodes
-_NODES = np.cos(np.pi * (np.arange(TERMS) + 0.5) / TERMS)[::-1]
-_BETWEEN = np.cos(np.pi * np.arange(TERMS + 1) / TERMS)[::-1]
-_TO_TERMS = np.zeros((TERMS, TERMS))
-for _n in range(TERMS):
-    _TO_TERMS[_n, : _n + 1] = chebyshev.cheb2poly(np.eye(TERMS)[_n, : _n + 1])
-#: of values at the nodes, by the orthogonality of the polynomials there
-_SERIES = chebyshev.chebvander(_NODES, TERMS - 1).T * (2.0 / TERMS)
-_SERIES[0] *= 0.5
-_POWERS = _BETWEEN ** np.arange(TERMS)[:, None]
-#: where the last terms of Chebyshev's series are this much larger than what is allowed, the fit is not even looked at
-_ROUGH = 1e3
+#: the same of the slope of a piece
+_ROUNDING_OF_SLOPE = 1e-12
 
 
 class Curve(NamedTuple):
@@ -58,19 +41,28 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
     ------
     ParameterError
         What is neither a number, (times, values) nor a callable; values that are not finite or below ``low``, times
-        that fall or that come more than twice, arrays that do not fit, a callable with a jump.
+        that fall or that come more than twice, arrays that do not fit, a callable that polynomials do not follow.
     """
     if isinstance(given, Feedback):
         given = given.value
     if callable(given):
         refuse_more_than_t(name, given)
-        return _fitted(name, given, end, rtol, low)
-    if isinstance(given, tuple) and len(given) == 2:
+        starts, terms, error = fitted(name, given, end, rtol, low)
+        after = np.zeros((1, terms.shape[1]))
+        after[0, 0] = terms[-1].sum()
+        ends = np.r_[starts[1:], end, np.inf]
+        return Curve(np.append(starts, end), ends, np.concatenate([terms, after])[None], error)
+    if is_schedule(given):
         return _linear(name, *given, low)
     values = checked(name, given, low=low)
     if values.ndim > 1:
         raise ParameterError(name, f"array of shape {values.shape}", "a number, one a motion, or (times, values)")
     return Curve(np.zeros(1), np.array([np.inf]), values.reshape(-1, 1, 1))
+
+
+def is_schedule(given: Any) -> TypeGuard[tuple[Any, Any]]:
+    """Whether it is (times, values)."""
+    return isinstance(given, tuple) and len(given) == 2
 
 
 def _linear(name: str, times: Any, values: Any, low: float) -> Curve:
@@ -114,54 +106,6 @@ def _flat(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([values, np.zeros_like(values)], axis=-1)
 
 
-def _fitted(name: str, function: Callable[[float], Any], end: float, rtol: float, low: float) -> Curve:
-    """A callable by polynomials, halving pieces until each is within the tolerance between its nodes."""
-
-    def sample(at: NDArray[np.float64]) -> NDArray[np.float64]:
-        values = np.array([function(t) for t in at.ravel().tolist()])
-        return checked(f"{name}(t)", values.reshape(at.shape) if values.size == at.size else values, low=low)
-
-    starts, stops, done = np.zeros(1), np.array([end]), np.zeros((0, 4 + TERMS))
-    for _ in range(_HALVINGS + 1):
-        middle, half = 0.5 * (starts + stops), 0.5 * (stops - starts)
-        values = sample(middle[:, None] + half[:, None] * _NODES)
-        # what is fitted varies about 0: terms are large and of both signs, and would magnify its rounding
-        series = _product(values - values[:, :1], _SERIES.T)
-        largest = np.abs(values).max(axis=1)
-        allowed = _SHARE * rtol * _so_far(starts, largest, done)
-        # what the rounding of t makes of the values is none of the fit's
-        blur = _BLUR * np.spacing(stops) / np.maximum(half, np.spacing(stops)) * np.ptp(values, axis=1)
-        allowed = np.maximum(allowed, blur)
-        good = np.flatnonzero(np.abs(series[:, -2:]).max(axis=1) <= _ROUGH * allowed)
-        terms = _product(series[good], _TO_TERMS)
-        terms[:, 0] += values[good, 0]
-        off = np.abs(_product(terms, _POWERS) - sample(middle[good, None] + half[good, None] * _BETWEEN)).max(
-            axis=1, initial=0.0
-        )
-        fits = off <= allowed[good]
-        good, off, terms = good[fits], off[fits], terms[fits]
-        done = np.concatenate([done, np.column_stack([starts[good], stops[good], off, largest[good], terms])])
-        left = np.setdiff1d(np.arange(starts.size), good)
-        if not left.size:
-            break
-        starts, stops = np.stack([starts, middle], 1)[left].ravel(), np.stack([middle, stops], 1)[left].ravel()
-    else:
-        where = f"a callable that jumps near t = {starts[0]:.6g}"
-        raise ParameterError(name, where, "smooth; give jumps as (times, values)")
-    done = done[np.argsort(done[:, 0])]
-    last = np.zeros((1, TERMS))
-    last[0, 0] = done[-1, 4:].sum()
-    starts, ends = np.append(done[:, 0], end), np.append(done[:, 1], np.inf)
-    return Curve(starts, ends, np.concatenate([done[:, 4:], last])[None], float(done[:, 2].max()))
-
-
-def _so_far(starts: NDArray[np.float64], largest: NDArray[np.float64], done: NDArray) -> NDArray[np.float64]:
-    """The largest value until the ends of pieces, those ``done`` among them."""
-    at, values = np.append(done[:, 0], starts), np.append(done[:, 3], largest)
-    order = np.argsort(at)
-    return np.maximum.accumulate(values[order])[np.searchsorted(at[order], starts)]
-
-
 def slope_of(name: str, speed: Curve) -> Curve:
     """The slope over t of a prescribed speed, which must not jump."""
     lengths = speed.ends - speed.starts
@@ -179,7 +123,7 @@ def slope_of(name: str, speed: Curve) -> Curve:
     order = np.arange(1, speed.terms.shape[-1])
     per = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
     terms = speed.terms[..., 1:] * order * per[..., None]
-    return speed._replace(terms=terms if order.size else np.zeros_like(speed.terms))
+    return speed._replace(terms=_from_zero(terms, _ROUNDING_OF_SLOPE) if order.size else np.zeros_like(speed.terms))
 
 
 def _at_start(terms: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -187,22 +131,16 @@ def _at_start(terms: NDArray[np.float64]) -> NDArray[np.float64]:
     return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
 
 
-def _product(one: NDArray[Any], other: NDArray[Any]) -> NDArray[np.float64]:
-    """The product of two matrices, of the same bits whatever library of linear algebra numpy has."""
-    found: NDArray[np.float64] = np.einsum("ij,jk->ik", one, other)
-    return found
-
-
 def start_value(speed: Curve) -> NDArray[np.float64]:
     """Value of a curve at t = 0."""
     return _at_start(speed.terms[:, 0])
 
 
-def _from_zero(terms: NDArray[np.float64]) -> NDArray[np.float64]:
+def _from_zero(terms: NDArray[np.float64], rounding: float = _ROUNDING) -> NDArray[np.float64]:
     """Pieces that begin at 0 where their first value is rounding: by that a motion from rest would set out."""
     first, size = _at_start(terms), np.abs(terms).sum(axis=-1)
     found = terms.copy()
-    found[..., 0] -= np.where(np.abs(first) < _ROUNDING * size, first, 0.0)
+    found[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
     return found
 
 

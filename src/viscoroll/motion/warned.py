@@ -41,7 +41,7 @@ def look(scene: Scene, V0: Any, omega0: Any, *, waves: float = 0.0) -> None:
     if faults:
         _looked = _CALLS
         text = "the model is not good for this motion: " + "; ".join(faults) + ".  See validity() of scene or result"
-        warnings.warn(text, ModelWarning, stacklevel=_outside())
+        warnings.warn(text, ModelWarning, stacklevel=outside())
 
 
 def is_looking() -> bool:
@@ -96,7 +96,7 @@ def _of_start(scene: Scene, V0: Any, omega0: Any) -> list[str]:
     ]
 
 
-def _outside() -> int:
+def outside() -> int:
     """Frames up to the first one that is not of this package."""
     import sys
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ParameterError
-from .style import LINES, new_figure
+from .style import LINES, dashed, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,17 +31,20 @@ def master_curve(material: Any) -> Figure:
     ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
     t = np.logspace(*ends, _POINTS)
     omega = 1.0 / t[::-1]
-    figure, (left, right) = new_figure(material.name or "Material", 1, 2, (9.0, 4.0))
-    lines = left.loglog(omega, material.storage(omega), **LINES[0], label="E'")
+    title = (material.name or "Material") + ("; dashed: beyond what was measured" if material.measured else "")
+    figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
+    held = material.measured and (material.measured.low, material.measured.high)
+    lines = dashed(left, omega, material.storage(omega), held, **LINES[0], label="E'")[:1]
+    left.set(xscale="log", yscale="log")
     if material.prony.E.size:  # an elastic material has none, and no logarithm of it
-        lines += left.loglog(omega, material.loss(omega), **LINES[1], label="E''")
+        lines += dashed(left, omega, material.loss(omega), held, **LINES[1], label="E''")[:1]
         factor = left.twinx()
-        lines += factor.semilogx(omega, material.tan_delta(omega), **LINES[2], label="tan delta")
+        lines += dashed(factor, omega, material.tan_delta(omega), held, **LINES[2], label="tan delta")[:1]
         factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
     left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
     left.legend(handles=lines, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize="small")
-    right.loglog(t, material.relaxation(t), **LINES[0])
-    right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa")
+    dashed(right, t, material.relaxation(t), held and (1.0 / held[1], 1.0 / held[0]), **LINES[0])
+    right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa", xscale="log", yscale="log")
     return figure
 
 

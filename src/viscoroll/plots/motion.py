@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 _FULL_SLIP = 0
 #: a histogram needs some
 _FEWEST = 8
+#: an output this near to a jump, as a share of the last time, holds one of its sides
+_AT_A_JUMP = 1e-9
 _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
@@ -29,7 +31,7 @@ def one(data: xr.Dataset) -> Figure:
     t = data["t"].values
     for box, names in zip(axes.ravel(), rows, strict=True):
         for name, line in zip(names, LINES, strict=False):
-            box.plot(t, data[name].values, label=axis(data[name]), **line)
+            box.plot(*_with_corners(data, name), label=axis(data[name]), **line)
         _shade(box, t, data["regime"].values == _FULL_SLIP)
         box.axhline(0.0, **THIN)
         box.set_ylabel(", ".join(axis(data[name]) for name in names))
@@ -79,6 +81,27 @@ def _bars(axes: Any, values: NDArray, label: str, count: int) -> None:
     else:
         axes.plot(values, np.arange(1, values.size + 1), "o", color="black")
     axes.locator_params(axis="x", nbins=6)
+
+
+def _with_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
+    """(times, values) of a quantity: what a schedule gave has its corners too, and both sides of each jump.
+
+    What acts beside it, as a feedback and the pull of the slope, does not jump.
+    """
+    t, values = data["t"].values, data[name].values
+    if f"drive_{name}_time" not in data:
+        return t, values
+    corners, given = (data[key].values.ravel() for key in (f"drive_{name}_time", f"drive_{name}"))
+    jumps = corners[1:][np.diff(corners) == 0.0]
+    kept = (np.abs(t[:, None] - jumps) > _AT_A_JUMP * t[-1]).all(axis=1)
+    within = (corners >= t[0]) & (corners <= t[-1])
+    if not kept.any():
+        return t, values
+    beside = values[kept] - np.interp(t[kept], corners, given)
+    times = np.concatenate([t[kept], corners[within]])
+    found = np.concatenate([values[kept], np.interp(corners[within], t[kept], beside) + given[within]])
+    order = np.argsort(times, kind="stable")
+    return times[order], found[order]
 
 
 def _shade(axes: Any, t: NDArray, full_slip: NDArray[np.bool_]) -> None:

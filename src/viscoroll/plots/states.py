@@ -7,14 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import LINES, THIN, axis, new_figure
+from ..symbols import MEASURED
+from .style import LINES, THIN, axis, dashed, log_ticks, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 #: fields that are drawn where they are there, in this order
-_FIELDS = ("Q", "M", "M_half_space", "M_cylinder", "beta", "epsilon", "lam", "length", "delta_star", "kappa_M", "N")
+_FIELDS = (
+    "Q", "M", "C_rr", "beta", "epsilon", "lam", "M_half_space", "M_cylinder", "length", "delta_star", "kappa_M", "N",
+)  # fmt: skip
+_PARTS = ("M_half_space", "M_cylinder")
 _MOST = 6
 #: of a second axis
 _CURVES = 4
@@ -30,7 +34,9 @@ def over_axes(data: xr.Dataset) -> Figure:
     """Each field over the first axis, a curve for some values of the second, at the middle of any other."""
     first, *others = axes_of(data)
     rest = {name: data.sizes[name] // 2 for name in others[1:]}
-    title = str(data.attrs.get("title", "Contact"))
+    title, held = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
+    if held is not None:
+        title += "; dashed: beyond what was measured"
     if rest:
         title += ", at " + ", ".join(f"{axis(data[name])} = {data[name].values[n]:.4g}" for name, n in rest.items())
     data = data.isel(rest)
@@ -43,9 +49,15 @@ def over_axes(data: xr.Dataset) -> Figure:
         for n, line in _picked(data, others[:1]):
             values = data[name].isel(n) if n and set(n) <= set(data[name].dims) else data[name]
             text = ", ".join(f"{axis(data[key])} = {_at(data, key, place):.4g}" for key, place in n.items())
-            box.plot(x, values.values, label=text or None, **line)
+            dashed(box, x, values.values, held, label=text or None, **line)
         box.set(xlabel=axis(data[first]) if first in data.coords else first, ylabel=axis(data[name]))
-        box.set_xscale(_scale(x))
+        if name == "C_rr" or (name == "M" and data[name].attrs.get("units", "1") == "1"):
+            box.set_title("coefficient of rolling resistance", fontsize="small")
+        if _rises_by_factors(x):
+            box.set_xscale("log")
+            log_ticks(box.xaxis)
+        else:
+            box.locator_params(axis="x", nbins=6)
     for box in boxes.ravel()[len(names) :]:
         box.remove()
     if others:
@@ -79,14 +91,18 @@ def equilibria(data: xr.Dataset) -> Figure:
     for which, face, text in ((stable, colour, "stable"), (~stable, "white", "not stable")):
         held = which & np.isfinite(V)
         box.plot(load[held], V[held], "o", color=colour, markerfacecolor=face, markersize=4, label=text)
-    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale=_scale(_finite(data["V"])))
+    speeds = _finite(data["V"])
+    wide = speeds.min() > 0.0 and speeds.max() > 100.0 * speeds.min()
+    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale="log" if wide else "linear")
     box.legend(frameon=False)
     return figure
 
 
 def _shown(data: xr.Dataset) -> list[str]:
-    """Fields that vary; all of them where none does."""
-    names = [name for name in _FIELDS if name in data.data_vars and data[name].ndim]
+    """Fields that vary; all of them where none does.  Of like bodies without the parts of M, half of it each."""
+    like = set(_PARTS) <= set(data) and data["M_cylinder"].equals(data["M_half_space"])
+    fields = [name for name in _FIELDS if not (like and name in _PARTS)]
+    names = [name for name in fields if name in data.data_vars and data[name].ndim]
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
 
@@ -107,7 +123,10 @@ def _at(data: xr.Dataset, name: str, place: int) -> float:
     return float(data[name].values[place]) if name in data.coords else float(place)
 
 
-def _scale(x: NDArray[Any]) -> str:
-    """A logarithm where the axis is spaced so, or nearly."""
-    wide = x.size > 2 and x.min() > 0.0 and x.max() > 100.0 * x.min()
-    return "log" if wide else "linear"
+def _rises_by_factors(x: NDArray[Any]) -> bool:
+    """Whether places lie more evenly on a logarithmic axis than on a linear one."""
+    places = np.unique(x)
+    if places.size < 3 or places[0] <= 0.0:
+        return False
+    linear, logarithmic = np.diff(places), np.diff(np.log(places))
+    return bool(logarithmic.std() / logarithmic.mean() < linear.std() / linear.mean())

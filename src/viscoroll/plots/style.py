@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import OutputError
@@ -40,6 +41,17 @@ def new_figure(
     figure = Figure(figsize=size, dpi=150, layout="constrained")
     figure.suptitle(title, fontsize="medium")
     return figure, figure.subplots(rows, columns, **options)
+
+
+def dashed(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, **line: Any) -> list[Any]:
+    """Lines of matplotlib: a curve where |x| lies between the ends of what data ``held``, and dashed beyond."""
+    if held is None:
+        return list(axes.plot(x, y, **line))
+    beyond = (np.abs(x) < held[0]) | (np.abs(x) > held[1])
+    seen = np.where(beyond, np.nan, y)
+    beyond[1:], beyond[:-1] = beyond[1:] | beyond[:-1], beyond[:-1] | beyond[1:]  # up to its neighbours
+    drawn = axes.plot(x, seen, **line | {"linestyle": "-"})
+    return [*drawn, *axes.plot(x, np.where(beyond, y, np.nan), **line | {"linestyle": "--", "label": None})]
 
 
 def log_ticks(axis: Any) -> None:

@@ -21,6 +21,7 @@ from urllib.parse import urlsplit
 from ..blocks import heed, thread_count
 from ..errors import Interrupted, OutputError, ParameterError, ViscorollError
 from ..extras import imported
+from .evaluate import look_at_materials
 from .runfile import Run
 from .store import Store, locked
 
@@ -84,6 +85,7 @@ def run_ensemble(
     store = Store(Path(path).absolute(), run)
     imported("zarr", "zarr", "runs")
     store.refuse_other()
+    look_at_materials(run)
     with locked(store.root):
         store.begin()
         with _executor(cluster, threads) as (pool, workers, given), _bar(run, progress) as advance:

@@ -10,7 +10,7 @@ import msgspec
 
 from ..blocks import thread_count
 from . import zarr_files
-from .evaluate import roll_block
+from .evaluate import look_at_materials, roll_block
 from .inputs.units import scales
 from .records import Record, encoded
 from .runfile import Run
@@ -53,6 +53,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     They are rolled twice, and the second time counts: what a process does once, as to compile, to import and to fill
     tables, would be scaled up with them.
     """
+    look_at_materials(run)
     workers = min(thread_count(threads), run.blocks)
     trial = min(run.block, _TRIAL[run.method])
     few = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))

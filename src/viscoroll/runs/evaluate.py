@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cylinder import Cylinder
+from ..materials.pair import Pair
 from ..motion import ensemble
 from ..motion.many import Ensemble
 from ..scene import Scene
 from ..si.scaling import scene_from_si, scene_of_law, scene_of_pair
+from ..si.warned import look_at_motion
 from . import draws
 from .inputs.drives import drive_of
 from .inputs.ranges import CYLINDER, SCENE, SOLID, START
-from .inputs.solids import Modes
-from .inputs.units import are_si, dimensionless, unit_of_time
+from .inputs.solids import Modes, Solids
+from .inputs.units import are_si, dimensionless, scales, unit_of_time
 from .runfile import Run
 
 
@@ -68,6 +73,21 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Any], Ensemble]:
     start, stop = run.edges(block)  # nothing is uncertain: the same motion stop - start times
     free = next(name for name in START if name in values)
     return values, roll_inputs(run, values | {free: np.full(stop - start, values[free])})
+
+
+def look_at_materials(run: Run) -> None:
+    """Warn where the fastest start, or the motion of medians, asks materials for what was not measured."""
+    values = run.inputs.values(np.full((len(run.inputs.dimensions), 1), 0.5))
+    solids: Solids | None = values.get("solids")
+    pair: Pair | None = values.get("pair") if solids is None else solids.typical(values["plane"])
+    if pair is None or (pair.cylinder.measured is None and pair.half_space.measured is None):
+        return
+    given = {name: values[name] for name in (*CYLINDER, "plane") if name in values and name not in SOLID}
+    cylinder = Cylinder(**given, material=pair.cylinder, base=pair.base)
+    settings = msgspec.structs.replace(run.settings, summaries=("V",), keep="summaries")
+    motion = roll_inputs(replace(run, settings=settings), values)
+    V0 = run.inputs.largest("V0") if "V0" in values else None
+    look_at_motion(cylinder, V0, motion.V * np.reshape(scales(values)["V"], (-1, 1)))
 
 
 def _column(value: Any, count: int) -> NDArray[np.float64]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import MOTION_STATUS, MotionStatus, TableError
-from ..results import Row, Shown, unit_of
+from ..results import Row, Shown, column, unit_of
 from .store import MOTIONS
 from .verify import open_summaries
 
@@ -68,21 +68,20 @@ class RunResults(Shown):
     def to_pandas(self) -> pd.DataFrame:
         """A row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
-        ``attrs["units"]`` holds the unit of each quantity and of t.
+        What has a unit bears it in its name, as "V [m s-1]", the first level of the index.
         """
         import pandas as pd
 
         data, tables = self.summaries, []
+        time = column("t", unit_of(data["t"].attrs))
         for name in self.names:
             columns: dict[Any, Any] = {part: np.atleast_1d(data[f"{name}_{part}"].values) for part in _PARTS}
             quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
             columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
             t = data["t"].values if data[f"{name}_mean"].ndim else [np.nan]
-            tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product([[name], t], names=["quantity", "t"])))
-        table = pd.concat(tables)
-        units = {name: unit_of(data[f"{name}_mean"].attrs) for name in self.names} | {"t": unit_of(data["t"].attrs)}
-        table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
-        return table
+            named = column(name, unit_of(data[f"{name}_mean"].attrs))
+            tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product([[named], t], names=["quantity", time])))
+        return pd.concat(tables)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Quantiles over time and a histogram at the last, a row each quantity, as ``viscoroll plot`` draws them.

@@ -12,6 +12,7 @@ from ..typed import Driving, Numbers
 if TYPE_CHECKING:
     from ..equilibria import Steady
     from ..motion.single import Acting, Schedule
+    from ..validity import Validity
     from .motion import EnsembleSI, MotionSI
 
 
@@ -33,14 +34,14 @@ class InSI:
         Parameters
         ----------
         V, omega : m/s and rad/s.  delta : creep ratio (omega R - V)/V, in place of omega.
-        fields, slopes, method : as there, and ``length`` among the fields.
+        fields, slopes, method : as there, and among the fields ``length`` and ``C_rr``.
 
         Returns
         -------
         Values
             ``length`` of the contact in m; ``Q`` in N/m; ``M``, ``M_half_space`` and ``M_cylinder`` in N m/m; slopes of
-            these; ratios as there.  Force and moment on the cylinder, Eqs. (20), (21), are Q - M_half_space/R and
-            Q R + M_cylinder.
+            these; ratios as there, and ``C_rr`` = M/(P R), the coefficient of rolling resistance.  Force and moment on
+            the cylinder, Eqs. (20), (21), are Q - M_half_space/R and Q R + M_cylinder.
 
         Raises
         ------
@@ -79,6 +80,33 @@ class InSI:
         from .contact import stress_of
 
         return stress_of(self, x, V, omega, delta)
+
+    def validity(self, V: Numbers, density: float | None = None, *, omega: Numbers | None = None) -> Validity:
+        """Which assumptions of the model the contact at speed V strains.
+
+        Parameters
+        ----------
+        V : speed of the axis, m/s.
+        density : of the cylinder, and of the base where they are alike, kg/m^3; default: as the materials have
+            it; without it the speed of shear waves is not known.
+        omega : rad/s; without it the creep is not known.
+
+        Returns
+        -------
+        Validity
+            As :meth:`Scene.validity`; ``quasistatic`` compares the speed of the axis, and that of the
+            circumference where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of
+            long times, of the bodies whose density is known.  ``bodies`` holds Dundurs' constant, ``measured`` 1/s at
+            which the contact is passed, and ``thick`` its length over the thickness of the layer.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite speeds, a density that is not one positive number.
+        """
+        from .validity import validity_of
+
+        return validity_of(self, V, density, omega)
 
     def steady(
         self,

@@ -25,6 +25,8 @@ from ..typed import Numbers
 from ..validity import Validity
 from .contact import in_si as contact_in_si
 from .units import Cylinder, Units, attributes, in_words, over, to_si, units_of
+from .validity import slowness
+from .warned import look_at_motion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -189,7 +191,8 @@ class EnsembleSI(Shown):
         some, V, omega = self.ensemble.judged()
         cylinders, T = self.cylinder._some(some, len(self)), self.cylinder.T_ref
         own = cylinders.validity(V * cylinders.R / T, omega=omega / T)
-        return found._replace(quasistatic=own.quasistatic, bodies=own.bodies, plane=own.plane)
+        names = ("quasistatic", "bodies", "measured", "thick", "plane")
+        return found._replace(**{name: getattr(own, name) for name in names})
 
     def messages(self) -> dict[str, int]:
         """How many motions ended in which way, in words."""
@@ -248,7 +251,9 @@ def roll_of(
         )  # fmt: skip
     except ParameterError as error:
         raise in_words(error, one) from error
-    return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
+    result = in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
+    look_at_motion(cylinder, start[0], result.V)
+    return result
 
 
 def _look_at_waves(cylinder: Cylinder, scene: Scene, start: tuple[Any, Any], bare: tuple[Any, Any]) -> None:
@@ -256,7 +261,7 @@ def _look_at_waves(cylinder: Cylinder, scene: Scene, start: tuple[Any, Any], bar
     if not is_looking():
         return
     V, omega = (0.0 if speed is None else np.abs(np.asarray(speed, np.float64)) for speed in start)
-    ratio = cylinder._slowness(np.maximum(V, omega * cylinder.R), None)[0]
+    ratio = slowness(cylinder, np.maximum(V, omega * cylinder.R), None)[0]
     fastest = 0.0 if ratio is None else float(np.max(ratio, initial=0.0))
     if fastest > 1.0:  # else ``roll`` and ``ensemble`` look themselves
         look(scene, *bare, waves=fastest)
@@ -289,4 +294,7 @@ def ensemble_of(
         found = ensemble(scene, V0, omega0, times / one.T, rest=rest, **given, **options)
     except ParameterError as error:
         raise in_words(error, one) from error
-    return EnsembleSI(cylinder, drive, replace(found, labels=labels), times)
+    result = EnsembleSI(cylinder, drive, replace(found, labels=labels), times)
+    if cylinder._held is not None:  # else V need not be in SI units
+        look_at_motion(cylinder, start[0], result.V)
+    return result

@@ -13,7 +13,7 @@ told = False
 def tell() -> None:
     """Say, once a process, that compiling begins: the first kernel does not know how many follow."""
     global told
-    if told or os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker():
+    if told or is_quiet():
         return
     told = True
     print(
@@ -22,6 +22,11 @@ def tell() -> None:
         file=sys.stderr,
         flush=True,
     )
+
+
+def is_quiet() -> bool:
+    """Whether nobody waits who could read it."""
+    return os.environ.get("VISCOROLL_QUIET") == "1" or sys.stderr is None or is_worker()
 
 
 def is_worker() -> bool:

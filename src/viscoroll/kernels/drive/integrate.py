@@ -12,11 +12,11 @@ from ..law.length import OK, contact_length
 from ..law.stick import stick_length
 from ..material.functions import generators
 from ..motion.collocation import N
-from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL
+from ..motion.integrate import DONE, NOT_CONVERGED, RESTED, STEP_LIMIT, STEP_TOO_SMALL, UNDECIDED
 from ..motion.records import REST
-from .load import brakes, goes_on, piece_end, undriven
+from .load import brakes, goes_on, piece_end, threshold, undriven
 from .nodes import INTERPOLANTS, PATHS, ROWS
-from .origin import STAYS, STICKS, depart, leaving_time
+from .origin import EITHER, STAYS, STICKS, depart, leaving_time
 from .output import coast, put_still, put_to_end, regime_of
 from .phase import phase
 from .records import (
@@ -41,6 +41,8 @@ from .switch import at_new_piece, here, switch
 _TINY = 1e-150
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
+#: V from which on no panel need set out in partial slip: it counts as 0 where none can
+_STILL = 1e-85
 #: share of the length of panels that is kept where the law bends at delta = 0
 _PAST = 0.3
 #: 1/zeta over T_mean below which V decays exponentially to rounding
@@ -81,16 +83,16 @@ def _still_regime(clock, case):
 
 @kernel
 def stay(clock, case):
-    """At V = omega = 0: (state, frame, clock) once the cylinder departs, or the piece of the drive ends."""
+    """At V = omega = 0: (how, state, frame, clock) once the cylinder departs, or the piece of the drive ends."""
     state = State(0.0, 0.0)
     kind, frame, b = depart(clock.tau, clock.piece, case)
     if kind == STAYS:
         until = leaving_time(clock.tau, clock.piece, case)
         closed = until == case.tau[case.tau.size - 1]
         clock = put_still(until, closed, _still_regime(clock, case), clock, case)
-        return False, state, frame, clock
+        return kind, state, frame, clock
     clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, 0.0)
-    return True, State(0.0, b if kind == STICKS else 0.0), frame, clock
+    return kind, State(0.0, b if kind == STICKS else 0.0), frame, clock
 
 
 @kernel
@@ -110,12 +112,22 @@ def coasts(state, frame, clock, case):
 
 
 @kernel
+def rests(moving, state, frame, clock, case):
+    """Whether nothing drives any more and both speeds are below the threshold."""
+    rest = threshold(clock.piece, case)
+    if rest == 0.0 or not moving:
+        return rest > 0.0
+    _, rates = here(state, frame, clock, case)
+    return max(abs(rates.V), abs(rates.omega)) <= rest
+
+
+@kernel
 def unresolved(state, frame, clock, case):
-    """Whether V is so small that b relaxes within the rounding of time: then it may as well be 0."""
+    """Whether V is so small that b relaxes within the rounding of time, or of panels: then it may as well be 0."""
     if frame.slips:
         return False
     _, rates = here(state, frame, clock, case)
-    return rates.weight < _ROUNDING * clock.tau * abs(rates.rate_slope)
+    return rates.weight < max(_ROUNDING * clock.tau * abs(rates.rate_slope), _STILL)
 
 
 @kernel
@@ -133,10 +145,16 @@ def follow(moving, state, frame, clock, case):
                 state, frame = at_new_piece(state, frame, clock, case)
                 moving = not frame.slips or state.s != 0.0 or state.second != 0.0
         event, direction, before = NO_EVENT, frame.direction, clock
-        if moving and clock.tau >= end:
+        if rests(moving, state, frame, clock, case):
+            event = SLOW
+        elif moving and clock.tau >= end:
             clock = put_to_end(state, frame, clock, case)
         elif not moving:
-            moving, state, frame, clock = stay(clock, case)
+            kind, state, frame, clock = stay(clock, case)
+            if kind == EITHER:
+                clock = put_still(clock.tau, True, _still_regime(clock, case), clock, case)
+                return UNDECIDED, clock, turns, onset_time, np.nan
+            moving = kind != STAYS
         elif coasts(state, frame, clock, case):
             clock, rest_time = coast(state, frame, clock, case)
             return DONE if np.isnan(rest_time) else RESTED, clock, turns, onset_time, rest_time
@@ -149,9 +167,10 @@ def follow(moving, state, frame, clock, case):
         if event == STUCK:
             return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
         if event == SLOW:
-            note(REST, noted, clock, case)
+            if regime >= 0 and regime != REST:
+                turns, noted = turns + 1, note(REST, noted, clock, case)
             rest_time = clock.tau / case.gamma
-            return RESTED, put_still(end, True, REST, clock, case), turns + 1, onset_time, rest_time
+            return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
         if event != NO_EVENT:
             state, frame, still = switch(event, state, frame, clock, case)
             moving = not still

@@ -14,6 +14,8 @@ FORCE, TORQUE, RATE, BRAKE, FUNCTIONS = range(5)
 _ROUNDING = 2.2e-16
 #: a jump or a corner up to this share is what the fit of a callable leaves
 _SMOOTH = 1e-4
+#: parts of a piece whose middles tell how far a prescribed speed rises and falls
+_PARTS = 16
 
 
 @kernel(inline=True)
@@ -74,9 +76,9 @@ def piece_end(piece, case):
 
 @kernel
 def rounding(piece, pieces):
-    """What rounding leaves of force and torque together: they are sums of terms that may nearly cancel."""
+    """What rounding leaves of force, torque and slope of a prescribed speed: sums of terms that may nearly cancel."""
     row, size = pieces[piece], 0.0
-    for n in range(FIRST, FIRST + RATE * terms_of(row)):
+    for n in range(FIRST, FIRST + (RATE + 1) * terms_of(row)):
         size += abs(row[n])
     return _ROUNDING * size
 
@@ -110,26 +112,34 @@ def brakes(piece, pieces):
 
 @kernel
 def risen_by(piece, pieces):
-    """What a prescribed speed has risen and fallen by, at most, before a piece."""
+    """What a prescribed speed has risen and fallen by before a piece, about."""
     total = 0.0
     for row in pieces[:piece]:
-        terms, size = terms_of(row), 0.0
-        for n in range(FIRST + RATE * terms, FIRST + (RATE + 1) * terms):
-            size += abs(row[n])
-        total += 2.0 * size / row[SCALE] if row[SCALE] > 0.0 else 0.0
+        for n in range(_PARTS):
+            if row[SCALE] > 0.0:
+                total += 2.0 / (_PARTS * row[SCALE]) * abs(value(row, RATE, (2 * n + 1) / _PARTS - 1.0))
     return total
 
 
 @kernel
 def undriven(piece, drive):
-    """Whether nothing drives from this piece on, which is the last."""
+    """Whether nothing drives from this piece on."""
     gains = drive.gains
-    if piece + 1 < drive.pieces.shape[0] or drive.prescribed != NEITHER:
+    if drive.prescribed != NEITHER:
         return False
     acting = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)
-    for column in range(FIRST, drive.pieces.shape[1]):
-        acting += abs(drive.pieces[piece, column])
-    return acting == 0.0
+    for row in drive.pieces[piece:]:
+        for n in range(FIRST, row.size):
+            acting += abs(row[n])
+        if acting > 0.0:
+            return False
+    return True
+
+
+@kernel
+def threshold(piece, case):
+    """Speed below which the motion ends at rest, from this piece of the drive on; 0 while something drives or will."""
+    return case.limits.rest if case.limits.rest > 0.0 and undriven(piece, case.drive) else 0.0
 
 
 @kernel(inline=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..compile.jit import kernel
 from ..motion.collocation import INTEGRAL, NODES, SLOPES, N
 from ..motion.path import grade
-from .load import FUNCTIONS, load_of, needed, values_at
+from .load import FUNCTIONS, load_of, needed, threshold, values_at
 from .rates import rates_at
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 
@@ -82,7 +82,7 @@ def put_node(i, weight, load, frame, case):
 @kernel
 def put_path(panel, frame, case):
     """Fill the integrands of the path and the functions of events at all nodes of a panel that is solved."""
-    nodes, rest = case.work.nodes, case.limits.rest
+    nodes, rest = case.work.nodes, threshold(panel.piece, case)
     for i in range(N + 1):
         _, weight = time_at(panel, i)
         V, omega, Q = nodes[OF_V, i], nodes[OF_OMEGA, i], nodes[OF_Q, i]

@@ -5,7 +5,9 @@ Rolling off in the direction where V' > 0, b is that at which the right side of 
 
     (omega' - V')/(mu l) = b V'      Q = mu sign(b) (2 |b| - b^2)      l = 1/(2 kappa)
 
-Its left side less its right one falls with b, and for |b| < 1 there is a root or slip is full from the start.
+Its left side less its right one falls with b where mu <= 2 kappa, and for |b| < 1 there is a root or slip is full from
+the start: one way on.  Where mu > 2 kappa it falls from b = -2 kappa/mu on, where omega' = 0, and a force that holds
+nearly what friction can leaves two ways.
 """
 
 from __future__ import annotations
@@ -16,14 +18,16 @@ from ..compile.jit import kernel
 from .load import FIRST, FUNCTIONS, brakes, load_at, piece_end, terms_of
 from .records import Frame, Load
 
-STAYS, STICKS, SLIDES = range(3)
+STAYS, STICKS, SLIDES, EITHER = range(4)
 _HALVINGS, _ROUNDING = 200, 1e-16
 #: share of a piece of the drive behind which it is looked at where it begins with what moves nothing
 _SOON = 1e-6
 #: over what holds the cylinder, what rounding leaves of what it takes more to move it
 _BARELY = 4e-15
-#: parts of a piece in each of which what holds the cylinder is looked at
+#: parts of a piece in each of which what holds the cylinder is looked at, and of b in which a way off is
 _PARTS = 64
+#: force and torque that move nothing: speeds under them would leave the range in which panels set out
+_FAINT = 1e-75
 
 
 @kernel(inline=True)
@@ -48,16 +52,26 @@ def _under_brake(load, spin):
 def departing(load, spin, scene):
     """(Whether the cylinder may roll off sticking with V > 0, b then), against a brake where ``spin`` is 1."""
     load, low, high = _under_brake(load, spin), -1.0, 1.0
+    turning = (
+        -2.0 * scene.kappa / scene.mu
+    )  # b at which omega stays 0: from there on the left less the right side falls
+    if turning > -1.0 and _pull(turning, load, scene)[0] > 0.0:
+        low = turning
+    elif turning > -1.0:  # before it, it may rise first
+        for n in range(1, _PARTS + 1):
+            low, high = turning - (1.0 + turning) * n / _PARTS, turning - (1.0 + turning) * (n - 1) / _PARTS
+            if _pull(low, load, scene)[0] > 0.0:
+                break
     if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
         return False, 0.0
-    b, V_rate = 0.0, 0.0
+    b, V_rate = 0.5 * (low + high), 0.0
     for _ in range(_HALVINGS):  # Newton's iteration, within a bracket
         pull, slope, V_rate = _pull(b, load, scene)
         low, high = (b, high) if pull > 0.0 else (low, b)
         then = b - pull / slope
         if not low < then < high:
             then = 0.5 * (low + high)
-        if abs(then - b) <= _ROUNDING:
+        if abs(then - b) <= _ROUNDING * abs(b):
             break
         b = then
     return V_rate > 0.0, b
@@ -75,7 +89,8 @@ def holding(load, mu):
         return mu + load.brake - abs(load.torque)
     if load.per_omega == 0.0:
         return mu - abs(load.force)
-    return min(mu - abs(load.force), load.brake - abs(load.force + load.torque))
+    pull = abs(load.force + load.torque)
+    return min(mu - abs(load.force), load.brake - (pull if pull > _FAINT else 0.0))
 
 
 @kernel
@@ -119,7 +134,7 @@ def constant(piece, pieces):
 
 @kernel
 def depart(tau, piece, case):
-    """(STAYS, STICKS or SLIDES; frame; b) from V = omega = 0 on."""
+    """(STAYS, STICKS, SLIDES or EITHER; frame; b) from V = omega = 0 on."""
     scene = case.scene
     still = Frame(False, 1.0, 1.0, 0.0, False)
     when = tau
@@ -132,20 +147,28 @@ def depart(tau, piece, case):
     braked = brakes(piece, case.drive.pieces)
     if holding(load, scene.mu) >= 0.0:
         return STAYS, still, 0.0
+    kind, way, beginning = STAYS, still, 0.0
     for direction in (1.0, -1.0):
         frame = Frame(False, direction, 1.0, 0.0, False)
         spin = 1.0 if braked else 0.0
         sticks, b = departing(load_at(when, piece, frame, case), spin, scene)
+        if sticks and kind == STICKS:
+            return EITHER, still, 0.0
         if sticks:
             # b is that of now: the limit that the motion leaves from
-            _, now = departing(load_at(tau, piece, frame, case), spin, scene)
-            return STICKS, Frame(False, direction, 1.0 if b >= 0.0 else -1.0, spin, False), now
-    return _slide_off(when, piece, braked, case)
+            kind, beginning = STICKS, departing(load_at(tau, piece, frame, case), spin, scene)[1]
+            way = Frame(False, direction, 1.0 if b >= 0.0 else -1.0, spin, False)
+            if scene.mu <= 2.0 * scene.kappa:
+                return kind, way, beginning
+    slides = _slide_off(when, piece, braked, 0.0 if kind == STAYS else 0.5 * scene.mu / scene.kappa, case)
+    if kind == STAYS:
+        return slides
+    return (EITHER, still, 0.0) if slides[0] == SLIDES else (kind, way, beginning)
 
 
 @kernel
-def _slide_off(when, piece, braked, case):
-    """Full slip out of rest, of the sign that lasts."""
+def _slide_off(when, piece, braked, band, case):
+    """Full slip out of rest, of the sign that lasts: with omega - V beyond this share of V."""
     scene = case.scene
     load = load_at(when, piece, Frame(True, 1.0, 1.0, 0.0, False), case)
     for sigma in (1.0, -1.0):
@@ -155,7 +178,7 @@ def _slide_off(when, piece, braked, case):
         spin = np.sign(free) if braked and abs(free) > load.brake else 0.0
         locked = braked and spin == 0.0
         omega_rate = 0.0 if locked else load.per_omega * (free - spin * load.brake) + load.omega_rate
-        if sigma * (omega_rate - V_rate) > 0.0:
+        if sigma * (omega_rate - V_rate) > band * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return SLIDES, Frame(True, direction, direction * sigma, direction * spin, locked), 0.0
     return STAYS, Frame(False, 1.0, 1.0, 0.0, False), 0.0

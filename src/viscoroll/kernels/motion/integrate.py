@@ -37,7 +37,7 @@ from .slide_phase import slide_phase
 from .slow import workspace
 from .slow_phase import FAR, slow_phase
 
-DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED = range(5)
+DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED, UNDECIDED = range(6)
 
 #: speeds below this count as 0 beside others, and as already rolling among themselves
 _TINY = 1e-150

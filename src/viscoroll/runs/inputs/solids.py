@@ -14,7 +14,8 @@ import numpy as np
 
 from ...materials.bodies import Bodies
 from ...materials.file import materials_of, series_of
-from ...materials.pair import cylinders_share, effective_modulus, joint_modulus
+from ...materials.material import Material
+from ...materials.pair import Pair, Plane, cylinders_share, effective_modulus, joint_modulus
 from ...materials.prony import Prony
 from ...sections import fault
 from .ranges import CYLINDER, MODES, PREFIXES
@@ -52,6 +53,8 @@ class Solid:
     T_ref: float
     E: float | str
     nu: float | str
+    #: of medians
+    typical: Material
 
     @property
     def relaxes(self) -> bool:
@@ -79,6 +82,10 @@ class Solids:
     def T_ref(self) -> float:
         """What times are counted in, s, as of a :class:`viscoroll.materials.pair.Pair`."""
         return (self.base if self.base and not self.cylinder.relaxes else self.cylinder).T_ref
+
+    def typical(self, plane: Plane) -> Pair:
+        """Both bodies of medians."""
+        return Pair(self.cylinder.typical, None if self.base is None else self.base.typical, plane)
 
     def law(self, values: Mapping[str, Any], plane: str) -> tuple[Any, Any]:
         """(Series or bodies, one or one for each motion; E' of both) of a block's inputs."""
@@ -142,7 +149,7 @@ def _read_solid(reader: Reader, section: str, given: dict[str, Any]) -> Solid:
     """A body, with its inputs filed where it is uncertain."""
     if not is_uncertain(given):
         material = materials_of(reader.path, {section: given})[section]
-        return Solid(material.prony, material.T_ref, material.E, material.nu)
+        return Solid(material.prony, material.T_ref, material.E, material.nu, material)
     prefix = PREFIXES[section]
     series, plain = read_series(reader, section, given, prefix)
     reader.section = section
@@ -150,7 +157,7 @@ def _read_solid(reader: Reader, section: str, given: dict[str, Any]) -> Solid:
         if name in given:
             plain[name] = median(reader, prefix + name, given[name], CYLINDER[name], line=name)
     material = materials_of(reader.path, {section: plain})[section]
-    return Solid(material.prony if series is None else series, material.T_ref, prefix + "E", prefix + "nu")
+    return Solid(material.prony if series is None else series, material.T_ref, prefix + "E", prefix + "nu", material)
 
 
 def _medians(reader: Reader, section: str, name: str, value: Any, prefix: str) -> Any:

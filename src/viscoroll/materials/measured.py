@@ -1,0 +1,46 @@
+"""What a material was measured by: :class:`Measured`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..checks import number
+from ..errors import ParameterError
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a material was fitted to, and how well; it stays with the :class:`Material`.
+
+    Parameters
+    ----------
+    low, high : first and last angular frequency of the data at the temperature of the material, rad/s, > 0.
+    misfit : root mean square of the relative errors of storage or loss modulus, whichever is larger, >= 0.
+    source : of the data, in words.
+
+    Raises
+    ------
+    ParameterError
+        A value that is not finite or out of range, low above high.
+    """
+
+    low: float
+    high: float
+    misfit: float
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for name, strict in (("low", True), ("high", True), ("misfit", False)):
+            object.__setattr__(self, name, number(name, getattr(self, name), low=0.0, strict=strict))
+        if self.low > self.high:
+            raise ParameterError("high", self.high, f">= low = {self.low:g}")
+        if not isinstance(self.source, str):
+            raise ParameterError("source", f"{self.source!r:.60}", "a text")
+
+    def shifted(self, a_T: float) -> Measured:
+        """As at a temperature where all times are a_T times longer."""
+        return replace(self, low=self.low / a_T, high=self.high / a_T)
+
+    def __str__(self) -> str:
+        source = f" ({self.source})" if self.source else ""
+        return f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %{source}"

@@ -1,0 +1,150 @@
+"""Callables of time as polynomials: how near, in how many values; and the motions that they drive."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+
+import viscoroll as vr
+from viscoroll.motion import fitted, schedule
+
+ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+END = 20.0
+#: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a slope without bounds
+CALLABLES: dict[str, Any] = {
+    "tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 0.02)),
+    "steep tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 1e-6)),
+    "erf": lambda t: 0.05 * (1.0 + math.erf((t - 1.0) / 0.02)),
+    "Gauss pulse": lambda t: 0.1 * math.exp(-(((t - 3.0) / 0.1) ** 2)),
+    "short Gauss pulse": lambda t: 0.1 * math.exp(-(((t - 3.0) / 0.01) ** 2)),
+    "exp(-1/t)": lambda t: 0.05 * math.exp(-1.0 / t) if t > 0.0 else 0.0,
+    "eighth power": lambda t: 0.1 * (t / END) ** 8,
+    "sine": lambda t: 0.1 * math.sin(2.0 * math.pi * t),
+    "half waves": lambda t: 0.1 * max(0.0, math.sin(t)),
+    "cubes": lambda t: max(0.0, math.sin(t) - 0.5) ** 3,
+    "chain": lambda t: float(np.interp(t, [0.0, 1.0, 2.0, 7.0], [0.0, 0.1, -0.02, 0.05])),
+    "root": lambda t: 0.02 * math.sqrt(t),
+    "jump": lambda t: 0.1 * (t > 0.3),
+    "jump at 0": lambda t: 0.1 * (t > 0.0),
+    "square wave": lambda t: 0.1 * math.copysign(1.0, math.sin(3.0 * t)),
+    "stairs": lambda t: 0.01 * math.floor(t),
+}
+RTOLS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-12)
+
+
+class Counted:
+    """A callable that counts its calls."""
+
+    def __init__(self, function: Any) -> None:
+        self.function, self.calls = function, 0
+
+    def __call__(self, t: float) -> float:
+        self.calls += 1
+        return float(self.function(t))
+
+
+def values(curve: schedule.Curve, t: np.ndarray) -> np.ndarray:
+    """A curve of one motion at these times."""
+    k = np.searchsorted(curve.starts, t, side="right") - 1
+    x = 2.0 * (t - curve.starts[k]) / (curve.ends[k] - curve.starts[k]) - 1.0
+    return (curve.terms[0, k] * x[:, None] ** np.arange(curve.terms.shape[-1])).sum(axis=1)
+
+
+@pytest.mark.parametrize("rtol", RTOLS)
+@pytest.mark.parametrize("name", CALLABLES)
+def test_a_callable_is_met_in_few_values(name, rtol):
+    """Off by a tenth of rtol of the largest value so far, in thousands of values; most of these took no end of them."""
+    function = Counted(CALLABLES[name])
+    curve = schedule.curve("torque", function, END, rtol)
+    assert function.calls <= tol.CALLABLE_VALUES
+    assert curve.starts.size <= tol.CALLABLE_PIECES
+    assert (np.diff(curve.starts) > 0.0).all()
+    t = np.sort(np.random.default_rng(3).uniform(0.0, END, 5000))
+    exact = np.array([function(one) for one in t])
+    so_far, largest = np.maximum.accumulate(np.abs(exact)), np.abs(exact).max()
+    scale = np.maximum(so_far, tol.CALLABLE_FOOT * largest)
+    rounding = tol.CALLABLE_ROUNDING * largest / rtol
+    assert close(values(curve, t), exact, rel=tol.CALLABLE_SHARE * rtol, scale=np.maximum(scale, rounding))
+    assert curve.error <= tol.CALLABLE_SHARE * max(rtol * largest, tol.CALLABLE_ROUNDING * largest)
+
+
+@pytest.mark.parametrize("rtol", RTOLS)
+def test_corners_and_jumps_lie_where_they_are(rtol):
+    """A jump between two neighbouring numbers, a corner where the parts on either side of it meet."""
+    jump = schedule.curve("torque", lambda t: 0.1 * (t > 0.3), END, rtol)
+    assert jump.starts[1] == np.nextafter(0.3, 1.0)
+    chain = schedule.curve("torque", lambda t: float(np.interp(t, [0.0, 1.0, 7.0], [0.05, 0.1, 0.0])), END, rtol)
+    if rtol < 1e-3:
+        assert close(chain.starts, [0.0, 1.0, 7.0, END], rel=tol.CALLABLE_CORNER)
+    steep = schedule.curve("torque", CALLABLES["steep tanh"], END, rtol)
+    assert steep.starts.size > 4  # a steep rise is none
+
+
+def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
+    """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many values as it may."""
+    monkeypatch.setattr(fitted, "MOST", 20_000)
+    for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
+        function = Counted(given)
+        with pytest.raises(
+            vr.ParameterError, match=r"^torque = a callable that no polynomials follow near t = .*times"
+        ):
+            vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
+        assert function.calls <= 2 * fitted.MOST
+
+
+def course(m: Any) -> np.ndarray:
+    return np.stack([m.V, m.omega])
+
+
+def table(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """A callable as values at times that lie close where it is steep."""
+    near = {"tanh": (1.0, 0.4), "erf": (1.0, 0.15), "Gauss pulse": (3.0, 0.6)}.get(name)
+    t = np.linspace(0.0, END, 4001)
+    if near:
+        t = np.unique(np.r_[t, np.linspace(near[0] - near[1], near[0] + near[1], 6001)])
+    return t, np.array([CALLABLES[name](one) for one in t])
+
+
+@pytest.mark.parametrize("start", [0.0, 0.5])
+@pytest.mark.parametrize("name", ["tanh", "erf", "Gauss pulse", "exp(-1/t)", "cubes"])
+def test_motions_under_callables_are_those_under_tables(name, start):
+    """At every tolerance, from rest and not."""
+    t = np.linspace(0.0, END, 41)
+    best = vr.roll(ROLLER, start, start, t, 1e-9, torque=table(name))
+    fastest = np.abs(course(best)).max()
+    for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
+        m = vr.roll(ROLLER, start, start, t, rtol, torque=CALLABLES[name])
+        assert m.status == vr.MotionStatus.DONE
+        assert m.steps < tol.CALLABLE_STEPS
+        assert close(course(m), course(best), rel=max(30.0 * rtol, tol.CALLABLE_TABLE), scale=fastest)
+
+
+@pytest.mark.parametrize("name", ["tanh", "erf", "Gauss pulse", "exp(-1/t)", "eighth power", "half waves"])
+def test_speeds_prescribed_by_callables(name):
+    """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""
+    t = np.linspace(0.0, END, 41)
+    exact = np.array([CALLABLES[name](one) for one in t])
+    best = vr.roll(ROLLER, 0.0, None, t, 1e-10, omega=CALLABLES[name])
+    for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
+        m = vr.roll(ROLLER, 0.0, None, t, rtol, omega=CALLABLES[name])
+        assert m.status == vr.MotionStatus.DONE
+        assert m.steps < tol.CALLABLE_STEPS
+        assert close(m.omega, exact, rel=rtol, scale=np.abs(exact).max())
+        assert close(m.V, best.V, rel=3.0 * rtol, scale=np.abs(exact).max())
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-8, 1e-11])
+def test_a_callable_that_jumps_is_a_schedule_that_jumps(rtol):
+    t = np.linspace(0.0, END, 41)
+    stairs = ([1.0, 1.0, 4.0, 4.0], [0.0, 0.1, 0.1, -0.05])
+    m = vr.roll(ROLLER, 0.0, 0.0, t, rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0))
+    other = vr.roll(ROLLER, 0.0, 0.0, t, rtol, torque=stairs)
+    assert np.array_equal(m.torque[t != 0.0], other.torque[t != 0.0])
+    assert close(course(m), course(other), rel=tol.CALLABLE_JUMP, scale=np.abs(other.V).max())
+    with pytest.raises(vr.ParameterError, match="jump"):
+        vr.roll(ROLLER, None, 0.0, t, rtol, V=lambda t: 0.1 * (t > 3.0))

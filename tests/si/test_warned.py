@@ -1,0 +1,149 @@
+"""Contacts that ask a material for more than was measured of it: a word, once a material, and a mark in figures."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from closeness import close
+
+import viscoroll as vr
+from viscoroll.plots import draw
+from viscoroll.runs import estimate, read_run
+from viscoroll.si import warned
+
+DATA = vr.Measured(0.06, 628.0, 0.01, "dma.csv")
+RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
+BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5)
+#: the speed at which that contact is passed at 628 1/s
+LAST = 2.866
+
+
+@pytest.fixture
+def told(monkeypatch):
+    """What a call, made twice, warns of."""
+
+    def of(call) -> list[str]:
+        monkeypatch.setattr(warned, "_told", set())
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            call()
+            call()
+        assert all(issubclass(each.category, vr.ModelWarning) for each in found)
+        assert all(each.filename == __file__ for each in found)
+        return [str(each.message) for each in found if "as measured" in str(each.message)]
+
+    return of
+
+
+def test_where_the_data_end():
+    """Of the same contact, by the law itself: the two ends are passed at the frequencies of the data."""
+    for at, end in zip(BELT._held, (DATA.low, DATA.high), strict=True):
+        speed = at * BELT.l0
+        assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, rel=tol.CONTACT)
+    found = BELT.validity(np.array([0.99, 1.01]) * LAST).measured
+    assert found.holds.tolist() == [True, False]
+    assert close(BELT._held[1] * BELT.l0, LAST, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: BELT.contact([0.0, 0.1, 1.01 * LAST], delta=0.0), "passed at 0 to 6.4e+02 1/s"),
+        (lambda: BELT.contact(-1.01 * LAST, delta=0.0), "passed at 6.4e+02 1/s"),
+        (lambda: BELT.contact(1e-5, delta=0.0), "passed at 0.00"),
+        (lambda: BELT.contact([0.0, 0.1, 0.99 * LAST], delta=0.0), None),
+        (lambda: BELT.contact([], delta=0.0), None),
+        (
+            lambda: BELT.stress(0.0, 10.0, delta=0.0),
+            "the base was measured from 0.06 to 628 rad/s, misfit 1 % (dma.csv)",
+        ),
+        (lambda: BELT.roll(10.0, 100.0, 0.01), "passed at"),
+        (lambda: BELT.roll(1.0, 10.0, 10.0), None),
+        (lambda: BELT.roll(0.0, 0.0, [0.1, 1.0], force=300.0, torque=300.0), "passed at"),
+        (lambda: BELT.ensemble([1.0, 10.0], [10.0, 100.0], 0.01), "passed at"),
+        (lambda: BELT.ensemble([1.0, 2.0], [10.0, 20.0], 0.01, fields=("x",)), None),
+        (lambda: BELT.steady(V=10.0, torque=0.0), "passed at"),
+        (lambda: BELT.steady(V=0.1, torque=0.0), None),
+        (lambda: BELT.replace(base=replace(RUBBER, measured=None)).contact(10.0, delta=0.0), None),
+        (
+            lambda: BELT.replace(base=replace(RUBBER, measured=replace(DATA, misfit=0.2))).contact(0.1, delta=0.0),
+            "20 %",
+        ),
+        (lambda: BELT.replace(base=RUBBER.at(0.0, lambda _: 100.0)).contact(0.1, delta=0.0), "0.0006 to 6.28"),
+        # the ends of V and of l0 belong to different cylinders
+        (lambda: BELT.replace(R=[0.1, 0.01]).contact([2.8, 0.1], delta=0.0), None),
+        (lambda: BELT.replace(R=[0.1, 0.01]).contact([0.1, 2.8], delta=0.0), "passed at"),
+    ],
+)
+def test_a_word_beyond_what_was_measured(told, call, said):
+    found = told(call)
+    assert len(found) == (said is not None)
+    assert not found or said in found[0]
+
+
+def test_workers_are_quiet(told, monkeypatch):
+    monkeypatch.setattr(warned, "is_worker", lambda: True)
+    assert told(lambda: BELT.contact(10.0, delta=0.0)) == []
+
+
+def test_curves_are_dashed_beyond(tmp_path):
+    """Over speed, also from a file, and over frequency: what is solid and what is dashed meet, and are all there is."""
+    V = np.geomspace(0.01, 100.0, 81)
+    data = BELT.contact(V, delta=0.0, fields="M").to_xarray()
+    data.to_netcdf(tmp_path / "M.nc")
+    with xr.open_dataset(tmp_path / "M.nc") as stored:
+        figures = [draw(data), draw(stored)]
+    master = RUBBER.plot()
+    for axes, ends in [(one.axes[0], (0.0, LAST)) for one in figures] + [(master.axes[0], (DATA.low, DATA.high))]:
+        solid, dashed = axes.get_lines()[:2]
+        assert (solid.get_linestyle(), dashed.get_linestyle()) == ("-", "--")
+        x, seen, beyond = solid.get_xdata(), np.isfinite(solid.get_ydata()), np.isfinite(dashed.get_ydata())
+        assert np.array_equal(seen, (x >= ends[0]) & (x <= ends[1]))
+        assert (seen | beyond).all()
+        assert np.count_nonzero(seen & beyond) == 1
+        assert "dashed: beyond what was measured" in axes.figure.get_suptitle()
+    assert "dashed" not in replace(RUBBER, measured=None).plot().get_suptitle()
+
+
+RUN = """
+[cylinder]
+R = 0.1
+m = 30.0
+mu = 0.5
+[material]
+E = inf
+nu = 0.5
+[base]
+E = {E}
+nu = 0.5
+prony = {{ E = [2.0, 6.0], tau = [1e-3, 1e-5] }}
+measured = {{ low = 0.06, high = 628.0, misfit = 0.01 }}
+[start]
+V0 = {{ distribution = "uniform", loc = 1.0, scale = {spread} }}
+omega0 = 10.0
+[run]
+n = 20
+t = [0.01]
+method = "integrate"
+summaries = ["x"]
+"""
+UNSURE = '{ distribution = "lognorm", s = 0.1, scale = 2.0e6 }'
+
+
+@pytest.mark.parametrize("E", ["2.0e6", UNSURE])
+@pytest.mark.parametrize("spread", [1.0, 9.0])
+def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
+    """Of materials that are known and of uncertain ones, by the fastest start."""
+    monkeypatch.setattr(warned, "_told", set())
+    (tmp_path / "run.toml").write_text(RUN.format(E=E, spread=spread), encoding="utf-8")
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        estimate(read_run(tmp_path / "run.toml"), 1)
+    said = [str(each.message) for each in found if "as measured" in str(each.message)]
+    assert len(said) == (spread == 9.0)
+    assert not said or "the base was measured from 0.06 to 628" in said[0]
