@@ -158,8 +158,8 @@ def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
         f"<pre>{escape(report)}</pre>",
         "<h2>Offline and runtime</h2><p>Offline a stage wrote the law of the material into a file; another integrated "
         "the three throws from that file alone.  Here they stand beside root solves of the printed equations, which "
-        "are the truth, beside roll, and beside splines in a grid of Q and M over V and δ: largest error of V and ω over "
-        "the first speed, and time.</p>",
+        "are the truth, beside roll, and beside splines in a grid of Q and M over V and δ: largest error of V and ω "
+        "over the first speed, and time.</p>",
         grid(stage.read_rows(out / "compare.csv")),
         f"<p>{', '.join(link(out / file, out) for name in CARD for file in found[name]['files'])}</p>",
         f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
