@@ -31,8 +31,14 @@ validate: out/validation.nc ## tables and motions against direct solves; exit co
 out/validation.nc: pipeline/demo/validate.py $(TABLES) $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.validate --config $(CONFIG)
 
-out/runtime.csv: pipeline/demo/runtime.py $(TABLES) $(SOURCES) $(STAGE)
+out/runtime.nc: pipeline/demo/runtime.py pipeline/demo/rodas.py $(TABLES) $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.runtime --config $(CONFIG)
+
+out/direct.nc: pipeline/demo/direct.py pipeline/demo/runtime.py $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.direct --config $(CONFIG)
+
+out/compare.csv: pipeline/demo/compare.py out/runtime.nc out/direct.nc $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.demo.compare --config $(CONFIG)
 
 out/motions.nc: pipeline/demo/motions.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.motions --config $(CONFIG)
@@ -44,7 +50,7 @@ figures: out/figures/figure-5.png ## the paper's figures and more, as PNG under 
 out/figures/figure-5.png: pipeline/demo/figures.py out/ensemble.nc $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.figures --config $(CONFIG)
 
-out/index.html: pipeline/demo/summary.py out/validation.nc out/runtime.csv out/motions.nc out/ensemble.nc out/figures/figure-5.png
+out/index.html: pipeline/demo/summary.py out/validation.nc out/compare.csv out/motions.nc out/ensemble.nc out/figures/figure-5.png
 	$(RUN) -m pipeline.demo.summary --config $(CONFIG)
 
 bench: setup ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)

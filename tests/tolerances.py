@@ -45,7 +45,7 @@ TABLE_SPLINE_NODE = 1e-13
 #: bound.
 GRID_MORE, GRID_LESS = 1.5, 0.3
 
-#: Motions of pipeline/demo/runtime.py from the file, of Radau at rtol 1e-8; by a coarse grid they are further off.
+#: Motions of pipeline/demo/ from the file at rtol 1e-8; by a coarse grid they are further off.
 DEMO_FILE = 1e-7
 
 # --- examples in other programs (test_interop.py) ---

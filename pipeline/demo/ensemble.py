@@ -1,4 +1,4 @@
-"""Stage 5: motions from random starts -> out/ensemble.nc: their summary, and some of them.
+"""Stage 7: motions from random starts -> out/ensemble.nc: their summary, and some of them.
 
 python -m pipeline.demo.ensemble [--config FILE] [-o FOLDER]
 """

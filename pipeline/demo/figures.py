@@ -1,4 +1,4 @@
-"""Stage 6: every figure -> out/figures/*.png; the distribution from the ensemble.
+"""Stage 8: every figure -> out/figures/*.png; the distribution from the ensemble.
 
 python -m pipeline.demo.figures [--config FILE] [-o FOLDER]
 """

@@ -1,4 +1,4 @@
-"""Stage 4: the paper's motions IC1-IC3 with their contact state -> out/motions.nc.
+"""Stage 6: the paper's motions IC1-IC3 with their contact state -> out/motions.nc.
 
 python -m pipeline.demo.motions [--config FILE] [-o FOLDER]
 """

@@ -300,6 +300,8 @@ law = "{law}"
 end = 1e-4
 times = 3
 rtol = 1e-8
+[compare]
+rtol = 1e-8
 V = [1e-3, 2.0, 30]
 delta = [0.04, 31]
 allowed = 1e-6
@@ -325,7 +327,7 @@ tables = ["{law}"]
 _STAGES = """
 import runpy, sys
 folder, *options = sys.argv[1:]
-for name in ("tabulate", "validate", "runtime", "motions", "ensemble", "figures", "summary"):
+for name in ("tabulate", "validate", "runtime", "direct", "compare", "motions", "ensemble", "figures", "summary"):
     sys.argv = [name, *options, *(["--tables", folder] if name == "tabulate" else [])]
     try:
         runpy.run_module(f"pipeline.demo.{name}", run_name="__main__")
@@ -367,7 +369,7 @@ def demo(tmp_path_factory) -> tuple[Path, Path]:
 
 def test_stages_leave_records(demo):
     _, out = demo
-    for name in ("tabulate", "validate", "runtime", "motions", "ensemble", "figures"):
+    for name in ("tabulate", "validate", "runtime", "direct", "compare", "motions", "ensemble", "figures"):
         record = json.loads((out / f"stages/{name}.json").read_text(encoding="utf-8"))
         assert record["stage"] == name
         assert record["seconds"] >= 0.0
@@ -376,13 +378,13 @@ def test_stages_leave_records(demo):
 
 
 def test_motions_from_the_file_are_those_of_root_solves(demo):
-    rows = list(csv.DictReader((demo[1] / "runtime.csv").read_text().splitlines()))
-    assert {row["start"] for row in rows} == set(vr.PAPER_STARTS)
-    by = {
-        name: max(float(row["error"]) for row in rows if row["law by"] == name)
-        for name in {row["law by"] for row in rows}
-    }
-    assert by["the file of the law"] < tol.DEMO_FILE < by["a grid of Q and M, splines"]
+    rows = list(csv.DictReader((demo[1] / "compare.csv").read_text().splitlines()))
+    truth, *errors = (max(float(row[start]) for start in vr.PAPER_STARTS) for row in rows)
+    assert truth == 0.0
+    assert [row["law by"].split()[0] for row in rows] == ["root", "the", "roll", "vr.law,", "splines"]
+    assert max(errors[:3]) < tol.DEMO_FILE < errors[3]
+    page = (demo[1] / "index.html").read_text(encoding="utf-8")
+    assert all(f"<td>{escape(row['law by'])}</td>" in page for row in rows)
 
 
 def test_motions_file(demo):
@@ -443,5 +445,5 @@ def test_stage_says_what_has_to_run_first(demo, tmp_path):
 
 def test_production_configuration_is_read():
     content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
-    assert {"tables", "validate", "runtime", "motions", "ensemble", "summary"} <= content.keys()
+    assert {"tables", "validate", "runtime", "compare", "motions", "ensemble", "summary"} <= content.keys()
     assert content["ensemble"]["motions"] == 1_000_000

@@ -1,0 +1,45 @@
+"""The law outside Python at its quick size, and what the committed numbers promise."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+
+import pytest
+import tolerances as tol
+from places import RESULTS
+from processes import made, stage_refused
+
+MISSING = [name for name in ("chromium", "node", "cc") if shutil.which(name) is None]
+MISSING += [] if importlib.util.find_spec("fmpy") else ["fmpy"]
+
+
+@pytest.mark.skipif(bool(MISSING), reason=f"not installed (make interop site-tools): {', '.join(MISSING)}")
+def test_stage_finds_the_law_in_every_program(tmp_path):
+    made("measure.outside", "--quick", "-o", tmp_path / "outside.json")
+    found = json.loads((tmp_path / "outside.json").read_text(encoding="utf-8"))
+    holds(found)
+    committed = json.loads((RESULTS / "outside.json").read_text(encoding="utf-8"))
+    assert {key: found[key].keys() for key in ("page", "states", "fmu")} == {
+        key: committed[key].keys() for key in ("page", "states", "fmu")
+    }
+
+
+def test_committed_numbers_hold():
+    committed = json.loads((RESULTS / "outside.json").read_text(encoding="utf-8"))
+    holds(committed)
+    assert committed["page"]["median_ms"] < 20.0
+
+
+def holds(found):
+    assert found["page"]["error"] < tol.INTEROP
+    assert found["fmu"]["complaints"] == 0
+    assert found["fmu"]["roller_error"] < tol.FMU_ROLLER
+    assert found["fmu"]["element_error"] < tol.FMU_ELEMENT
+
+
+def test_stage_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    refused = stage_refused("measure.outside", "--quick", "-o", tmp_path / "outside.json")
+    assert "chromium is not installed" in refused
