@@ -185,7 +185,7 @@ RAW = {"open", "write_text", "write_bytes", "savefig", "to_netcdf", "save", "sav
 #: composed in memory and written by ``write_bytes``, or to a path that ``replacing`` gave
 KNOWN = {
     "files.py: dataset.to_netcdf", "stored.py: np.savez", "export.py: h5netcdf.File", "export.py: path.open",
-    "cache.py: temporary.write_bytes",
+    "folder.py: temporary.write_bytes",
 }  # fmt: skip
 #: stages that write to scratch folders of their own
 SCRATCH = ("pipeline/matrix.py", "pipeline/measure/ensembles.py", "pipeline/mutate/", "pipeline/torture/")
