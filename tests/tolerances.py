@@ -525,6 +525,18 @@ TRANSIENT_M = 2e-3
 #: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
 TRANSIENT_ERROR = 6e-3
 
+# --- a layer on something rigid (pipeline/test_layer.py) ---
+#: L by four equations of Airy's function; measured 3e-13, where cosh and sinh of 5 cancel.
+LAYER_KERNEL = 1e-11
+#: f - 1 at h = 100 half-widths against its first term, c/(2 h^2): the next is of h^-4.
+LAYER_THICK = 1e-3
+#: Half-width of a thin layer over that of its limit, from h = 0.08 and 0.04 extrapolated to 0; measured 7e-4.
+LAYER_THIN = 2e-3
+#: 15 points of collocation against 31, at the thinnest; measured 1.3e-5.
+LAYER_POINTS = 3e-5
+#: The file keeps three digits.
+LAYER_KEPT = 5e-3
+
 # --- kernels/drive/events.py (tests/kernels/drive/test_events.py) ---
 #: v where a straight line through the nodes of a panel passes 0: its interpolant in powers of t rounds at 2^-53 of the
 #: terms of its coefficients, 1,800 together; measured 4.8e-14 over 4,000 places.
