@@ -8,7 +8,7 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := $(addprefix data/tables/,paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools docs test-site site-tools release-check
+.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -53,8 +53,7 @@ out/figures/figure-5.png: pipeline/demo/figures.py out/ensemble.nc $(SOURCES) $(
 out/index.html: pipeline/demo/summary.py out/validation.nc out/compare.csv out/motions.nc out/ensemble.nc out/figures/figure-5.png
 	$(RUN) -m pipeline.demo.summary --config $(CONFIG)
 
-bench: setup ## run time against error beside the peers (long; LSODA wants gfortran, GSL libgsl-dev)
-	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+bench: setup peer-tools ## run time against error beside the peers, which it installs (long)
 	$(RUN) -m pipeline.bench --config $(CONFIG)
 	$(RUN) -m pipeline.document
 
@@ -72,6 +71,7 @@ prove: setup ## law and motions against enclosures and extended precision: data/
 	$(RUN) -m pipeline.prove.error_maps --config $(CONFIG)
 	$(RUN) -m pipeline.prove.independent
 	$(RUN) -m pipeline.prove.transient
+	$(RUN) -m pipeline.prove.layer
 	$(RUN) -m pipeline.measure.large --config $(CONFIG)
 	$(RUN) -m pipeline.document
 
@@ -80,16 +80,26 @@ same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	$(RUN) -m pipeline.same --base $(BASE)
 
 test: setup ## the whole test suite
-	$(BIN)/pytest -n 2 --dist worksteal
+	$(BIN)/pytest -n 2 --dist worksteal $(TEST)
+
+SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
+debian-lists:
+	$(SUDO) apt-get update -qq || echo "Debian's lists of packages stay as they are"
+
+# Of the peers of bench/, as interop-tools: the paper's method calls GSL, numbalsoda is built from Fortran and C++.
+PEERS := libgsl-dev pkg-config gfortran g++ cmake
+peer-tools: setup debian-lists
+	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(PEERS) >/dev/null \
+	  || echo "bench: not installed: $(PEERS)"
+	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]' \
+	  || echo "bench: not installed: numbalsoda"
 
 DEBIAN := gcc g++ gfortran netcdf-bin libnetcdf-dev libnetcdff-dev octave octave-netcdf r-base-core r-cran-ncdf4 nodejs
-SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
 interop: interop-tools ## laws in C, C++, Fortran, Octave, R, Node, FMUs, ncdump and the CF checker, which it installs
 	$(BIN)/pytest -rs tests/docs/test_interop.py tests/fmu
 
 # What cannot be installed, without a network say, is told here, and its tests are skipped with that reason.
-interop-tools: setup
-	$(SUDO) apt-get update -qq || echo "interop: Debian's lists of packages stay as they are"
+interop-tools: setup debian-lists
 	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -qq --no-install-recommends $(DEBIAN) >/dev/null \
 	  || echo "interop: not installed: $(DEBIAN)"
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[interop]' \
@@ -128,7 +138,7 @@ torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes
 matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
 	$(RUN) -m pipeline.matrix
 
-release-check: .venv/docs ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to decide
+release-check: setup ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to decide
 	$(RUN) -m pipeline.release
 
 check: setup ## ruff, mypy and the import contract

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 # a thread of BLAS that waits for another spins: where cores are busy a fit of a master curve takes ten times longer
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
@@ -11,11 +12,35 @@ import pytest
 from memory import forget
 
 from viscoroll.motion import flow_store
+from viscoroll.motion import warned as of_motions
+from viscoroll.si import warned as of_materials
 
 # what a user chose for other work does not reach the tests
 os.environ.pop("VISCOROLL_THREADS", None)
 # standard error is compared, and which test compiles depends on the state of the cache
 os.environ["VISCOROLL_QUIET"] = "1"
+
+
+def pytest_addoption(parser):
+    parser.addoption("--skips", metavar="WORDS", help="any test skipped for a reason without these words fails the run")
+
+
+def pytest_sessionfinish(session):
+    """With --skips a test that nobody knows to be skipped counts as one that failed."""
+    expected, reporter = session.config.option.skips, session.config.pluginmanager.get_plugin("terminalreporter")
+    if expected is None or reporter is None:  # a worker of xdist has none
+        return
+    reasons = [str(report.longrepr[2]) for report in reporter.stats.get("skipped", [])]
+    if unexpected := {reason for reason in reasons if not re.search(expected, reason)}:
+        reporter.write_line("not expected to be skipped: " + "; ".join(sorted(unexpected)), red=True)
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+
+@pytest.fixture(autouse=True)
+def nothing_said_yet(monkeypatch):
+    """What is said of the model once a process is said in each test; those that roll beyond it ignore ModelWarning."""
+    monkeypatch.setattr(of_motions, "_looked", 0)
+    monkeypatch.setattr(of_materials, "_told", set())
 
 
 @pytest.fixture

@@ -208,6 +208,8 @@ BENCH_OWN = 3e-5
 #: Those of the peers at loose tolerances, 1e-4 or 1e-3, relative to speeds down to 1e-8: only that they solve the same
 #: problem; measured 0.07.
 BENCH_PEER = 0.2
+#: LSODA on the saturated law, which steps over the ends of stick, at rtol 1e-6; measured 2.3e-6.
+BENCH_PEER_DRIVEN = 3e-5
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: Q and M against 50 digits (the printed forms: 1e-10 where the slip is slight); measured 5e-16.
@@ -521,6 +523,18 @@ EXAMPLE_JACOBIAN = 1e-4
 TRANSIENT_M = 2e-3
 #: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
 TRANSIENT_ERROR = 6e-3
+
+# --- a layer on something rigid (pipeline/test_layer.py) ---
+#: L by four equations of Airy's function; measured 3e-13, where cosh and sinh of 5 cancel.
+LAYER_KERNEL = 1e-11
+#: f - 1 at h = 100 half-widths against its first term, c/(2 h^2): the next is of h^-4.
+LAYER_THICK = 1e-3
+#: Half-width of a thin layer over that of its limit, from h = 0.08 and 0.04 extrapolated to 0; measured 7e-4.
+LAYER_THIN = 2e-3
+#: 15 points of collocation against 31, at the thinnest; measured 1.3e-5.
+LAYER_POINTS = 3e-5
+#: The file keeps three digits.
+LAYER_KEPT = 5e-3
 
 # --- kernels/drive/events.py (tests/kernels/drive/test_events.py) ---
 #: v where a straight line through the nodes of a panel passes 0: its interpolant in powers of t rounds at 2^-53 of the

@@ -31,7 +31,7 @@ DUNDURS_LIMIT = 0.05
 CREEP_LIMIT = 0.3
 #: contact length over the thickness of a layer, up to which the length is within 5 % of that on a half-space of any
 #: Poisson's ratio (pipeline/prove/layer.py)
-THICK_LIMIT = 0.7
+THICK_LIMIT = 2.0 / 3.0
 #: root mean square of relative errors up to which a fit counts as the material that was measured
 MISFIT_LIMIT = 0.05
 
@@ -273,7 +273,7 @@ def thickness(length: Any, layers: Mapping[str, float | None]) -> Assumption:
     ratio = length / thin
     return Assumption(
         ratio <= THICK_LIMIT, ratio,
-        f"the contact is {np.max(ratio, initial=0.0):.2g} times as long as the layer is thick; up to {THICK_LIMIT:g} "
+        f"the contact is {np.max(ratio, initial=0.0):.2g} times as long as the layer is thick; up to {THICK_LIMIT:.2g} "
         "its length is within 5 % of that on a half-space" + "".join(f"; {text}" for text in unknown),
     )  # fmt: skip
 

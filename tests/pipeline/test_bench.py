@@ -3,6 +3,7 @@
 import json
 import re
 import tomllib
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -53,6 +54,23 @@ def test_motions(folder):
     if work["skipped"]:
         assert set(work["skipped"]) <= {"gsl-adams", "gsl-bdf"}, work["skipped"]
         pytest.skip("; ".join(f"{name}: {reason}" for name, reason in work["skipped"].items()))
+
+
+def test_driven(folder):
+    """The peer, which looks for no events, finds the motions that this package does; a ramp from rest it gives up."""
+    (found,) = measured(folder, "driven")
+    for row in found["rows"]:
+        assert row["median_us"] > 0.0
+        own = row["method"] == "viscoroll"
+        if own or row["kind"] != "ramp":
+            assert row["failed"] == 0, row
+            assert row["max_error"] < (tol.BENCH_OWN if own else tol.BENCH_PEER_DRIVEN), row
+    assert {row["kind"] for row in found["rows"]} == {"constant", "rest", "ramp"}
+    for row in found["free"]:
+        assert row["apart"] < 2.0 * tol.MOTION_RTOL * row["rtol"], row
+    if find_spec("numbalsoda") is None:
+        pytest.skip("numbalsoda is not installed (make peer-tools)")
+    assert {row["method"] for row in found["rows"]} == {"viscoroll", "LSODA, saturated law"}
 
 
 def test_ratios_lead_with_like_against_like():

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-pytest.importorskip("readme_renderer", reason="not installed (make docs): readme_renderer")
-
 from pipeline import release
 from pipeline.results import RESULTS
 from pipeline.stamps import outdated

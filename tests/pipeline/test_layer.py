@@ -1,0 +1,84 @@
+"""How thick a layer has to be: its kernel by elasticity, both ends of thickness, and what the page says."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from places import DOCS, RESULTS
+
+from pipeline.prove import layer
+from viscoroll.validity import THICK_LIMIT
+
+
+def settlement(k: float, nu: float) -> float:
+    """-w at the top of a layer of thickness 1 under a pressure cos(k x), over (1 - nu)/(G k), by Airy's function.
+
+    F(z) cos(k x) of cosh, sinh, z cosh, z sinh: sigma_zz = -k^2 F, tau = k F', and
+    2 G k u = (1 - nu) F'' + nu k^2 F, 2 G k^2 w = (1 - nu) F''' - (2 - nu) k^2 F'.
+    """
+
+    def derivatives(z: float, order: int) -> np.ndarray:
+        plain = [np.cosh(k * z), np.sinh(k * z)]
+        at, before = (k**n * np.roll(plain, n % 2) if n >= 0 else np.zeros(2) for n in (order, order - 1))
+        return np.concatenate([at, z * at + order * before])
+
+    def along(z: float) -> np.ndarray:
+        return (1.0 - nu) * derivatives(z, 2) + nu * k**2 * derivatives(z, 0)
+
+    def down(z: float) -> np.ndarray:
+        return (1.0 - nu) * derivatives(z, 3) - (2.0 - nu) * k**2 * derivatives(z, 1)
+
+    conditions = [along(0.0), down(0.0), derivatives(1.0, 0), derivatives(1.0, 1)]
+    strengths = np.linalg.solve(conditions, [0.0, 0.0, 1.0 / k**2, 0.0])
+    return -float(down(1.0) @ strengths) / (2.0 * k**2) * k / (1.0 - nu)
+
+
+@pytest.mark.parametrize("nu", layer.RATIOS)
+def test_the_kernel_is_that_of_elasticity(nu):
+    k = np.array([0.1, 0.5, 1.0, 2.0, 5.0])
+    assert close([settlement(each, nu) for each in k], layer.kernel(k, nu), rel=tol.LAYER_KERNEL)
+
+
+@pytest.mark.parametrize("nu", layer.RATIOS)
+def test_a_thick_layer_is_a_half_space(nu):
+    """f - 1 = c/(2 h^2), c the integral of (1 - L) u: the layer takes a part of the curvature."""
+    u = np.linspace(0.0, 20.0, 20001)
+    c = np.trapezoid((1.0 - layer.kernel(u, nu)) * u, u)
+    h = 100.0
+    assert close(layer.load(h, nu) - 1.0, 0.5 * c / h**2, rel=tol.LAYER_THICK)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_a_thin_layer_is_a_foundation(nu):
+    """Springs where it is compressible, a^3/h; else what is squeezed flows aside, 2 E a^5/(45 R h^3).
+
+    K. L. Johnson, Contact Mechanics, 1985, Sect. 5.8.  At its edges the contact is as if longer, by a part of h.
+    """
+    springs = 2.0 / 3.0 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) if nu < 0.5 else 2.0 / 45.0
+    hertz, power = 0.25 * np.pi / (1.0 - nu**2), 1 if nu < 0.5 else 3
+    far, near = ((layer.load(h, nu, 121) * hertz / (springs / h**power)) ** (1.0 / (power + 2)) for h in (0.08, 0.04))
+    assert close(2.0 * near - far, 1.0, rel=tol.LAYER_THIN)
+
+
+def test_half_the_points_are_enough():
+    for nu in layer.RATIOS:
+        assert close(layer.load(layer._THIN, nu, 15), layer.load(layer._THIN, nu), rel=tol.LAYER_POINTS)
+
+
+def test_the_page_states_what_is_kept():
+    """And what is kept is what is computed; validity takes the least of the limits, rounded down."""
+    rows = json.loads((RESULTS / "layer.json").read_text(encoding="utf-8"))["rows"]
+    assert [row["nu"] for row in rows] == list(layer.RATIOS)
+    page = (DOCS / "may_i.md").read_text(encoding="utf-8")
+    cells = [re.findall(r"[\d.]+", line) for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)]
+    stated = [list(map(float, line)) for line in cells if len(line) == 2 + len(layer.LENGTHS)]
+    assert stated == [[row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))] for row in rows]
+    assert close(layer.longest(0.5), rows[-1]["limit"], rel=tol.LAYER_KEPT)
+    assert close(layer.shorter(0.3, 2.0), rows[0]["shorter"]["2"], rel=tol.LAYER_KEPT)
+    least = min(row["limit"] for row in rows)
+    assert 0.95 * least <= THICK_LIMIT <= least
