@@ -5,7 +5,7 @@ RUN := $(BIN)/python
 CONFIG ?= pipeline/config/production.toml
 SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
 STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
-TABLES := $(addprefix data/tables/,paper.nc rubber.nc rubber-on-steel.nc)
+TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
@@ -23,7 +23,7 @@ setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 demo: out/index.html ## tables, validation, motions, an ensemble of 10^6, figures and a summary page
 	@$(RUN) -m pipeline.demo.summary --config $(CONFIG) --show
 
-tables: $(TABLES) ## build data/tables/*.nc: the law of the paper's material, of a rubber of a DMA, and of that on steel
+tables: $(TABLES) ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel
 $(TABLES) &: pipeline/demo/tabulate.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.demo.tabulate --config $(CONFIG)
 

@@ -109,6 +109,12 @@ SLICE = 2e-14
 #: delta_star of a table against that of one state, in units in the last place; measured 10 (alpha = 1e4).
 SLICE_STAR_ULP = 16
 
+# --- materials/law_axis.py (test_law_axis.py) ---
+#: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
+AXIS_LAW = 1e-14
+#: N by the axis against the material's own, over its largest: both round; measured 4e-15.
+AXIS_UNSTEADY = 2e-14
+
 # --- materials/law_table.py (test_law_table.py) ---
 #: lam, M/V, eta/F and H/F^2 by a row, relative, and epsilon: the bounds asked.
 TABLE_LAW, TABLE_SHIFT = 5e-15, 2e-14

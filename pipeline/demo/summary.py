@@ -20,7 +20,7 @@ import msgspec
 import viscoroll as vr
 from viscoroll.errors import FileProblem
 from viscoroll.files import write_text
-from viscoroll.materials.law_table import FUNCTIONS
+from viscoroll.materials.law_store import errors_of
 from viscoroll.presets import PRESETS
 
 from .. import stage
@@ -73,8 +73,7 @@ def records(out: Path) -> dict[str, dict[str, Any]]:
 def table_facts(path: Path) -> dict[str, Any]:
     """Size in kB, title, and the stated errors of the file of a law."""
     table = vr.tables.load(path)
-    errors = {name: float(table[name].attrs["largest_relative_error"]) for name in FUNCTIONS}
-    return {"kB": path.stat().st_size / 1e3, "title": table.attrs["title"], "errors": errors}
+    return {"kB": path.stat().st_size / 1e3, "title": table.attrs["title"], "errors": errors_of(table)}
 
 
 def rows(pairs: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""Stage 1: the laws of the materials of [tables] -> data/tables/NAME.nc.
+"""Stage 1: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] -> data/tables/NAME.nc.
 
 python -m pipeline.demo.tabulate [--config FILE] [--tables FOLDER] [-o FOLDER]
 
@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,15 +19,16 @@ import msgspec
 import viscoroll as vr
 from viscoroll.errors import ConfigError
 from viscoroll.materials.file import SUFFIX, materials_of, read_materials
-from viscoroll.materials.law_table import FUNCTIONS
+from viscoroll.materials.law_store import errors_of
 
 from .. import stage
 
 
 class Tables(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables]: the largest error allowed, and the materials by name."""
+    """[tables]: the largest error allowed; lowest and highest alpha of law.nc; the materials by name."""
 
     allowed: float
+    alpha: tuple[float, float]
     laws: dict[str, dict]
 
 
@@ -45,20 +48,27 @@ class Law(msgspec.Struct, forbid_unknown_fields=True):
 def build_all(config: Path, folder: Path) -> stage.Outcome:
     """Build, save and report every law of the configuration."""
     outcome, settings = stage.Outcome([]), stage.read_section(config, "tables", Tables)
+    build(outcome, folder / "law.nc", settings.allowed, lambda: vr.tables.law(alpha=settings.alpha))
     for name, section in settings.laws.items():
         given = read_law(config, name, section)
-        began, path = time.perf_counter(), stage.make_folder(folder) / f"{name}.nc"
         base = None if given.base is None else body(config, given.base, given)
-        law = vr.tables.law(body(config, given.material, given), base)
-        vr.tables.save(law, path)
-        worst = max(float(law[function].attrs["largest_relative_error"]) for function in FUNCTIONS)
-        outcome.files.append(path)
-        outcome.headline[f"{name}: build, measure and save, s"] = time.perf_counter() - began
-        outcome.headline[f"{name}: size, kB"] = path.stat().st_size / 1e3
-        outcome.headline[f"{name}: largest relative error (allowed {settings.allowed:g})"] = worst
-        outcome.failed |= worst > settings.allowed
-    # law.nc, all alphas of one relaxation time in one file, is to be built here
+        material = body(config, given.material, given)
+        build(outcome, folder / f"{name}.nc", settings.allowed, partial(vr.tables.law, material, base))
     return outcome
+
+
+def build(outcome: stage.Outcome, path: Path, allowed: float, make: Callable[[], Any]) -> None:
+    """Build, save and report one."""
+    began = time.perf_counter()
+    law = make()
+    stage.make_folder(path.parent)
+    vr.tables.save(law, path)
+    worst = max(errors_of(law).values())
+    outcome.files.append(path)
+    outcome.headline[f"{path.stem}: build, measure and save, s"] = time.perf_counter() - began
+    outcome.headline[f"{path.stem}: size, kB"] = path.stat().st_size / 1e3
+    outcome.headline[f"{path.stem}: largest relative error (allowed {allowed:g})"] = worst
+    outcome.failed |= worst > allowed
 
 
 def read_law(config: Path, name: str, section: dict[str, Any]) -> Law:

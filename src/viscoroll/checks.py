@@ -64,7 +64,9 @@ def extent(array: NDArray[np.float64]) -> tuple[float, float]:
     return float(array.min()), float(array.max())
 
 
-def number(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False) -> float:
+def number(
+    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
+) -> float:
     """As :func:`checked`, and a single number.
 
     Raises
@@ -72,7 +74,7 @@ def number(name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool 
     ParameterError
         As there, or for an array.
     """
-    array = checked(name, value, low=low, strict=strict)
+    array = checked(name, value, low=low, strict=strict, high=high)
     if array.ndim:
         raise ParameterError(name, f"{value!r:.60}", "a single number")
     return float(array)

@@ -719,6 +719,20 @@ def test_tables_law(run, here):
     (here / "scene.toml").write_text("[scene]\nalpha = 11.0\nkappa = 3.0\nmu = 0.2\n")
     run("tables", "law", "scene.toml", "-o", "alpha.nc")
     assert vr.load_law("alpha.nc").material == 11.0
+    run("tables", "law", "--alpha", "8:16", "-o", "law.nc")
+    assert vr.load_law("law.nc", alpha=11.0).material == 11.0
+
+
+def test_refused_laws(refuse, here):
+    (here / "rubber.toml").write_text(ONE)
+    for argv, words in (
+        ("", "give material or alpha"),
+        ("rubber.toml --alpha 1:2", "material and alpha are both given"),
+        ("--alpha 1:2 --temperature 3", "temperature = 3.0"),
+        ("--alpha 11", "'' must be a number"),
+        ("--alpha 2:1", "alpha = 2 to 1"),
+    ):
+        assert words in refuse("tables", "law", *argv.split(), "-o", "law.nc"), argv
 
 
 def test_a_law_for_a_material(run, here):

@@ -286,6 +286,7 @@ def test_import_is_light_and_pyplot_is_left_alone():
 _SMALL = """
 [tables]
 allowed = 1e-12
+alpha = [8, 16]
 [tables.laws.paper]
 material = {{ E = 2.3e5, nu = 0.49, T_epsilon = 10.7, T_sigma = 0.97 }}
 [validate]

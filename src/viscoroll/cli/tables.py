@@ -26,17 +26,21 @@ def add_commands(commands: Any) -> None:
 def _add_law(group: Any) -> None:
     parser = group.add_parser(
         "law",
-        help="the law of a material or pair as a file, exact",
+        help="the law of a material or pair, or of every alpha, as a file, exact",
         description="Write the contact law of a material, or of a pair: for vr.load_law, run files and every program\n"
-        "that reads netCDF (.nc), as table and evaluator in one header of C99 or C++ (.h), or as .json.",
+        "that reads netCDF (.nc), as table and evaluator in one header of C99 or C++ (.h), or as .json.  Without a\n"
+        "material, of every alpha of one relaxation time (.nc).",
         epilog="example:\n  viscoroll tables law docs/examples/rubber.toml -o rubber.h",
     )
     parser.add_argument(
-        "file", metavar="MATERIAL",
+        "file", metavar="MATERIAL", nargs="?",
         help="TOML with [material], perhaps [base], or with [scene] or [cylinder]; or the netCDF of a material",
     )  # fmt: skip
     parser.add_argument(
         "--temperature", type=number, metavar="T", help="degrees Celsius, by the wlf or arrhenius of the file"
+    )
+    parser.add_argument(
+        "--alpha", type=_low_high, metavar="LOW:HIGH", help="in place of MATERIAL: from which alpha to which, as 1:4096"
     )
     add_output_option(parser, *_LAW, required=True)
     parser.set_defaults(run=_law)
@@ -99,10 +103,19 @@ def _add_validate(group: Any) -> None:
 def _law(arguments: Namespace) -> int:
     from .. import tables
     from ..config import read_bodies
+    from ..errors import ParameterError
 
-    given = read_bodies(arguments.file, arguments.temperature)
-    _deliver(tables.law(given), arguments)
+    if arguments.alpha is not None and arguments.temperature is not None:
+        raise ParameterError("temperature", arguments.temperature, "left out beside --alpha")
+    given = None if arguments.file is None else read_bodies(arguments.file, arguments.temperature)
+    _deliver(tables.law(given, alpha=arguments.alpha), arguments)
     return 0
+
+
+def _low_high(text: str) -> tuple[float, float]:
+    """Two numbers."""
+    low, _, high = text.partition(":")
+    return number(low), number(high)
 
 
 def _build(arguments: Namespace) -> int:

@@ -20,7 +20,21 @@ from ..errors import ConfigError, ParameterError, TableError
 from ..symbols import PAPER
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
-from .law_store import CHECKSUM, MEANING, OTHERS, REMEDY, SCHEMA, VERSION, Content, checksum, content_of, read_law
+from .law_axis_file import alpha_of
+from .law_store import (
+    CHECKSUM,
+    KIND,
+    LAW,
+    MEANING,
+    OTHERS,
+    REMEDY,
+    SCHEMA,
+    VERSION,
+    Content,
+    checksum,
+    content_of,
+    read_law,
+)  # fmt: skip
 from .law_table import FUNCTIONS, LawTable, law_table
 from .material import Material
 from .pair import Pair
@@ -79,7 +93,7 @@ def as_dataset(table: LawTable, errors: Mapping[str, float]) -> xr.Dataset:
             "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {name_of(table)}",
             "summary": "The contact law of one material or pair as polynomials, one an octave of speed: any speed, "
             "creep, kappa and mu, by two look-ups and no iteration.",
-            "keywords": "rolling contact, viscoelasticity, rolling resistance", "viscoroll_table": "law",
+            "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: LAW,
             SCHEMA: np.int32(VERSION), "bodies": "unlike" if table.unlike else "alike",
             "material": described(table.pair or table.material),
             "comment": COMMENT, "references": PAPER, "source": f"viscoroll {__version__}",
@@ -97,12 +111,13 @@ def name_of(table: LawTable) -> str:
     return " on ".join(body.name or "a material without a name" for body in bodies if body is not None)
 
 
-def load_law(path: str | PathLike[str]) -> LawTable:
+def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
     """The law of one material or pair from a file, to stand wherever a Prony or Bodies stands.
 
     Parameters
     ----------
     path : file of :func:`viscoroll.tables.save` or of ``viscoroll tables law``.
+    alpha : of a file of every alpha of one relaxation time: that which is wanted, with T_epsilon for the unit of time.
 
     Returns
     -------
@@ -113,14 +128,23 @@ def load_law(path: str | PathLike[str]) -> LawTable:
     Raises
     ------
     TableError
-        A file that is missing, cut or damaged in any byte, no law, or of another schema.
+        A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
+    ParameterError
+        An alpha beside the file of one material, or none for that of every alpha.
     """
-    return law_of(read_law(path), path)
+    content = read_law(path)
+    if content.attributes[KIND] == LAW:
+        if alpha is not None:
+            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")
+        return law_of(content, path)
+    return alpha_of(content, alpha, path)
 
 
 def law_of(content: Content, path: Any) -> LawTable:
     """The law of what was checked; raises TableError where it does not name its material."""
     found, attributes = content
+    if attributes[KIND] != LAW:
+        raise TableError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
     try:
         given = _material_of(attributes["material"], path)
         numbers: dict[str, Any] = {name: np.asarray(found[name]) for name in OTHERS}

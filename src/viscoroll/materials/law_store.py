@@ -18,7 +18,10 @@ SCHEMA, VERSION = "law_schema", 1
 CHECKSUM = "sha256_of_numbers"
 #: what to do about a file that is not as it was written
 REMEDY = "write it again by `viscoroll tables law`"
-_MOST_BYTES = 1 << 24
+_MOST_BYTES = 1 << 27
+
+#: Attribute that names the kind of a file, and its values: one material or pair, or every alpha of one relaxation time.
+KIND, LAW, AXIS = "viscoroll_table", "law", "axis"
 
 #: Functions of the law in the order of their coefficients -> meaning.
 MEANING = {
@@ -46,6 +49,21 @@ OTHERS: dict[str, tuple[tuple[str, ...], str]] = {
     "retardation_time": (("mode",), "T_j over T_ref"),
     "half_space_weight": (("mode",), "part of J_j that is the half-space's"),
 }  # fmt: skip
+#: The same of an axis of alpha; c = (alpha - 1)/alpha.
+MEANING_OF_AXIS = {
+    "lam": MEANING["lam"],
+    "epsilon": "shift of the contact over half its length and over c, over kappa |V|",
+    "m": "M/V over c, over kappa |V|",
+    "N": "N of M = M(V) + N dV/dt, over c, over kappa |V|",
+    "share": MEANING["share"],
+    "press": MEANING["press"],
+}
+OTHERS_OF_AXIS = {
+    "first": ((), "log2 of the lowest alpha"),
+    "rows": (("octave_of_alpha",), "rows of an octave of alpha before the fast limit; what follows is 0"),
+    "e0": OTHERS["e0"],
+}
+VARIABLES = {LAW: (*MEANING, *OTHERS), AXIS: (*MEANING_OF_AXIS, *OTHERS_OF_AXIS)}
 
 
 class Content(NamedTuple):
@@ -61,18 +79,24 @@ def content_of(found: Any) -> Content:
     return Content(numbers, getattr(found, "attrs", {}))
 
 
-def checksum(numbers: dict[str, Any]) -> str:
+def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     """SHA-256 over names and numbers of all variables: little-endian doubles, the last dimension fastest."""
     digest = hashlib.sha256()
-    for name in (*MEANING, *OTHERS):
+    for name in VARIABLES[kind]:
         digest.update(name.encode() + np.ascontiguousarray(numbers[name], "<f8").tobytes())
     return digest.hexdigest()
+
+
+def errors_of(found: Any) -> dict[str, float]:
+    """The largest relative error of every function that a dataset states."""
+    functions = MEANING if found.attrs[KIND] == LAW else MEANING_OF_AXIS
+    return {name: float(found[name].attrs["largest_relative_error"]) for name in functions}
 
 
 def is_law(path: str | PathLike[str]) -> bool:
     """Whether a file names itself the law of a material; raises TableError of one that cannot be read or is damaged."""
     try:
-        return _read(path, "material or law of viscoroll", "write it again").attributes.get("viscoroll_table") == "law"
+        return _read(path, "material or law of viscoroll", "write it again").attributes.get(KIND) == LAW
     except OSError:  # the reader of materials says what it is not
         return False
 
@@ -94,7 +118,7 @@ def _read(path: str | PathLike[str], what: str, remedy: str) -> Content:
     import h5py
 
     with h5py.File(io.BytesIO(sealed_content(path, _MOST_BYTES, what, remedy)), "r") as file:
-        numbers = {name: file[name][()] for name in (*MEANING, *OTHERS) if name in file}
+        numbers = {name: file[name][()] for names in VARIABLES.values() for name in names if name in file}
         return Content(numbers, {key: _single(value) for key, value in file.attrs.items()})
 
 
@@ -108,14 +132,15 @@ def _single(value: Any) -> Any:
 def check(content: Content, path: Any) -> None:
     """Refuse what is no law of this schema, or not the numbers that its checksum is of; raises TableError."""
     numbers, attributes = content
-    if attributes.get("viscoroll_table") != "law":
+    kind = attributes.get(KIND)
+    if kind not in VARIABLES:
         raise TableError(path, "is no law file of viscoroll: `viscoroll tables law` writes one")
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
         problem = f"is a law file of schema {schema!s:.20}, and this viscoroll ({__version__}) reads {VERSION}"
         raise TableError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
-    missing = [name for name in (*MEANING, *OTHERS) if name not in numbers]
+    missing = [name for name in VARIABLES[kind] if name not in numbers]
     if missing:
         raise TableError(path, f"is no whole law file: variable {missing[0]!r} is missing; {REMEDY}")
-    if checksum(numbers) != attributes.get(CHECKSUM):
+    if checksum(numbers, kind) != attributes.get(CHECKSUM):
         raise TableError(path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}")

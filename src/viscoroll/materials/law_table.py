@@ -114,6 +114,11 @@ _lock = threading.Lock()
 
 @lru_cache(maxsize=_KEPT)
 def _made(given: float | Prony | Bodies) -> LawTable:
+    return made(given)
+
+
+def made(given: float | Prony | Bodies, least: int = 0, coefficients: Floats | None = None) -> LawTable:
+    """A table made anew, of no fewer rows than ``least``, or of ``coefficients`` that are known."""
     alpha, T_mean, modes = _numbers(given)
     unlike = isinstance(given, Bodies)
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
@@ -130,9 +135,10 @@ def _made(given: float | Prony | Bodies) -> LawTable:
             raise ParameterError("times", f"{1.0 / modes.a[-1]:g} to {1.0 / modes.b[0]:g}", allowed)
         e0 = math.frexp(modes.b[0])[1] - _SLOW_OCTAVES
         means = [math.fsum(share * modes.J / modes.b) for share in (weights, 1.0 - weights)]
-        table = build(
-            _parts(modes, weights if unlike else np.empty(0)), e0, Ends(alpha, *means, *map(float, limits[1:].ravel()))
-        )
+        ends = Ends(alpha, *means, *map(float, limits[1:].ravel()))
+        if coefficients is None:
+            coefficients = build(_parts(modes, weights if unlike else np.empty(0)), e0, ends, least)
+        table = coefficients
     table, limits, weights = map(_read_only, (table, limits, weights))
     E, tau, J, T = map(_read_only, (modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b))
     return LawTable(given, table, e0, alpha, T_mean, unlike, limits, E, tau, J, T, weights)

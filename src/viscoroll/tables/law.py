@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cylinder import Cylinder
-from ..errors import ParameterError
+from ..errors import ParameterError, one_of
 from ..files import write_text
 from ..materials.law_file import as_dataset, law_of, table_of
 from ..materials.law_store import CHECKSUM, check, content_of
 from ..materials.law_table import FUNCTIONS, LawTable, by_modes
+from .axis import axis
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +29,7 @@ _OF_SPEED = 5
 _PLACES, _SEED = 8, 20250701
 
 
-def law(material: Any, base: Any = None) -> xr.Dataset:
+def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | None = None) -> xr.Dataset:
     """The contact law of one material or pair: polynomials, one an octave of speed, for files and other programs.
 
     Parameters
@@ -36,6 +37,8 @@ def law(material: Any, base: Any = None) -> xr.Dataset:
     material : a :class:`viscoroll.Prony`, :class:`viscoroll.Bodies`, :class:`viscoroll.Material`, that of a
         :class:`viscoroll.Cylinder`, or alpha >= 1, of a solid with T_epsilon = 1.
     base : the :class:`viscoroll.Material` of the half-space where it is another.
+    alpha : in place of a material, the lowest and the highest alpha of the law of every alpha between, of one
+        relaxation time with T_epsilon = 1; whole octaves, within 1 and 1e12.
 
     Returns
     -------
@@ -44,12 +47,20 @@ def law(material: Any, base: Any = None) -> xr.Dataset:
         v = 1/F(eta), each with its ``largest_relative_error`` against the modes' formulas, measured at eight random
         places of every octave (parts of M over M, N over its largest); numbers of the limits; both forms of the series;
         the material as TOML.  ``comment`` has the evaluator in words.  Any speed, creep, kappa, mu, load and radius.
+        Of every alpha polynomials of ln alpha too, an octave a piece, of lam, epsilon/c, M/V/c, N/c, share and press
+        with c = (alpha - 1)/alpha, and errors against root solves at random places (:mod:`.axis`).
 
     Raises
     ------
     ParameterError
-        What is no material.
+        What is no material, alphas out of range, both or neither.
     """
+    if (alpha is None) == (material is None):
+        raise one_of("material", "alpha", both=alpha is not None)
+    if alpha is not None:
+        if base is not None or np.shape(alpha) != (2,):
+            raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
+        return axis(*alpha)
     table = table_of(material.pair if isinstance(material, Cylinder) else material, base)
     return as_dataset(table, measured_errors(table))
 

@@ -20,8 +20,8 @@ _MOST_BYTES = 1 << 31
 
 
 def is_law(table: Any) -> bool:
-    """Whether a dataset is the law of a material, and no grid."""
-    return getattr(table, "attrs", {}).get(schema.KIND) == "law"
+    """Whether a dataset is the law of a material or of every alpha, and no grid."""
+    return getattr(table, "attrs", {}).get(schema.KIND) in law_store.VARIABLES
 
 
 def check(table: Any, path: Any) -> None:
@@ -105,7 +105,7 @@ def info(path: str | PathLike[str]) -> str:
     lines = [f"{path}: {about[schema.KIND]}, {size:.0f} kB", about["title"], ""]
     if is_law(table):
         lines += [f"  {'function':<14}largest relative error"]
-        lines += [f"  {name:<14}{table[name].attrs['largest_relative_error']:.1e}" for name in law_store.MEANING]
+        lines += [f"  {name:<14}{error:.1e}" for name, error in law_store.errors_of(table).items()]
     else:
         axes = {axis: table[axis].values for axis in schema.axes_of(table)}
         lines += [f"  {name:<8} {nodes.size:>5} nodes in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items()]

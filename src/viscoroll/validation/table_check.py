@@ -1,13 +1,14 @@
-"""The file of a law against the formulas of its modes."""
+"""The file of a law against the formulas of its modes, or of every alpha against root solves."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from ..errors import ParameterError, TableError
+from ..materials.law_axis_file import axis_of
 from ..materials.law_file import law_of
-from ..materials.law_store import content_of
-from ..materials.law_table import FUNCTIONS
+from ..materials.law_store import AXIS, KIND, content_of, errors_of
+from ..tables import axis
 from ..tables.law import measured_errors
 from ..tables.store import is_law
 from .report import Check
@@ -20,7 +21,7 @@ ALLOWANCE, ROUNDING = 2.0, 2e-15
 
 
 def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
-    """Compare a law with the formulas of its modes at ``count`` random places.
+    """Compare a law with the formulas of its modes, of every alpha with root solves, at ``count`` random places.
 
     Parameters
     ----------
@@ -47,12 +48,16 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     source = table.encoding.get("source", "table")
     if not is_law(table):
         raise TableError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")
-    found = measured_errors(law_of(content_of(table), source), count, seed)
+    content, against = content_of(table), "the formulas of the modes"
+    if content.attributes[KIND] == AXIS:
+        found, against = axis.measured_errors(axis_of(content, source), count, seed), "root solves"
+    else:
+        found = measured_errors(law_of(content, source), count, seed)
     return [
         Check(
             f"{table.attrs['title']}: {name}", found[name],
-            ALLOWANCE * float(table[name].attrs["largest_relative_error"]) + ROUNDING,
-            f"relative; {count} places, against the formulas of the modes",
+            ALLOWANCE * stated + ROUNDING,
+            f"relative; {count} places, against {against}",
         )
-        for name in FUNCTIONS
+        for name, stated in errors_of(table).items()
     ]  # fmt: skip

@@ -210,11 +210,14 @@ def _put_row(row, e0, ends, bench, out):
 
 
 @kernel(allocates=True)
-def build(series, e0, ends):
-    """The table (rows, 24, 7) of a series of two bodies (``Parts``, without weights where they are alike); N is NaN."""
+def build(series, e0, ends, least):
+    """The table (rows, 24, 7) of a series of two bodies (``Parts``, without weights where they are alike); N is NaN.
+
+    ``least`` rows, and more up to the fast limit.
+    """
     work = sloped_room(series)
     bench = Bench(np.empty((TABLE, TERMS)), np.empty((TABLE, TERMS)), np.empty(TERMS), np.empty(TERMS))
-    rows = _last_octave(series, ends, work) - e0 + 1
+    rows = max(_last_octave(series, ends, work) - e0 + 1, least)
     finer = rows + 2 + int(np.ceil(0.5 * np.log2(ends.alpha)))
     fine = np.empty(finer * FUNCTIONS * TERMS)
     for row in range(finer):

@@ -1,0 +1,148 @@
+"""The law of every alpha: against 50 digits from 1 + 2e-16 to 2^20, as a file, and a single alpha out of it."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+
+import h5py
+import mpmath as mp
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from refusals import refused
+
+import viscoroll as vr
+from viscoroll.materials.law_axis import FUNCTIONS, LawAxis, law_axis
+from viscoroll.materials.law_table import FUNCTIONS as OF_ONE
+from viscoroll.materials.law_table import LawTable, law_table
+from viscoroll.reference import series as raw
+from viscoroll.validation.table_check import check_table
+
+ALPHAS = (1.0 + 2.0**-52, 1.0 + 1e-9, 1.9, 2.0, 11.0, 27.0, 300.0, 4096.0, 2.0**20 - 1.0, 2.0**20)
+V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
+
+
+@pytest.fixture(scope="module")
+def axis() -> LawAxis:
+    return law_axis(1.0, 2.0**20)
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("law") / "law.nc"
+    vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path)
+    return path
+
+
+def at(table: LawTable, name: str, x: float) -> float:
+    mantissa, exponent = np.frexp(x)
+    row = max(exponent - table.e0, 0)
+    t = x * 2.0**-table.e0 if row == 0 else 4.0 * mantissa - 3.0
+    return float(np.polynomial.polynomial.polyval(t, table.coefficients[row, :, OF_ONE.index(name)]))
+
+
+@pytest.mark.parametrize("alpha", ALPHAS)
+def test_against_50_digits(axis, alpha):
+    table = axis.at(alpha)
+    places = np.random.default_rng(7).uniform(table.e0 - 4.0, table.e0 + len(table.coefficients) - 1.5, 8)
+    with mp.workdps(80):
+        exact_alpha = mp.mpf(alpha)
+        known = raw.Rates([exact_alpha], [mp.mpf(1)], exact_alpha, 1 - 1 / exact_alpha)
+        for x in 2.0**places:
+            z = 1 / mp.mpf(x)
+            g, h, m, _ = raw.functions(mp, known, z)
+            square, F = 1 + 2 * h / z, z + g
+            u, v = float(1 / (2 * z * mp.sqrt(square))), float(1 / F)
+            found = 2.0 * at(table, "m_cylinder", u)
+            assert close(found, float(m), rel=tol.AXIS_LAW), x
+            for name, value in {"lam": 1 / mp.sqrt(square), "epsilon": g / z}.items():
+                assert close(at(table, name, u), float(value), rel=tol.TABLE_SHIFT), (name, x)
+            for name, value in {"share": z / F, "press": square * (z / F) ** 2}.items():
+                assert close(at(table, name, v), float(value), rel=tol.AXIS_LAW), (name, x)
+
+
+def test_unsteady_term_is_that_of_the_material(axis):
+    for alpha in ALPHAS:
+        N, own = (table.coefficients[:, :, OF_ONE.index("N")] for table in (axis.at(alpha), law_table(alpha)))
+        t = np.array([-0.9, 0.1, 0.8])
+        rows = range(1, len(own))
+        found, exact = (np.array([np.polynomial.polynomial.polyval(t, c[row]) for row in rows]) for c in (N, own))
+        assert close(found, exact, rel=tol.AXIS_UNSTEADY, scale=np.abs(exact).max()), alpha
+
+
+def test_at_one_it_is_closed_form(axis):
+    assert axis.at(1.0) is law_table(1.0)
+
+
+def test_stated_errors_are_those_of_other_places():
+    law = vr.tables.law(alpha=(3.0, 5.0)).copy(deep=True)
+    assert sorted(law[name].attrs["largest_relative_error"] for name in FUNCTIONS)[-1] < tol.LAW_STATED
+    assert (int(law["first"]), law.sizes["octave_of_alpha"]) == (1, 2)  # alpha in [2, 8]
+    assert [check.name for check in check_table(law, 3000, 1) if not check.passed] == []
+    law["m"].values[1, 0, 8, 0] *= 1.0 + tol.CLI_WRONG
+    assert [check.name[-3:] for check in check_table(law, 3000, 1) if not check.passed] == [": m"]
+
+
+def test_one_alpha_of_a_file(saved):
+    axis, loaded = law_axis(1.0, 30.0), vr.load_law(saved, alpha=11.0)
+    assert axis.alpha == (1.0, 32.0)
+    assert np.array_equal(loaded.coefficients, axis.at(11.0).coefficients)
+    assert not loaded.coefficients.flags.writeable
+    scene = vr.Scene(kappa=20.0, mu=0.3, material=loaded)
+    assert scene == vr.Scene(11.0, 20.0, 0.3)
+    for name, value in vr.contact(scene, V, delta=DELTA).as_dict().items():
+        exact = getattr(vr.contact(vr.Scene(11.0, 20.0, 0.3), V, delta=DELTA), name)
+        assert close(value, exact, rel=tol.AXIS_LAW, scale=1.0 if name in ("beta", "Q", "epsilon", "M") else 0.0), name
+    assert vr.load_law(saved, alpha=32.0).alpha == 32.0
+    assert vr.load_law(saved, alpha=1.0) is law_table(1.0)
+
+
+def test_what_a_file_says(saved):
+    law = vr.tables.load(saved)
+    assert all(variable.attrs["long_name"] for variable in law.variables.values())
+    told = vr.tables.info(saved)
+    for words in (": axis, ", "alpha = 1 to 32", "largest relative error", "sha256_of_numbers", "m and N come over c"):
+        assert words in told
+
+
+def test_refused(saved, tmp_path):
+    held = f"one of 1 to 32, which {saved} holds (`viscoroll tables law --alpha LOW:HIGH` writes others)"
+    for alpha in (None, 33.0):
+        assert refused(partial(vr.load_law, saved, alpha)).endswith(held)
+    for alpha in (0.5, math.nan, "11", [2.0, 3.0]):
+        assert refused(partial(vr.load_law, saved, alpha)).startswith("alpha = ")
+    law = vr.tables.load(saved)
+    refused(partial(vr.tables.export, law, tmp_path / "law.h"), "is the law of every alpha", error=vr.TableError)
+    vr.tables.save(vr.tables.law(11.0), tmp_path / "one.nc")
+    words = f"left out: {tmp_path / 'one.nc'} is the law of one material"
+    assert refused(partial(vr.load_law, tmp_path / "one.nc", 11.0)).endswith(words)
+    for given, words in (
+        ({}, "give material or alpha"),
+        ({"material": 2.0, "alpha": (1, 2)}, "both given"),
+        ({"alpha": 11.0}, "alpha = 11.0"),
+        ({"alpha": (4, 2)}, "alpha = 4 to 2"),
+        ({"alpha": (0.5, 2)}, "alpha = 0.5"),
+        ({"alpha": (2, 1e13)}, "alpha = 1"),
+        ({"alpha": (2, math.nan)}, "alpha = nan"),
+    ):
+        refused(partial(vr.tables.law, **given), words)
+
+
+def test_damaged_or_edited(saved, tmp_path):
+    path = tmp_path / "copy.nc"
+    content = bytearray(saved.read_bytes())
+    content[len(content) // 2] ^= 8
+    path.write_bytes(content)
+    refused(partial(vr.load_law, path, 11.0), "differ from the SHA-256", error=vr.TableError)
+    for change, words in (
+        (lambda file: file["press"].__setitem__((0, 0, 3, 5), 0.125), "its numbers are not those"),
+        (lambda file: file.__delitem__("m"), "variable 'm' is missing"),
+        (lambda file: file.attrs.__setitem__("law_schema", 2), "schema 2"),
+    ):
+        path.write_bytes(saved.read_bytes())
+        with h5py.File(path, "a") as file:
+            change(file)
+        refused(partial(vr.load_law, path, 11.0), words, error=vr.TableError)
