@@ -22,6 +22,8 @@ from closeness import close
         ([1.0, 2.0, 3.1], [1.0, 2.0, 3.0], 1e-3, 0.0),
         ([1.0, 2.0], [1.0, 2.0, 3.0], 1e-3, 0.0),
         ([1.0], 1.1, 1e-3, 0.0),
+        ([], [], 1.0, 1.0),
+        (1.0 + 1e-3j, 1.0, 1e-4, 0.0),
     ],
 )
 def test_what_is_not_allowed_is_refused(found, exact, rel, scale):
@@ -39,7 +41,6 @@ def test_what_is_not_allowed_is_refused(found, exact, rel, scale):
         (9e-13, 0.0, 1e-12, 1.0),
         ([1.0, 1.0 + 9e-13], 1.0, 1e-12, 0.0),
         ([[1.0, 9e-10]], [[1.0, 0.0]], 1e-9, [[1.0, 1.0]]),
-        ([], [], 0.0, 0.0),
     ],
 )
 def test_what_is_allowed_passes(found, exact, rel, scale):
@@ -47,5 +48,5 @@ def test_what_is_allowed_passes(found, exact, rel, scale):
 
 
 def test_the_worst_place_is_told():
-    with pytest.raises(AssertionError, match=r"3\.5\) at \(2,\), not np\.float64\(3\.0\).*2 of 3 beyond"):
-        close([1.1, 2.0, 3.5], [1.0, 2.0, 3.0], rel=1e-3)
+    with pytest.raises(AssertionError, match=r"V .*3\.5\) at \(2,\), not np\.float64\(3\.0\).*2 of 3 beyond"):
+        close([1.1, 2.0, 3.5], [1.0, 2.0, 3.0], rel=1e-3, what="V")

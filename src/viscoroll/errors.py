@@ -99,7 +99,9 @@ class ConvergenceError(ViscorollError):
 
 
 class ModelWarning(UserWarning):
-    """An assumption of the model fails grossly for a motion; said once a process."""
+    """The model is grossly at fault for a motion, a material was not measured at what a contact asks of it, or a file
+    of measurements gives no units; said once a process, or once a material or file.
+    """
 
 
 class MotionStatus(IntEnum):

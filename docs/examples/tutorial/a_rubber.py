@@ -20,7 +20,7 @@ omega, storage, loss = vr.read_dma(data)  # rad/s, Pa, Pa
 # %%
 # The contact law wants relaxation times and strengths, a Prony series.  ``fit_prony``
 # takes as few of them as the data need, here to 1 %.
-fit = vr.fit_prony(omega, storage, loss)
+fit = vr.fit_prony(omega, storage, loss, source="dma.csv")
 print(fit)
 
 # %%
@@ -50,22 +50,26 @@ print(f"contact length at rest: {1e3 * roller.l0:.1f} mm")
 # Rolling resistance over speed, at three temperatures.  Temperature multiplies all
 # relaxation times by one factor; here it is that of Williams, Landel and Ferry, which such
 # a test gives too.
+#
+# Which part of a curve rests on data?  The rubber feels a roller pass in the time that
+# contact length and speed make, and the inverse of that has to lie among the measured
+# frequencies.  The material keeps these, ``contact`` warns beyond them, and ``validity``
+# says where: dotted here.
 shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-4, 1e3, 300)  # m/s
 figure_2, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 for temperature in (20.0, 40.0, 60.0):
     warm = roller.replace(base=rubber.at(temperature, shift=shift))
-    M = warm.contact(speed, delta=0.0, fields="M").M  # N m per m of length
-    share = M / (roller.R * roller.load)
-    axes.semilogx(speed, 100.0 * share, label=f"{temperature:g} °C")
+    share = warm.contact(speed, delta=0.0, fields="C_rr").C_rr  # M/(P R)
+    held = warm.validity(speed).measured.holds
+    name, seen = f"{temperature:g} °C", speed[held]
+    (line,) = axes.semilogx(speed, 100.0 * share, ":")
+    axes.semilogx(seen, 100.0 * share[held], color=line.get_color(), label=name)
+    print(f"{name}: measured for {seen[0]:.1g} to {seen[-1]:.1g} m/s")
 axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
 axes.legend(frameon=False)
 
 # %%
 # The bumps are the four relaxation times of the fit; the measured rubber has a smooth
-# curve through them.
-#
-# Which part of the curve rests on data?  Rolling at V shakes the rubber at about V over
-# half the contact length.
-low, high = 0.5 * roller.l0 * omega[[0, -1]]
-print(f"at 20 °C the data cover {low:.1g} to {high:.1g} m/s")
+# curve through them.  A layer of rubber has a thickness, too: ``fit.material(thickness=...)``
+# lets ``validity`` compare it with the contact.

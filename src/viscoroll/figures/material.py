@@ -56,7 +56,7 @@ def rolling_resistance(
         dashed(right, V, M, (low * speed, high * speed), label=name, **line)
     right.set(xscale="log", ylim=(0.0, None))
     left.set(xlabel=r"$\omega$, rad/s", ylabel=f"$E'$, $E''$, {unit}", title="a) master curve")
-    right.set(title="b) rolling resistance over load; dashed: beyond the data", xlabel="speed, m/s", ylabel=label("M"))
+    right.set(title="b) rolling resistance; dashed: no data", xlabel="speed, m/s", ylabel=label("M"))
     for axes in (left, right):
         axes.legend(frameon=False)
     return figure

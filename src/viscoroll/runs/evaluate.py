@@ -87,7 +87,7 @@ def look_at_materials(run: Run) -> None:
     settings = msgspec.structs.replace(run.settings, summaries=("V",), keep="summaries")
     motion = roll_inputs(replace(run, settings=settings), values)
     V0 = run.inputs.largest("V0") if "V0" in values else None
-    look_at_motion(cylinder, V0, motion.V * np.reshape(scales(values)["V"], (-1, 1)))
+    look_at_motion(cylinder, V0, motion.V, scales(values)["V"])
 
 
 def _column(value: Any, count: int) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ from .. import __version__
 from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..extras import imported
-from .evaluate import roll_inputs
+from .evaluate import look_at_materials, roll_inputs
 from .inputs.drives import PREFIX
 from .inputs.ranges import START
 from .inputs.record import LARGEST, SMALLEST, Inputs
@@ -83,6 +83,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     summaries = tuple(dict.fromkeys(run.settings.summaries))
     settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
     whole = replace(run, settings=settings)
+    look_at_materials(whole)
     # names as an array: SALib below 1.5.2 hands them to pandas, which since 3.0 takes no list
     problem = {"num_vars": len(names), "names": np.array(names), "bounds": [[0.0, 1.0]] * len(names)}
     outcomes, status = _outcomes(whole, _points(problem, base, run.settings.seed), threads, progress)

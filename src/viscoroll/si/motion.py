@@ -251,9 +251,8 @@ def roll_of(
         )  # fmt: skip
     except ParameterError as error:
         raise in_words(error, one) from error
-    result = in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
-    look_at_motion(cylinder, start[0], result.V)
-    return result
+    look_at_motion(cylinder, start[0], motion.V, one.speed)
+    return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
 
 
 def _look_at_waves(cylinder: Cylinder, scene: Scene, start: tuple[Any, Any], bare: tuple[Any, Any]) -> None:
@@ -294,7 +293,5 @@ def ensemble_of(
         found = ensemble(scene, V0, omega0, times / one.T, rest=rest, **given, **options)
     except ParameterError as error:
         raise in_words(error, one) from error
-    result = EnsembleSI(cylinder, drive, replace(found, labels=labels), times)
-    if cylinder._held is not None:  # else V need not be in SI units
-        look_at_motion(cylinder, start[0], result.V)
-    return result
+    look_at_motion(cylinder, start[0], found.V, one.speed)
+    return EnsembleSI(cylinder, drive, replace(found, labels=labels), times)

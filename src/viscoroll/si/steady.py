@@ -31,7 +31,7 @@ def steady_of(
     load = np.asarray(one.P)
     each, R, T, speed = (_beside(unit) for unit in (load, one.R, one.T, one.speed))
     loss, power = found.loss, each * speed
-    look_at_motion(cylinder, None, found.V * speed)
+    look_at_motion(cylinder, None, found.V, one.speed)
     words = "force + torque/R", "rolling moment over R", " N/m", " m/s"
     shape = found.reasons.shape
     factors = np.broadcast_to(load, shape).ravel(), np.broadcast_to(one.speed, shape).ravel()

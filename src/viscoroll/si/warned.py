@@ -45,11 +45,14 @@ def look(cylinder: Cylinder, V: Any, extent: tuple[float, float] | None = None) 
     warnings.warn(text, ModelWarning, stacklevel=outside())
 
 
-def look_at_motion(cylinder: Cylinder, V0: Any, V: Any) -> None:
-    """As :func:`look`, at the fastest of each motion: towards rest every speed is passed."""
+def look_at_motion(cylinder: Cylinder, V0: Any, V: Any, speed: Any) -> None:
+    """As :func:`look`, at the fastest of each motion: towards rest every speed is passed.
+
+    V0 : m/s.  V : over times along the last axis, in units of ``speed``, m/s.
+    """
     if cylinder._known_speeds is None:
         return
-    fastest = np.nan if V is None or not np.size(V) else np.fmax(np.fmax.reduce(V, -1), -np.fmin.reduce(V, -1))
+    fastest = np.nan if V is None or not np.size(V) else np.fmax(np.fmax.reduce(V, -1), -np.fmin.reduce(V, -1)) * speed
     fastest = fastest if V0 is None else np.fmax(fastest, np.abs(V0))
     look(cylinder, fastest, None if np.ndim(fastest) else (fastest, fastest))
 
