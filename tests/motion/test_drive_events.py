@@ -10,6 +10,8 @@ from closeness import close
 
 import viscoroll as vr
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 #: errors over rtol: of V and omega over the largest speed so far, and of times of events
 BOUND, TIGHT = 30.0, 1e-11
 
@@ -274,3 +276,39 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
         m = vr.roll(scene, 1.0, 0.0, t, rtol, **drive)
         assert m.switches[0].regime == "full slip"
         assert close(m.switches[0].t, 0.25 / 0.45, rel=BOUND * rtol)
+
+
+#: scenes, starts and drives in which slip met its edge again at once: by rounding, by what Newton's iteration left
+FED_BACK = {
+    "force": (
+        vr.Scene(6.0, 6.8, 0.6, 1.0, 1.9), (0.01, 0.02), 25.0, 1e-4,
+        {"torque": ([0.0, 20.0], [-0.3, 1.0]), "force": vr.Feedback(0.2, V=-1.0, omega=-10.0)},
+    ),
+    "both": (
+        vr.Scene(1.55363972824, 30.812002496, 0.200093159472, 1.0, 1.15431451517),
+        (-0.015613635582132954, 0.0034962713086420217), 93.21726706, 1e-6,
+        {
+            "force": vr.Feedback(([23.54110387, 23.54110387, 36.72508419, 36.72508419],
+                                  [0.30940123, -0.27711987, -0.27711987, -0.01017519]), omega=-6.3950936238018645),
+            "torque": vr.Feedback(([23.54110387, 23.54110387, 36.72508419, 36.72508419],
+                                   [0.02664574, 0.09656231, 0.09656231, -0.05161109]),
+                                  V=-3.7758015179064346, omega=-4.839391040183259),
+        },
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FED_BACK)
+def test_slip_that_has_begun_goes_on(name):
+    """Stiff feedback: one solve off by less than its tolerance told of stick again, which then was never left."""
+    scene, start, end, rtol, drive = FED_BACK[name]
+    t = np.linspace(0.0, end, 251)
+    m, best = (vr.roll(scene, *start, t, one, max_steps=2000, **drive) for one in (rtol, TIGHT))
+    assert m.status == best.status == vr.MotionStatus.DONE
+    assert [s.regime for s in m.switches] == [s.regime for s in best.switches]
+    partial = m.regime == 1
+    star = vr.contact(scene, m.V[partial], delta=0.0, fields="delta_star").delta_star
+    assert (np.abs(m.delta[partial]) <= star * (1.0 + rtol)).all()
+    fastest = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)))
+    assert close(m.V, best.V, rel=BOUND * rtol, scale=fastest)
+    assert close(m.omega, best.omega, rel=BOUND * rtol, scale=fastest)

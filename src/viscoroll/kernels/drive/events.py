@@ -15,6 +15,8 @@ _ON, _LEAST = 1e-2, 4e-15
 _HALVINGS = 60
 #: an edge that a panel starts on, to rounding, is not met there
 _ROUNDING = 1e-14
+#: what rounding makes of slip that lies on its edge, over the speeds that it is made of
+_NOISE = 1e-13
 #: v up to which the interpolant is followed beyond the panel, and from which on nothing was found there
 _BEYOND = 3.0
 NOWHERE = 2.99
@@ -29,7 +31,7 @@ def _node_of(event, last, nodes):
     inside = nodes[EVENT + event, 0] > _ROUNDING * largest
     for i in range(1, last + 1):
         value = nodes[EVENT + event, i]
-        if value < 0.0 and inside:
+        if value < 0.0 and inside and (event != EDGE or value < -_NOISE * _scale(event, nodes)):
             return i
         inside = inside or value > 0.0
     return 0
@@ -119,5 +121,9 @@ def _near(rtol):
 
 @kernel
 def ends_on(event, nodes, rtol):
-    """Whether a panel ends on an event."""
-    return abs(nodes[EVENT + event, N]) <= _near(rtol) * _scale(event, nodes)
+    """Whether a panel ends on an event: its function has fallen to 0, and does not only set out from there."""
+    last, largest = nodes[EVENT + event, N], nodes[EVENT + event, 0]
+    for i in range(1, N):
+        largest = max(largest, nodes[EVENT + event, i])
+    scale = _scale(event, nodes)
+    return last < largest and largest > _NOISE * scale and abs(last) <= _near(rtol) * scale

@@ -13,13 +13,17 @@ from .rates import rates_at
 
 #: how far beyond the end of a panel its interpolants are followed, over its length
 _REACH = 1.5
+#: share of one that was too long up to which they say less of a panel than its rates at the start do: what is off by
+#: less than the tolerance of Newton's iteration stays, and may have the sign of an event
+_SHORT = 1e-3
 
 
 @kernel
 def guess(panel, slopes, track, frame, case):
     """Fill the unknowns at the nodes, where they reach by the interpolants of the panel ``track``: of the last one, or
     of one that was too long."""
-    if panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
+    alike = panel.tau > track.tau or panel.length > _SHORT * track.length
+    if alike and panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
         _follow(panel, track, frame, case.work)
     elif frame.slips and case.work.nodes[SPEED, 0] == 0.0:
         _slide_out(panel, frame, case)

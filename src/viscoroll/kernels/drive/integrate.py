@@ -18,7 +18,7 @@ from .load import brakes, goes_on, piece_end, threshold, undriven
 from .nodes import INTERPOLANTS, PATHS, ROWS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
 from .output import coast, put_still, put_to_end, regime_of
-from .phase import phase
+from .phase import creeps, phase
 from .records import (
     EDGE,
     HELD,
@@ -45,8 +45,6 @@ _ROUNDING = 1e-13
 _STILL = 1e-85
 #: share of the length of panels that is kept where the law bends at delta = 0
 _PAST = 0.3
-#: 1/zeta over T_mean below which V decays exponentially to rounding
-_SLOWEST = 1e-17
 
 
 @kernel
@@ -107,8 +105,7 @@ def note(what, noted, clock, case):
 @kernel
 def coasts(state, frame, clock, case):
     """Whether nothing drives any more, and V decays exponentially to rounding."""
-    T_mean = case.scene.material.T_mean
-    return not frame.slips and 0.0 < state.s * T_mean < _SLOWEST and undriven(clock.piece, case.drive)
+    return creeps(state, frame, case) and undriven(clock.piece, case.drive)
 
 
 @kernel

@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from ..motion.collocation import N, rise_at
 from ..motion.control import next_length
 from .events import NOWHERE, ends_on, first_event, goes_behind, passed_over, place_of
-from .load import load_at, piece_end
+from .load import load_at, piece_end, undriven
 from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_node
 from .origin import departing
 from .output import pass_panel
@@ -42,6 +42,8 @@ _LESS, _FAR_LESS = 0.7, 0.4
 _RISE = 0.5
 #: share of the time until the drive changes in which its slope shows
 _SOON = 1e-3
+#: 1/zeta over T_mean below which V decays exponentially to rounding
+_SLOWEST = 1e-17
 
 
 @kernel
@@ -171,14 +173,20 @@ def _begin(state, frame, clock, case):
     return frame, slopes
 
 
+@kernel(inline=True)
+def creeps(state, frame, case):
+    """Whether V is so small that, where nothing drives, it decays exponentially to rounding."""
+    return not frame.slips and 0.0 < state.s * case.scene.material.T_mean < _SLOWEST
+
+
 @kernel
 def phase(fresh, state, frame, clock, case):
     """Follow a regime: (event, state, frame, clock).  ``fresh``: the stick zone has just formed."""
     nodes, powers, limits = case.work.nodes, case.work.powers, case.limits
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
     power = _GRADED if fresh else 1
-    track = Panel(clock.tau, 0.0, 1, clock.piece, False)
-    while clock.tau < end and clock.steps < limits.max_steps:
+    track, coasts = Panel(clock.tau, 0.0, 1, clock.piece, False), undriven(clock.piece, case.drive)
+    while clock.tau < end and clock.steps < limits.max_steps and not (coasts and creeps(state, frame, case)):
         frame, slopes = _begin(state, frame, clock, case)
         if length == 0.0:
             length = max(_first_length(fresh, slopes, clock, frame, case), _INSTANT * clock.tau)

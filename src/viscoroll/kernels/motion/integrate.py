@@ -45,6 +45,8 @@ _TINY = 1e-150
 _LEAST = 1e-300
 #: share of the whole time that rounding may leave of it behind an event
 _AT_THE_END = 2.0**-51
+#: time until the slow manifold is tried again, over that of the steps before it was tried in vain
+_PATIENCE = 3.0
 
 
 @kernel
@@ -120,6 +122,7 @@ def partial_phase(entering, try_at, state, frame, clock, case):
 
     The boundary layer where it is ``entering``, else steps; from there the slow manifold, where it is near.
     """
+    start = clock.tau
     if entering:
         near, event, state, clock = layer_phase(state, frame, clock, case)
     else:
@@ -127,7 +130,10 @@ def partial_phase(entering, try_at, state, frame, clock, case):
     # without rolling resistance nothing moves on the slow manifold
     coasts = near and case.scene.material.T_mean == 0.0
     if near and not coasts:
+        left = clock.tau
         event, state, clock, try_at = slow_phase(state, frame, clock, case)
+        if clock.tau == left:  # in vain: steps that begin anew are short, and are to grow
+            try_at = max(try_at, left + _PATIENCE * (left - start))
     return event, state, clock, try_at, coasts or state.first >= FAR
 
 
