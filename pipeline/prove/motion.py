@@ -30,6 +30,8 @@ REFERENCE_RTOL = 1e-12
 #: relative change of an input that a condition number is taken by, and rtol of the motion with it
 _CHANGE = 1e-6
 _CHANGED_RTOL = 1e-10
+#: what motions of slight friction are compared with, and speeds that have no digits left
+SLIGHT_RTOL, _GONE = 1e-11, 1e-290
 #: durations of very long lives, in decay times
 _LIVES = 10.0 ** np.arange(-12.0, 13.0)
 _TIME_SCALE = 7.3
@@ -255,6 +257,32 @@ def long_rows(count: int, rtol: float, rng: np.random.Generator) -> list[dict[st
     return [steps.row, wrong.row]
 
 
+def slight_rows(count: int, rtol: float, rng: np.random.Generator) -> list[dict[str, Any]]:
+    """Friction so slight that rolling resistance spends nearly all of it, on cylinders of little inertia."""
+    domain = "alpha to 1e3, kappa to 1e3, mu in [1e-6, 1e-5], j in [1e-3, 1], starts of 1e-5 to 1"
+    steps = Claim(f"steps of a motion, rtol = {rtol:g}", domain, STEPS)
+    error = Claim(f"V, omega: error over rtol, rtol = {rtol:g}", domain, FACTOR)
+    given_up = Claim(f"share of motions given up at {rtol:g} or {SLIGHT_RTOL:g}, left out", domain, 0.02)
+    short = 0
+    for _ in tqdm(range(count), desc="slight friction", delay=1.0, leave=False):
+        low, high = np.log10([0.1, 1.0, 1e-6, 0.01, 1e-3]), np.log10([1e3, 1e3, 1e-5, 100.0, 1.0])
+        alpha, kappa, mu, gamma, j = (10.0 ** rng.uniform(low, high)).tolist()
+        V0, omega0 = (rng.normal(size=2) * 10.0 ** rng.uniform(-5.0, 0.0, 2)).tolist()
+        slide = abs(omega0 - V0) / (gamma * mu * (1.0 + 1.0 / j))
+        end = slide * rng.uniform(0.3, 1.1) + 10.0 ** rng.uniform(-1.0, 1.5) * (1.0 + j) * (1.0 + 1.0 / alpha) / gamma
+        motion = ChosenMotion(vr.Scene(1.0 + alpha, kappa, mu, gamma, j), V0, omega0, float(end))
+        tried, best = rolled(motion, rtol), rolled(motion, SLIGHT_RTOL)
+        if tried is None or best is None:
+            short += 1
+            continue
+        steps.add(tried.steps, str(motion))
+        fastest = np.maximum(np.abs(best.V), np.abs(best.omega))
+        off = np.maximum(np.abs(tried.V - best.V), np.abs(tried.omega - best.omega))
+        error.add((off / np.maximum(fastest, _GONE)).max() / rtol, str(motion))
+    given_up.add(short / count)
+    return [steps.row, error.row, given_up.row]
+
+
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     rng = np.random.default_rng(sizes["seed"] + 4)
     return [
@@ -262,4 +290,5 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         *accuracy_rows(sizes["motions"], sizes["motion_rtol"], rng),
         *identity_rows(sizes["motion_identities"], 1e-8, rng),
         *long_rows(sizes["long_motions"], 1e-8, rng),
+        *slight_rows(sizes["slight_motions"], 1e-8, rng),
     ]
