@@ -548,6 +548,8 @@ def test_step_limit_is_reported():
     assert math.isfinite(motion.V[0])
     assert math.isnan(motion.V[1])
     assert motion.regime[1] == -1
+    with pytest.warns(RuntimeWarning, match="the step limit was reached"):
+        assert "not reached" in str(vr.roll(ROUNDED, 1.5, 0.5, [1.0], max_steps=5))
 
 
 @pytest.mark.filterwarnings("ignore:roll")

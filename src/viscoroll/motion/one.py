@@ -229,6 +229,8 @@ def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[st
 
 def _course(t: NDArray, values: NDArray) -> str:
     """The first and the last value that was reached, and one between them that is larger in size with its time."""
+    if np.isnan(values).all():
+        return "not reached"
     reached, at = values[~np.isnan(values)], int(np.nanargmax(np.abs(values)))
     first, most, last = (f"{value:.6g}" for value in (reached[0], values[at], reached[-1]))
     if t.size == 1:
