@@ -143,6 +143,11 @@ def browse(site, tmp_path_factory):
         def translate_path(self, path: str) -> str:
             return str(probe) if urlsplit(path).path == "/probe.html" else super().translate_path(path)
 
+        def end_headers(self) -> None:
+            # else two probes written within one second are one page to the browser: "not modified since" counts seconds
+            self.send_header("Cache-Control", "no-store")
+            super().end_headers()
+
         def log_error(self, format: str, *args: object) -> None:
             missing.append(f"{self.path}: {format % args}")
 
