@@ -164,14 +164,14 @@ MANIFOLD = 0.02
 #: The second stick of the brief's example, printed to 9 digits.
 RETURN_TIME = 3e-9
 
-# --- boundary layer (kernels/motion/test_layer.py) ---
+# --- boundary layer (kernels/free/test_layer.py) ---
 #: A panel of two e-folds, of degree 9, against an integration in time at rtol 1e-12; measured 2e-9.
 LAYER_PANEL = 1e-8
 #: What slopes change by over a distance e from the manifold, over e: that of delta most, which goes with S + e where S
 #: is a twentieth of the first e; measured 21.
 LAYER_LINEAR = 40.0
 
-# --- partial slip (kernels/motion/test_partial_slip.py) ---
+# --- partial slip (kernels/free/test_partial_slip.py) ---
 #: The slow manifold over its leading order, less 1, times zeta; measured 0.0024 at alpha = 1.5 to 0.068 at 300.
 MANIFOLD_NEXT = 0.2
 #: A slope by central differences of a step of 1e-4: its square.
@@ -542,7 +542,7 @@ LAYER_POINTS = 3e-5
 #: The file keeps three digits.
 LAYER_KEPT = 5e-3
 
-# --- kernels/drive/events.py (tests/kernels/drive/test_events.py) ---
+# --- kernels/motion/events.py (tests/kernels/motion/test_events.py) ---
 #: v where a straight line through the nodes of a panel passes 0: its interpolant in powers of t rounds at 2^-53 of the
 #: terms of its coefficients, 1,800 together; measured 4.8e-14 over 4,000 places.
 EVENT_PLACE = 2e-13

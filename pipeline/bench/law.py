@@ -24,7 +24,7 @@ from viscoroll.kernels.bessel.ratios import (
     ratio_r,
 )
 from viscoroll.kernels.material.functions import generators, standard
-from viscoroll.kernels.motion.partial_slip import slip_differences
+from viscoroll.kernels.free.partial_slip import slip_differences
 from viscoroll.reference import contact_precise
 
 from ..timing import nanoseconds, rounds

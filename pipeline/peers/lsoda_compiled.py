@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.material.functions import standard
-from viscoroll.kernels.motion.partial_slip import creep_speeds, partial_rates, slow_D
-from viscoroll.kernels.motion.records import Scene
+from viscoroll.kernels.free.partial_slip import creep_speeds, partial_rates, slow_D
+from viscoroll.kernels.free.records import Scene
 
 from ..bench.jit import compiled
 

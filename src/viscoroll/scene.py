@@ -271,7 +271,7 @@ def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
 
 def kernel_scene(material: float | Prony, kappa: float, mu: float, j: float) -> Any:
     """The record that the kernels of a motion take, for this thread alone."""
-    from .kernels.motion import records
+    from .kernels.free import records
     from .materials.tables import record
 
     return records.Scene(record(material), kappa, mu, j)

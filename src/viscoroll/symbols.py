@@ -37,13 +37,13 @@ SYMBOLS = {
     "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
     "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)", "scene.py"),
     "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)", "scene.py"),
-    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1", "kernels/free/integrate.py"),
     "omega": Symbol(
-        r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1", "kernels/motion/integrate.py"
+        r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1", "kernels/free/integrate.py"
     ),
     "t": Symbol("t", "time over T_epsilon", ">= 0", "Sect. 4"),
-    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)", "kernels/motion/path.py"),
-    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)", "kernels/motion/path.py"),
+    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)", "kernels/free/path.py"),
+    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)", "kernels/free/path.py"),
     "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/law/state.py"),
     "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/law/state.py"),
     "lam": Symbol(
@@ -71,9 +71,9 @@ SYMBOLS = {
         "Eq. (16)",
         "si/contact.py",
     ),
-    "force": Symbol("f", "force along V over load", "finite", "", "kernels/drive/load.py"),
-    "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "kernels/drive/load.py"),
-    "brake": Symbol("B", "most torque that a brake takes over load times radius", ">= 0", "", "kernels/drive/load.py"),
+    "force": Symbol("f", "force along V over load", "finite", "", "kernels/motion/load.py"),
+    "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "kernels/motion/load.py"),
+    "brake": Symbol("B", "most torque that a brake takes over load times radius", ">= 0", "", "kernels/motion/load.py"),
     "slope": Symbol(r"\vartheta", "angle of the slope, radians", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
     "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "equilibria/result.py"),
     "rate_fast": Symbol(
@@ -110,30 +110,30 @@ SYMBOLS = {
         "energy lost in slip since t = 0 over m (R/T_epsilon)^2",
         ">= 0",
         "Eq. (22)",
-        "kernels/motion/losses.py",
+        "kernels/free/losses.py",
     ),
     "rolling_loss": Symbol(
         r"E_\mathrm{roll}",
         "energy lost in rolling since t = 0 over m (R/T_epsilon)^2",
         "finite",
         "Eq. (22)",
-        "kernels/motion/losses.py",
+        "kernels/free/losses.py",
     ),
     "work_force": Symbol(
-        r"W_f", "work of the force since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/drive/rates.py"
+        r"W_f", "work of the force since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/motion/rates.py"
     ),
     "work_torque": Symbol(
-        r"W_q", "work of the torque since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/drive/rates.py"
+        r"W_q", "work of the torque since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/motion/rates.py"
     ),
     "brake_loss": Symbol(
         r"E_\mathrm{brake}",
         "energy lost in the brake since t = 0 over m (R/T_epsilon)^2",
         ">= 0",
         "Eq. (22)",
-        "kernels/drive/rates.py",
+        "kernels/motion/rates.py",
     ),
     "onset_time": Symbol(
-        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/motion/slide_phase.py"
+        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/free/slide_phase.py"
     ),
 }
 

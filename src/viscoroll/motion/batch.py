@@ -193,7 +193,7 @@ def _integrate_others(
 
     def work(start: int, stop: int) -> None:
         from ..kernels.material.functions import Own
-        from ..kernels.motion.loop import INFO
+        from ..kernels.free.loop import INFO
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
@@ -228,19 +228,19 @@ def _kernel(names: tuple[str, ...], ready: Prepared | None) -> Callable[..., Non
     rows = np.array([(ROWS if ready else FIELDS).index(name) for name in names], np.int64)
 
     def driven(given: tuple, times: NDArray, limits: tuple, out: Any, info: NDArray, which: Any, unit: float) -> None:
-        from ..kernels.drive.loop import drive_loop
+        from ..kernels.motion.loop import drive_loop
 
         assert ready
         drives, unnoted = ready.in_unit(unit, which), (np.empty((0, 2)), np.empty(0))
         drive_loop(given, drives, times, limits, rows, out, info, unnoted)
 
     def free(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, *_: Any) -> None:
-        from ..kernels.motion.loop import NOTHING_NOTED, motion_loop
+        from ..kernels.free.loop import NOTHING_NOTED, motion_loop
 
         motion_loop(given, times, limits, rows, out, info, tuple(NOTHING_NOTED), 0, len(info))
 
     def with_losses(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, *_: Any) -> None:
-        from ..kernels.motion.losses import loss_loop
+        from ..kernels.free.losses import loss_loop
 
         loss_loop(given, times, limits, rows, out, info, 0, len(info))
 

@@ -75,18 +75,10 @@ class Prepared(NamedTuple):
     omega0: Any
     error: float
 
-    def in_unit(self, unit: float, chosen: Any = slice(None)) -> tuple[NDArray, NDArray, int]:
-        """Pieces, of the ``chosen`` motions where each has its own, and gains, with time counted in ``unit``."""
+    def for_kernel(self, chosen: Any = slice(None)) -> tuple[NDArray, NDArray, int]:
+        """Pieces, of the ``chosen`` motions where each has its own, gains, and which speed is prescribed."""
         pieces = self.pieces[chosen] if self.pieces.shape[0] > 1 else self.pieces
-        if unit != 1.0:
-            from ..kernels.drive.load import FIRST, RATE, SCALE, START, terms_of
-
-            pieces = pieces.copy()
-            terms = terms_of(pieces[0, 0])
-            pieces[..., START] /= unit
-            pieces[..., SCALE] *= unit
-            pieces[..., FIRST + RATE * terms : FIRST + (RATE + 1) * terms] *= unit * unit
-        return np.ascontiguousarray(pieces), self.gains / unit, self.prescribed
+        return np.ascontiguousarray(pieces), self.gains, self.prescribed
 
 
 def tilted(scene: Scene, slope: Any) -> tuple[Scene, Any]:
@@ -121,8 +113,11 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
         What is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what is then found given as well;
         a start that is not the prescribed one.
     """
-    from ..kernels.drive.records import NEITHER, OMEGA, SPEED
+    from ..kernels.motion.load import FIRST, FUNCTIONS
+    from ..kernels.motion.records import NEITHER, OMEGA, SPEED
 
+    if not drive.acts:
+        return Prepared(np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER, scene, V0, omega0, 0.0)
     scene, tangent = tilted(scene, drive.slope)
     if drive.V is not None and drive.omega is not None:
         raise one_of("V", "omega", both=True)

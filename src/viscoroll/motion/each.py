@@ -34,7 +34,7 @@ def roll_each(
     The last that ``roll`` takes: which of the motions these are, and what their times are counted in.
     ``inputs`` : kappa, mu, gamma, j, V0, omega0, vectors of one value or one a motion.
     """
-    from ..kernels.motion.loop import INFO
+    from ..kernels.free.loop import INFO
 
     rtol, rest, most = limits
     record, unit = records(materials, which)

@@ -178,8 +178,8 @@ def _rolled(
     parameters: tuple[Any, ...], V0: float, omega0: float, times: NDArray, losses: bool
 ) -> tuple[NDArray, float]:
     """Outputs and onset time of a motion by the kernel that ``roll`` compiles: none is compiled for the map alone."""
-    from ..kernels.motion.losses import ROWS, add_losses, loss_points
-    from ..kernels.motion.output import OUTPUTS
+    from ..kernels.free.losses import ROWS, add_losses, loss_points
+    from ..kernels.free.output import OUTPUTS
 
     material, kappa, mu, j = parameters
     given = {"material": material} if isinstance(material, Prony) else {"alpha": material}
@@ -229,7 +229,7 @@ def ask(
     chosen: FlowMap, gamma: float, rest: float, V0: NDArray, omega0: NDArray, times: NDArray, rows: tuple[int, ...],
     *, threads: int | None = 1, progress: str | None = None,
 ) -> Answer:  # fmt: skip
-    """Roll motions by a map; ``rows`` as in ``kernels/motion/output.py``, ``rest`` = 0 for none."""
+    """Roll motions by a map; ``rows`` as in ``kernels/free/output.py``, ``rest`` = 0 for none."""
     from ..kernels.flow.loop import flow_loop
 
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))

@@ -146,7 +146,7 @@ def _from_zero(terms: NDArray[np.float64], rounding: float = _ROUNDING) -> NDArr
 
 def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms)."""
-    from ..kernels.drive.load import FIRST, SCALE, START
+    from ..kernels.motion.load import FIRST, SCALE, START
 
     if any(each.starts.ndim == 2 for each in curves):
         return _pieces_each(curves, end)
@@ -168,7 +168,7 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
 
 def _pieces_each(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     """The same where motions have times of their own; pieces between equal times have no length and are passed over."""
-    from ..kernels.drive.load import FIRST, SCALE, START
+    from ..kernels.motion.load import FIRST, SCALE, START
 
     count = max(max(each.terms.shape[0], np.atleast_2d(each.starts).shape[0]) for each in curves)
     own = [np.broadcast_to(each.starts, (count, each.starts.shape[-1])) for each in curves]

@@ -9,10 +9,10 @@ import pytest
 import tolerances as tol
 from closeness import close
 
-from viscoroll.kernels.drive.events import first_event, place_of
-from viscoroll.kernels.drive.nodes import EVENT, INTERPOLANTS, ROWS
-from viscoroll.kernels.drive.records import EVENTS, NO_EVENT, Work
-from viscoroll.kernels.motion.collocation import NODES, N
+from viscoroll.kernels.motion.events import first_event, place_of
+from viscoroll.kernels.motion.nodes import EVENT, INTERPOLANTS, ROWS
+from viscoroll.kernels.motion.records import EVENTS, NO_EVENT, Work
+from viscoroll.kernels.free.collocation import NODES, N
 
 
 def work_of(zeros: dict[int, float]) -> Work:

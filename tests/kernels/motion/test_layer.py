@@ -11,11 +11,11 @@ from closeness import close
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
-from viscoroll.kernels.motion.collocation import INTEGRAL, N
-from viscoroll.kernels.motion.layer import layer_node, layer_solve, manifold, slow_creep
-from viscoroll.kernels.motion.partial_slip import stiff_rates
-from viscoroll.kernels.motion.path import D_TAU, D_TURN, D_X, D_Y, Y
-from viscoroll.kernels.motion.slow import workspace
+from viscoroll.kernels.free.collocation import INTEGRAL, N
+from viscoroll.kernels.free.layer import layer_node, layer_solve, manifold, slow_creep
+from viscoroll.kernels.free.partial_slip import stiff_rates
+from viscoroll.kernels.free.path import D_TAU, D_TURN, D_X, D_Y, Y
+from viscoroll.kernels.free.slow import workspace
 from viscoroll.presets import PAPER_STARTS
 from viscoroll.scene import kernel_scene
 from viscoroll.validation.direct_motion import roll_direct

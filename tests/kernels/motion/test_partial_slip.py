@@ -7,9 +7,9 @@ import pytest
 import tolerances as tol
 from closeness import close
 
-from viscoroll.kernels.motion.collocation import NODES, SMOOTH_SLOPES, N
-from viscoroll.kernels.motion.partial_slip import slow_D
-from viscoroll.kernels.motion.slow import NODE_D, slow_solve, slow_start, workspace
+from viscoroll.kernels.free.collocation import NODES, SMOOTH_SLOPES, N
+from viscoroll.kernels.free.partial_slip import slow_D
+from viscoroll.kernels.free.slow import NODE_D, slow_solve, slow_start, workspace
 from viscoroll.scene import kernel_scene
 
 

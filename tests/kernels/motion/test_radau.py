@@ -9,9 +9,9 @@ from closeness import close
 from scipy.integrate import quad
 
 import viscoroll as vr
-from viscoroll.kernels.motion.collocation import SLOPES
-from viscoroll.kernels.motion.radau import radau_solve, radau_start
-from viscoroll.kernels.motion.slow import slow_solve, slow_start, workspace
+from viscoroll.kernels.free.collocation import SLOPES
+from viscoroll.kernels.free.radau import radau_solve, radau_start
+from viscoroll.kernels.free.slow import slow_solve, slow_start, workspace
 from viscoroll.scene import kernel_scene
 from viscoroll.validation.direct_motion import roll_direct
 

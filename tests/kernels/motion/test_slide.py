@@ -8,7 +8,7 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.kernels.motion.full_slip import HOLDS
+from viscoroll.kernels.free.full_slip import HOLDS
 from viscoroll.validation.direct_motion import roll_direct
 
 PAPER = vr.PAPER_SECTION_5_ROUNDED

@@ -20,8 +20,8 @@ import numpy as np
 from ..compile.jit import kernel
 from ..law.length import contact_length
 from ..material.functions import generator_slopes
-from ..motion.collocation import INTEGRALS, NODES, SLOPES, N, fit_terms, polynomial
-from ..motion.partial_slip import branch_rates
+from ..free.collocation import INTEGRALS, NODES, SLOPES, N, fit_terms, polynomial
+from ..free.partial_slip import branch_rates
 from ..numerics.bracket import narrowed, secant
 from ..numerics.linear import eliminate
 from ..numerics.nodes import Interpolation, chebyshev

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.integrate import DONE, RESTED
-from ..motion.losses import ROLLING_LOSS, ROWS, SLIP_LOSS, kinetic_energy_lost
-from ..motion.output import OUTPUTS
-from ..motion.records import FULL, PARTIAL, REST
+from ..free.integrate import DONE, RESTED
+from ..free.losses import ROLLING_LOSS, ROWS, SLIP_LOSS, kinetic_energy_lost
+from ..free.output import OUTPUTS
+from ..free.records import FULL, PARTIAL, REST
 from .inside import earlier_entry
 from .layout import ENTRY_OCTAVES, LAYER_END
 from .read import (

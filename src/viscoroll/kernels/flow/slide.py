@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.full_slip import sliding_rate, stick_limit
+from ..free.full_slip import sliding_rate, stick_limit
 from . import layout
 from .fit import BINS, HALF, N, bin_of, find, fit_column, integrate_bin, node, value, width
 

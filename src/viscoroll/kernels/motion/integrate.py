@@ -1,8 +1,6 @@
-"""One motion from start to end: one phase after the other, and the switches between full and partial slip.
+"""A driven motion from start to end: one regime after the other, one piece of the drive after the other.
 
-The regime changes only at a located event; nothing re-tests it between.  Full slip is :mod:`slide_phase`.  Partial
-slip is entered through its boundary layer (:mod:`layer_phase`) and left for the slow manifold (:mod:`slow_phase`),
-then for the closed form of the last decay; :mod:`radau_phase` is for where the two give up.
+A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or held by its brake.
 """
 
 from __future__ import annotations
@@ -10,198 +8,198 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.length import OK
-from ..law.stick import stick_length
-from .full_slip import sliding_speed, stick_limit
-from .layer_phase import layer_phase
-from .output import coast, put, put_rest, put_to_end, speeds
-from .partial_slip import slow_D
-from .radau_phase import radau_phase
+from .collocation import N
+from .load import brakes, goes_on, piece_end, threshold, undriven
+from .nodes import INTERPOLANTS, PATHS, ROWS
+from .origin import EITHER, STAYS, STICKS, depart, leaving_time
+from .output import coast, put_still, put_to_end, regime_of, speeds
+from .phase import NO_SPEED, creeps, phase
+from .rates import creep_limit
 from .records import (
-    AT_REST,
-    FULL,
+    DONE,
+    EDGE,
+    HELD,
+    KINK,
+    NEITHER,
     NO_EVENT,
-    PARTIAL,
     REST,
-    REVERSAL,
-    SLIP,
-    STICK,
+    RESTED,
+    REVERSED,
+    SLOW,
+    STEP_LIMIT,
+    STEP_TOO_SMALL,
     STUCK,
+    UNDECIDED,
     Case,
     Clock,
     Frame,
-    Sink,
+    Notes,
     State,
+    Work,
 )  # fmt: skip
-from .slide_phase import slide_phase
-from .slow import workspace
-from .slow_phase import FAR, slow_phase
+from .switch import at_new_piece, here, switch
 
-DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED, UNDECIDED = range(6)
-
-#: speeds below this count as 0 beside others, and as already rolling among themselves
+#: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
-#: least 1/zeta at which stick begins
-_LEAST = 1e-300
-#: share of the whole time that rounding may leave of it behind an event
-_AT_THE_END = 2.0**-51
-#: time until the slow manifold is tried again, over that of the steps before it was tried in vain
-_PATIENCE = 3.0
+#: time of relaxation over the time so far that no panel can follow
+_ROUNDING = 1e-13
+#: V from which on no panel need set out in partial slip: it counts as 0 where none can
+_STILL = 1e-85
+#: share of the length of panels that is kept where the law bends at delta = 0
+_PAST = 0.3
 
 
 @kernel
-def rolling(momentum, scene):
-    """(y, D) once the fast transient is over, which at vanishing speed lasts a time of order V: V + j omega is kept."""
-    y = -np.log(2.0 * scene.kappa * momentum / (1.0 + scene.j))
-    return y, slow_D(y, scene)[0]
-
-
-@kernel
-def start(V, omega, scene):
-    """(V, omega) in the unknowns of its regime: (state, frame, status)."""
-    material, _, mu, j = scene
-    if max(abs(V), abs(omega)) < _TINY:
-        # sliding ends within a time of that order: V + j omega is kept
-        V = omega = (V + j * omega) / (1.0 + j)
-    elif abs(V) < _TINY:
-        V = 0.0
-    if V == 0.0 and omega == 0.0:
-        return State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Frame(REST, 1.0, 0.0), OK
-    direction = np.sign(V) if V != 0.0 else np.sign(omega)
+def enter(V, omega, clock, case):
+    """The regime of a start with V or omega not 0, but for its brake: (state, frame)."""
+    if undriven(0, case.drive):
+        if max(abs(V), abs(omega)) < _TINY:
+            # sliding ends within a time of that order: V + j omega is kept
+            V = omega = (V + case.scene.j * omega) / (1.0 + case.scene.j)
+    direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
-    slip = omega - V
+    slip, limit = omega - V, creep_limit(V, case.scene) * V
     sigma = 1.0 if slip >= 0.0 else -1.0
-    limit, zeta, status = stick_limit(V, scene)
     if V == 0.0 or abs(slip) >= limit:
-        s = 1.0 / zeta if V > 0.0 else 0.0
-        return State(s, V - j * omega, 0.0, 0.0, 0.0, 0.0), Frame(FULL, direction, sigma), status
-    if np.log(zeta) > FAR:
-        y, D = rolling(V + j * omega, scene)
-    else:
-        y = np.log(zeta)
-        _, D, stick_status = stick_length(zeta, abs(slip) / V / (mu * V), material)
-        D, status = D * sigma, max(status, stick_status)
-    return State(y, D, 0.0, 0.0, 0.0, 0.0), Frame(PARTIAL, direction, sigma), status
+        # at V = 0 the frame is that which V turns to
+        frame = Frame(True, direction, sigma, 0.0, False)
+        if V == 0.0 and here(State(V, omega), frame, clock, case)[1].V_rate < 0.0:
+            direction, omega, sigma = -direction, -omega, -sigma
+        return State(V, omega), Frame(True, direction, sigma, 0.0, False)
+    return State(V, slip / limit), Frame(False, direction, sigma, 0.0, False)
 
 
 @kernel
-def switch(event, state, frame, scene):
-    """Enter the regime behind an event: (state, frame)."""
-    first, second, X, angle, way, turned = state
-    if event == STICK:
-        # both speeds may end at once, to rounding
-        y = -np.log(max(first, _LEAST))
-        D = frame.sigma * np.exp(y)
-        momentum = 2.0 * sliding_speed(first, scene) - second
-        if y > FAR and momentum > 0.0:
-            y, D = rolling(momentum, scene)
-        return State(y, D, X, angle, way, turned), Frame(PARTIAL, frame.direction, frame.sigma)
-    if event == SLIP:
-        V, omega, _ = speeds(state, PARTIAL, scene)
-        w = V - scene.j * omega
-        return State(np.exp(-first), w, X, angle, way, turned), Frame(FULL, frame.direction, np.sign(second))
-    # REVERSAL: V = 0; look from the other side, where V rises
-    return State(0.0, -second, -X, -angle, way, turned), Frame(FULL, -frame.direction, -frame.sigma)
+def _still_regime(clock, case):
+    """The regime of V = omega = 0."""
+    braked = brakes(clock.piece, case.drive.pieces)
+    return HELD if braked or case.drive.prescribed != NEITHER else REST
 
 
 @kernel
-def finish_coasting(state, frame, clock, case):
-    """Outputs of the closed form from here on: (status, rest time)."""
-    sink = case.sink
-    clock, crossing, way = coast(state, frame, clock, case)
-    if crossing > sink.tau[sink.tau.size - 1]:
-        return DONE, np.nan
-    there = State(0.0, 0.0, state.X + way, state.angle + way, 0.0, 0.0)
-    put_rest(there, frame, clock, case)
-    return RESTED, crossing / sink.gamma
-
-
-@kernel(inline=True)
-def partial_phase(entering, try_at, state, frame, clock, case):
-    """Partial slip: (event, state, clock, when to try the slow manifold again, whether the closed form holds).
-
-    The boundary layer where it is ``entering``, else steps; from there the slow manifold, where it is near.
-    """
-    start = clock.tau
-    if entering:
-        near, event, state, clock = layer_phase(state, frame, clock, case)
-    else:
-        event, near, state, clock = radau_phase(try_at, state, frame, clock, case)
-    # without rolling resistance nothing moves on the slow manifold
-    coasts = near and case.scene.material.T_mean == 0.0
-    if near and not coasts:
-        left = clock.tau
-        event, state, clock, try_at = slow_phase(state, frame, clock, case)
-        if clock.tau == left:  # in vain: steps that begin anew are short, and are to grow
-            try_at = max(try_at, left + _PATIENCE * (left - start))
-    return event, state, clock, try_at, coasts or state.first >= FAR
+def stay(clock, case):
+    """At V = omega = 0: (how, state, frame, clock) once the cylinder departs, or the piece of the drive ends."""
+    state = State(0.0, 0.0)
+    kind, frame, d = depart(clock.tau, clock.piece, case)
+    if kind == STAYS:
+        until = leaving_time(clock.tau, clock.piece, case)
+        closed = until == case.tau[case.tau.size - 1]
+        clock = put_still(until, closed, _still_regime(clock, case), clock, case)
+        return kind, state, frame, clock
+    clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, 0.0)
+    return kind, State(0.0, d if kind == STICKS else 0.0), frame, clock
 
 
 @kernel
-def follow(state, frame, clock, case, switches):
-    """From phase to phase until outputs end: (status, clock, switches, onset time, rest time)."""
-    sink, gamma = case.sink, case.sink.gamma
-    tau_end = sink.tau[sink.tau.size - 1]
-    onset_time, turns, try_at = np.nan, 0, 0.0
-    slipped, entering, coasts = False, True, frame.regime == PARTIAL and state.first >= FAR
-    while clock.at < sink.tau.size:
-        if coasts:
-            status, rest_time = finish_coasting(state, frame, clock, case)
-            return status, clock, turns, onset_time, rest_time
-        if tau_end - clock.tau <= _AT_THE_END * tau_end:
-            clock = put_to_end(state, frame, clock, case)
-            break
+def note(what, noted, clock, case):
+    """Note a change of regime or of the sign of V; how many there were."""
+    switches = case.notes.switches
+    if noted < switches.shape[0]:
+        switches[noted, 0], switches[noted, 1] = clock.tau / case.gamma, what
+    return noted + 1
+
+
+@kernel
+def coasts(state, frame, clock, case):
+    """Whether nothing drives any more, and V decays exponentially to rounding."""
+    return creeps(state, frame, case) and undriven(clock.piece, case.drive)
+
+
+@kernel
+def rests(moving, state, frame, clock, case):
+    """Whether nothing drives any more and both speeds are below the threshold."""
+    rest = threshold(clock.piece, case)
+    if rest == 0.0 or not moving:
+        return rest > 0.0
+    return max(abs(state.V), abs(speeds(state, frame, case.scene)[0])) <= rest
+
+
+@kernel
+def unresolved(state, frame, clock, case):
+    """Whether V is so small that d relaxes within the rounding of time, or of panels: then it may as well be 0."""
+    if frame.slips:
+        return False
+    _, rates = here(state, frame, clock, case)
+    return state.V < max(_ROUNDING * clock.tau * abs(rates.rate_second), _STILL)
+
+
+@kernel
+def follow(moving, state, frame, clock, case):
+    """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
+    onset_time, turns, noted, fresh = np.nan, 0, 0, False
+    regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
+    while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
             return STEP_LIMIT, clock, turns, onset_time, np.nan
-        if frame.regime == FULL:
-            event, state, clock = slide_phase(slipped, state, frame, clock, case)
+        if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
+            length = clock.length if goes_on(clock.piece, case.drive.pieces) else 0.0
+            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
+            if moving:
+                state, frame = at_new_piece(state, frame, clock, case)
+                moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+        event, direction, before = NO_EVENT, frame.direction, clock
+        if rests(moving, state, frame, clock, case):
+            event = SLOW
+        elif moving and clock.tau >= end:
+            clock = put_to_end(state, frame, clock, case)
+        elif not moving:
+            kind, state, frame, clock = stay(clock, case)
+            if kind == EITHER:
+                clock = put_still(clock.tau, True, _still_regime(clock, case), clock, case)
+                return UNDECIDED, clock, turns, onset_time, np.nan
+            moving = kind != STAYS
+        elif coasts(state, frame, clock, case):
+            clock, rest_time = coast(state, frame, clock, case)
+            return DONE if np.isnan(rest_time) else RESTED, clock, turns, onset_time, rest_time
         else:
-            event, state, clock, try_at, coasts = partial_phase(entering, try_at, state, frame, clock, case)
-            entering = False
-        if event == AT_REST:
-            put_rest(state, frame, clock, case)
-            return RESTED, clock, turns, onset_time, clock.tau / gamma
+            event, state, frame, clock = phase(fresh, state, frame, clock, case)
+        fresh = event == EDGE and frame.slips
+        if event == STUCK and unresolved(state, frame, clock, case):
+            moving = False
+            continue
         if event == STUCK:
             return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
-        if event == NO_EVENT:
-            continue
-        state, frame = switch(event, state, frame, case.scene)
-        slipped, entering, coasts = event == SLIP, event == STICK, frame.regime == PARTIAL and state.first >= FAR
-        if event == REVERSAL:
-            continue
-        if turns < switches.shape[0]:
-            switches[turns, 0], switches[turns, 1] = clock.tau / gamma, frame.regime
-        turns += 1
-        onset_time = clock.tau / gamma if event == STICK and np.isnan(onset_time) else onset_time
+        if event == SLOW:
+            if regime >= 0 and regime != REST:
+                turns, noted = turns + 1, note(REST, noted, clock, case)
+            rest_time = clock.tau / case.gamma
+            return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
+        if event != NO_EVENT:
+            state, frame, still = switch(event, state, frame, clock, case)
+            moving = not still
+            length = _PAST * clock.length if event == KINK else 0.0
+            clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, length)
+        if moving and regime >= 0 and frame.direction != direction:
+            noted = note(REVERSED, noted, clock, case)
+        now = regime_of(frame) if moving else _still_regime(clock, case)
+        if now != regime and (moving or event == NO_EVENT):
+            if regime >= 0:
+                turns, noted = turns + 1, note(now, noted, clock if moving else before, case)
+            onset_time = clock.tau / case.gamma if fresh and np.isnan(onset_time) else onset_time
+            regime = now
     return DONE, clock, turns, onset_time, np.nan
 
 
 @kernel(allocates=True)
-def integrate(scene, gamma, V0, omega0, t_out, limits, out, notes):
-    """Roll one motion from t = 0 to t_out[-1]; t_out ascending, out of shape (OUTPUTS, n).
+def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
+    """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
 
-    The notes receive the regime changes, and the times behind the panels and at their nodes; what does not fit is not
-    kept.  Returns (status, steps, switches, onset time, rest time).
+    ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, and room for the changes of
+    regime and for the ends of panels (Notes).
     """
-    tau = np.empty(t_out.size)
+    out, asked, switches, ends = sink
+    tau = np.empty(t.size)
     for i in range(tau.size):
-        tau[i] = t_out[i] * gamma
-    case = Case(scene, limits, Sink(tau, out, notes.step_ends, gamma), workspace())
-    clock = Clock(0.0, 0, 0, 0)
-    origin, still = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), Frame(REST, 1.0, 0.0)
-    if max(abs(V0), abs(omega0)) < limits.rest:
-        put_rest(origin, still, clock, case)
-        return RESTED, 0, 0, np.nan, 0.0
-    state, frame, status = start(V0, omega0, scene)
-    if status != OK:
-        return NOT_CONVERGED, 0, 0, np.nan, np.nan
-    if frame.regime == REST:
-        put_rest(origin, still, clock, case)
-        return DONE, 0, 0, np.nan, np.nan
-    first = Frame(frame.regime, 1.0, frame.sigma)
-    while clock.at < t_out.size and t_out[clock.at] == 0.0:
-        delta = speeds(state, frame.regime, scene)[2]
-        put(case.sink, clock.at, first, (V0, omega0, delta), 0.0, 0.0)
-        clock = Clock(0.0, clock.at + 1, 0, 0)
-    status, clock, turns, onset_time, rest_time = follow(state, frame, clock, case, notes.switches)
+        tau[i] = t[i] * gamma
+    work = Work(
+        np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), np.empty((N, N)), np.empty((N, N)), np.empty(N),
+        np.empty(N), np.zeros(PATHS),
+    )  # fmt: skip
+    case = Case(scene, drive, limits, tau, out, gamma, asked, Notes(switches, ends), work)
+    clock = Clock(0.0, 0, 0, 0, 0, 0.0)
+    state, frame, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), V0 != 0.0 or omega0 != 0.0
+    if moving:
+        state, frame = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
+        state, frame = at_new_piece(state, frame, clock, case)
+    status, clock, turns, onset_time, rest_time = follow(moving, state, frame, clock, case)
     return status, clock.steps, turns, onset_time, rest_time

@@ -1,20 +1,28 @@
-"""Motions, each with its own start and, where given, its own scene: what Python calls for one as for many."""
+"""Motions, each with its own start and, where given, its own scene and drive: what Python calls."""
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compile.jit import kernel
-from ..material.functions import material_of
 from ..numerics.arrays import copy, fill
 from .integrate import integrate
-from .output import OUTPUTS
-from .records import Batch, Limits, Notes, Scene
+from .load import FIRST, RATE, SCALE, START, terms_of
+from .output import OUTPUTS, asked_by
+from .records import Batch, Drive, Gains, Limits, Scene
 
 #: columns of the per-motion information
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
-#: room for notes where none are asked for
-NOTHING_NOTED = Notes(np.empty((0, 2)), np.empty(0))
+
+
+class Drives(NamedTuple):
+    """Pieces, (m, k, columns) over t with m one for all or one a motion; gains, (4, 1) or (4, n)."""
+
+    pieces: Any
+    gains: Any
+    prescribed: int
 
 
 @kernel
@@ -23,33 +31,38 @@ def _own(array, i):
     return array[min(i, array.size - 1)]
 
 
-@kernel(allocates=True)  # the scene holds a reference to its material's table
-def motion_of(batch, i):
-    """(scene, gamma, V0, omega0) of motion i."""
-    scene = Scene(material_of(batch.material, i), _own(batch.kappa, i), _own(batch.mu, i), _own(batch.j, i))
-    return scene, _own(batch.gamma, i), _own(batch.V0, i), _own(batch.omega0, i)
-
-
 @kernel
-def keep(i, rows, one, result, out, info):
-    """Put the chosen rows of a motion, and what ``integrate`` returned, where those of all lie."""
-    for n in range(rows.size):
-        copy(one[rows[n]], out[n, i])
-    info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result
+def _drive_of(drives, gamma, i, pieces):
+    """The gains of motion i, and its drive over tau = gamma t in ``pieces``; slopes of prescribed speeds are over t."""
+    source = drives.pieces[min(i, drives.pieces.shape[0] - 1)]
+    for k in range(pieces.shape[0]):
+        copy(source[k], pieces[k])
+        pieces[k, START] *= gamma
+        pieces[k, SCALE] /= gamma
+        terms = terms_of(pieces[k])
+        for n in range(RATE * terms, (RATE + 1) * terms):
+            pieces[k, FIRST + n] /= gamma
+    n = min(i, drives.gains.shape[1] - 1)
+    return Gains(drives.gains[0, n], drives.gains[1, n], drives.gains[2, n], drives.gains[3, n])
 
 
 @kernel(allocates=True)
-def motion_loop(batch, t, limits, rows, out, info, notes, start, stop):
-    """Motions start..stop; ``rows`` picks the output quantities of ``integrate`` into out[quantity, motion, time].
+def motion_loop(batch, drives, t, limits, rows, out, info, notes):
+    """All motions of a batch; ``rows`` picks output quantities into out[quantity, motion, time].
 
-    ``batch``, ``limits`` and ``notes`` are plain tuples: it takes numba microseconds to tell the type of a record.
-    The notes kept are those of the last motion.
+    Records come as plain tuples: it takes numba microseconds to tell the type of a record.
     """
-    motions, limits, notes = Batch(*batch), Limits(*limits), Notes(*notes)
-    one = np.empty((OUTPUTS, t.size))
-    for i in range(start, stop):
+    switches, ends = notes
+    motions, drives, limits, asked = Batch(*batch), Drives(*drives), Limits(*limits), asked_by(rows)
+    one, pieces = np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
+    for i in range(out.shape[1]):
         for row in one:
             fill(np.nan, row)
-        scene, gamma, V0, omega0 = motion_of(motions, i)
-        result = integrate(scene, gamma, V0, omega0, t, limits, one, notes)
-        keep(i, rows, one, result, out, info)
+        scene = Scene(motions.laws, motions.unlike, _own(motions.kappa, i), _own(motions.mu, i), _own(motions.j, i))
+        gamma, V0, omega0 = _own(motions.gamma, i), _own(motions.V0, i), _own(motions.omega0, i)
+        gains = _drive_of(drives, gamma, i, pieces)
+        drive = Drive(pieces, gains, drives.prescribed)
+        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, asked, switches, ends))
+        for n in range(rows.size):
+            copy(one[rows[n]], out[n, i])
+        info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

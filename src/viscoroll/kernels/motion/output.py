@@ -1,81 +1,184 @@
-"""Output of a motion: columns, the closed form of the last decay, rest."""
+"""Outputs of a driven motion."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..compile.jit import kernel
-from .full_slip import sliding_speed
-from .partial_slip import creep_speeds
-from .records import FULL, REST, Clock, Frame
+from ..rows.law import bodies, place, speed
+from .collocation import integral_terms, rise_at
+from .load import load_at, needed
+from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, V, put_path, risen
+from .rates import creep_limit, rates_at
+from .records import FULL, LOCKED, PARTIAL, REST, Asked, Clock, Frame, State
 
-#: rows of the output: V, omega, x, angle, delta, regime
-OUTPUTS = 6
-
-
-@kernel
-def speeds(state, regime, scene):
-    """(V, omega, delta) in the frame of the state."""
-    if regime != FULL:
-        V, delta = creep_speeds(state.first, state.second, scene)
-        return V, V * (1.0 + delta), delta
-    V = sliding_speed(state.first, scene)
-    omega = (V - state.second) / scene.j
-    slip = omega - V
-    return V, omega, np.copysign(np.inf, slip) if V == 0.0 else slip / V
+#: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
+OUTPUTS = 13
+PATH_FROM, FORCE, WORK = 2, 6, 8
 
 
 @kernel
-def put(sink, column, frame, moving, X, angle):
-    """One output column, back in the frame and units of the caller; ``moving`` = (V, omega, delta)."""
-    out, gamma, direction = sink.out, sink.gamma, frame.direction
-    V, omega, delta = moving
-    out[0, column], out[1, column] = direction * V, direction * omega
-    out[2, column], out[3, column] = direction * X / gamma, direction * angle / gamma
-    out[4, column], out[5, column] = delta, frame.regime
+def asked_by(rows):
+    """What these rows take."""
+    paths = acting = False
+    for row in rows:
+        paths = paths or PATH_FROM <= row < PATH_FROM + 2 or row >= WORK
+        acting = acting or FORCE <= row < WORK
+    return Asked(paths, acting)
+
+
+@kernel
+def regime_of(frame):
+    """The regime that outputs give."""
+    return LOCKED if frame.locked else FULL if frame.slips else PARTIAL
+
+
+@kernel(inline=True)
+def _put_moving(column, moving, regime, out):
+    """(V, omega, delta) and the regime, in one column."""
+    out[0, column], out[1, column], out[4, column] = moving
+    out[5, column] = regime
+
+
+@kernel(inline=True)
+def _put_acting(column, force, torque, out):
+    out[FORCE, column], out[FORCE + 1, column] = force, torque
+
+
+@kernel
+def _put_path(column, n, value, case):
+    """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
+    if n < 2:
+        case.out[PATH_FROM + n, column] = value / case.gamma
+    else:
+        case.out[WORK + n - 2, column] = value
+
+
+@kernel
+def put_still(until, closed, regime, clock, case):
+    """Outputs before ``until``, or on it too, of a cylinder that does not move; the clock then."""
+    at, out, still = clock.at, case.out, Frame(False, 1.0, 1.0, 0.0, False)
+    while at < case.tau.size and (case.tau[at] < until or (closed and case.tau[at] == until)):
+        load = load_at(case.tau[at], clock.piece, still, case)
+        _put_moving(at, (0.0, 0.0, 0.0), regime, out)
+        _put_acting(at, load.force, load.torque, out)
+        for n in range(PATHS):
+            _put_path(at, n, case.work.totals[n], case)
+        at += 1
+    return Clock(until, at, clock.piece, clock.steps + 1, clock.ends, 0.0)
+
+
+@kernel(inline=True)
+def speeds(state, frame, scene):
+    """(omega, delta) of a state."""
+    if not frame.slips:
+        delta = creep_limit(state.V, scene) * state.second
+        return state.V * (1.0 + delta), delta
+    slip = state.second - state.V
+    return state.second, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
+
+
+@kernel
+def _put_state(column, state, piece, frame, case):
+    """One column but for what adds up."""
+    out, direction = case.out, frame.direction
+    omega, delta = speeds(state, frame, case.scene)
+    _put_moving(column, (direction * state.V, direction * omega, delta), regime_of(frame), out)
+    if case.asked.acting:
+        load = load_at(case.tau[column], piece, frame, case)
+        rates = rates_at(state.V, state.second, load, frame, case.scene)
+        moments = rates.Q, rates.M_half_space, rates.M_cylinder
+        force, torque, _ = needed((state.V, omega), moments, load, frame, case.scene.j)
+        _put_acting(column, direction * force, direction * torque, out)
 
 
 @kernel
 def put_to_end(state, frame, clock, case):
-    """All outputs that are left, of a motion that is where it ends."""
-    moving = speeds(state, frame.regime, case.scene)
-    for column in range(clock.at, case.sink.tau.size):
-        put(case.sink, column, frame, moving, state.X, state.angle)
-    return Clock(clock.tau, case.sink.tau.size, clock.steps, clock.ends)
+    """All outputs that are left, of a motion that is where it ends; the clock then."""
+    for column in range(clock.at, case.tau.size):
+        _put_state(column, state, clock.piece, frame, case)
+        for n in range(PATHS):
+            _put_path(column, n, case.work.totals[n], case)
+    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
 
 
 @kernel
-def put_rest(state, frame, clock, case):
-    """Outputs after rest: V = omega = 0 at the place where the threshold was crossed."""
-    direction = frame.direction
-    for column in range(clock.at, case.sink.tau.size):
-        put(case.sink, column, Frame(REST, 1.0, 0.0), (0.0, 0.0, 0.0), direction * state.X, direction * state.angle)
+def _put(column, v, panel, frame, case):
+    """One column from the interpolants of a panel."""
+    nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
+    state = State(nodes[V, 0] + rise_at(v, powers, OF_V), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND))
+    _put_state(column, state, panel.piece, frame, case)
+    for n in range(PATHS if case.asked.paths else 0):
+        way = rise_at(v, powers, OF_PATH + n)
+        _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
 
 
 @kernel
-def relaxation_at_rest(V, scene):
-    """Rate at which delta decays at alpha = 1, where D is small: Q = 2 mu D/zeta, delta = mu V D."""
-    return 4.0 * scene.kappa * (1.0 + 1.0 / scene.j) / V
+def pass_panel(end, v, panel, frame, clock, case):
+    """Outputs before the ``end`` of a panel or of what ends at ``v`` on it, and what adds up until then; the clock.
+
+    At its end, where the drive may jump, what follows tells; but the last of the outputs is there.
+    """
+    tau, at = case.tau, clock.at
+    closed = end == tau[tau.size - 1]
+    outputs = at < tau.size and (tau[at] < end or closed)
+    paths = PATHS if case.asked.paths else 0
+    if paths > 0:
+        put_path(panel, frame, case)
+    if outputs or v < 2.0:
+        for n in range(paths):
+            integral_terms(case.work.nodes[PATH + n], 0.5 * panel.length, case.work.powers, OF_PATH + n)
+    if outputs:
+        while at < tau.size and (tau[at] < end or closed):
+            share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
+            _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
+            at += 1
+    if clock.ends < case.notes.ends.size:
+        case.notes.ends[clock.ends] = end / case.gamma
+    for n in range(paths):
+        way = rise_at(v, case.work.powers, OF_PATH + n) if v < 2.0 else risen(PATH + n, panel, case.work.nodes)
+        case.work.totals[n] += frame.direction * way if n < 2 else way
+    return Clock(end, at, clock.piece, clock.steps, clock.ends + 1, clock.length)
+
+
+@kernel
+def _slow_moments(scene):
+    """M/V of half-space and cylinder as V -> 0."""
+    at = place(0.0, scene.law)
+    if scene.unlike:
+        return bodies(at, 0.0, scene.law)
+    m = speed(at, 0.0, scene.law)[1]
+    return 0.5 * m, 0.5 * m
+
+
+@kernel
+def _slow_creep(V, half_space, cylinder, scene):
+    """delta where V and omega fall together: Q = 4 kappa delta takes what the moments differ by."""
+    return V * (scene.j * half_space - cylinder) / (4.0 * scene.kappa * (1.0 + scene.j))
 
 
 @kernel
 def coast(state, frame, clock, case):
-    """Outputs of the last decay, in closed form: V' = -c V/(1 + j), delta/V constant.
-
-    Relative corrections are of the order of kappa V < 1e-17, or of what is left of delta at alpha = 1: there V stays,
-    and delta decays.  Returns (clock, time at which the rest threshold is crossed or infinity, distance until there).
-    """
-    scene, sink, rest = case.scene, case.sink, case.limits.rest
-    rate = scene.material.T_mean / (1.0 + scene.j)
-    V, omega, delta = speeds(state, frame.regime, scene)
-    creep_rate = rate if rate > 0.0 else relaxation_at_rest(V, scene)
-    crossing, fastest, at = np.inf, max(abs(V), abs(omega)), clock.at
-    if rest > 0.0 and rate > 0.0:
-        crossing = clock.tau + np.log(fastest / rest) / rate
-    while at < sink.tau.size and sink.tau[at] <= crossing:
-        since = sink.tau[at] - clock.tau
-        decay, creep = np.exp(-rate * since), delta * np.exp(-creep_rate * since)
-        way = V * since if rate == 0.0 else -V * np.expm1(-rate * since) / rate
-        put(sink, at, frame, (V * decay, V * decay * (1.0 + creep), creep), state.X + way, state.angle + way)
-        at += 1
-    return Clock(clock.tau, at, clock.steps, clock.ends), crossing, (V - rest) / rate if rate > 0.0 else np.inf
+    """Outputs of the last decay, V' = -T_mean V/(1 + j) with delta/V constant: (clock, time of rest or NaN)."""
+    scene, out, direction, totals = case.scene, case.out, frame.direction, case.work.totals
+    half_space, cylinder = _slow_moments(scene)
+    rate, creep = (half_space + cylinder) / (1.0 + scene.j), _slow_creep(state.V, half_space, cylinder, scene)
+    fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), case.limits.rest, np.inf
+    if rest > 0.0:
+        end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
+    start = clock.tau
+    for at in range(clock.at, case.tau.size):
+        moves = case.tau[at] <= end
+        since = min(case.tau[at], end) - start
+        decay = np.exp(-rate * since)
+        way = -state.V * np.expm1(-rate * since) / rate
+        V = state.V * decay if moves else 0.0
+        delta = creep * decay if moves else 0.0
+        regime = PARTIAL if moves else REST
+        _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), regime, out)
+        _put_acting(at, 0.0, 0.0, out)
+        for n in range(PATHS):
+            _put_path(at, n, totals[n] + (direction * way if n < 2 else 0.0), case)
+    last = case.tau[case.tau.size - 1]
+    clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
+    return clock, end / case.gamma if end <= last else np.nan

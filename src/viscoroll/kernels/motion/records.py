@@ -1,56 +1,104 @@
-"""What the kernels of a motion hand to one another: regimes, events, and records."""
+"""What the kernels of a motion hand to one another."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-#: regimes, as outputs give them
-FULL, PARTIAL, REST = 0, 1, 2
-#: what ends a phase: the stick zone forms, or is lost; V passes 0 in full slip; both speeds fall below a threshold; no
-#: panel is short enough
-NO_EVENT, STICK, SLIP, REVERSAL, AT_REST, STUCK = range(6)
-#: what a panel is a function of: s in full slip; e-folds of the boundary layer, y on the slow manifold, or time
-SLIDE, LAYER, SLOW, TIME = range(4)
+#: regimes, as outputs give them: slip, stick and rest, omega = 0 while V is not, and V = omega = 0 by a brake
+FULL, PARTIAL, REST, LOCKED, HELD = range(5)
+#: stands among the changes of regime for a change of the sign of V
+REVERSED = -1
+#: what ends a phase: the edge of the stick zone, delta = 0, V = 0, omega = 0 under a brake, both speeds below a
+#: threshold, the brake lets go; in the order of the rows of event functions; and no panel that is short enough
+EDGE, KINK, TURN, STOP, SLOW, FREED, NO_EVENT, STUCK = range(8)
+EVENTS = 6
+#: which speed is prescribed
+NEITHER, OMEGA, SPEED = range(3)
+#: how a motion ends
+DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED, UNDECIDED = range(6)
 
 
 class Scene(NamedTuple):
-    """What Eq. (22) asks of a scene beside gamma, which only scales time."""
+    """What Eq. (22) asks of a scene beside gamma, which only scales time.
 
-    material: Any
+    law : its rows (:mod:`..rows.law`); unlike : whether half-space and cylinder do not take half of M each
+    """
+
+    law: Any
+    unlike: bool
     kappa: float
     mu: float
     j: float
 
 
-class Frame(NamedTuple):
-    """From where a motion is seen: V >= 0 once multiplied by ``direction``; sigma = sign(omega - V) in full slip."""
+class Gains(NamedTuple):
+    """Feedback: force and torque per speed."""
 
-    regime: int
+    force_V: float
+    force_omega: float
+    torque_V: float
+    torque_omega: float
+
+
+class Drive(NamedTuple):
+    """What drives a motion.
+
+    pieces : a row a piece of time, columns as in :mod:`load`
+    prescribed : NEITHER, OMEGA or SPEED
+    """
+
+    pieces: Any
+    gains: Gains
+    prescribed: int
+
+
+class Load(NamedTuple):
+    """The drive at one time, in the frame of the motion: V' = per_V (Q - M_half_space + force) + V_rate, and
+    omega' = per_omega (-Q - M_cylinder + torque) + omega_rate."""
+
+    force: float
+    torque: float
+    V_rate: float
+    omega_rate: float
+    brake: float
+    per_V: float
+    per_omega: float
+    gains: Gains
+
+
+class Frame(NamedTuple):
+    """From where a motion is seen: V >= 0 once multiplied by ``direction``.
+
+    slips : whether slip is full
+    sigma : sign of omega - V in full slip, of the branch of the law in partial slip
+    spin : sign of omega, where a brake takes hold of it
+    locked : whether a brake holds omega at 0
+    """
+
+    slips: bool
     direction: float
     sigma: float
+    spin: float
+    locked: bool
 
 
 class State(NamedTuple):
-    """Unknowns in their frame: (s, w) = (1/zeta, V - j omega) in full slip, (y, D) = (ln zeta, D) in partial slip.
+    """(V, omega) in full slip, (V, d) in partial slip, d = delta/delta_star."""
 
-    X and angle are gamma times the distance and the angle, ``way`` and ``turned`` what either has added up to.
-    """
-
-    first: float
+    V: float
     second: float
-    X: float
-    angle: float
-    way: float
-    turned: float
 
 
 class Clock(NamedTuple):
-    """tau = gamma t, the next output column, steps taken, ends of steps noted."""
+    """tau = gamma t, the next output column, the piece of the drive, steps taken, ends of panels noted, length of a
+    panel to try (0: not known)."""
 
     tau: float
     at: int
+    piece: int
     steps: int
     ends: int
+    length: float
 
 
 class Limits(NamedTuple):
@@ -61,74 +109,56 @@ class Limits(NamedTuple):
     max_steps: int
 
 
-class Notes(NamedTuple):
-    """Room for what is noted on the way: (t, regime behind) of the switches, (k, 2), and the ends of steps."""
-
-    switches: Any
-    step_ends: Any
-
-
-class Sink(NamedTuple):
-    """Where outputs go: times, columns, and room for the ends of steps."""
-
-    tau: Any
-    out: Any
-    step_ends: Any
-    gamma: float
-
-
-class Panel(NamedTuple):
-    """A stretch of a motion, from its left end; interpolants are functions of v in [0, 2].
-
-    kind : SLIDE, LAYER, SLOW or TIME
-    first, second : unknowns at the left end; of a layer the second is the distance from the manifold
-    length : of the independent variable, which grows as (v/2)^power
-    pole, end, V, omega : of a slide: see :mod:`slide`
-    """
-
-    kind: int
-    first: float
-    second: float
-    length: float
-    power: int
-    pole: float
-    end: float
-    V: float
-    omega: float
-
-
-class Workspace(NamedTuple):
-    """Arrays that panels are computed in.
-
-    nodes : values at the nodes; powers : their interpolants
-    values : those on the slow manifold; slow : that manifold around a layer
-    matrix, right : a linear system
-    """
+class Work(NamedTuple):
+    """Arrays of a panel: values at the nodes, interpolants, Newton's matrices and right sides of p and of the second
+    unknown, what has added up."""
 
     nodes: Any
     powers: Any
-    values: Any
-    slow: Any
     matrix: Any
+    second_matrix: Any
     right: Any
+    second_right: Any
+    totals: Any
+
+
+class Notes(NamedTuple):
+    """Room for what is noted on the way: (t, regime behind) of the switches, REVERSED among them, (k, 2), and the ends
+    of panels."""
+
+    switches: Any
+    ends: Any
+
+
+class Asked(NamedTuple):
+    """Which outputs are, beside V, omega, delta and the regime: all that adds up along the way; what acts."""
+
+    paths: bool
+    acting: bool
 
 
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion."""
+    """All that stays the same from start to end of a motion; times in tau."""
 
     scene: Scene
+    drive: Drive
     limits: Limits
-    sink: Sink
-    work: Workspace
+    tau: Any
+    out: Any
+    gamma: float
+    asked: Asked
+    notes: Notes
+    work: Work
 
 
 class Batch(NamedTuple):
     """Parameters and starts of many motions: arrays of one value, or of one a motion.
 
-    material : one for all (``Tabulated``), an alpha each (``Own``), or a series each (``Each``)
+    laws : the law of one material for all, or what makes that of each (:mod:`..rows.law`); unlike : as in ``Scene``
     """
 
-    material: Any
+    laws: Any
+    unlike: bool
     kappa: Any
     mu: Any
     gamma: Any

@@ -38,13 +38,20 @@ class _Row:
     def fma(self, a: Any, b: Any, c: Any) -> Any:
         return self.builder.call(self._fma, [a, b, c])
 
-    def derived(self) -> list:
+    def derived(self, terms: list) -> list:
         """The vectors of the slope over t."""
         order, rise, step = self.layout
         mask, found = ir.Constant(ir.VectorType(_PLACE, LANES), order), []
-        for k, (low, high) in enumerate(zip(self.terms, [*self.terms[1:], ir.Constant(VECTOR, [0.0] * LANES)])):
+        for k, (low, high) in enumerate(zip(terms, [*terms[1:], ir.Constant(VECTOR, [0.0] * LANES)])):
             powers = ir.Constant(VECTOR, [float(step * k + n) for n in rise])
             found.append(self.builder.fmul(self.builder.shuffle_vector(low, high, mask), powers))
+        return found
+
+    def orders(self, count: int) -> list:
+        """The vectors, those of the slope, and of its slope: so many of these."""
+        found = [self.terms]
+        while len(found) < count:
+            found.append(self.derived(found[-1]))
         return found
 
     def sums(self, terms: list, power: Any) -> list:
@@ -70,11 +77,11 @@ class _Row:
 
 
 def _pair(orders: int) -> Callable:
-    """(table, at, t) -> values of two functions, and their slopes where ``orders`` is 2."""
+    """(table, at, t) -> values of two functions, their slopes where ``orders`` is 2, and the slopes of these where 3."""
 
     def instructions(row: _Row, t: Any) -> list:
         square, found = row.builder.fmul(t, t), []
-        for terms in (row.terms, row.derived())[:orders]:
+        for terms in row.orders(orders):
             a_even, a_odd, b_even, b_odd = row.sums(terms, square)
             found += [row.builder.fma(t, a_odd, a_even), row.builder.fma(t, b_odd, b_even)]
         return found
@@ -92,7 +99,7 @@ def _one(orders: int) -> Callable:
     def instructions(row: _Row, t: Any) -> list:
         square = row.builder.fmul(t, t)
         fourth = row.builder.fmul(square, square)
-        return [_joined(row, row.sums(terms, fourth), t, square) for terms in (row.terms, row.derived())[:orders]]
+        return [_joined(row, row.sums(terms, fourth), t, square) for terms in row.orders(orders)]
 
     def interpreted(numbers: Any, t: float) -> list:
         return [_value(numbers, t, order) for order in range(orders)]
@@ -107,7 +114,7 @@ def _secant(orders: int) -> Callable:
         fma, add, multiply = row.builder.fma, row.builder.fadd, row.builder.fmul
         both, square, other = add(t, s), multiply(t, t), multiply(s, s)
         squares, found = add(square, other), []
-        for terms in (row.terms, row.derived())[:orders]:
+        for terms in row.orders(orders):
             values, rises = row.secants(terms, multiply(square, square), multiply(other, other))
             # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
             rise = multiply(multiply(both, squares), _joined(row, rises, s, other))
@@ -162,4 +169,5 @@ def _intrinsic(instructions: Callable, interpreted: Callable, layout: tuple, res
     return plain if numba.config.DISABLE_JIT else intrinsic({1: with_one, 2: with_two}[arguments])
 
 
-pair, pair_slopes, one, one_slopes, secant, secant_slopes = _pair(1), _pair(2), _one(1), _one(2), _secant(1), _secant(2)
+pair, pair_slopes, pair_seconds = _pair(1), _pair(2), _pair(3)
+one, one_slopes, secant, secant_slopes = _one(1), _one(2), _secant(1), _secant(2)

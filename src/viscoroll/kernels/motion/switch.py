@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.collocation import N
+from .collocation import N
 from .load import acting, brakes, load_at, risen_by
 from .nodes import SPEED as FASTEST
-from .nodes import S
+from .nodes import V
 from .rates import rates_at
 from .records import EDGE, KINK, NEITHER, SPEED, STOP, TURN, Frame, State
 
-#: 1/zeta at the end of a panel, over that at its start, below which V is 0 there
+#: V at the end of a panel, over that at its start, below which it is 0 there
 _CLOSED = 1e-7
 #: what rounding leaves of a prescribed speed that has come to 0, over what it has changed by
 _DRIFT = 1e-12
@@ -24,14 +24,14 @@ _OFF = 10.0
 def here(state, frame, clock, case):
     """(The drive, what the equations say) at a state."""
     load = load_at(clock.tau, clock.piece, frame, case)
-    return load, rates_at(state.s, state.second, load, frame, case.scene)
+    return load, rates_at(state.V, state.second, load, frame, case.scene)
 
 
 @kernel
 def _excess(state, frame, clock, case):
     """(Torque that would turn a wheel held at omega = 0, the most that the brake can take of it)."""
     load, rates = here(state, frame, clock, case)
-    _, torque, _ = acting(rates.V, 0.0, load, frame)
+    _, torque, _ = acting(state.V, 0.0, load, frame)
     return torque - rates.Q - rates.M_cylinder, load.brake
 
 
@@ -55,11 +55,11 @@ def closed(state, locked, case):
     """Whether the stick band closes at V = 0, where omega is 0 too."""
     nodes = case.work.nodes
     if not locked:
-        return state.s <= _CLOSED * nodes[S, 0]
+        return state.V <= _CLOSED * nodes[V, 0]
     largest = 0.0  # slip with omega = 0 ends with V, which is 0 but for the tolerance
     for i in range(N + 1):
-        largest = max(largest, nodes[S, i])
-    return state.s <= max(_CLOSED, _OFF * case.limits.rtol) * largest
+        largest = max(largest, nodes[V, i])
+    return state.V <= max(_CLOSED, _OFF * case.limits.rtol) * largest
 
 
 @kernel
@@ -83,7 +83,7 @@ def stands(state, frame, clock, case):
     rates, fastest = here(state, frame, clock, case)[1], 0.0
     for i in range(N + 1):
         fastest = max(fastest, case.work.nodes[FASTEST, i])
-    return max(abs(rates.V), abs(rates.omega)) <= drift(fastest, clock, case)
+    return max(abs(state.V), abs(rates.omega)) <= drift(fastest, clock, case)
 
 
 @kernel
@@ -95,19 +95,19 @@ def switch(event, state, frame, clock, case):
     if event == EDGE and slips:
         if closed(state, locked, case):
             return state, frame, True
-        return State(state.s, sigma), Frame(False, direction, sigma, spin, locked), False
+        return State(state.V, sigma), Frame(False, direction, sigma, spin, locked), False
     if event == EDGE:
         omega = here(state, frame, clock, case)[1].omega
-        return State(state.s, omega), Frame(True, direction, sigma, spin, locked), False
+        return State(state.V, omega), Frame(True, direction, sigma, spin, locked), False
     if event == KINK:
-        return State(state.s, 0.0), Frame(False, direction, -sigma, spin, locked), False
+        return state, Frame(False, direction, -sigma, spin, locked), False
     if event == TURN:
         if not slips or state.second == 0.0:
             return state, frame, True
         state, frame = turned(state, frame)
         return state, frame, False
     if event == STOP:
-        still = State(state.s, 0.0) if slips else state
+        still = State(state.V, 0.0) if slips else state
         if locks(still, frame, clock, case):
             return still, Frame(slips, direction, sigma, spin, True), False
         return still, released(still, frame, clock, case), False
@@ -117,11 +117,10 @@ def switch(event, state, frame, clock, case):
 @kernel
 def setting_out(state, frame, clock, case):
     """(State, frame) of full slip where a piece of the drive begins: seen from where V goes if it is 0."""
-    _, rates = here(state, frame, clock, case)
-    if case.drive.prescribed == SPEED and abs(rates.V) <= drift(0.0, clock, case):
+    if case.drive.prescribed == SPEED and abs(state.V) <= drift(0.0, clock, case):
         state = State(0.0, state.second)
-        _, rates = here(state, frame, clock, case)
-    return turned(state, frame) if state.s == 0.0 and rates.s_rate < 0.0 else (state, frame)
+    falls = state.V == 0.0 and here(state, frame, clock, case)[1].V_rate < 0.0
+    return turned(state, frame) if falls else (state, frame)
 
 
 @kernel

@@ -1,12 +1,12 @@
 """What follows V = omega = 0: the cylinder stays, rolls off sticking, or slides off.
 
-Rolling off in the direction where V' > 0, b is that at which the right side of the equation of b vanishes
-(:mod:`rates`) in the limit zeta -> infinity, where F = z, H = z^2:
+Rolling off in the direction where V' > 0, d is that at which the right side of the equation of d vanishes
+(:mod:`rates`) in the limit V -> 0, where L = press = 1:
 
-    (omega' - V')/(mu l) = b V'      Q = mu sign(b) (2 |b| - b^2)      l = 1/(2 kappa)
+    2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 
-Its left side less its right one falls with b where mu <= 2 kappa, and for |b| < 1 there is a root or slip is full from
-the start: one way on.  Where mu > 2 kappa it falls from b = -2 kappa/mu on, where omega' = 0, and a force that holds
+Its left side less its right one falls with d where mu <= 2 kappa, and for |d| < 1 there is a root or slip is full from
+the start: one way on.  Where mu > 2 kappa it falls from d = -2 kappa/mu on, where omega' = 0, and a force that holds
 nearly what friction can leaves two ways.
 """
 
@@ -24,21 +24,21 @@ _HALVINGS, _ROUNDING = 200, 1e-16
 _SOON = 1e-6
 #: over what holds the cylinder, what rounding leaves of what it takes more to move it
 _BARELY = 4e-15
-#: parts of a piece in each of which what holds the cylinder is looked at, and of b in which a way off is
+#: parts of a piece in each of which what holds the cylinder is looked at, and of d in which a way off is
 _PARTS = 64
 #: force and torque that move nothing: speeds under them would leave the range in which panels set out
 _FAINT = 1e-75
 
 
 @kernel(inline=True)
-def _pull(b, load, scene):
-    """(Left less right side of the equation of b, its slope, V') at V = 0."""
-    Q, Q_b = scene.mu * b * (2.0 - abs(b)), 2.0 * scene.mu * (1.0 - abs(b))
+def _pull(d, load, scene):
+    """(Left less right side of the equation of d, its slope, V') at V = 0."""
+    Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.per_V * (Q + load.force) + load.V_rate
     omega_rate = load.per_omega * (load.torque - Q) + load.omega_rate
     per = 2.0 * scene.kappa / scene.mu
-    slope = -(load.per_omega + load.per_V) * Q_b * per - V_rate - b * load.per_V * Q_b
-    return (omega_rate - V_rate) * per - b * V_rate, slope, V_rate
+    slope = -(load.per_omega + load.per_V) * Q_d * per - V_rate - d * load.per_V * Q_d
+    return (omega_rate - V_rate) * per - d * V_rate, slope, V_rate
 
 
 @kernel
@@ -50,11 +50,11 @@ def _under_brake(load, spin):
 
 @kernel
 def departing(load, spin, scene):
-    """(Whether the cylinder may roll off sticking with V > 0, b then), against a brake where ``spin`` is 1."""
+    """(Whether the cylinder may roll off sticking with V > 0, d then), against a brake where ``spin`` is 1."""
     load, low, high = _under_brake(load, spin), -1.0, 1.0
     turning = (
         -2.0 * scene.kappa / scene.mu
-    )  # b at which omega stays 0: from there on the left less the right side falls
+    )  # d at which omega stays 0: from there on the left less the right side falls
     if turning > -1.0 and _pull(turning, load, scene)[0] > 0.0:
         low = turning
     elif turning > -1.0:  # before it, it may rise first
@@ -64,17 +64,17 @@ def departing(load, spin, scene):
                 break
     if _pull(low, load, scene)[0] <= 0.0 or _pull(high, load, scene)[0] >= 0.0:
         return False, 0.0
-    b, V_rate = 0.5 * (low + high), 0.0
+    d, V_rate = 0.5 * (low + high), 0.0
     for _ in range(_HALVINGS):  # Newton's iteration, within a bracket
-        pull, slope, V_rate = _pull(b, load, scene)
-        low, high = (b, high) if pull > 0.0 else (low, b)
-        then = b - pull / slope
+        pull, slope, V_rate = _pull(d, load, scene)
+        low, high = (d, high) if pull > 0.0 else (low, d)
+        then = d - pull / slope
         if not low < then < high:
             then = 0.5 * (low + high)
-        if abs(then - b) <= _ROUNDING * abs(b):
+        if abs(then - d) <= _ROUNDING * abs(d):
             break
-        b = then
-    return V_rate > 0.0, b
+        d = then
+    return V_rate > 0.0, d
 
 
 @kernel
@@ -134,7 +134,7 @@ def constant(piece, pieces):
 
 @kernel
 def depart(tau, piece, case):
-    """(STAYS, STICKS, SLIDES or EITHER; frame; b) from V = omega = 0 on."""
+    """(STAYS, STICKS, SLIDES or EITHER; frame; d) from V = omega = 0 on."""
     scene = case.scene
     still = Frame(False, 1.0, 1.0, 0.0, False)
     when = tau
@@ -151,13 +151,13 @@ def depart(tau, piece, case):
     for direction in (1.0, -1.0):
         frame = Frame(False, direction, 1.0, 0.0, False)
         spin = 1.0 if braked else 0.0
-        sticks, b = departing(load_at(when, piece, frame, case), spin, scene)
+        sticks, d = departing(load_at(when, piece, frame, case), spin, scene)
         if sticks and kind == STICKS:
             return EITHER, still, 0.0
         if sticks:
-            # b is that of now: the limit that the motion leaves from
+            # d is that of now: the limit that the motion leaves from
             kind, beginning = STICKS, departing(load_at(tau, piece, frame, case), spin, scene)[1]
-            way = Frame(False, direction, 1.0 if b >= 0.0 else -1.0, spin, False)
+            way = Frame(False, direction, 1.0 if d >= 0.0 else -1.0, spin, False)
             if scene.mu <= 2.0 * scene.kappa:
                 return kind, way, beginning
     slides = _slide_off(when, piece, braked, 0.0 if kind == STAYS else 0.5 * scene.mu / scene.kappa, case)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..compile.jit import kernel
-from ..motion.collocation import N, rise_at
-from ..motion.control import next_length
+from .collocation import N, rise_at
 from .events import NOWHERE, ends_on, first_event, goes_behind, passed_over, place_of
 from .load import load_at, piece_end, undriven
-from .nodes import OF_S, OF_SECOND, RATE, S_RATE, SECOND, SPEED, Panel, S, put_node
+from .nodes import OF_SECOND, OF_V, RATE, SECOND, SLOPE, SPEED, V_RATE, Panel, V, put_events, put_node
 from .origin import departing
 from .output import pass_panel
 from .rates import rates_at
@@ -18,16 +19,16 @@ from .solve import panel_error, solve
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
 _FIRST, _RELAXED = 0.4, 3.0
-#: in full slip s may change by this, 1/zeta that divides slow from fast rolling being 1
-_SMOOTH = 2.0
 #: behind the onset of stick the law bends on the scale tau: nodes of the first panel lie as this power
 _GRADED, _BEND = 3, 50.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
-#: s at the end of a panel, over that at its start, from which on V = 0 is sought
+#: V at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
 #: V that stands for 0
-_NO_SPEED = 1e-90
+NO_SPEED = 1e-90
+#: octaves from the first row of a law to the rate of its longest time
+_ROWS_BELOW = 4
 #: error over the tolerance up to which a panel shows where its regime ends
 _CUTTABLE = 1e6
 #: panels solved at most until one ends on the event, and the error over the tolerance given to one that does not
@@ -38,51 +39,62 @@ _INSTANT = 1e-14
 _FASTER, _TINY = 2.5, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
 _LESS, _FAR_LESS = 0.7, 0.4
-#: share of s, over rtol^(1/9), that the first panel from V = 0 on may rise to
-_RISE = 0.5
+#: share of the speed that divides slow from fast rolling, over rtol^(1/7), that the first panel from V = 0 on may rise
+#: to
+_RISE = 0.25
 #: share of the time until the drive changes in which its slope shows
 _SOON = 1e-3
-#: 1/zeta over T_mean below which V decays exponentially to rounding
-_SLOWEST = 1e-17
+#: growth and shrinkage of panels; growth behind a graded panel, and the order of its error
+_GROW, _SHRINK, _FAILED, _SAFETY, _BEHIND, _BENT = 6.0, 0.1, 0.3, 0.9, 3.0, 3.0
+#: V over the speed that divides slow from fast rolling, and |d|, both over rtol, below which V decays exponentially
+_SLOWEST, _SETTLED = 1e-4, 1e-2
+
+
+@kernel(inline=True)
+def moderate_speed(scene):
+    """V that divides slow from fast rolling: 1/kappa over the longest time of the material, or half of that."""
+    return math.ldexp(1.0, scene.law.e0 + _ROWS_BELOW) / scene.kappa
 
 
 @kernel
-def _rise_time(s, clock, frame, case):
-    """Time in which s rises from 0 to about this: its pace changes as the drive does."""
-    soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[S_RATE, 0]
+def _rise_time(rise, clock, frame, case):
+    """Time in which V rises from 0 to about this: its pace changes as the drive does."""
+    soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[V_RATE, 0]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
-    _, b = departing(load, frame.spin, case.scene)
-    later = rates_at(0.0, b if b != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene).s_rate
+    _, d = departing(load, frame.spin, case.scene)
+    later = rates_at(0.0, d if d != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene).V_rate
     pace, gain = max(pace, 0.0), (later - pace) / soon
-    square = pace**2 + 2.0 * gain * s
+    square = pace**2 + 2.0 * gain * rise
     if square < 0.0:  # it does not rise so far, and falls from here on
         return -pace / gain
-    # at b = 1 there may be neither
-    return 2.0 * s / (pace + np.sqrt(square) + 1e-300)
+    # at d = 1 there may be neither
+    return 2.0 * rise / (pace + np.sqrt(square) + 1e-300)
+
+
+@kernel(inline=True)
+def shortest_time(law):
+    """Of relaxation, weighted by the strengths of the modes."""
+    return (law.alpha - 1.0) / (law.alpha * law.alpha * law.W) if law.W > 0.0 else 0.0
 
 
 @kernel
-def _first_length(fresh, slopes, clock, frame, case):
+def _first_length(fresh, clock, frame, case):
     """Length to try first."""
     nodes, scene = case.work.nodes, case.scene
-    pace, rate, weight = abs(nodes[S_RATE, 0]), abs(nodes[RATE, 0]), slopes.weight
+    speed, fastest, pace, rate = nodes[V, 0], nodes[SPEED, 0], abs(nodes[V_RATE, 0]), abs(nodes[RATE, 0])
     if frame.slips:
-        change = 2.0 * scene.kappa * nodes[SPEED, 0]
-        if nodes[SPEED, 0] == 0.0:
-            return np.inf
-        slowest = max(pace / max(change, nodes[S, 0]), rate / nodes[SPEED, 0])
-        length = _FIRST / slowest if slowest > 0.0 else np.inf
-        return min(length, (nodes[S, 0] + _SMOOTH) / pace) if pace > 0.0 else length
-    if not weight > _NO_SPEED:  # from V = 0 on
-        return _rise_time(_RISE * case.limits.rtol ** (1.0 / N), clock, frame, case)
-    length = _RELAXED * weight / abs(slopes.rate)
+        length = _FIRST * fastest / max(pace, rate) if fastest > 0.0 and max(pace, rate) > 0.0 else np.inf
+        return min(length, (speed + moderate_speed(scene)) / pace) if pace > 0.0 and fastest > 0.0 else length
+    if not speed > NO_SPEED:  # from V = 0 on
+        return _rise_time(_RISE * case.limits.rtol ** (1.0 / N) * moderate_speed(scene), clock, frame, case)
+    length = _RELAXED / abs(nodes[SLOPE, 0])
     if fresh:
-        # as far as b may go at the bend of the law near eta = 0
-        near = 1.0 - abs(nodes[SECOND, 0]) + scene.material.tau * nodes[S, 0]
-        length = min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * weight / max(rate, 1e-300))
+        # as far as d may go at the bend of the law near eta = 0
+        near = 1.0 - abs(nodes[SECOND, 0]) + shortest_time(scene.law) * 2.0 * scene.kappa * speed
+        length = min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * speed / max(rate, 1e-300))
         load = load_at(clock.tau, clock.piece, frame, case)
-        return min(length, weight / (4.0 * scene.kappa * max(load.per_V + load.per_omega, 1.0)))
-    return min(length, _FIRST * nodes[S, 0] / pace) if pace > 0.0 else length
+        return min(length, speed / (4.0 * scene.kappa * max(load.per_V + load.per_omega, 1.0)))
+    return min(length, _FIRST * speed / pace) if pace > 0.0 else length
 
 
 @kernel(inline=True)
@@ -91,20 +103,20 @@ def _pace_to_zero(panel, state, frame, case):
 
     In partial slip V only comes to 0 against the drive.
     """
-    pace = case.work.nodes[S_RATE, 0]
+    pace = case.work.nodes[V_RATE, 0]
     if not pace < 0.0:
         return np.inf
     if frame.slips:
-        return -state.s / pace
+        return -state.V / pace
     load = load_at(panel.tau, panel.piece, frame, case)
     against = load.V_rate + load.omega_rate
     if against > 0.0 or (against == 0.0 and load.force + load.torque >= 0.0):
         return np.inf
-    return -state.s / pace
+    return -state.V / pace
 
 
 @kernel
-def _attempt(panel, left, aimed, slopes, track, frame, case):
+def _attempt(panel, left, aimed, track, frame, case):
     """(Event, v where the regime ends, panel, error of that over its tolerance, panel of the interpolants there are).
 
     Where a panel is too long for its tolerance and the regime ends on it, the law bends there: one that ends there may
@@ -112,11 +124,12 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
     """
     nodes, event, size, longest = case.work.nodes, NO_EVENT, np.inf, left
     for _ in range(_CUTS):
-        if not solve(panel, slopes, track, frame, case):
+        if not solve(panel, nodes[SLOPE, 0], track, frame, case):
             return NO_EVENT, 2.0, panel, np.inf, track
-        size, track = panel_error(panel, slopes, frame, case), panel
+        size, track = panel_error(panel, frame, case), panel
         if not size <= _CUTTABLE:
             break
+        put_events(panel, frame, case)
         found, v = first_event(case.work)
         behind = goes_behind(nodes)
         missed = passed_over(frame, case)
@@ -126,7 +139,7 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
             break
         if found != NO_EVENT:
             event = found
-        elif event == NO_EVENT and aimed and size <= 1.0 and nodes[S, N] < _NEARLY * nodes[S, 0]:
+        elif event == NO_EVENT and aimed and size <= 1.0 and nodes[V, N] < _NEARLY * nodes[V, 0]:
             event = TURN
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
@@ -142,7 +155,7 @@ def _attempt(panel, left, aimed, slopes, track, frame, case):
         if not (size <= 1.0 or longest == left) or not 0.0 < length < np.inf or length == panel.length:
             return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
         longest = panel.length if found != NO_EVENT else longest
-        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.free)
+        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.known, panel.alone)
     return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
 
 
@@ -152,7 +165,12 @@ def _next_length(panel, size, rejected, last, last_size):
 
     Where a layer is left behind errors stay small although panels grow: they may as well grow faster.
     """
-    length = next_length(panel.length, size, panel.power)
+    length = _FAILED * panel.length
+    if size < 1e300 and panel.power == 1:
+        length = panel.length * max(_SHRINK, min(_GROW, _SAFETY * (size + 1e-30) ** (-1.0 / N)))
+    elif size < 1e300:
+        # the bend of the law at eta = 0 sets the error of graded nodes, and is left behind with them
+        length = panel.length * (_BEHIND if size <= 1.0 else max(_SHRINK, _SAFETY * size ** (-1.0 / _BENT)))
     if not size <= 1.0:
         return min(length, (_LESS if rejected == 0 else _FAR_LESS) * panel.length)
     if panel.power > 1 or last == 0.0:
@@ -163,20 +181,25 @@ def _next_length(panel, size, rejected, last, last_size):
 
 @kernel
 def _begin(state, frame, clock, case):
-    """(Frame, slopes) with node 0 filled; from delta = 0 on the branch is that which b turns to."""
+    """The frame with node 0 filled; from delta = 0 on the branch is that which d turns to."""
     nodes = case.work.nodes
-    nodes[S, 0], nodes[SECOND, 0] = state.s, state.second
-    slopes = put_node(0, 1.0, load_at(clock.tau, clock.piece, frame, case), frame, case)
-    if not frame.slips and state.second == 0.0 and frame.sigma * nodes[RATE, 0] < 0.0:
-        frame = Frame(False, frame.direction, -frame.sigma, frame.spin, frame.locked)
-        slopes = put_node(0, 1.0, load_at(clock.tau, clock.piece, frame, case), frame, case)
-    return frame, slopes
+    nodes[V, 0], nodes[SECOND, 0] = state.V, state.second
+    rates = rates_at(state.V, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
+    put_node(0, rates, 1.0, nodes)
+    nodes[V_RATE, 0], nodes[SLOPE, 0] = rates.V_rate, rates.rate_second / rates.weight
+    if not frame.slips and state.second == 0.0 and frame.sigma * rates.rate < 0.0:
+        # both branches say the same here
+        return Frame(False, frame.direction, -frame.sigma, frame.spin, frame.locked)
+    return frame
 
 
 @kernel(inline=True)
 def creeps(state, frame, case):
-    """Whether V is so small that, where nothing drives, it decays exponentially to rounding."""
-    return not frame.slips and 0.0 < state.s * case.scene.material.T_mean < _SLOWEST
+    """Whether V is so small that, where nothing drives, it decays exponentially to a share of the tolerance."""
+    if frame.slips or not case.scene.law.alpha > 1.0:
+        return False
+    rtol = case.limits.rtol
+    return 0.0 < state.V < _SLOWEST * rtol * moderate_speed(case.scene) and abs(state.second) < _SETTLED * rtol
 
 
 @kernel
@@ -185,18 +208,19 @@ def phase(fresh, state, frame, clock, case):
     nodes, powers, limits = case.work.nodes, case.work.powers, case.limits
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
     power = _GRADED if fresh else 1
-    track, coasts = Panel(clock.tau, 0.0, 1, clock.piece, False), undriven(clock.piece, case.drive)
-    while clock.tau < end and clock.steps < limits.max_steps and not (coasts and creeps(state, frame, case)):
-        frame, slopes = _begin(state, frame, clock, case)
+    alone = undriven(clock.piece, case.drive)
+    track = Panel(clock.tau, 0.0, 1, clock.piece, False, alone)
+    while clock.tau < end and clock.steps < limits.max_steps and not (alone and creeps(state, frame, case)):
+        frame = _begin(state, frame, clock, case)
         if length == 0.0:
-            length = max(_first_length(fresh, slopes, clock, frame, case), _INSTANT * clock.tau)
+            length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
-        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or slopes.weight > _NO_SPEED)
+        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or state.V > NO_SPEED, alone)
         zero = _pace_to_zero(panel, state, frame, case)
         aimed = zero < panel.length and rejected == 0
         if zero < panel.length:
-            panel = Panel(panel.tau, zero, power, panel.piece, panel.free)
-        event, v, panel, size, track = _attempt(panel, left, aimed, slopes, track, frame, case)
+            panel = Panel(panel.tau, zero, power, panel.piece, panel.known, alone)
+        event, v, panel, size, track = _attempt(panel, left, aimed, track, frame, case)
         wanted, length = length, _next_length(panel, size, rejected, last, last_size)
         length = max(length, wanted) if size <= 1.0 and panel.length == left else length
         clock = Clock(clock.tau, clock.at, clock.piece, clock.steps + 1, clock.ends, length)
@@ -209,9 +233,9 @@ def phase(fresh, state, frame, clock, case):
         clock = pass_panel(
             end if whole else panel.tau + panel.length * (0.5 * v) ** power, v, panel, frame, clock, case
         )
-        state = State(nodes[S, N], nodes[SECOND, N])
+        state = State(nodes[V, N], nodes[SECOND, N])
         if v < 2.0:
-            state = State(nodes[S, 0] + rise_at(v, powers, OF_S), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND))
+            state = State(nodes[V, 0] + rise_at(v, powers, OF_V), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND))
         if event != NO_EVENT:
             return event, state, frame, clock
         power, rejected, last, last_size = 1, 0, panel.length, size

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from ..motion.collocation import NODES, N, rise_at, rise_terms
+from .collocation import NODES, N, rise_at, rise_terms
 from .load import BRAKE
-from .nodes import DRIVE, EVENT, OF_EVENT, SPEED, S
+from .nodes import DRIVE, EVENT, OF_EVENT, SPEED, V
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
@@ -56,10 +56,10 @@ def first_event(work):
 
 @kernel
 def goes_behind(nodes):
-    """Whether s is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
+    """Whether V is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
     least = 0.0
     for i in range(1, N + 1):
-        least = min(least, nodes[S, i])
+        least = min(least, nodes[V, i])
     return least < 0.0
 
 
@@ -73,7 +73,7 @@ def passed_over(frame, case):
             continue
         most, scale = nodes[EVENT + row, 0], _scale(row, nodes)
         if row == TURN:
-            scale = max(scale, 2.0 * case.scene.kappa * nodes[SPEED, N])
+            scale = max(scale, nodes[SPEED, N])
         for i in range(1, N + 1):
             most = max(most, nodes[EVENT + row, i])
         if most <= _ROUNDING * scale and nodes[EVENT + row, N] < -_near(case.limits.rtol) * scale:

@@ -1,0 +1,134 @@
+"""What a panel of time holds at its nodes: the unknowns, the integrands of the path, the functions whose zeros end a
+regime, and the drive."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..compile.fma import fma
+from ..compile.jit import kernel
+from .collocation import INTEGRAL, SHARES, SLOPES, N
+from .load import FUNCTIONS, load_of, needed, threshold, values_at
+from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
+
+#: rows of the values at the nodes: unknowns; rates of p and of the second, and of V at node 0; speed scale, Q and parts
+#: of M, omega; p, its inverse slope in V, its slope in the second unknown, what a change of p adds to the equation of
+#: that; slope at which the second unknown relaxes
+V, SECOND, P_RATE, RATE, V_RATE, SPEED, OF_OMEGA, OF_Q, OF_HALF_SPACE, OF_CYLINDER = range(10)
+P, PER_P, P_SECOND, COUPLED, SLOPE = range(10, 15)
+#: integrands of the path: x, angle, work of force and of torque, losses in the brake, in slip and in rolling
+PATH, PATHS = 15, 7
+#: functions of events, and the drive
+EVENT = PATH + PATHS
+DRIVE = EVENT + EVENTS
+ROWS = DRIVE + FUNCTIONS
+#: rows of the interpolants: of V, of the second unknown, of the path, of the function of an event
+OF_V, OF_SECOND, OF_PATH, OF_EVENT = 0, 1, 2, 2 + PATHS
+INTERPOLANTS = OF_EVENT + 1
+#: |d| up to which either branch of the law serves: they differ by its square
+FAINT = 1e-8
+
+
+class Panel(NamedTuple):
+    """A stretch of time within a piece of the drive; it grows as (v/2)^power, v in [0, 2].
+
+    known : whether the slope of the second unknown at the left end is
+    alone : whether nothing drives from there on: V is measured by its own size
+    """
+
+    tau: float
+    length: float
+    power: int
+    piece: int
+    known: bool
+    alone: bool
+
+
+@kernel(inline=True)
+def grade(i, power):
+    """Slope of share^power at node i."""
+    return 1.0 if power == 1 else power * SHARES[i] ** (power - 1)
+
+
+@kernel(inline=True)
+def time_at(panel, i):
+    """tau at node i."""
+    share = SHARES[i]
+    return panel.tau + panel.length * (share if panel.power == 1 else share**panel.power)
+
+
+@kernel
+def put_drive(panel, case):
+    """Fill the drive at all nodes."""
+    nodes = case.work.nodes
+    for i in range(N + 1):
+        values = values_at(time_at(panel, i), panel.piece, case.drive)
+        nodes[DRIVE, i], nodes[DRIVE + 1, i], nodes[DRIVE + 2, i], nodes[DRIVE + 3, i] = values
+
+
+@kernel(inline=True)
+def load_there(i, frame, case):
+    """The drive at node i."""
+    nodes = case.work.nodes
+    return load_of((nodes[DRIVE, i], nodes[DRIVE + 1, i], nodes[DRIVE + 2, i], nodes[DRIVE + 3, i]), frame, case)
+
+
+@kernel(inline=True)
+def put_node(i, rates, weight, nodes):
+    """Keep what the equations say at node i, rates times ``weight``."""
+    nodes[P_RATE, i], nodes[RATE, i] = weight * rates.p_rate, weight * rates.rate
+    nodes[P, i], nodes[OF_OMEGA, i], nodes[OF_Q, i] = rates.p, rates.omega, rates.Q
+    nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i] = rates.M_half_space, rates.M_cylinder
+    nodes[SPEED, i] = max(abs(nodes[V, i]), abs(rates.omega))
+    nodes[EVENT + EDGE, i] = rates.edge
+
+
+@kernel
+def put_events(panel, frame, case):
+    """Fill the functions of events at all nodes of a panel that is solved."""
+    nodes, rest = case.work.nodes, threshold(panel.piece, case)
+    for i in range(N + 1):
+        omega = nodes[OF_OMEGA, i]
+        nodes[EVENT + KINK, i] = 1.0 if frame.slips else frame.sigma * nodes[SECOND, i] + FAINT
+        nodes[EVENT + TURN, i] = nodes[V, i]
+        nodes[EVENT + STOP, i] = frame.spin * omega if frame.spin != 0.0 and not frame.locked else 1.0
+        nodes[EVENT + SLOW, i] = nodes[SPEED, i] - rest if rest > 0.0 else 1.0
+        nodes[EVENT + FREED, i] = 1.0
+        if frame.locked:  # of squares: smooth where what the brake takes changes its sign
+            load = load_there(i, frame, case)
+            moments = nodes[OF_Q, i], nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i]
+            _, _, brake = needed((nodes[V, i], omega), moments, load, frame, case.scene.j)
+            nodes[EVENT + FREED, i] = load.brake * load.brake - brake * brake
+
+
+@kernel
+def put_path(panel, frame, case):
+    """Fill the integrands of the path at all nodes."""
+    nodes = case.work.nodes
+    for i in range(N + 1):
+        speed, omega, Q, weight = nodes[V, i], nodes[OF_OMEGA, i], nodes[OF_Q, i], grade(i, panel.power)
+        M_half_space, M_cylinder = nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i]
+        load = load_there(i, frame, case)
+        force, torque, brake = needed((speed, omega), (Q, M_half_space, M_cylinder), load, frame, case.scene.j)
+        nodes[PATH, i], nodes[PATH + 1, i] = weight * speed, weight * omega
+        nodes[PATH + 2, i], nodes[PATH + 3, i] = weight * (force * speed), weight * (torque * omega)
+        nodes[PATH + 4, i], nodes[PATH + 5, i] = -weight * (brake * omega), weight * ((omega - speed) * Q)
+        nodes[PATH + 6, i] = weight * (speed * M_half_space + omega * M_cylinder)
+
+
+@kernel(inline=True)
+def slope_at(i, row, nodes):
+    """Slope in t of the interpolant of a row at node i."""
+    first, total = nodes[row, 0], 0.0
+    for k in range(1, N + 1):
+        total = fma(SLOPES[i - 1, k], nodes[row, k] - first, total)
+    return total
+
+
+@kernel
+def risen(row, panel, nodes):
+    """Integral of a row over the panel."""
+    total = 0.0
+    for i in range(N):
+        total += INTEGRAL[i] * nodes[row, i + 1]
+    return 0.5 * panel.length * total

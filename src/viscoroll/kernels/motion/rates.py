@@ -1,0 +1,129 @@
+"""Rates of a motion in unknowns in which the law is explicit and that pass V = 0; all slopes exact.
+
+In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a frame where V >= 0.  On rows of the
+law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w = (1 - |d|) L, s = sign d,
+
+    omega = V (1 + k L d)      Q = s mu [1 - w^2 press(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
+
+Both sides of the last stay finite as V -> 0, where d follows from the right one being 0.  For |d| > 1 the law is
+continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
+
+p = per_omega V + per_V omega, as V + j omega, is collocated in place of V: p' holds no Q, and so d only by what feeds
+speeds back.  dp/dd = per_V V k L is small: Newton's matrix falls into one of p and one of d (:mod:`solve`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..compile.jit import kernel
+from ..rows.law import body_slopes, bodies, place, press_slopes, speed_seconds
+from .load import acting
+
+
+class Rates(NamedTuple):
+    """What the equations say at a state.
+
+    p, p_rate : what is collocated in place of V, V itself in full slip, and p'
+    rate : ``weight`` times the slope of the second unknown
+    edge : of the stick zone: positive within the regime
+    further : slopes in V and in the second unknown
+    """
+
+    omega: float
+    Q: float
+    M_half_space: float
+    M_cylinder: float
+    V_rate: float
+    p: float
+    p_rate: float
+    rate: float
+    weight: float
+    edge: float
+    p_V: float
+    p_second: float
+    p_rate_V: float
+    rate_V: float
+    rate_second: float
+    weight_V: float
+
+
+@kernel(inline=True)
+def _speeds(u, scene):
+    """(L, L', L'', M/V of half-space and cylinder, d(u M/V)/du of these) at u = kappa |V|."""
+    law, at = scene.law, place(u, scene.law)
+    L, dL, ddL, m, rise = speed_seconds(at, u, law)
+    if not scene.unlike:
+        return L, dL, ddL, 0.5 * m, 0.5 * m, 0.5 * rise, 0.5 * rise
+    half_space, cylinder = bodies(at, u, law)
+    half_space_rise, cylinder_rise = body_slopes(at, u, law)
+    share = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or z in the fast limit
+    return L, dL, ddL, share * half_space, share * cylinder, half_space_rise, cylinder_rise
+
+
+@kernel(inline=True)
+def creep_limit(V, scene):
+    """delta_star at V."""
+    u = scene.kappa * abs(V)
+    return 0.5 * scene.mu / scene.kappa * speed_seconds(place(u, scene.law), u, scene.law)[0]
+
+
+@kernel(inline=True)
+def stick_rates(V, d, load, frame, scene):
+    """Partial slip."""
+    law, mu, sign, k = scene.law, scene.mu, frame.sigma, 0.5 * scene.mu / scene.kappa
+    u, turn = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
+    L, dL, ddL, m_half_space, m_cylinder, half_space_rise, cylinder_rise = _speeds(u, scene)
+    left = max(1.0 - sign * d, 0.0)
+    w = left * L
+    Q, Q_V, Q_d = sign * mu, 0.0, 0.0
+    if w > 0.0:
+        v = 2.0 * u / w
+        press, slope = press_slopes(place(v, law), v, law)
+        A = press - 0.5 * v * slope
+        Q *= 1.0 - w * w * press
+        Q_V, Q_d = -2.0 * sign * mu * w * (A * left * dL + slope) * turn, 2.0 * mu * w * L * A
+    spread = L + u * dL
+    omega, omega_V, omega_d = V * (1.0 + k * L * d), 1.0 + k * d * spread, k * V * L
+    force, _, torque = acting(V, omega, load, frame)
+    M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
+    per_V, per_omega, per_both = load.per_V, load.per_omega, load.per_V * load.per_omega
+    V_rate = per_V * (Q - M_half_space + force) + load.V_rate
+    omega_rate = per_omega * (torque - Q - M_cylinder) + load.omega_rate
+    rate = ((omega_rate - V_rate) / k - d * spread * V_rate) / L
+    force_V, torque_V = gains.force_V + gains.force_omega * omega_V, gains.torque_V + gains.torque_omega * omega_V
+    V_V, V_d = per_V * (Q_V - half_space_rise + force_V), per_V * (Q_d + gains.force_omega * omega_d)
+    turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (gains.torque_omega * omega_d - Q_d)
+    bend = turn * ((2.0 * dL + u * ddL) * d * V_rate + dL * rate)
+    return Rates(
+        omega, Q, M_half_space, M_cylinder, V_rate, per_omega * V + per_V * omega,
+        per_both * (force + torque - M_half_space - M_cylinder) + per_omega * load.V_rate + per_V * load.omega_rate,
+        rate, V, 1.0 - sign * d, per_omega + per_V * omega_V, per_V * omega_d,
+        per_both * (force_V + torque_V - half_space_rise - cylinder_rise),
+        ((turn_V - V_V) / k - d * spread * V_V - bend) / L, ((turn_d - V_d) / k - spread * (V_rate + d * V_d)) / L, 1.0,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def slip_rates(V, omega, load, frame, scene):
+    """Full slip."""
+    u, Q = scene.kappa * abs(V), frame.sigma * scene.mu
+    L, _, _, m_half_space, m_cylinder, half_space_rise, cylinder_rise = _speeds(u, scene)
+    force, _, torque = acting(V, omega, load, frame)
+    M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
+    V_rate = load.per_V * (Q - M_half_space + force) + load.V_rate
+    omega_rate = load.per_omega * (torque - Q - M_cylinder) + load.omega_rate
+    edge = frame.sigma * (omega - V) - 0.5 * scene.mu / scene.kappa * L * abs(V)
+    return Rates(
+        omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0, edge,
+        1.0, 0.0, load.per_V * (gains.force_V - half_space_rise),
+        load.per_omega * (gains.torque_V - cylinder_rise), load.per_omega * gains.torque_omega, 0.0,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def rates_at(V, second, load, frame, scene):
+    """The equations of the regime."""
+    if frame.slips:
+        return slip_rates(V, second, load, frame, scene)
+    return stick_rates(V, second, load, frame, scene)
