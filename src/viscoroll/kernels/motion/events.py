@@ -37,7 +37,7 @@ def _node_of(event, last, nodes):
     return 0
 
 
-@kernel
+@kernel(inline=True)
 def first_event(work):
     """(Event whose function falls below 0 first, v there); NO_EVENT for none.
 
@@ -54,7 +54,7 @@ def first_event(work):
     return event, v
 
 
-@kernel
+@kernel(inline=True)
 def goes_behind(nodes):
     """Whether V is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
     least = 0.0
@@ -63,7 +63,7 @@ def goes_behind(nodes):
     return least < 0.0
 
 
-@kernel
+@kernel(inline=True)
 def passed_over(frame, case):
     """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
     the first of them; NO_EVENT for none."""

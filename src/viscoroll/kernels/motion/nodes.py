@@ -83,7 +83,7 @@ def put_node(i, rates, weight, nodes):
     nodes[EVENT + EDGE, i] = rates.edge
 
 
-@kernel
+@kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
     nodes, rest = case.work.nodes, threshold(panel.piece, case)
@@ -101,7 +101,7 @@ def put_events(panel, frame, case):
             nodes[EVENT + FREED, i] = load.brake * load.brake - brake * brake
 
 
-@kernel
+@kernel(inline=True)
 def put_path(panel, frame, case):
     """Fill the integrands of the path at all nodes."""
     nodes = case.work.nodes

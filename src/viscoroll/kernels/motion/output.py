@@ -102,7 +102,7 @@ def put_to_end(state, frame, clock, case):
     return Clock(clock.tau, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
 
 
-@kernel
+@kernel(inline=True)
 def _put(column, v, panel, frame, case):
     """One column from the interpolants of a panel."""
     nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
@@ -113,7 +113,7 @@ def _put(column, v, panel, frame, case):
         _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
 
 
-@kernel
+@kernel(inline=True)
 def pass_panel(end, v, panel, frame, clock, case):
     """Outputs before the ``end`` of a panel or of what ends at ``v`` on it, and what adds up until then; the clock.
 

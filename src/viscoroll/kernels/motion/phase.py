@@ -115,7 +115,7 @@ def _pace_to_zero(panel, state, frame, case):
     return -state.V / pace
 
 
-@kernel
+@kernel(inline=True)
 def _attempt(panel, left, aimed, track, frame, case):
     """(Event, v where the regime ends, panel, error of that over its tolerance, panel of the interpolants there are).
 
@@ -159,7 +159,7 @@ def _attempt(panel, left, aimed, track, frame, case):
     return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
 
 
-@kernel
+@kernel(inline=True)
 def _next_length(panel, size, rejected, last, last_size):
     """Length to try behind a panel with this error over its tolerance, the last good one before having had its own.
 
@@ -179,7 +179,7 @@ def _next_length(panel, size, rejected, last, last_size):
     return length * min(max(faster, 1.0), _FASTER)
 
 
-@kernel
+@kernel(inline=True)
 def _begin(state, frame, clock, case):
     """The frame with node 0 filled; from delta = 0 on the branch is that which d turns to."""
     nodes = case.work.nodes

@@ -103,7 +103,7 @@ def _put_equations(anew, panel, frame, case):
             _put_rows(i, half * weight, rates, slope, case)
 
 
-@kernel
+@kernel(inline=True)
 def _newton(anew, panel, frame, case):
     """One iteration; the largest change over what it is measured by."""
     work, half = case.work, 0.5 * panel.length
@@ -130,7 +130,7 @@ def _newton(anew, panel, frame, case):
     return change
 
 
-@kernel
+@kernel(inline=True)
 def solve(panel, slope, track, frame, case):
     """Collocate from node 0, where the second unknown relaxes with this ``slope``, to a share of the tolerance.
     Whether it did.
@@ -182,7 +182,7 @@ def _least(panel, case):
     return least / largest if largest > 0.0 else 1.0
 
 
-@kernel
+@kernel(inline=True)
 def panel_error(panel, frame, case):
     """Error of the interpolants over their tolerance; of d only what its relaxation leaves of it counts."""
     nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
