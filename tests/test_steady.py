@@ -18,6 +18,8 @@ from viscoroll.cli import main
 from viscoroll.equilibria.zeros import zeros
 from viscoroll.reference.series import functions, rates
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 #: alpha, kappa V and kappa M at the largest M, from another program

@@ -28,6 +28,8 @@ from viscoroll.materials.file import read_materials
 from viscoroll.materials.law_store import checksum, content_of
 from viscoroll.motion import warned
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 PRESET = ["--preset", "paper-section-5"]
 START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
 DRAWN = [*PRESET, "-n", "8", "--V0", "uniform:-2:2", "--omega0", "normal:0:1"]

@@ -42,6 +42,8 @@ from viscoroll.figures.run_distributions import even_bars
 from viscoroll.figures.slope import separatrix
 from viscoroll.runs import open_summaries, read_run, run_ensemble
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 PNG = b"\x89PNG\r\n\x1a\n"
 NAMES = {
     "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "ensemble",

@@ -19,6 +19,8 @@ from viscoroll.kernels.material.standard import standard
 from viscoroll.materials.tables import record, series
 from viscoroll.reference import series as raw
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 MANY, DIGITS = 5000, 60
 WIDE = vr.Prony(E=[0.5, 3.0, 8.0, 20.0], tau=[1.0, 3e-2, 4e-5, 1e-9])
 #: random series: modes, decades that their times span, size of the strengths

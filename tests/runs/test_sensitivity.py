@@ -22,6 +22,8 @@ from viscoroll.figures import sobol_bars
 from viscoroll.runs import read_run
 from viscoroll.runs.sensitivity import sobol_indices
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 N = 1024
 GAMMA = 1e4
 #: alpha = 1: no rolling resistance, and the cylinder slides up to the last time, so V = V0 + gamma mu t exactly
