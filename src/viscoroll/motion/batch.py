@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, Literal
 
 import numpy as np
@@ -12,20 +12,20 @@ from ..blocks import flattened, run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
 from ..errors import ParameterError, unknown
-from ..materials.prony_array import MaterialArray
-from ..materials.tables import record
+from ..materials.law_table import LawTable, law_table
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..typed import Driving, Numbers
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
-from .each import roll_each, to_unit
+from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
+from .rolling import law_of
 from .warned import look
 
-FIELDS = STATES + LOSSES + ACTING
-#: motions a block: where all are integrated, have a material each that is converted, and where most come from a map
-_BLOCK, _BLOCK_EACH, _MAPPED_BLOCK = 64, 128, 1 << 14
+FIELDS = ROWS
+#: motions a block: where all are integrated, and where most come from a map
+_BLOCK, _MAPPED_BLOCK = 64, 1 << 14
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
 #: thousand (docs/benchmark.md, "One scene")
 FLOW_PAYS = 4096
@@ -106,48 +106,44 @@ def ensemble(
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
-    ready = None
     look(scene, V0, omega0)
-    if drive.acts or not scene.like_bodies:
-        ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
-        refuse_rest(threshold, ready)
-        scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
-    if method == "flow" and (scene.shape or ready):
-        what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
+    ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
+    refuse_rest(threshold, ready)
+    scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
+    mapped = not (drive.acts or scene.shape) and scene.like_bodies
+    if method == "flow" and not mapped:
+        alike = drive.acts or not scene.like_bodies
+        what = "motions are driven, or bodies differ" if alike else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays, count = _inputs(scene, (V0, omega0), drive, ready)
-    material, unit = scene.in_own_time()
-    own_time = {} if unit == 1.0 else {"gamma": unit * unit, "V0": unit, "omega0": unit}
-    scaled = (array * own_time[name] if name in own_time else array for name, array in arrays.items())
-    flat = [flattened(array, (count,)) for array in scaled]
+    flat = [flattened(array, (count,)) for array in arrays.values()]
     # without a drive nothing acts
-    found = names if ready else tuple(name for name in names if name not in ACTING)
-    rows = tuple((ROWS if ready else FIELDS).index(name) for name in found)
+    found = names if drive.acts else tuple(name for name in names if name not in ACTING)
     bar = "motions" if progress else None
     answer, chosen, error = None, None, np.nan
-    if not ready and (method == "flow" or (method == "auto" and not scene.shape and count >= FLOW_PAYS)):
-        chosen = _map_of(scene, flat[5], flat[6], speed and speed * unit, threads)
+    unit = scene.in_own_time()[1] if mapped else 1.0
+    if mapped and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
+        chosen = _map_of(scene, flat[5] * unit, flat[6] * unit, speed and speed * unit, threads)
     if chosen is not None:
         error = chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
         if error <= rtol:
-            given = float(flat[3][0]), threshold * unit, flat[5], flat[6], times / unit
+            rows = tuple((STATES + LOSSES).index(name) for name in found)
+            given = float(flat[3][0]) * unit * unit, threshold * unit, flat[5] * unit, flat[6] * unit, times / unit
             answer = ask(chosen, *given, rows, threads=threads, progress=bar)
+            to_unit(answer.out, found, unit)
+            answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
     if answer is None:
-        answer = Answer.empty(len(rows), count, times.size)
+        answer = Answer.empty(len(found), count, times.size)
     flow = answer.status >= 0
-    shared = None if scene.material is None and np.ndim(scene.alpha) else scene.kernel_material if ready else material
-    limits = rtol, threshold * unit, max_steps
-    steps = _integrate_others(answer, flat, (shared, unit, ready), times / unit, limits, found, threads, bar)
-    if unit != 1.0:
-        to_unit(answer.out, found, unit)
-        answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
+    limits = rtol, threshold, max_steps
+    steps = _integrate_others(answer, flat, (scene, ready), times, limits, found, threads, bar)
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
     kept |= dict(zip(found, answer.out, strict=True))
     return Ensemble(
         scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
         onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
-        drive_error=ready.error if ready else 0.0, drive=drive, labels=labels,
+        drive_error=ready.error, drive=drive, labels=labels,
     )  # fmt: skip
 
 
@@ -159,11 +155,11 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
     return names
 
 
-def _inputs(scene: Scene, starts: Any, drive: Drive, ready: Prepared | None) -> tuple[dict[str, NDArray], int]:
+def _inputs(scene: Scene, starts: Any, drive: Drive, ready: Prepared) -> tuple[dict[str, NDArray], int]:
     """(Parameters and start speeds, how many motions they make)."""
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
     arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
-    drives = drive.numbers | ({"drive": np.zeros(ready.pieces.shape[0])} if ready and ready.pieces.shape[0] > 1 else {})
+    drives = drive.numbers | ({"drive": np.zeros(ready.pieces.shape[0])} if ready.pieces.shape[0] > 1 else {})
     shape = broadcast_shape(**arrays, **{name: each for name, each in drives.items() if name not in arrays})
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
@@ -180,68 +176,46 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
 
 
 def _integrate_others(
-    answer: Answer, flat: list[NDArray], by: tuple[Any, float, Prepared | None], times: NDArray,
+    answer: Answer, flat: list[NDArray], by: tuple[Scene, Prepared], times: NDArray,
     limits: tuple[float, float, int], names: tuple[str, ...], threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
     """Integrate the motions without an answer; returns the steps of each.
 
-    ``by`` : the material that they share, those that they have each, or None where each has an alpha of its own; what
-    times are counted in; what drives them.
+    ``by`` : their scene, or scenes, and what drives them.
     """
-    material, unit, ready = by
-    steps = np.zeros(answer.status.size, dtype=np.int64)
+    scene, ready = by
+    steps, rows = np.zeros(answer.status.size, dtype=np.int64), np.array([ROWS.index(name) for name in names], np.int64)
 
     def work(start: int, stop: int) -> None:
-        from ..kernels.material.functions import Own
-        from ..kernels.free.loop import INFO
+        from ..kernels.motion.loop import INFO, motion_loop
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
-        if not left.size:
-            return
-        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
-        kernel = _kernel(names, ready)
-        if isinstance(material, MaterialArray):
-            which = np.minimum(left, len(material) - 1)
-            out, info = roll_each(
-                material, which, inputs, times, limits, names,
-                lambda given, limits, out, info, own: kernel(*given, limits, out, info, left[own[0]], own[1]),
-            )  # fmt: skip
-        else:
-            one = Own(alpha) if material is None else record(material)
-            out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
-            kernel((one, *inputs), times, limits, out, info, left, unit)
-        answer.out[:, left] = out
-        answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
+        notes = np.empty((0, 2)), np.empty(0)
+        for law, some in _by_law(scene, left):
+            inputs = (flattened(array[some], some.shape) if array.size > 1 else array for array in flat[1:])
+            out, info = np.empty((len(names), some.size, times.size)), np.empty((some.size, len(INFO)))
+            batch = law.record, law.unlike, *inputs
+            motion_loop(batch, ready.for_kernel(some), times, limits, rows, out, info, notes)
+            answer.out[:, some] = out
+            answer.status[some], steps[some], answer.switches[some], answer.onset[some], answer.rest[some] = info.T
 
     mapped = answer.status.max(initial=-1) >= 0
-    block = _MAPPED_BLOCK if mapped else _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
-    run_blocks(work, steps.size, block, threads=threads, progress=bar)
+    run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
     return steps
+
+
+def _by_law(scene: Scene, which: NDArray[np.int64]) -> Iterator[tuple[LawTable, NDArray[np.int64]]]:
+    """Motions of one law after the other."""
+    if scene.material is None and np.ndim(scene.alpha):
+        alpha = np.broadcast_to(np.ravel(scene.alpha), (max(int(which.max(initial=0)) + 1, np.size(scene.alpha)),))[which]
+        for one in np.unique(alpha):
+            yield law_table(float(one)), which[alpha == one]
+    elif np.ndim(scene.alpha):
+        for n in which:
+            yield law_table(scene.material[min(int(n), len(scene.material) - 1)]), np.array([n])
+    elif which.size:
+        yield law_of(scene), which
 
 
 def _among(names: tuple[str, ...], *some: str) -> bool:
     return not set(names).isdisjoint(some)
-
-
-def _kernel(names: tuple[str, ...], ready: Prepared | None) -> Callable[..., None]:
-    """What integrates motions: (batch, times, limits, out, info, their numbers, what times are counted in) -> None."""
-    rows = np.array([(ROWS if ready else FIELDS).index(name) for name in names], np.int64)
-
-    def driven(given: tuple, times: NDArray, limits: tuple, out: Any, info: NDArray, which: Any, unit: float) -> None:
-        from ..kernels.motion.loop import drive_loop
-
-        assert ready
-        drives, unnoted = ready.in_unit(unit, which), (np.empty((0, 2)), np.empty(0))
-        drive_loop(given, drives, times, limits, rows, out, info, unnoted)
-
-    def free(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, *_: Any) -> None:
-        from ..kernels.free.loop import NOTHING_NOTED, motion_loop
-
-        motion_loop(given, times, limits, rows, out, info, tuple(NOTHING_NOTED), 0, len(info))
-
-    def with_losses(given: tuple, times: NDArray, limits: tuple, out: NDArray, info: NDArray, *_: Any) -> None:
-        from ..kernels.free.losses import loss_loop
-
-        loss_loop(given, times, limits, rows, out, info, 0, len(info))
-
-    return driven if ready else with_losses if _among(names, *LOSSES) else free

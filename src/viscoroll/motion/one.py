@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from ..scene import Scene
 from ..symbols import attributes
 from ..validity import Validity
 from .checks import SPEED_RANGE, output_times
-from .driven import LOSSES, ROWS, Drive
+from .driven import ROWS, Drive
 from .rolling import Inputs, rolled
 
 if TYPE_CHECKING:
@@ -79,33 +78,10 @@ class Motion(Shown):
     work_force: NDArray[np.float64]
     work_torque: NDArray[np.float64]
     brake_loss: NDArray[np.float64]
+    slip_loss: NDArray[np.float64]
+    rolling_loss: NDArray[np.float64]
     drive_error: float
     _inputs: Inputs = field(repr=False)
-    _losses: NDArray[np.float64] | None = field(repr=False)
-
-    @property
-    def slip_loss(self) -> NDArray[np.float64]:
-        """Energy lost in slip since t = 0, over m (R/T_epsilon)^2."""
-        return self._lost[0]
-
-    @property
-    def rolling_loss(self) -> NDArray[np.float64]:
-        """Energy lost in rolling since t = 0, over m (R/T_epsilon)^2."""
-        return self._lost[1]
-
-    @cached_property
-    def _lost(self) -> NDArray[np.float64]:
-        """Losses in slip and in rolling; those of a free motion are found when they are asked for."""
-        if self._losses is not None:
-            return self._losses
-        from .batch import ensemble
-
-        given = self._inputs
-        found = ensemble(
-            given.scene, given.V0, given.omega0, self.t, method="integrate", rtol=given.rtol, rest=given.rest or None,
-            max_steps=given.max_steps, fields=LOSSES,
-        )  # fmt: skip
-        return np.stack([getattr(found, name)[0] for name in LOSSES])
 
     @property
     def drive(self) -> Drive:
@@ -193,7 +169,6 @@ def integrated(inputs: Inputs, times: NDArray) -> Motion:
     switches = np.full((_SWITCHES_KEPT, 2), np.nan)
     scene, error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
-    losses = np.stack([rows.pop(name) for name in LOSSES])
     whole = rows.pop("regime")
     regime = np.where(np.isnan(whole), -1, whole).astype(np.int8)
     noted = switches[~np.isnan(switches[:, 1])]
@@ -201,7 +176,7 @@ def integrated(inputs: Inputs, times: NDArray) -> Motion:
     return Motion(
         scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
         status=MotionStatus(int(status)), steps=int(steps), reversals=noted[noted[:, 1] < 0.0, 0],
-        drive_error=error, _inputs=inputs, _losses=None if np.isnan(losses).all() else losses,
+        drive_error=error, _inputs=inputs,
     )  # fmt: skip
 
 
