@@ -37,10 +37,12 @@ from .records import (
     State,
     Work,
 )  # fmt: skip
-from .switch import at_new_piece, here, switch
+from .switch import at_new_piece, here, switch, turned
 
 #: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
+#: distance from the edge of the stick zone, over the speeds, that is rounding
+_ON_EDGE = 4e-16
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
 #: V from which on no panel need set out in partial slip: it counts as 0 where none can
@@ -51,22 +53,24 @@ _PAST = 0.3
 
 @kernel
 def enter(V, omega, clock, case):
-    """The regime of a start with V or omega not 0, but for its brake: (state, frame)."""
-    if undriven(0, case.drive):
-        if max(abs(V), abs(omega)) < _TINY:
-            # sliding ends within a time of that order: V + j omega is kept
-            V = omega = (V + case.scene.j * omega) / (1.0 + case.scene.j)
+    """The regime of a start with V or omega not 0, but for its brake: (state, frame, whether stick just forms)."""
+    if undriven(0, case.drive) and max(abs(V), abs(omega)) < _TINY:
+        # sliding ends within a time of that order: V + j omega is kept
+        V = omega = (V + case.scene.j * omega) / (1.0 + case.scene.j)
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
     slip, limit = omega - V, creep_limit(V, case.scene) * V
     sigma = 1.0 if slip >= 0.0 else -1.0
-    if V == 0.0 or abs(slip) >= limit:
-        # at V = 0 the frame is that which V turns to
-        frame = Frame(True, direction, sigma, 0.0, False)
-        if V == 0.0 and here(State(V, omega), frame, clock, case)[1].V_rate < 0.0:
-            direction, omega, sigma = -direction, -omega, -sigma
-        return State(V, omega), Frame(True, direction, sigma, 0.0, False)
-    return State(V, slip / limit), Frame(False, direction, sigma, 0.0, False)
+    state, frame = State(V, omega), Frame(True, direction, sigma, 0.0, False)
+    if V == 0.0:  # the frame is that which V turns to
+        return (*(turned(state, frame) if here(state, frame, clock, case)[1].V_rate < 0.0 else (state, frame)), False)
+    on_edge = abs(abs(slip) - limit) <= _ON_EDGE * max(V, abs(omega))
+    inside, stick = State(V, sigma if on_edge else slip / limit), Frame(False, direction, sigma, 0.0, False)
+    if on_edge:
+        on_edge = sigma * here(inside, stick, clock, case)[1].rate < 0.0
+    elif abs(slip) < limit:
+        return inside, stick, False
+    return (inside, stick, True) if on_edge else (state, frame, False)
 
 
 @kernel
@@ -124,9 +128,9 @@ def unresolved(state, frame, clock, case):
 
 
 @kernel
-def follow(moving, state, frame, clock, case):
+def follow(moving, fresh, state, frame, clock, case):
     """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
-    onset_time, turns, noted, fresh = np.nan, 0, 0, False
+    onset_time, turns, noted = np.nan, 0, 0
     regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
     while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
@@ -198,8 +202,9 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     case = Case(scene, drive, limits, tau, out, gamma, asked, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), V0 != 0.0 or omega0 != 0.0
+    fresh = False
     if moving:
-        state, frame = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
+        state, frame, fresh = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
         state, frame = at_new_piece(state, frame, clock, case)
-    status, clock, turns, onset_time, rest_time = follow(moving, state, frame, clock, case)
+    status, clock, turns, onset_time, rest_time = follow(moving, fresh, state, frame, clock, case)
     return status, clock.steps, turns, onset_time, rest_time
