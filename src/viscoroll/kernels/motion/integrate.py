@@ -46,7 +46,9 @@ _ON_EDGE = 4e-16
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
 #: V from which on no panel need set out in partial slip: it counts as 0 where none can
-_STILL = 1e-85
+_STILL = 1e-190
+#: length of the panel behind that, over the time so far
+_SETTLING = 1e-11
 #: share of the length of panels that is kept where the law bends at delta = 0
 _PAST = 0.3
 
@@ -62,8 +64,10 @@ def enter(V, omega, clock, case):
     slip, limit = omega - V, creep_limit(V, case.scene) * V
     sigma = 1.0 if slip >= 0.0 else -1.0
     state, frame = State(V, omega), Frame(True, direction, sigma, 0.0, False)
-    if V == 0.0:  # the frame is that which V turns to
-        return (*(turned(state, frame) if here(state, frame, clock, case)[1].V_rate < 0.0 else (state, frame)), False)
+    if V == 0.0:
+        if here(state, frame, clock, case)[1].V_rate < 0.0:  # the frame is that which V turns to
+            state, frame = turned(state, frame)
+        return state, frame, False
     on_edge = abs(abs(slip) - limit) <= _ON_EDGE * max(V, abs(omega))
     inside, stick = State(V, sigma if on_edge else slip / limit), Frame(False, direction, sigma, 0.0, False)
     if on_edge:
@@ -90,8 +94,14 @@ def stay(clock, case):
         closed = until == case.tau[case.tau.size - 1]
         clock = put_still(until, closed, _still_regime(clock, case), clock, case)
         return kind, state, frame, clock
-    clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, 0.0)
+    clock = clock_at(0.0, clock)
     return kind, State(0.0, d if kind == STICKS else 0.0), frame, clock
+
+
+@kernel(inline=True)
+def clock_at(length, clock):
+    """The same clock, with this length to try."""
+    return Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, length)
 
 
 @kernel
@@ -120,17 +130,38 @@ def rests(moving, state, frame, clock, case):
 
 @kernel
 def unresolved(state, frame, clock, case):
-    """Whether V is so small that d relaxes within the rounding of time, or of panels: then it may as well be 0."""
+    """Whether d relaxes within the rounding of time: then it may as well have come to where it does."""
     if frame.slips:
         return False
     _, rates = here(state, frame, clock, case)
-    return state.V < max(_ROUNDING * clock.tau * abs(rates.rate_second), _STILL)
+    return state.V < _ROUNDING * clock.tau * max(abs(rates.rate_second), abs(rates.rate))
+
+
+@kernel
+def settled(state, frame, clock, case):
+    """(State, frame) once d has relaxed at a time: p stays as it is."""
+    load, rates = here(state, frame, clock, case)
+    p, d, low, high = rates.p, 0.0, -1.0, 1.0
+    while low < d < high:
+        delta = creep_limit(state.V, case.scene) * d
+        state = State(p / (load.per_omega + load.per_V * (1.0 + delta)), d)
+        frame = Frame(False, frame.direction, 1.0 if d >= 0.0 else -1.0, frame.spin, frame.locked)
+        if here(state, frame, clock, case)[1].rate > 0.0:
+            low = d
+        else:
+            high = d
+        d = 0.5 * (low + high)
+    if 1.0 - abs(d) > _ON_EDGE:
+        return state, frame
+    return State(state.V, state.V * (1.0 + creep_limit(state.V, case.scene) * frame.sigma)), Frame(
+        True, frame.direction, frame.sigma, frame.spin, frame.locked
+    )
 
 
 @kernel
 def follow(moving, fresh, state, frame, clock, case):
     """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
-    onset_time, turns, noted = np.nan, 0, 0
+    onset_time, turns, noted, settled_at = np.nan, 0, 0, -1.0
     regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
     while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
@@ -158,8 +189,11 @@ def follow(moving, fresh, state, frame, clock, case):
         else:
             event, state, frame, clock = phase(fresh, state, frame, clock, case)
         fresh = event == EDGE and frame.slips
-        if event == STUCK and unresolved(state, frame, clock, case):
-            moving = False
+        if event == STUCK and clock.tau > settled_at and unresolved(state, frame, clock, case):
+            settled_at, moving = clock.tau, state.V > _STILL
+            if moving:
+                state, frame = settled(state, frame, clock, case)
+                clock = clock_at(_SETTLING * clock.tau, clock)
             continue
         if event == STUCK:
             return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
@@ -171,8 +205,7 @@ def follow(moving, fresh, state, frame, clock, case):
         if event != NO_EVENT:
             state, frame, still = switch(event, state, frame, clock, case)
             moving = not still
-            length = _PAST * clock.length if event == KINK else 0.0
-            clock = Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, length)
+            clock = clock_at(_PAST * clock.length if event == KINK else 0.0, clock)
         if moving and regime >= 0 and frame.direction != direction:
             noted = note(REVERSED, noted, clock, case)
         now = regime_of(frame) if moving else _still_regime(clock, case)

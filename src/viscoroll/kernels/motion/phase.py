@@ -26,7 +26,7 @@ _MOST_REJECTIONS = 60
 #: V at the end of a panel, over that at its start, from which on V = 0 is sought
 _NEARLY = 0.2
 #: V that stands for 0
-NO_SPEED = 1e-90
+NO_SPEED = 1e-200
 #: octaves from the first row of a law to the rate of its longest time
 _ROWS_BELOW = 4
 #: error over the tolerance up to which a panel shows where its regime ends
@@ -73,8 +73,8 @@ def _rise_time(rise, clock, frame, case):
 
 @kernel(inline=True)
 def shortest_time(law):
-    """Of relaxation, weighted by the strengths of the modes."""
-    return (law.alpha - 1.0) / (law.alpha * law.alpha * law.W) if law.W > 0.0 else 0.0
+    """Of relaxation, weighted by the strengths of the modes; infinite of elastic bodies, whose law does not bend."""
+    return (law.alpha - 1.0) / (law.alpha * law.alpha * law.W) if law.W > 0.0 else np.inf
 
 
 @kernel
@@ -217,7 +217,7 @@ def phase(fresh, state, frame, clock, case):
         left = end - clock.tau
         panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or state.V > NO_SPEED, alone)
         zero = _pace_to_zero(panel, state, frame, case)
-        aimed = zero < panel.length and rejected == 0
+        aimed = zero <= panel.length and rejected == 0
         if zero < panel.length:
             panel = Panel(panel.tau, zero, power, panel.piece, panel.known, alone)
         event, v, panel, size, track = _attempt(panel, left, aimed, track, frame, case)

@@ -13,7 +13,7 @@ from .rates import rates_at
 from .records import EDGE, KINK, NEITHER, SPEED, STOP, TURN, Frame, State
 
 #: V at the end of a panel, over that at its start, below which it is 0 there
-_CLOSED = 1e-7
+_CLOSED = 1e-14
 #: what rounding leaves of a prescribed speed that has come to 0, over what it has changed by
 _DRIFT = 1e-12
 #: what an event may be off by, over rtol
