@@ -144,7 +144,6 @@ def test_motion(scene, V0, omega0, t, rtol, rest, method):
         (vr.Scene(2.0, 1e5, 1.0, 1.0, 1.0), 1e99, 1e99, 1.0),  # an infinite path
     ],
 )
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one engine")
 def test_motion_of_long_contacts_and_at_the_largest_speeds(scene, V0, omega0, t):
     many = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-11, max_steps=STEPS, fields=("x",))
     assert set(many.status) <= ENDED

@@ -143,7 +143,6 @@ WITHIN_ROUNDING = {
 
 
 @pytest.mark.parametrize("name", WITHIN_ROUNDING)
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one engine")
 def test_layers_within_the_rounding_of_time(name):
     """Panels that resolve the layer are shorter than what t can tell: steps too small, where V has long been known."""
     scene, (V0, omega0), torque, end = WITHIN_ROUNDING[name]

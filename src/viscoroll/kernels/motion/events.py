@@ -5,7 +5,8 @@ from __future__ import annotations
 from ..compile.jit import kernel
 from .collocation import NODES, N, rise_at, rise_terms
 from .load import BRAKE
-from .nodes import DRIVE, EVENT, OF_EVENT, SPEED, V
+from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V
+from .rates import creep_limit
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
@@ -20,6 +21,8 @@ _NOISE = 1e-13
 #: v up to which the interpolant is followed beyond the panel, and from which on nothing was found there
 _BEYOND = 3.0
 NOWHERE = 2.99
+#: step of the slope by which a place is found closer, how often, and how far it may move
+_ASIDE, _STEPS, _NEAR_BY = 1e-3, 5, 0.1
 
 
 @kernel
@@ -98,6 +101,27 @@ def place_of(event, node, work):
         else:
             high = middle
     return 0.5 * (low + high)
+
+
+@kernel
+def located(event, v, frame, case):
+    """The same place by the function itself where that is no polynomial of the unknowns: the edge in full slip, and
+    omega in partial slip."""
+    if not ((event == EDGE and frame.slips) or (event == STOP and not frame.slips)):
+        return v
+    nodes, powers = case.work.nodes, case.work.powers
+    rise_terms(nodes[EVENT + event], powers, OF_EVENT)
+    slope = (rise_at(v + _ASIDE, powers, OF_EVENT) - rise_at(v - _ASIDE, powers, OF_EVENT)) / (2.0 * _ASIDE)
+    for _ in range(_STEPS):
+        speed, second = nodes[V, 0] + rise_at(v, powers, OF_V), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND)
+        limit = creep_limit(speed, case.scene)
+        off = frame.spin * speed * (1.0 + limit * second)
+        if frame.slips:
+            off = frame.sigma * (second - speed) - limit * abs(speed)
+        if not abs(off) < _NEAR_BY * abs(slope):
+            break
+        v = min(max(v - off / slope, 0.0), 2.0)
+    return v
 
 
 @kernel

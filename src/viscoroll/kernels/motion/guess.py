@@ -79,7 +79,8 @@ def _set_out_from_rest(panel, frame, case):
     sticks, d = departing(load, frame.spin, case.scene)
     if not sticks:
         d = nodes[SECOND, 0]
-    late = max(rates_at(0.0, d, load, frame, case.scene).V_rate, 0.0)
+    rates = rates_at(0.0, d, load, frame, case.scene)
+    late = max(rates.p_rate / rates.p_V, 0.0)
     for i in range(1, N + 1):
         share = SHARES[i]
         mean = nodes[V_RATE, 0] + 0.5 * share * (late - nodes[V_RATE, 0])

@@ -45,8 +45,8 @@ _TINY = 1e-150
 _ON_EDGE = 4e-16
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
-#: V from which on no panel need set out in partial slip: it counts as 0 where none can
-_STILL = 1e-190
+#: speeds that count as 0 where something drives, or will
+_STILL = 1e-75
 #: length of the panel behind that, over the time so far
 _SETTLING = 1e-11
 #: share of the length of panels that is kept where the law bends at delta = 0
@@ -190,7 +190,7 @@ def follow(moving, fresh, state, frame, clock, case):
             event, state, frame, clock = phase(fresh, state, frame, clock, case)
         fresh = event == EDGE and frame.slips
         if event == STUCK and clock.tau > settled_at and unresolved(state, frame, clock, case):
-            settled_at, moving = clock.tau, state.V > _STILL
+            settled_at, moving = clock.tau, state.V > _STILL or undriven(clock.piece, case.drive)
             if moving:
                 state, frame = settled(state, frame, clock, case)
                 clock = clock_at(_SETTLING * clock.tau, clock)
@@ -236,6 +236,8 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), V0 != 0.0 or omega0 != 0.0
     fresh = False
+    if max(abs(V0), abs(omega0)) < _STILL and not undriven(0, drive):
+        moving = False
     if moving:
         state, frame, fresh = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
         state, frame = at_new_piece(state, frame, clock, case)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .collocation import N, rise_at
-from .events import NOWHERE, ends_on, first_event, goes_behind, passed_over, place_of
+from .events import NOWHERE, ends_on, first_event, goes_behind, located, passed_over, place_of
 from .load import load_at, piece_end, undriven
 from .nodes import OF_SECOND, OF_V, RATE, SECOND, SLOPE, SPEED, V_RATE, Panel, V, put_events, put_node
 from .origin import departing
@@ -62,8 +62,8 @@ def _rise_time(rise, clock, frame, case):
     soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[V_RATE, 0]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
     _, d = departing(load, frame.spin, case.scene)
-    later = rates_at(0.0, d if d != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene).V_rate
-    pace, gain = max(pace, 0.0), (later - pace) / soon
+    later = rates_at(0.0, d if d != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene)
+    pace, gain = max(pace, 0.0), (later.p_rate / later.p_V - pace) / soon
     square = pace**2 + 2.0 * gain * rise
     if square < 0.0:  # it does not rise so far, and falls from here on
         return -pace / gain
@@ -146,7 +146,7 @@ def _attempt(panel, left, aimed, track, frame, case):
         # partial slip does not go on beyond V = 0, and |V| in the edge and in the speeds of full slip has a kink there
         kinked = behind and (not frame.slips or found == EDGE or found == SLOW)
         if found != NO_EVENT and size <= 1.0 and not kinked and found != TURN:
-            return event, v, panel, size, track
+            return event, located(event, v, frame, case), panel, size, track
         if found == NO_EVENT:
             v = place_of(event, 0, case.work)
             if v >= NOWHERE:  # nowhere near
@@ -186,7 +186,9 @@ def _begin(state, frame, clock, case):
     nodes[V, 0], nodes[SECOND, 0] = state.V, state.second
     rates = rates_at(state.V, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
     put_node(0, rates, 1.0, nodes)
-    nodes[V_RATE, 0], nodes[SLOPE, 0] = rates.V_rate, rates.rate_second / rates.weight
+    # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
+    nodes[V_RATE, 0] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.p_V
+    nodes[SLOPE, 0] = rates.rate_second / rates.weight
     if not frame.slips and state.second == 0.0 and frame.sigma * rates.rate < 0.0:
         # both branches say the same here
         return Frame(False, frame.direction, -frame.sigma, frame.spin, frame.locked)

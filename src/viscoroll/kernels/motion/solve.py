@@ -68,12 +68,17 @@ def _creep_weight(share):
 @kernel(inline=True)
 def scales(panel, frame, case):
     """(Of V, of the second unknown): what errors are measured by; speeds by the largest of the panel."""
-    nodes, fastest, own = case.work.nodes, 0.0, 0.0
+    nodes, fastest, own, moved = case.work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
         fastest, own = max(fastest, nodes[SPEED, i]), max(own, abs(nodes[V, i]))
+    fastest = max(fastest, own)
     if frame.slips:
         return own if panel.alone else fastest, fastest
-    return fastest, 1.0 / max(_creep_weight(nodes[SECOND, N]), 0.5 * case.scene.mu / case.scene.kappa)
+    # an error of d is one of omega, and of V where p is given
+    for i in range(1, N + 1):
+        moved = max(moved, abs(nodes[P_SECOND, i] * nodes[PER_P, i]))
+    by_speed = max(moved / fastest, 0.5 * case.scene.mu / case.scene.kappa)
+    return fastest, 1.0 / max(_creep_weight(nodes[SECOND, N]), by_speed)
 
 
 @kernel(inline=True)
@@ -120,14 +125,14 @@ def _newton(anew, panel, frame, case):
     for i in range(N):
         second_right[i] -= nodes[COUPLED, i + 1] * right[i]
     substitute(work.second_matrix, second_right, N)
-    of_V, of_second = scales(panel, frame, case)
-    change = 0.0 * (right[0] + second_right[0])  # a NaN is in all of them, and lost in any other argument of max
+    change, rise = 0.0 * (right[0] + second_right[0]), 0.0  # a NaN is in all of them, and lost in any other place
     for i in range(N):
-        rise = (right[i] - nodes[P_SECOND, i + 1] * second_right[i]) * nodes[PER_P, i + 1]
-        change = max(change, abs(rise) / of_V, abs(second_right[i]) / of_second)
-        nodes[V, i + 1] += rise
+        right[i] = (right[i] - nodes[P_SECOND, i + 1] * second_right[i]) * nodes[PER_P, i + 1]
+        rise, change = max(rise, abs(right[i])), max(change, abs(second_right[i]))
+        nodes[V, i + 1] += right[i]
         nodes[SECOND, i + 1] += second_right[i]
-    return change
+    of_V, of_second = scales(panel, frame, case)
+    return max(rise / of_V, change / of_second)
 
 
 @kernel(inline=True)
