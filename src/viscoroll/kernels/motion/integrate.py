@@ -42,7 +42,7 @@ from .switch import at_new_piece, here, switch, turned
 #: speed over the larger one below which V counts as 0 at the start
 _TINY = 1e-150
 #: distance from the edge of the stick zone, over the speeds, that is rounding
-_ON_EDGE = 4e-16
+_ON_EDGE = 2e-14
 #: time of relaxation over the time so far that no panel can follow
 _ROUNDING = 1e-13
 #: speeds that count as 0 where something drives, or will
@@ -151,7 +151,7 @@ def settled(state, frame, clock, case):
         else:
             high = d
         d = 0.5 * (low + high)
-    if 1.0 - abs(d) > _ON_EDGE:
+    if low > -1.0 and high < 1.0:
         return state, frame
     return State(state.V, state.V * (1.0 + creep_limit(state.V, case.scene) * frame.sigma)), Frame(
         True, frame.direction, frame.sigma, frame.spin, frame.locked

@@ -14,11 +14,17 @@ speeds back.  dp/dd = per_V V k L is small: Newton's matrix falls into one of p 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from ..compile.jit import kernel
-from ..rows.law import body_slopes, bodies, place, press_slopes, speed_seconds
+from ..compile.rarely import rarely
+from ..rows.law import bodies, body_slopes, place, press_secant, press_slopes, speed_seconds
 from .load import acting
+
+
+#: d from which on Q, as the difference of 1 and what is left to stick, has digits enough
+_SLIGHT = 1e-4
 
 
 class Rates(NamedTuple):
@@ -79,9 +85,14 @@ def stick_rates(V, d, load, frame, scene):
     Q, Q_V, Q_d = sign * mu, 0.0, 0.0
     if w > 0.0:
         v = 2.0 * u / w
-        press, slope = press_slopes(place(v, law), v, law)
+        at = place(v, law)
+        press, slope = press_slopes(at, v, law)
         A = press - 0.5 * v * slope
         Q *= 1.0 - w * w * press
+        if rarely(abs(d) < _SLIGHT):  # no digits cancel
+            D = abs(d) * L
+            press, rise = press_secant(at, place(2.0 * u / L, law), v, D / w, law)
+            Q = math.copysign(mu, d) * D * ((2.0 * L - D) * press - v * L * rise)
         Q_V, Q_d = -2.0 * sign * mu * w * (A * left * dL + slope) * turn, 2.0 * mu * w * L * A
     spread = L + u * dL
     omega, omega_V, omega_d = V * (1.0 + k * L * d), 1.0 + k * d * spread, k * V * L
