@@ -200,7 +200,8 @@ def follow(moving, fresh, state, frame, clock, case):
         if event == SLOW:
             if regime >= 0 and regime != REST:
                 turns, noted = turns + 1, note(REST, noted, clock, case)
-            rest_time = clock.tau / case.gamma
+            rest_time, omega = clock.tau / case.gamma, speeds(state, frame, case.scene)[0]
+            case.work.totals[PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
             return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
         if event != NO_EVENT:
             state, frame, still = switch(event, state, frame, clock, case)

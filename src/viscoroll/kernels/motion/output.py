@@ -166,19 +166,18 @@ def coast(state, frame, clock, case):
     fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), case.limits.rest, np.inf
     if rest > 0.0:
         end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
-    start = clock.tau
+    energy = 0.5 * (1.0 + scene.j) * state.V * state.V
     for at in range(clock.at, case.tau.size):
         moves = case.tau[at] <= end
-        since = min(case.tau[at], end) - start
-        decay = np.exp(-rate * since)
-        way = -state.V * np.expm1(-rate * since) / rate
-        V = state.V * decay if moves else 0.0
-        delta = creep * decay if moves else 0.0
-        regime = PARTIAL if moves else REST
-        _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), regime, out)
+        gone = np.expm1(-rate * (min(case.tau[at], end) - clock.tau))
+        decay = 1.0 + gone if gone > -0.5 else np.exp(-rate * (case.tau[at] - clock.tau))
+        V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
+        _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), PARTIAL if moves else REST, out)
         _put_acting(at, 0.0, 0.0, out)
+        way = -direction * state.V * gone / rate
         for n in range(PATHS):
-            _put_path(at, n, totals[n] + (direction * way if n < 2 else 0.0), case)
+            _put_path(at, n, totals[n] + (way if n < 2 else 0.0), case)
+        _put_path(at, PATHS - 1, totals[PATHS - 1] + energy * (1.0 - decay * decay if moves else 1.0), case)
     last = case.tau[case.tau.size - 1]
     clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
     return clock, end / case.gamma if end <= last else np.nan
