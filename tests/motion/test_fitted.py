@@ -129,12 +129,12 @@ def test_speeds_prescribed_by_callables(name):
     """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""
     t = np.linspace(0.0, END, 41)
     exact = np.array([CALLABLES[name](one) for one in t])
-    best = vr.roll(ROLLER, 0.0, None, t, 1e-10, omega=CALLABLES[name])
+    best = vr.roll(ROLLER, 0.0, None, t, 1e-12, omega=CALLABLES[name])
     for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
         m = vr.roll(ROLLER, 0.0, None, t, rtol, omega=CALLABLES[name])
         assert m.status == vr.MotionStatus.DONE
         assert m.steps < tol.CALLABLE_STEPS
-        assert close(m.omega, exact, rel=rtol, scale=np.abs(exact).max())
+        assert close(m.omega, exact, rel=3.0 * rtol, scale=np.abs(exact).max())
         assert close(m.V, best.V, rel=3.0 * rtol, scale=np.abs(exact).max())
 
 

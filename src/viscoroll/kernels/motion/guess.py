@@ -26,7 +26,7 @@ def guess(panel, slope, track, frame, case):
     ``slope`` : over tau at which the second unknown relaxes.
     """
     alike = panel.tau > track.tau or panel.length > _SHORT * track.length
-    if alike and panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
+    if alike and track.length > 0.0 and panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
         _follow(panel, track, frame, case.work)
     elif frame.slips and case.work.nodes[SPEED, 0] == 0.0:
         _slide_out(panel, frame, case)

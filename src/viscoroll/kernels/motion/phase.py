@@ -209,6 +209,7 @@ def phase(fresh, state, frame, clock, case):
     """Follow a regime: (event, state, frame, clock).  ``fresh``: the stick zone has just formed."""
     nodes, powers, limits = case.work.nodes, case.work.powers, case.limits
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
+    length = max(length, _INSTANT * clock.tau) if length > 0.0 else length
     power = _GRADED if fresh else 1
     alone = undriven(clock.piece, case.drive)
     track = Panel(clock.tau, 0.0, 1, clock.piece, False, alone)

@@ -77,8 +77,8 @@ def scales(panel, frame, case):
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
         moved = max(moved, abs(nodes[P_SECOND, i] * nodes[PER_P, i]))
-    by_speed = max(moved / fastest, 0.5 * case.scene.mu / case.scene.kappa)
-    return fastest, 1.0 / max(_creep_weight(nodes[SECOND, N]), by_speed)
+    moved = max(moved, 0.5 * case.scene.mu / case.scene.kappa * own) / fastest
+    return fastest, 1.0 / max(_creep_weight(nodes[SECOND, N]), moved)
 
 
 @kernel(inline=True)
