@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..compile.jit import kernel
 from .collocation import NODES, N, rise_at, rise_terms
 from .load import BRAKE
-from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V
+from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, may_end
 from .rates import creep_limit
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
@@ -41,14 +41,14 @@ def _node_of(event, last, nodes):
 
 
 @kernel(inline=True)
-def first_event(work):
+def first_event(panel, frame, work):
     """(Event whose function falls below 0 first, v there); NO_EVENT for none.
 
     Between the same two nodes the interpolants tell which comes first: behind V = 0 no other counts.
     """
     event, last, v = NO_EVENT, N, 2.0
     for row in range(EVENTS):
-        node = _node_of(row, last, work.nodes)
+        node = _node_of(row, last, work.nodes) if may_end(row, panel, frame) else 0
         if node == 0:
             continue
         here = place_of(row, node, work)
@@ -67,12 +67,13 @@ def goes_behind(nodes):
 
 
 @kernel(inline=True)
-def passed_over(frame, case):
+def passed_over(panel, frame, case):
     """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
     the first of them; NO_EVENT for none."""
     nodes = case.work.nodes
     for row in range(EVENTS):
-        if row == SLOW or (row == EDGE and not frame.slips):  # full slip is a case of the equations of partial slip
+        # full slip is a case of the equations of partial slip
+        if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame):
             continue
         most, scale = nodes[EVENT + row, 0], _scale(row, nodes)
         if row == TURN:

@@ -101,6 +101,12 @@ def goes_on(piece, pieces):
     return True
 
 
+@kernel(inline=True)
+def varies(piece, drive):
+    """Whether the drive is not written as a constant within a piece."""
+    return terms_of(drive.pieces[piece]) > 1
+
+
 @kernel
 def brakes(piece, pieces):
     """Whether there is a brake within a piece, if only later on."""

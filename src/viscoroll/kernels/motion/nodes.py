@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..compile.fma import fma
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, SLOPES, N
-from .load import FUNCTIONS, load_of, needed, threshold, values_at
+from .load import FUNCTIONS, load_of, needed, values_at, varies
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 
 #: rows of the values at the nodes: unknowns; rates of p and of the second, and of V at node 0; speed scale, Q and parts
@@ -34,6 +34,7 @@ class Panel(NamedTuple):
 
     known : whether the slope of the second unknown at the left end is
     alone : whether nothing drives from there on: V is measured by its own size
+    rest : speed below which the motion ends at rest; 0 for none
     """
 
     tau: float
@@ -42,6 +43,7 @@ class Panel(NamedTuple):
     piece: int
     known: bool
     alone: bool
+    rest: float
 
 
 @kernel(inline=True)
@@ -61,8 +63,11 @@ def time_at(panel, i):
 def put_drive(panel, case):
     """Fill the drive at all nodes."""
     nodes = case.work.nodes
+    values = values_at(panel.tau, panel.piece, case.drive)
+    changes = varies(panel.piece, case.drive)
     for i in range(N + 1):
-        values = values_at(time_at(panel, i), panel.piece, case.drive)
+        if changes:
+            values = values_at(time_at(panel, i), panel.piece, case.drive)
         nodes[DRIVE, i], nodes[DRIVE + 1, i], nodes[DRIVE + 2, i], nodes[DRIVE + 3, i] = values
 
 
@@ -84,20 +89,31 @@ def put_node(i, rates, weight, nodes):
 
 
 @kernel(inline=True)
+def may_end(event, panel, frame):
+    """Whether an event may end this regime here."""
+    if event == KINK:
+        return not frame.slips
+    if event == STOP:
+        return frame.spin != 0.0 and not frame.locked
+    return frame.locked if event == FREED else event != SLOW or panel.rest > 0.0
+
+
+@kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
-    nodes, rest = case.work.nodes, threshold(panel.piece, case)
+    nodes = case.work.nodes
     for i in range(N + 1):
-        omega = nodes[OF_OMEGA, i]
-        nodes[EVENT + KINK, i] = 1.0 if frame.slips else frame.sigma * nodes[SECOND, i] + FAINT
         nodes[EVENT + TURN, i] = nodes[V, i]
-        nodes[EVENT + STOP, i] = frame.spin * omega if frame.spin != 0.0 and not frame.locked else 1.0
-        nodes[EVENT + SLOW, i] = nodes[SPEED, i] - rest if rest > 0.0 else 1.0
-        nodes[EVENT + FREED, i] = 1.0
+        if not frame.slips:
+            nodes[EVENT + KINK, i] = frame.sigma * nodes[SECOND, i] + FAINT
+        if frame.spin != 0.0:
+            nodes[EVENT + STOP, i] = frame.spin * nodes[OF_OMEGA, i]
+        if panel.rest > 0.0:
+            nodes[EVENT + SLOW, i] = nodes[SPEED, i] - panel.rest
         if frame.locked:  # of squares: smooth where what the brake takes changes its sign
             load = load_there(i, frame, case)
             moments = nodes[OF_Q, i], nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i]
-            _, _, brake = needed((nodes[V, i], omega), moments, load, frame, case.scene.j)
+            _, _, brake = needed((nodes[V, i], nodes[OF_OMEGA, i]), moments, load, frame, case.scene.j)
             nodes[EVENT + FREED, i] = load.brake * load.brake - brake * brake
 
 

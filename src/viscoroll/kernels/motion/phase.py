@@ -130,9 +130,9 @@ def _attempt(panel, left, aimed, track, frame, case):
         if not size <= _CUTTABLE:
             break
         put_events(panel, frame, case)
-        found, v = first_event(case.work)
+        found, v = first_event(panel, frame, case.work)
         behind = goes_behind(nodes)
-        missed = passed_over(frame, case)
+        missed = passed_over(panel, frame, case)
         if missed != NO_EVENT and panel.length <= _INSTANT * (panel.tau + left):
             return missed, 2.0, panel, min(size, 1.0), track
         if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):
@@ -155,7 +155,7 @@ def _attempt(panel, left, aimed, track, frame, case):
         if not (size <= 1.0 or longest == left) or not 0.0 < length < np.inf or length == panel.length:
             return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
         longest = panel.length if found != NO_EVENT else longest
-        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.known, panel.alone)
+        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.known, panel.alone, panel.rest)
     return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
 
 
@@ -212,17 +212,18 @@ def phase(fresh, state, frame, clock, case):
     length = max(length, _INSTANT * clock.tau) if length > 0.0 else length
     power = _GRADED if fresh else 1
     alone = undriven(clock.piece, case.drive)
-    track = Panel(clock.tau, 0.0, 1, clock.piece, False, alone)
+    rest = limits.rest if alone else 0.0
+    track = Panel(clock.tau, 0.0, 1, clock.piece, False, alone, rest)
     while clock.tau < end and clock.steps < limits.max_steps and not (alone and creeps(state, frame, case)):
         frame = _begin(state, frame, clock, case)
         if length == 0.0:
             length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
-        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or state.V > NO_SPEED, alone)
+        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or state.V > NO_SPEED, alone, rest)
         zero = _pace_to_zero(panel, state, frame, case)
         aimed = zero <= panel.length and rejected == 0
         if zero < panel.length:
-            panel = Panel(panel.tau, zero, power, panel.piece, panel.known, alone)
+            panel = Panel(panel.tau, zero, power, panel.piece, panel.known, alone, rest)
         event, v, panel, size, track = _attempt(panel, left, aimed, track, frame, case)
         wanted, length = length, _next_length(panel, size, rejected, last, last_size)
         length = max(length, wanted) if size <= 1.0 and panel.length == left else length
