@@ -207,7 +207,9 @@ def _integrate_others(
 def _by_law(scene: Scene, which: NDArray[np.int64]) -> Iterator[tuple[LawTable, NDArray[np.int64]]]:
     """Motions of one law after the other."""
     if scene.material is None and np.ndim(scene.alpha):
-        alpha = np.broadcast_to(np.ravel(scene.alpha), (max(int(which.max(initial=0)) + 1, np.size(scene.alpha)),))[which]
+        alpha = np.broadcast_to(np.ravel(scene.alpha), (max(int(which.max(initial=0)) + 1, np.size(scene.alpha)),))[
+            which
+        ]
         for one in np.unique(alpha):
             yield law_table(float(one)), which[alpha == one]
     elif np.ndim(scene.alpha):

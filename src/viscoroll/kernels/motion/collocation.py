@@ -1,4 +1,8 @@
-"""Radau IIA collocation on [-1, 1], with the left end as node 0: nodes, matrices, interpolants."""
+"""Radau IIA collocation on [-1, 1], with the left end as node 0: nodes, matrices, interpolants.
+
+What a panel holds of its eight nodes is a row of eight numbers, two vectors of four; a matrix is eight of these, its
+columns one after the other.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +12,14 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..numerics.arrays import fill
+from ..numerics.four import LANES, add, fused, load, multiply, spread, store
 from ..numerics.nodes import Interpolation, radau
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
 N = 7
+#: numbers of a row
+WIDE = N + 1
+assert WIDE == 2 * LANES
 
 
 _INNER = Interpolation(radau(N, 1))
@@ -20,57 +27,97 @@ _ALL = Interpolation((Decimal(-1), *_INNER.exact))
 NODES = _ALL.nodes
 #: how far along a panel the nodes lie
 SHARES = 0.5 * (1.0 + NODES)
-#: values at all nodes to the coefficients of powers, node by node
-_BY_NODE = np.ascontiguousarray(_ALL.powers().T)
-#: values at all nodes to slopes at nodes 1 ... N
-SLOPES = _ALL.slopes(_INNER.exact)
 #: values at nodes 1 ... N to the integral from -1 to 1, and to the value at -1
 INTEGRAL = _INNER.integrals(_INNER.exact)[N - 1].copy()
 TO_START = _INNER.values([Decimal(-1)])[0]
 
 
-@kernel
-def _fit_terms(values, first, powers):
-    """Coefficients of the interpolant of all nodes less ``first``; the sums of all powers side by side."""
-    fill(0.0, powers)
-    for i in range(N + 1):
-        rise = values[i] - first
-        for k in range(N + 1):
-            powers[k] = fma(_BY_NODE[i, k], rise, powers[k])
+def _divided(powers: np.ndarray) -> np.ndarray:
+    """Coefficients of polynomials that vanish at -1, [power, which], divided by 1 + t."""
+    found, quotient = np.zeros_like(powers[1:]), 0.0
+    for k in range(len(powers) - 1, 0, -1):
+        found[k - 1] = quotient = powers[k] - quotient
+    return found
 
 
-@kernel
-def integral_terms(values, half, powers, row):
-    """Coefficients for :func:`rise_at` of the integral of the interpolant of all nodes, scaled by ``half``."""
-    _fit_terms(values, 0.0, powers[row])
-    for k in range(N, -1, -1):
-        powers[row, k + 1] = powers[row, k] * half / (k + 1.0)
-    _divide(powers, row)
+def _columns(matrix: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(matrix.T).ravel()
 
 
-@kernel
-def rise_terms(values, powers, row):
-    """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
-    _fit_terms(values, values[0], powers[row])
-    _divide(powers, row)
+#: values at all nodes to slopes there, of which that at node 0 is not asked for
+SLOPES = _columns(np.vstack([np.zeros(WIDE), _ALL.slopes(_INNER.exact)]))
+#: values at all nodes, less that at node 0, to what :func:`rise_at` takes
+_RISES = _columns(np.vstack([_divided(_ALL.powers()), np.zeros(WIDE)]))
+#: values at all nodes to the same of their integral
+_TO_INTEGRAL = _columns(_divided(np.vstack([np.zeros(WIDE), _ALL.powers() / np.arange(1.0, WIDE + 1.0)[:, None]])))
+
+
+_ONE = np.eye(WIDE).ravel()
 
 
 @kernel(inline=True)
-def _divide(powers, row):
-    """Divide by 1 + t a polynomial of degree N + 1 that vanishes at t = -1, whatever its first coefficient:
-    near the left end it would itself be a difference of large terms."""
-    quotient = 0.0
-    for k in range(N + 1, 0, -1):
-        term = powers[row, k]
-        powers[row, k] = quotient
-        quotient = term - quotient
-    powers[row, 0] = quotient
+def product(matrix, row, first, values, to, found):
+    """Put the product of a matrix with the ``row`` of values, less ``first``, where ``to`` says."""
+    low = high = spread(0.0)
+    for k in range(WIDE):
+        x = spread(values[row + k] - first)
+        low = fused(load(matrix, WIDE * k), x, low)
+        high = fused(load(matrix, WIDE * k + LANES), x, high)
+    store(found, to, low)
+    store(found, to + LANES, high)
+
+
+@kernel(inline=True)
+def weighted_slopes(weights, diagonal, nodes, matrix):
+    """The matrix of the slopes, rows times ``weights``, less a ``diagonal``; row and column of node 0 are 0."""
+    low, high = load(nodes, weights), load(nodes, weights + LANES)
+    for k in range(1, WIDE):
+        at, less = WIDE * k, spread(-nodes[diagonal + k])
+        store(matrix, at, fused(less, load(_ONE, at), multiply(load(SLOPES, at), low)))
+        store(matrix, at + LANES, fused(less, load(_ONE, at + LANES), multiply(load(SLOPES, at + LANES), high)))
+
+
+@kernel(inline=True)
+def invert(matrix):
+    """Put the inverse in place, without pivoting: what that spoils, Newton's convergence shows.
+
+    By vectors alone: one that is loaded behind a number that was just put into it waits for that.
+    """
+    for i in range(1, WIDE):
+        at = WIDE * i
+        pivot = 1.0 / matrix[at + i]
+        scale, rest = spread(pivot), spread(pivot - 1.0)
+        low, high = load(_ONE, at), load(_ONE, at + LANES)
+        a = fused(load(matrix, at), scale, multiply(rest, low))
+        b = fused(load(matrix, at + LANES), scale, multiply(rest, high))
+        low, high = add(a, low), add(b, high)
+        for k in range(1, WIDE):
+            if k != i:
+                less = spread(-matrix[WIDE * k + i])
+                store(matrix, WIDE * k, fused(less, low, load(matrix, WIDE * k)))
+                store(matrix, WIDE * k + LANES, fused(less, high, load(matrix, WIDE * k + LANES)))
+        store(matrix, at, a)
+        store(matrix, at + LANES, b)
+
+
+@kernel(inline=True)
+def rise_terms(row, nodes, to, powers):
+    """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
+    product(_RISES, row, nodes[row], nodes, to, powers)
+
+
+@kernel
+def integral_terms(row, half, nodes, to, powers):
+    """The same of the integral of the interpolant, scaled by ``half``."""
+    product(_TO_INTEGRAL, row, 0.0, nodes, to, powers)
+    for k in range(WIDE):
+        powers[to + k] *= half
 
 
 @kernel(inline=True)
 def rise_at(v, powers, row):
     """The rise, or the integral, in this row from the left end to v = 1 + t."""
     t, total = v - 1.0, 0.0
-    for k in range(N + 1, -1, -1):
-        total = fma(t, total, powers[row, k])
+    for k in range(WIDE - 1, -1, -1):
+        total = fma(t, total, powers[row + k])
     return v * total

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .collocation import NODES, N, rise_at, rise_terms
+from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
 from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, may_end
 from .rates import creep_limit
@@ -30,10 +30,10 @@ def _node_of(event, last, nodes):
     """Node up to the ``last`` at which an event's function first has fallen below 0; 0 for none."""
     largest = 0.0
     for i in range(N + 1):
-        largest = max(largest, nodes[EVENT + event, i])
-    inside = nodes[EVENT + event, 0] > _ROUNDING * largest
+        largest = max(largest, nodes[EVENT + WIDE * event + i])
+    inside = nodes[EVENT + WIDE * event] > _ROUNDING * largest
     for i in range(1, last + 1):
-        value = nodes[EVENT + event, i]
+        value = nodes[EVENT + WIDE * event + i]
         if value < 0.0 and inside and (event != EDGE or value < -_NOISE * _scale(event, nodes)):
             return i
         inside = inside or value > 0.0
@@ -62,7 +62,7 @@ def goes_behind(nodes):
     """Whether V is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
     least = 0.0
     for i in range(1, N + 1):
-        least = min(least, nodes[V, i])
+        least = min(least, nodes[V + i])
     return least < 0.0
 
 
@@ -75,12 +75,12 @@ def passed_over(panel, frame, case):
         # full slip is a case of the equations of partial slip
         if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame):
             continue
-        most, scale = nodes[EVENT + row, 0], _scale(row, nodes)
+        most, scale = nodes[EVENT + WIDE * row], _scale(row, nodes)
         if row == TURN:
-            scale = max(scale, nodes[SPEED, N])
+            scale = max(scale, nodes[SPEED + N])
         for i in range(1, N + 1):
-            most = max(most, nodes[EVENT + row, i])
-        if most <= _ROUNDING * scale and nodes[EVENT + row, N] < -_near(case.limits.rtol) * scale:
+            most = max(most, nodes[EVENT + WIDE * row + i])
+        if most <= _ROUNDING * scale and nodes[EVENT + WIDE * row + N] < -_near(case.limits.rtol) * scale:
             return row
     return NO_EVENT
 
@@ -90,8 +90,8 @@ def place_of(event, node, work):
     """v at which the interpolant of an event's function passes 0, before this node or, where that is 0, beyond the
     panel."""
     nodes, powers = work.nodes, work.powers
-    rise_terms(nodes[EVENT + event], powers, OF_EVENT)
-    start = nodes[EVENT + event, 0]
+    rise_terms(EVENT + WIDE * event, nodes, OF_EVENT, powers)
+    start = nodes[EVENT + WIDE * event]
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _BEYOND)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -111,10 +111,10 @@ def located(event, v, frame, case):
     if not ((event == EDGE and frame.slips) or (event == STOP and not frame.slips)):
         return v
     nodes, powers = case.work.nodes, case.work.powers
-    rise_terms(nodes[EVENT + event], powers, OF_EVENT)
+    rise_terms(EVENT + WIDE * event, nodes, OF_EVENT, powers)
     slope = (rise_at(v + _ASIDE, powers, OF_EVENT) - rise_at(v - _ASIDE, powers, OF_EVENT)) / (2.0 * _ASIDE)
     for _ in range(_STEPS):
-        speed, second = nodes[V, 0] + rise_at(v, powers, OF_V), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND)
+        speed, second = nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND)
         limit = creep_limit(speed, case.scene)
         off = frame.spin * speed * (1.0 + limit * second)
         if frame.slips:
@@ -130,11 +130,11 @@ def _scale(event, nodes):
     """What the function of an event is made of."""
     largest = 0.0
     for i in range(N + 1):
-        largest = max(largest, abs(nodes[EVENT + event, i]))
+        largest = max(largest, abs(nodes[EVENT + WIDE * event + i]))
         if event in (EDGE, STOP, SLOW):
-            largest = max(largest, nodes[SPEED, i])
+            largest = max(largest, nodes[SPEED + i])
         elif event == FREED:
-            largest = max(largest, nodes[DRIVE + BRAKE, i] * nodes[DRIVE + BRAKE, i])
+            largest = max(largest, nodes[DRIVE + WIDE * BRAKE + i] * nodes[DRIVE + WIDE * BRAKE + i])
     return largest
 
 
@@ -147,8 +147,8 @@ def _near(rtol):
 @kernel
 def ends_on(event, nodes, rtol):
     """Whether a panel ends on an event: its function has fallen to 0, and does not only set out from there."""
-    last, largest = nodes[EVENT + event, N], nodes[EVENT + event, 0]
+    last, largest = nodes[EVENT + WIDE * event + N], nodes[EVENT + WIDE * event]
     for i in range(1, N):
-        largest = max(largest, nodes[EVENT + event, i])
+        largest = max(largest, nodes[EVENT + WIDE * event + i])
     scale = _scale(event, nodes)
     return last < largest and largest > _NOISE * scale and abs(last) <= _near(rtol) * scale

@@ -28,7 +28,7 @@ def guess(panel, slope, track, frame, case):
     alike = panel.tau > track.tau or panel.length > _SHORT * track.length
     if alike and track.length > 0.0 and panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
         _follow(panel, track, frame, case.work)
-    elif frame.slips and case.work.nodes[SPEED, 0] == 0.0:
+    elif frame.slips and case.work.nodes[SPEED] == 0.0:
         _slide_out(panel, frame, case)
     elif panel.known:
         _set_out(panel, slope, frame, case.work.nodes)
@@ -46,8 +46,8 @@ def _along(tau, panel):
 @kernel(inline=True)
 def _keep(i, speed, second, slips, nodes):
     """Unknowns at a node; in partial slip V >= 0, |d| <= 1."""
-    nodes[V, i] = speed if slips else max(speed, 0.0)
-    nodes[SECOND, i] = second if slips else min(max(second, -1.0), 1.0)
+    nodes[V + i] = speed if slips else max(speed, 0.0)
+    nodes[SECOND + i] = second if slips else min(max(second, -1.0), 1.0)
 
 
 @kernel
@@ -55,7 +55,7 @@ def _follow(panel, track, frame, work):
     """Along the interpolants of a panel."""
     nodes, powers = work.nodes, work.powers
     start = _along(panel.tau, track)
-    speed, second = nodes[V, 0] - rise_at(start, powers, OF_V), nodes[SECOND, 0] - rise_at(start, powers, OF_SECOND)
+    speed, second = nodes[V] - rise_at(start, powers, OF_V), nodes[SECOND] - rise_at(start, powers, OF_SECOND)
     for i in range(1, N + 1):
         v = _along(time_at(panel, i), track)
         _keep(i, speed + rise_at(v, powers, OF_V), second + rise_at(v, powers, OF_SECOND), frame.slips, nodes)
@@ -64,11 +64,11 @@ def _follow(panel, track, frame, work):
 @kernel
 def _set_out(panel, slope, frame, nodes):
     """Unknowns at the nodes: V at its pace, the other on its way to where it comes to stand."""
-    pace = nodes[RATE, 0] if frame.slips else nodes[RATE, 0] / nodes[V, 0]
+    pace = nodes[RATE] if frame.slips else nodes[RATE] / nodes[V]
     for i in range(1, N + 1):
         since = panel.length * (SHARES[i] if panel.power == 1 else SHARES[i] ** panel.power)
         lasting = np.expm1(slope * since) / slope if slope < 0.0 and slope * since < -1e-8 else since
-        _keep(i, nodes[V, 0] + nodes[V_RATE, 0] * since, nodes[SECOND, 0] + pace * lasting, frame.slips, nodes)
+        _keep(i, nodes[V] + nodes[V_RATE] * since, nodes[SECOND] + pace * lasting, frame.slips, nodes)
 
 
 @kernel
@@ -78,13 +78,13 @@ def _set_out_from_rest(panel, frame, case):
     load = load_at(panel.tau + panel.length, panel.piece, frame, case)
     sticks, d = departing(load, frame.spin, case.scene)
     if not sticks:
-        d = nodes[SECOND, 0]
+        d = nodes[SECOND]
     rates = rates_at(0.0, d, load, frame, case.scene)
     late = max(rates.p_rate / rates.p_V, 0.0)
     for i in range(1, N + 1):
         share = SHARES[i]
-        mean = nodes[V_RATE, 0] + 0.5 * share * (late - nodes[V_RATE, 0])
-        _keep(i, mean * share * panel.length, nodes[SECOND, 0] + share * (d - nodes[SECOND, 0]), False, nodes)
+        mean = nodes[V_RATE] + 0.5 * share * (late - nodes[V_RATE])
+        _keep(i, mean * share * panel.length, nodes[SECOND] + share * (d - nodes[SECOND]), False, nodes)
 
 
 @kernel
@@ -96,6 +96,6 @@ def _slide_out(panel, frame, case):
     late = rates_at(0.0, 0.0, load, frame, case.scene)
     for i in range(1, N + 1):
         share, since = 0.5 * SHARES[i], SHARES[i] * panel.length
-        V_rate = nodes[V_RATE, 0] + share * (late.V_rate - nodes[V_RATE, 0])
-        rate = nodes[RATE, 0] + share * (late.rate - nodes[RATE, 0])
+        V_rate = nodes[V_RATE] + share * (late.V_rate - nodes[V_RATE])
+        rate = nodes[RATE] + share * (late.rate - nodes[RATE])
         _keep(i, V_rate * since, rate * since, True, nodes)

@@ -8,12 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .collocation import N
+from .collocation import WIDE
 from .load import brakes, goes_on, piece_end, threshold, undriven
-from .nodes import INTERPOLANTS, PATHS, ROWS
+from .nodes import INTERPOLANTS, NUMBERS, ONES, PATHS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
 from .output import coast, put_still, put_to_end, regime_of, speeds
-from .phase import NO_SPEED, creeps, phase
+from .phase import creeps, phase
 from .rates import creep_limit
 from .records import (
     DONE,
@@ -229,10 +229,10 @@ def integrate(scene, drive, gamma, V0, omega0, t, limits, sink):
     tau = np.empty(t.size)
     for i in range(tau.size):
         tau[i] = t[i] * gamma
-    work = Work(
-        np.empty((ROWS, N + 1)), np.empty((INTERPOLANTS, N + 2)), np.empty((N, N)), np.empty((N, N)), np.empty(N),
-        np.empty(N), np.zeros(PATHS),
-    )  # fmt: skip
+    nodes = np.zeros(NUMBERS)
+    for i in range(WIDE):
+        nodes[ONES + i] = 1.0
+    work = Work(nodes, np.empty(INTERPOLANTS), np.zeros(WIDE * WIDE), np.zeros(WIDE * WIDE), np.zeros(PATHS))
     case = Case(scene, drive, limits, tau, out, gamma, asked, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), V0 != 0.0 or omega0 != 0.0

@@ -5,26 +5,29 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..compile.fma import fma
 from ..compile.jit import kernel
-from .collocation import INTEGRAL, SHARES, SLOPES, N
+from .collocation import INTEGRAL, SHARES, WIDE, N
 from .load import FUNCTIONS, load_of, needed, values_at, varies
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 
 #: rows of the values at the nodes: unknowns; rates of p and of the second, and of V at node 0; speed scale, Q and parts
 #: of M, omega; p, its inverse slope in V, its slope in the second unknown, what a change of p adds to the equation of
 #: that; slope at which the second unknown relaxes
-V, SECOND, P_RATE, RATE, V_RATE, SPEED, OF_OMEGA, OF_Q, OF_HALF_SPACE, OF_CYLINDER = range(10)
-P, PER_P, P_SECOND, COUPLED, SLOPE = range(10, 15)
+V, SECOND, P_RATE, RATE, V_RATE, SPEED, OF_OMEGA, OF_Q, OF_HALF_SPACE, OF_CYLINDER = (WIDE * n for n in range(10))
+P, PER_P, P_SECOND, COUPLED, SLOPE = (WIDE * n for n in range(10, 15))
+#: of Newton's iteration: slopes of the interpolants of p and of the second unknown, right sides and changes of either;
+#: weights of its equation; what both diagonals are less than those of the slopes
+P_SLOPE, SECOND_SLOPE, RIGHT, SECOND_RIGHT, CHANGE, SECOND_CHANGE = (WIDE * n for n in range(15, 21))
+ONES, WEIGHTS, DIAGONAL, SECOND_DIAGONAL = (WIDE * n for n in range(21, 25))
 #: integrands of the path: x, angle, work of force and of torque, losses in the brake, in slip and in rolling
-PATH, PATHS = 15, 7
+PATH, PATHS = WIDE * 25, 7
 #: functions of events, and the drive
-EVENT = PATH + PATHS
-DRIVE = EVENT + EVENTS
-ROWS = DRIVE + FUNCTIONS
-#: rows of the interpolants: of V, of the second unknown, of the path, of the function of an event
-OF_V, OF_SECOND, OF_PATH, OF_EVENT = 0, 1, 2, 2 + PATHS
-INTERPOLANTS = OF_EVENT + 1
+EVENT = PATH + WIDE * PATHS
+DRIVE = EVENT + WIDE * EVENTS
+NUMBERS = DRIVE + WIDE * FUNCTIONS
+#: the interpolants: of V, of the second unknown, of the path, of the function of an event
+OF_V, OF_SECOND, OF_PATH, OF_EVENT = 0, WIDE, 2 * WIDE, (2 + PATHS) * WIDE
+INTERPOLANTS = OF_EVENT + WIDE
 #: |d| up to which either branch of the law serves: they differ by its square
 FAINT = 1e-8
 
@@ -68,24 +71,25 @@ def put_drive(panel, case):
     for i in range(N + 1):
         if changes:
             values = values_at(time_at(panel, i), panel.piece, case.drive)
-        nodes[DRIVE, i], nodes[DRIVE + 1, i], nodes[DRIVE + 2, i], nodes[DRIVE + 3, i] = values
+        nodes[DRIVE + i], nodes[DRIVE + WIDE + i], nodes[DRIVE + WIDE * 2 + i], nodes[DRIVE + WIDE * 3 + i] = values
 
 
 @kernel(inline=True)
 def load_there(i, frame, case):
     """The drive at node i."""
     nodes = case.work.nodes
-    return load_of((nodes[DRIVE, i], nodes[DRIVE + 1, i], nodes[DRIVE + 2, i], nodes[DRIVE + 3, i]), frame, case)
+    values = nodes[DRIVE + i], nodes[DRIVE + WIDE + i], nodes[DRIVE + WIDE * 2 + i], nodes[DRIVE + WIDE * 3 + i]
+    return load_of(values, frame, case)
 
 
 @kernel(inline=True)
 def put_node(i, rates, weight, nodes):
     """Keep what the equations say at node i, rates times ``weight``."""
-    nodes[P_RATE, i], nodes[RATE, i] = weight * rates.p_rate, weight * rates.rate
-    nodes[P, i], nodes[OF_OMEGA, i], nodes[OF_Q, i] = rates.p, rates.omega, rates.Q
-    nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i] = rates.M_half_space, rates.M_cylinder
-    nodes[SPEED, i] = max(abs(nodes[V, i]), abs(rates.omega))
-    nodes[EVENT + EDGE, i] = rates.edge
+    nodes[P_RATE + i], nodes[RATE + i] = weight * rates.p_rate, weight * rates.rate
+    nodes[P + i], nodes[OF_OMEGA + i], nodes[OF_Q + i] = rates.p, rates.omega, rates.Q
+    nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i] = rates.M_half_space, rates.M_cylinder
+    nodes[SPEED + i] = max(abs(nodes[V + i]), abs(rates.omega))
+    nodes[EVENT + WIDE * EDGE + i] = rates.edge
 
 
 @kernel(inline=True)
@@ -103,18 +107,18 @@ def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
     nodes = case.work.nodes
     for i in range(N + 1):
-        nodes[EVENT + TURN, i] = nodes[V, i]
+        nodes[EVENT + WIDE * TURN + i] = nodes[V + i]
         if not frame.slips:
-            nodes[EVENT + KINK, i] = frame.sigma * nodes[SECOND, i] + FAINT
+            nodes[EVENT + WIDE * KINK + i] = frame.sigma * nodes[SECOND + i] + FAINT
         if frame.spin != 0.0:
-            nodes[EVENT + STOP, i] = frame.spin * nodes[OF_OMEGA, i]
+            nodes[EVENT + WIDE * STOP + i] = frame.spin * nodes[OF_OMEGA + i]
         if panel.rest > 0.0:
-            nodes[EVENT + SLOW, i] = nodes[SPEED, i] - panel.rest
+            nodes[EVENT + WIDE * SLOW + i] = nodes[SPEED + i] - panel.rest
         if frame.locked:  # of squares: smooth where what the brake takes changes its sign
             load = load_there(i, frame, case)
-            moments = nodes[OF_Q, i], nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i]
-            _, _, brake = needed((nodes[V, i], nodes[OF_OMEGA, i]), moments, load, frame, case.scene.j)
-            nodes[EVENT + FREED, i] = load.brake * load.brake - brake * brake
+            moments = nodes[OF_Q + i], nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i]
+            _, _, brake = needed((nodes[V + i], nodes[OF_OMEGA + i]), moments, load, frame, case.scene.j)
+            nodes[EVENT + WIDE * FREED + i] = load.brake * load.brake - brake * brake
 
 
 @kernel(inline=True)
@@ -122,23 +126,17 @@ def put_path(panel, frame, case):
     """Fill the integrands of the path at all nodes."""
     nodes = case.work.nodes
     for i in range(N + 1):
-        speed, omega, Q, weight = nodes[V, i], nodes[OF_OMEGA, i], nodes[OF_Q, i], grade(i, panel.power)
-        M_half_space, M_cylinder = nodes[OF_HALF_SPACE, i], nodes[OF_CYLINDER, i]
+        speed, omega, Q, weight = nodes[V + i], nodes[OF_OMEGA + i], nodes[OF_Q + i], grade(i, panel.power)
+        M_half_space, M_cylinder = nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i]
         load = load_there(i, frame, case)
         force, torque, brake = needed((speed, omega), (Q, M_half_space, M_cylinder), load, frame, case.scene.j)
-        nodes[PATH, i], nodes[PATH + 1, i] = weight * speed, weight * omega
-        nodes[PATH + 2, i], nodes[PATH + 3, i] = weight * (force * speed), weight * (torque * omega)
-        nodes[PATH + 4, i], nodes[PATH + 5, i] = -weight * (brake * omega), weight * ((omega - speed) * Q)
-        nodes[PATH + 6, i] = weight * (speed * M_half_space + omega * M_cylinder)
-
-
-@kernel(inline=True)
-def slope_at(i, row, nodes):
-    """Slope in t of the interpolant of a row at node i."""
-    first, total = nodes[row, 0], 0.0
-    for k in range(1, N + 1):
-        total = fma(SLOPES[i - 1, k], nodes[row, k] - first, total)
-    return total
+        nodes[PATH + i], nodes[PATH + WIDE + i] = weight * speed, weight * omega
+        nodes[PATH + WIDE * 2 + i], nodes[PATH + WIDE * 3 + i] = weight * (force * speed), weight * (torque * omega)
+        nodes[PATH + WIDE * 4 + i], nodes[PATH + WIDE * 5 + i] = (
+            -weight * (brake * omega),
+            weight * ((omega - speed) * Q),
+        )
+        nodes[PATH + WIDE * 6 + i] = weight * (speed * M_half_space + omega * M_cylinder)
 
 
 @kernel
@@ -146,5 +144,5 @@ def risen(row, panel, nodes):
     """Integral of a row over the panel."""
     total = 0.0
     for i in range(N):
-        total += INTEGRAL[i] * nodes[row, i + 1]
+        total += INTEGRAL[i] * nodes[row + i + 1]
     return 0.5 * panel.length * total

@@ -59,10 +59,10 @@ def moderate_speed(scene):
 @kernel
 def _rise_time(rise, clock, frame, case):
     """Time in which V rises from 0 to about this: its pace changes as the drive does."""
-    soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[V_RATE, 0]
+    soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[V_RATE]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
     _, d = departing(load, frame.spin, case.scene)
-    later = rates_at(0.0, d if d != 0.0 else case.work.nodes[SECOND, 0], load, frame, case.scene)
+    later = rates_at(0.0, d if d != 0.0 else case.work.nodes[SECOND], load, frame, case.scene)
     pace, gain = max(pace, 0.0), (later.p_rate / later.p_V - pace) / soon
     square = pace**2 + 2.0 * gain * rise
     if square < 0.0:  # it does not rise so far, and falls from here on
@@ -81,16 +81,16 @@ def shortest_time(law):
 def _first_length(fresh, clock, frame, case):
     """Length to try first."""
     nodes, scene = case.work.nodes, case.scene
-    speed, fastest, pace, rate = nodes[V, 0], nodes[SPEED, 0], abs(nodes[V_RATE, 0]), abs(nodes[RATE, 0])
+    speed, fastest, pace, rate = nodes[V], nodes[SPEED], abs(nodes[V_RATE]), abs(nodes[RATE])
     if frame.slips:
         length = _FIRST * fastest / max(pace, rate) if fastest > 0.0 and max(pace, rate) > 0.0 else np.inf
         return min(length, (speed + moderate_speed(scene)) / pace) if pace > 0.0 and fastest > 0.0 else length
     if not speed > NO_SPEED:  # from V = 0 on
         return _rise_time(_RISE * case.limits.rtol ** (1.0 / N) * moderate_speed(scene), clock, frame, case)
-    length = _RELAXED / abs(nodes[SLOPE, 0])
+    length = _RELAXED / abs(nodes[SLOPE])
     if fresh:
         # as far as d may go at the bend of the law near eta = 0
-        near = 1.0 - abs(nodes[SECOND, 0]) + shortest_time(scene.law) * 2.0 * scene.kappa * speed
+        near = 1.0 - abs(nodes[SECOND]) + shortest_time(scene.law) * 2.0 * scene.kappa * speed
         length = min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * speed / max(rate, 1e-300))
         load = load_at(clock.tau, clock.piece, frame, case)
         return min(length, speed / (4.0 * scene.kappa * max(load.per_V + load.per_omega, 1.0)))
@@ -103,7 +103,7 @@ def _pace_to_zero(panel, state, frame, case):
 
     In partial slip V only comes to 0 against the drive.
     """
-    pace = case.work.nodes[V_RATE, 0]
+    pace = case.work.nodes[V_RATE]
     if not pace < 0.0:
         return np.inf
     if frame.slips:
@@ -124,7 +124,7 @@ def _attempt(panel, left, aimed, track, frame, case):
     """
     nodes, event, size, longest = case.work.nodes, NO_EVENT, np.inf, left
     for _ in range(_CUTS):
-        if not solve(panel, nodes[SLOPE, 0], track, frame, case):
+        if not solve(panel, nodes[SLOPE], track, frame, case):
             return NO_EVENT, 2.0, panel, np.inf, track
         size, track = panel_error(panel, frame, case), panel
         if not size <= _CUTTABLE:
@@ -139,7 +139,7 @@ def _attempt(panel, left, aimed, track, frame, case):
             break
         if found != NO_EVENT:
             event = found
-        elif event == NO_EVENT and aimed and size <= 1.0 and nodes[V, N] < _NEARLY * nodes[V, 0]:
+        elif event == NO_EVENT and aimed and size <= 1.0 and nodes[V + N] < _NEARLY * nodes[V]:
             event = TURN
         if event == NO_EVENT or (found == NO_EVENT and ends_on(event, nodes, case.limits.rtol)):
             return event, 2.0, panel, size, track
@@ -183,12 +183,12 @@ def _next_length(panel, size, rejected, last, last_size):
 def _begin(state, frame, clock, case):
     """The frame with node 0 filled; from delta = 0 on the branch is that which d turns to."""
     nodes = case.work.nodes
-    nodes[V, 0], nodes[SECOND, 0] = state.V, state.second
+    nodes[V], nodes[SECOND] = state.V, state.second
     rates = rates_at(state.V, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
     put_node(0, rates, 1.0, nodes)
     # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
-    nodes[V_RATE, 0] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.p_V
-    nodes[SLOPE, 0] = rates.rate_second / rates.weight
+    nodes[V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.p_V
+    nodes[SLOPE] = rates.rate_second / rates.weight
     if not frame.slips and state.second == 0.0 and frame.sigma * rates.rate < 0.0:
         # both branches say the same here
         return Frame(False, frame.direction, -frame.sigma, frame.spin, frame.locked)
@@ -237,9 +237,9 @@ def phase(fresh, state, frame, clock, case):
         clock = pass_panel(
             end if whole else panel.tau + panel.length * (0.5 * v) ** power, v, panel, frame, clock, case
         )
-        state = State(nodes[V, N], nodes[SECOND, N])
+        state = State(nodes[V + N], nodes[SECOND + N])
         if v < 2.0:
-            state = State(nodes[V, 0] + rise_at(v, powers, OF_V), nodes[SECOND, 0] + rise_at(v, powers, OF_SECOND))
+            state = State(nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND))
         if event != NO_EVENT:
             return event, state, frame, clock
         power, rejected, last, last_size = 1, 0, panel.length, size

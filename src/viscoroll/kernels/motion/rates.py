@@ -22,7 +22,6 @@ from ..compile.rarely import rarely
 from ..rows.law import bodies, body_slopes, place, press_secant, press_slopes, speed_seconds
 from .load import acting
 
-
 #: d from which on Q, as the difference of 1 and what is left to stick, has digits enough
 _SLIGHT = 1e-4
 

@@ -110,15 +110,13 @@ class Limits(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Arrays of a panel: values at the nodes, interpolants, Newton's matrices and right sides of p and of the second
-    unknown, what has added up."""
+    """Arrays of a panel: rows of values at the nodes, interpolants, Newton's matrices of p and of the second unknown,
+    what has added up."""
 
     nodes: Any
     powers: Any
     matrix: Any
     second_matrix: Any
-    right: Any
-    second_right: Any
     totals: Any
 
 

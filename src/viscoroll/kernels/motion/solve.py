@@ -14,29 +14,36 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..numerics.linear import factorize, substitute
-from .collocation import SLOPES, TO_START, N, rise_terms
+from .collocation import SLOPES, TO_START, WIDE, N, invert, product, rise_terms, weighted_slopes
 from .guess import guess
 from .load import rounding
 from .nodes import (
+    CHANGE,
     COUPLED,
-    OF_OMEGA,
+    DIAGONAL,
     OF_SECOND,
     OF_V,
+    ONES,
     P_RATE,
     P_SECOND,
+    P_SLOPE,
     PER_P,
     RATE,
+    RIGHT,
     SECOND,
+    SECOND_CHANGE,
+    SECOND_DIAGONAL,
+    SECOND_RIGHT,
+    SECOND_SLOPE,
     SLOPE,
     SPEED,
+    WEIGHTS,
     P,
     V,
     grade,
     load_there,
     put_drive,
     put_node,
-    slope_at,
     time_at,
 )
 from .rates import rates_at
@@ -70,67 +77,63 @@ def scales(panel, frame, case):
     """(Of V, of the second unknown): what errors are measured by; speeds by the largest of the panel."""
     nodes, fastest, own, moved = case.work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
-        fastest, own = max(fastest, nodes[SPEED, i]), max(own, abs(nodes[V, i]))
+        fastest, own = max(fastest, nodes[SPEED + i]), max(own, abs(nodes[V + i]))
     fastest = max(fastest, own)
     if frame.slips:
         return own if panel.alone else fastest, fastest
     # an error of d is one of omega, and of V where p is given
     for i in range(1, N + 1):
-        moved = max(moved, abs(nodes[P_SECOND, i] * nodes[PER_P, i]))
+        moved = max(moved, abs(nodes[P_SECOND + i] * nodes[PER_P + i]))
     moved = max(moved, 0.5 * case.scene.mu / case.scene.kappa * own) / fastest
-    return fastest, 1.0 / max(_creep_weight(nodes[SECOND, N]), moved)
-
-
-@kernel(inline=True)
-def _put_rows(i, half, rates, slope, case):
-    """Rows of both of Newton's matrices for node i; ``slope``: of the interpolant of the second unknown."""
-    work, n, per = case.work, i - 1, 1.0 / rates.p_V
-    coupled = per * (rates.weight_V * slope - half * rates.rate_V)
-    for k in range(N):
-        work.matrix[n, k] = SLOPES[n, k + 1]
-        work.second_matrix[n, k] = rates.weight * SLOPES[n, k + 1]
-    work.matrix[n, n] -= half * rates.p_rate_V * per
-    work.second_matrix[n, n] -= half * rates.rate_second + coupled * rates.p_second
-    work.nodes[PER_P, i], work.nodes[P_SECOND, i], work.nodes[COUPLED, i] = per, rates.p_second, coupled
-    work.nodes[SLOPE, i] = rates.rate_second / rates.weight
+    return fastest, 1.0 / max(_creep_weight(nodes[SECOND + N]), moved)
 
 
 @kernel(inline=True)
 def _put_equations(anew, panel, frame, case):
-    """Fill the nodes from their unknowns, the right side of the second, and, ``anew``, both matrices."""
-    work, half = case.work, 0.5 * panel.length
-    for i in range(1, N + 1):
-        weight, slope = grade(i, panel.power), slope_at(i, SECOND, work.nodes)
-        rates = rates_at(work.nodes[V, i], work.nodes[SECOND, i], load_there(i, frame, case), frame, case.scene)
-        put_node(i, rates, weight, work.nodes)
-        work.second_right[i - 1] = half * weight * rates.rate - rates.weight * slope
+    """Fill the nodes from their unknowns, the right side of the second, and, ``anew``, what both matrices take."""
+    nodes, half = case.work.nodes, 0.5 * panel.length
+    product(SLOPES, SECOND, nodes[SECOND], nodes, SECOND_SLOPE, nodes)
+    for i in range(1, WIDE):
+        rates = rates_at(nodes[V + i], nodes[SECOND + i], load_there(i, frame, case), frame, case.scene)
+        weight = grade(i, panel.power)
+        put_node(i, rates, weight, nodes)
+        step, slope = half * weight, nodes[SECOND_SLOPE + i]
+        nodes[SECOND_RIGHT + i] = step * rates.rate - rates.weight * slope
         if anew:
-            _put_rows(i, half * weight, rates, slope, case)
+            per = 1.0 / rates.p_V
+            coupled = per * (rates.weight_V * slope - step * rates.rate_V)
+            nodes[PER_P + i], nodes[P_SECOND + i], nodes[COUPLED + i] = per, rates.p_second, coupled
+            nodes[WEIGHTS + i], nodes[SLOPE + i] = rates.weight, rates.rate_second / rates.weight
+            nodes[DIAGONAL + i] = step * rates.p_rate_V * per
+            nodes[SECOND_DIAGONAL + i] = step * rates.rate_second + coupled * rates.p_second
+    product(SLOPES, P, nodes[P], nodes, P_SLOPE, nodes)
+    for i in range(1, WIDE):
+        nodes[RIGHT + i] = half * nodes[P_RATE + i] - nodes[P_SLOPE + i]
 
 
 @kernel(inline=True)
 def _newton(anew, panel, frame, case):
     """One iteration; the largest change over what it is measured by."""
-    work, half = case.work, 0.5 * panel.length
-    nodes, right, second_right = work.nodes, work.right, work.second_right
+    work, nodes = case.work, case.work.nodes
     if anew:
         _put_equations(True, panel, frame, case)
-        factorize(work.matrix, N)
-        factorize(work.second_matrix, N)
+        weighted_slopes(ONES, DIAGONAL, nodes, work.matrix)
+        weighted_slopes(WEIGHTS, SECOND_DIAGONAL, nodes, work.second_matrix)
+        invert(work.matrix)
+        invert(work.second_matrix)
     else:
         _put_equations(False, panel, frame, case)
-    for i in range(1, N + 1):
-        right[i - 1] = half * nodes[P_RATE, i] - slope_at(i, P, nodes)
-    substitute(work.matrix, right, N)
-    for i in range(N):
-        second_right[i] -= nodes[COUPLED, i + 1] * right[i]
-    substitute(work.second_matrix, second_right, N)
-    change, rise = 0.0 * (right[0] + second_right[0]), 0.0  # a NaN is in all of them, and lost in any other place
-    for i in range(N):
-        right[i] = (right[i] - nodes[P_SECOND, i + 1] * second_right[i]) * nodes[PER_P, i + 1]
-        rise, change = max(rise, abs(right[i])), max(change, abs(second_right[i]))
-        nodes[V, i + 1] += right[i]
-        nodes[SECOND, i + 1] += second_right[i]
+    product(work.matrix, RIGHT, 0.0, nodes, CHANGE, nodes)
+    for i in range(1, WIDE):
+        nodes[SECOND_RIGHT + i] -= nodes[COUPLED + i] * nodes[CHANGE + i]
+    product(work.second_matrix, SECOND_RIGHT, 0.0, nodes, SECOND_CHANGE, nodes)
+    change, rise = 0.0 * (nodes[CHANGE + N] + nodes[SECOND_CHANGE + N]), 0.0  # a NaN is lost in any other place
+    for i in range(1, WIDE):
+        second = nodes[SECOND_CHANGE + i]
+        step = (nodes[CHANGE + i] - nodes[P_SECOND + i] * second) * nodes[PER_P + i]
+        rise, change = max(rise, abs(step)), max(change, abs(second))
+        nodes[V + i] += step
+        nodes[SECOND + i] += second
     of_V, of_second = scales(panel, frame, case)
     return max(rise / of_V, change / of_second)
 
@@ -154,8 +157,8 @@ def solve(panel, slope, track, frame, case):
             return False
         # what is integrated stays as it was before this change
         if change <= tolerance and change * gain <= left:
-            rise_terms(work.nodes[V], work.powers, OF_V)
-            rise_terms(work.nodes[SECOND], work.powers, OF_SECOND)
+            rise_terms(V, work.nodes, OF_V, work.powers)
+            rise_terms(SECOND, work.nodes, OF_SECOND, work.powers)
             return True
         anew = change > _ANEW and (n == 0 or gain > _SLOWED)
         before = change
@@ -167,7 +170,7 @@ def _mismatch(row, first, half, nodes):
     """Rate at the left end less that which the nodes extrapolate to, over the panel."""
     off = first
     for i in range(N):
-        off -= TO_START[i] * nodes[row, i + 1]
+        off -= TO_START[i] * nodes[row + i + 1]
     return 2.0 * half * abs(off)
 
 
@@ -181,9 +184,9 @@ def _least(panel, case):
             break
     largest = least = 0.0
     for i in range(1, N + 1):
-        largest = max(largest, abs(nodes[V, i]))
+        largest = max(largest, abs(nodes[V + i]))
         if least == 0.0 or time_at(panel, i) <= at:
-            least = abs(nodes[V, i])
+            least = abs(nodes[V + i])
     return least / largest if largest > 0.0 else 1.0
 
 
@@ -193,21 +196,22 @@ def panel_error(panel, frame, case):
     nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
     of_V, of_second = scales(panel, frame, case)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not
-    error = _mismatch(P_RATE, nodes[P_RATE, 0] if smooth else 0.0, half, nodes) * abs(nodes[PER_P, N])
-    error = max(error, _LAST * abs(case.work.powers[OF_V, N - 1]))
+    error = _mismatch(P_RATE, nodes[P_RATE] if smooth else 0.0, half, nodes) * abs(nodes[PER_P + N])
+    error = max(error, _LAST * abs(case.work.powers[OF_V + N - 1]))
     # shorter panels do not mend what the rounding of the drive moves V by
     error = max(error - panel.length * rounding(panel.piece, case.drive.pieces), 0.0) / of_V
-    if nodes[SPEED, 0] == 0.0:
+    if nodes[SPEED] == 0.0:
         error /= _least(panel, case)
     elif not panel.alone:  # early on speeds are to be right beside those so far
-        error *= np.sqrt(max(nodes[SPEED, N] / nodes[SPEED, 0], 1.0))
+        error *= np.sqrt(max(nodes[SPEED + N] / nodes[SPEED], 1.0))
     if panel.known:
-        weight = 1.0 if frame.slips else nodes[V, 0]
-        off = nodes[RATE, 0] / weight * half if smooth else 0.0
+        weight = 1.0 if frame.slips else nodes[V]
+        off = nodes[RATE] / weight * half if smooth else 0.0
         # near the edge of the stick zone relaxation comes to an end
-        slowest = abs(nodes[SLOPE, 0])
+        slowest = abs(nodes[SLOPE])
+        product(SLOPES, SECOND, nodes[SECOND], nodes, SECOND_SLOPE, nodes)
         for i in range(N):
-            off -= TO_START[i] * slope_at(i + 1, SECOND, nodes)
-            slowest = min(slowest, abs(nodes[SLOPE, i + 1]))
+            off -= TO_START[i] * nodes[SECOND_SLOPE + i + 1]
+            slowest = min(slowest, abs(nodes[SLOPE + i + 1]))
         error = max(error, 2.0 * abs(off) / ((1.0 + panel.length * slowest) * of_second))
     return _OVERSTATED * error / (SHARE * case.limits.rtol)

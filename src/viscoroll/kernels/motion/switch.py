@@ -55,10 +55,10 @@ def closed(state, locked, case):
     """Whether the stick band closes at V = 0, where omega is 0 too."""
     nodes = case.work.nodes
     if not locked:
-        return state.V <= _CLOSED * nodes[V, 0]
+        return state.V <= _CLOSED * nodes[V]
     largest = 0.0  # slip with omega = 0 ends with V, which is 0 but for the tolerance
     for i in range(N + 1):
-        largest = max(largest, nodes[V, i])
+        largest = max(largest, nodes[V + i])
     return state.V <= max(_CLOSED, _OFF * case.limits.rtol) * largest
 
 
@@ -82,7 +82,7 @@ def stands(state, frame, clock, case):
         return False
     rates, fastest = here(state, frame, clock, case)[1], 0.0
     for i in range(N + 1):
-        fastest = max(fastest, case.work.nodes[FASTEST, i])
+        fastest = max(fastest, case.work.nodes[FASTEST + i])
     return max(abs(state.V), abs(rates.omega)) <= drift(fastest, clock, case)
 
 
