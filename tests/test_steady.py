@@ -14,9 +14,9 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth.series import functions, rates
 from viscoroll.cli import main
 from viscoroll.equilibria.zeros import zeros
-from viscoroll.reference.series import functions, rates
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

@@ -307,14 +307,14 @@ CHEBYSHEV = 1e-12
 #: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
 SI_SERIES_RTOL = 1e-7
 
-# --- motions in extended precision (test_reference_motions.py) ---
+# --- motions in extended precision (truth/test_motions.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
 #: 60 digits: its square; measured 1e-23.
 PRECISE_RATE = 1e-20
 #: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20.
 PRECISE_MOTION = 1e-17
 
-#: Driven ones likewise (test_reference_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
+#: Driven ones likewise (truth/test_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
 PRECISE_DRIVEN = 1e-17
 
 # --- boundary elements (reference/test_boundary.py) ---

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import checked
-from ..errors import ConvergenceError, ParameterError
-from ..extras import imported
-from ..scene import Scene
+from viscoroll.checks import checked
+from viscoroll.errors import ConvergenceError, ParameterError
+from viscoroll.extras import imported
+from viscoroll.scene import Scene
 
 #: Digits that the printed forms may lose: lam^-2 - 1 as V -> 0, lam^2 - 1/alpha as V grows
 #: and as alpha -> 1, 1 - H(eta)/H(zeta) as delta -> 0.

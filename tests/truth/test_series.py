@@ -9,10 +9,10 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
+from pipeline.truth import series as raw
+from pipeline.truth import spectral
 from viscoroll.kernels.material import series as kernels
 from viscoroll.materials.tables import series
-from viscoroll.reference import series as raw
-from viscoroll.reference import spectral
 
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: close times, where elimination with pivots loses ten digits

@@ -1,4 +1,4 @@
-"""What both regimes of :mod:`driven_phases` share: the scene, the equations of motion, what acts."""
+"""What both regimes of :mod:`phases` share: the scene, the equations of motion, what acts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
-from .driven_load import Piece
+from .load import Piece
 from .solid import Solid, Zone
 
 #: of a bracket, to the last digit
@@ -16,6 +16,11 @@ _HALVINGS = 400
 _LEAST = 45
 
 Events = dict[str, tuple[Callable[[Sequence[Any], Any], Any], float]]
+
+
+def sign(value: Any) -> int:
+    """-1, 0 or 1."""
+    return int(value > 0) - int(value < 0)
 
 
 class Law(NamedTuple):

@@ -1,9 +1,9 @@
 """Driven motions to test any implementation against -> data/reference/check_driven.json (kept in git).
 
-    python -m pipeline.reference.check_driven [--config FILE] [--folder FOLDER] [-o FOLDER]
+    python -m pipeline.truth.check_driven [--config FILE] [--folder FOLDER] [-o FOLDER]
 
 Force, torque, slopes, feedback, prescribed speeds, brakes, unlike bodies and several relaxation times, integrated in
-extended precision by viscoroll.reference.roll_driven.  Each is rolled twice, the second time with more nodes, shorter
+extended precision by pipeline.truth.roll_precise.  Each is rolled twice, the second time with more nodes, shorter
 steps and more digits; how far the two differ stands beside it.
 """
 
@@ -21,10 +21,10 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.files import write_text
-from viscoroll.reference.driven import PATHS, DrivenMotion, roll_driven
 
 from .. import stage
 from .driven_motions import MOTIONS, Driven
+from .motion import PATHS, PreciseMotion, roll_precise
 
 TARGET = stage.ROOT / "data/reference/check_driven.json"
 SPEEDS = ("V", "omega")
@@ -81,7 +81,7 @@ def _given(plain: Any) -> Any:
     return (plain["times"], plain["values"]) if "times" in plain else vr.Feedback(**plain)
 
 
-def difference(one: DrivenMotion, other: DrivenMotion) -> float:
+def difference(one: PreciseMotion, other: PreciseMotion) -> float:
     """Worst of V, omega over the largest speed so far, of path, work and loss over their largest, and switch times."""
     with flint.ctx.workprec(_BITS):
         if [regime for _, regime in one.switches] != [regime for _, regime in other.switches]:
@@ -104,7 +104,7 @@ def difference(one: DrivenMotion, other: DrivenMotion) -> float:
 def check_row(motion: Driven) -> dict[str, Any]:
     """What a motion is and what it does, as the nearest doubles."""
     coarse, fine = (
-        roll_driven(motion.scene, motion.V0, motion.omega0, motion.t, **motion.drive, **how) for how in ({}, FINER)
+        roll_precise(motion.scene, motion.V0, motion.omega0, motion.t, **motion.drive, **how) for how in ({}, FINER)
     )
     found = {name: [float(value) for value in getattr(fine, name)] for name in (*SPEEDS, *PATHS)}
     switches = [[float(when), regime] for when, regime in fine.switches]

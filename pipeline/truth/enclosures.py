@@ -14,10 +14,10 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import checked
-from ..errors import ConvergenceError, ParameterError
-from ..extras import imported
-from ..scene import Scene
+from viscoroll.checks import checked
+from viscoroll.errors import ConvergenceError, ParameterError
+from viscoroll.extras import imported
+from viscoroll.scene import Scene
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14

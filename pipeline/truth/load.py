@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from ..drive import Feedback
-from ..errors import one_of
+from viscoroll.drive import Feedback
+from viscoroll.errors import one_of
 
 Course = list[tuple[Any, Any]]
 

@@ -17,8 +17,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ConvergenceError
-from ..extras import imported
+from viscoroll.errors import ConvergenceError
+from viscoroll.extras import imported
 
 _MOST_ITERATIONS = 15
 #: a correction below this share leaves one of its square, or of 1e-14 of it, to be made

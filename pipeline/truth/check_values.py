@@ -1,10 +1,10 @@
 """Reference values to test any implementation against -> data/reference/check_values.csv and .nc (kept in git).
 
-    python -m pipeline.reference.check_values [--config FILE] [--folder FOLDER] [-o FOLDER]
+    python -m pipeline.truth.check_values [--config FILE] [--folder FOLDER] [-o FOLDER]
 
 Contact states over the whole domain of the law and along its edges, each value the double nearest to a
-certified enclosure (viscoroll.reference.contact_enclosure), and the condition numbers of the values:
-the relative error that one of 1 in each input makes.  Motions: pipeline/reference/check_motions.py.
+certified enclosure (pipeline.truth.contact_enclosure), and the condition numbers of the values:
+the relative error that one of 1 in each input makes.  Motions: pipeline/truth/check_motions.py.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from flint import arb
 from tqdm import tqdm
 
 from viscoroll.files import write_dataset
-from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
 
 from .. import stage
+from .enclosures import INPUTS, condition_numbers, contact_enclosure
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "beta", "Q", "M")
 CONDITIONED = ("epsilon", "delta_star", "beta", "Q", "M")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-import flint
 import numpy as np
 import pytest
 import tolerances as tol
@@ -12,8 +11,8 @@ from closeness import close
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.reference import roll_driven, roll_precise
-from viscoroll.reference.driven import PATHS
+from pipeline.truth import roll_precise
+from pipeline.truth.motion import PATHS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -36,20 +35,6 @@ def inputs(row: dict) -> tuple[tuple, dict]:
     return (vr.Scene(**scene), row["V0"], row["omega0"], row["t"]), drive
 
 
-def test_without_a_drive_it_is_the_other_integrator():
-    """Other unknowns, another form of the law: the same motion from full slip into stick, to 1e-18."""
-    t = [0.5, 1.5, 3.0]
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
-    one, other = roll_driven(scene, 1.5, 0.5, t), roll_precise(scene, 1.5, 0.5, t)
-    ((when, regime),) = one.switches
-    assert regime == "partial slip"
-    pairs = [(when, other.onset_time)]
-    for name in ("V", "omega", "x", "angle"):
-        pairs += zip(getattr(one, name), getattr(other, name), strict=True)
-    with flint.ctx.workprec(200):
-        assert max(float(abs(a / b - 1)) for a, b in pairs) <= tol.PRECISE_DRIVEN
-
-
 def test_check_motions_hold_together():
     """Thirty motions, each shown to 1e-15 by a second one; every regime and V = 0 in stick and in slip among them."""
     assert len(MOTIONS) == 30
@@ -66,7 +51,7 @@ def test_check_motions_are_found_again(name):
     """The same doubles by fewer nodes and a larger tolerance."""
     row = next(row for row in MOTIONS if row["name"] == name)
     case, drive = inputs(row)
-    found = roll_driven(*case, **drive, nodes=18, tolerance=1e-19)
+    found = roll_precise(*case, **drive, nodes=18, tolerance=1e-19)
     for field in ("V", "omega", *PATHS):
         assert [float(value) for value in getattr(found, field)] == row[field], field
 

@@ -1,4 +1,4 @@
-"""Driven motions in extended precision: Eq. (22) with forces, slopes, brakes and prescribed speeds, in Arb's digits.
+"""Motions in extended precision: Eq. (22), free or with forces, slopes, brakes, prescribed speeds, in Arb's digits.
 
 Shares nothing with the kernels but the equations: the matching conditions of the material as they stand, collocation
 of high order, steps that end at every change of the law, every corner of the drive and every output.
@@ -10,16 +10,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ..errors import ConvergenceError, ParameterError
-from ..extras import imported
-from ..scene import Scene
+from viscoroll.errors import ConvergenceError, ParameterError
+from viscoroll.extras import imported
+from viscoroll.scene import Scene
+
 from .collocation import Radau, radau
-from .driven_base import Law, Phase
-from .driven_load import Piece, course_of, pieces_of
-from .driven_rest import begun, departed, leaving
-from .driven_step import met, solved
+from .load import Piece, course_of, pieces_of
+from .phase import Law, Phase, sign
+from .phases import Sticking
+from .rest import begun, departed, leaving
 from .solid import solid_of
-from .zones import sign
+from .step import met, solved
 
 PATHS = ("x", "angle", "work_force", "work_torque", "brake_loss", "slip_loss")
 _MOST_STEPS = 20_000
@@ -27,7 +28,7 @@ _GROWTH, _SHRINK, _SAFETY, _LEAST_ERROR, _SHORTEST = 3.0, 0.2, 0.8, 1e-60, 1e-30
 
 
 @dataclass
-class DrivenMotion:
+class PreciseMotion:
     """What is found at the times ``t``, as ``arb`` without a radius.
 
     switches : pairs of time and regime that follows ("rest" with V = omega = 0)
@@ -47,6 +48,11 @@ class DrivenMotion:
     reversals: list[Any] = field(default_factory=list)
     steps: int = 0
 
+    @property
+    def onset_time(self) -> Any:
+        """First change from full to partial slip, or None."""
+        return next((when for when, regime in self.switches if regime == Sticking.regime), None)
+
 
 @dataclass
 class _State:
@@ -60,7 +66,7 @@ class _State:
     heading: int
 
 
-def roll_driven(
+def roll_precise(
     scene: Scene,
     V0: float | None,
     omega0: float | None,
@@ -71,7 +77,7 @@ def roll_driven(
     nodes: int = 22,
     bits: int = 200,
     **drive: Any,
-) -> DrivenMotion:
+) -> PreciseMotion:
     """Motion from (V0, omega0) at ascending times ``t`` > 0; every argument is the exact double it is.
 
     Parameters
@@ -95,7 +101,7 @@ def roll_driven(
     Notes
     -----
     ``data/reference/check_driven.csv`` states for every motion there how far other nodes and tolerances are off
-    (``tests/reference/test_reference_driven.py``).
+    (``tests/truth/test_driven.py``).
     """
     flint = imported("flint", "python-flint", "dev")
     arb = flint.arb
@@ -104,7 +110,7 @@ def roll_driven(
         kappa, mu, gamma, j = (arb(float(value)) for value in (scene.kappa, scene.mu, scene.gamma, scene.j))
         kappa, gamma = (kappa / theta.cos().sqrt()).mid(), (gamma * theta.cos()).mid()
         law = Law(solid_of(scene), kappa, mu, j)
-        motion, method = DrivenMotion([float(time) for time in t]), radau(nodes, bits)
+        motion, method = PreciseMotion([float(time) for time in t]), radau(nodes, bits)
         ends = [(gamma * arb(time)).mid() for time in motion.t]
         pieces = pieces_of(drive, gamma, theta.tan().mid(), ends[-1])
         V, omega = (_start(arb, name, given, drive, gamma) for name, given in (("V", V0), ("omega", omega0)))
@@ -137,7 +143,7 @@ def _regime(state: _State) -> str:
 
 
 def _go_on(
-    state: _State, law: Law, pieces: list[Piece], motion: DrivenMotion, gamma: Any, to: tuple[Any, Radau, float]
+    state: _State, law: Law, pieces: list[Piece], motion: PreciseMotion, gamma: Any, to: tuple[Any, Radau, float]
 ) -> None:
     """One step, or the stay at rest, no further than ``to``, the next corner of the drive or the first event."""
     end, method, tolerance = to
@@ -152,7 +158,7 @@ def _go_on(
     _leave(state, law)
     motion.steps += 1
     if motion.steps == _MOST_STEPS:
-        raise ConvergenceError(f"roll_driven: more than {_MOST_STEPS} steps")
+        raise ConvergenceError(f"roll_precise: more than {_MOST_STEPS} steps")
     if _regime(state) != regime:
         motion.switches.append(((state.tau / gamma).mid(), _regime(state)))
     heading = getattr(state.phase, "direction", getattr(state.phase, "ahead", 0))
@@ -192,7 +198,7 @@ def _advance(state: _State, limit: Any, method: Radau, tolerance: float) -> None
     asked = h = min(state.h, arb(min(phase.longest(state.tau), 1e300)), left)
     while True:
         if h < _SHORTEST * left:
-            raise ConvergenceError("roll_driven: the step has become too small")
+            raise ConvergenceError("roll_precise: the step has become too small")
         start = phase.unknowns()
         values = solved(phase, state.tau, h, phase.guess([h * c for c in method.nodes], state.tau), method)
         event, length, factor = None, h, _SHRINK

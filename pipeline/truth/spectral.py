@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials.prony import Prony
+from viscoroll.materials.prony import Prony
 
 #: panels of Gauss-Legendre's rule ahead of the contact, each twice as long as the one before, and its points
 _PANELS, _POINTS = 23, 24

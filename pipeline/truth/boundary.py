@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import exp1, expi
 
-from ..materials.prony import Prony
+from viscoroll.materials.prony import Prony
 
 #: from here on f is its asymptotic series, of so many terms
 _FAR, _TERMS = 50.0, 30
@@ -137,7 +137,7 @@ def contact(p: Prony, z: float, eta: float, count: int = 100) -> Boundary:
     Returns
     -------
     Boundary
-        Off by what falls with the power 2 of 1/count and more (``tests/reference/test_boundary.py``).
+        Off by what falls with the power 2 of 1/count and more (``tests/truth/test_boundary.py``).
     """
     edge = z - 2.0 * eta
     behind, middle_behind = graded(-z, edge, count)

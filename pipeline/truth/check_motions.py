@@ -1,9 +1,9 @@
 """Motions in extended precision, to test any implementation against -> data/reference/check_motions.csv and .nc.
 
-    python -m pipeline.reference.check_motions [--config FILE] [--folder FOLDER] [-o FOLDER]
+    python -m pipeline.truth.check_motions [--config FILE] [--folder FOLDER] [-o FOLDER]
 
 The paper's IC1-IC3, one in which full slip returns, and random ones over the whole range, by
-viscoroll.reference.roll_precise.  Each is rolled twice, the second time with more nodes, shorter
+pipeline.truth.roll_precise.  Each is rolled twice, the second time with more nodes, shorter
 steps and more digits; how far the two differ stands beside it.  Kept in git.
 """
 
@@ -22,9 +22,9 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.files import write_dataset
-from viscoroll.reference.motion import PreciseMotion, roll_precise
 
 from .. import stage
+from .motion import PreciseMotion, roll_precise
 from .random_motions import ChosenMotion, chosen_motion
 
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ..errors import ConvergenceError
-from .driven_base import Contact, Law, Phase, root
-from .driven_load import Piece
-from .driven_phases import Slipping, Sticking
-from .zones import sign
+from viscoroll.errors import ConvergenceError
+
+from .load import Piece
+from .phase import Contact, Law, Phase, root, sign
+from .phases import Slipping, Sticking
 
 #: share of a piece behind which it is looked at where it begins with what moves nothing, and parts of it looked at
 _SOON, _PARTS = 1e-6, 64
@@ -92,4 +92,4 @@ def departed(piece: Piece, law: Law, tau: Any) -> Phase:
         if sigma * (d_omega - d_V) > 0:
             slipping.ahead = sign(d_V) or 1
             return slipping
-    raise ConvergenceError("roll_driven: no way out of rest was found")
+    raise ConvergenceError("roll_precise: no way out of rest was found")

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..errors import ParameterError
-from ..extras import imported
-from ..materials.bodies import Bodies
-from ..materials.prony import Prony
-from ..scene import Scene
+from viscoroll.errors import ParameterError
+from viscoroll.extras import imported
+from viscoroll.materials.bodies import Bodies
+from viscoroll.materials.prony import Prony
+from viscoroll.scene import Scene
+
 from . import series
 from .enclosures import ratio_i2, ratio_k, ratio_r
 

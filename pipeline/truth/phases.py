@@ -14,10 +14,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..errors import ConvergenceError
-from .driven_base import Contact, Events, Phase, positive, root, slope_of_V
+from viscoroll.errors import ConvergenceError
+
+from .phase import Contact, Events, Phase, positive, root, sign, slope_of_V
 from .solid import Zone
-from .zones import sign
 
 #: a stick zone of this share of the contact is none, as is a creep of this share of what is possible
 _NOTHING = 1e-26
@@ -229,7 +229,7 @@ class Sticking(Phase):
         for time in after:
             there = self.balance(tau + time) or at
             if at is None or there is None:
-                raise ConvergenceError("roll_driven: no way out of rest was found")
+                raise ConvergenceError("roll_precise: no way out of rest was found")
             found.append([(self.law.kappa * (at[1] + there[1]) * time).mid(), abs(there[0])])
         return found
 

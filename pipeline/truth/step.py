@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..extras import imported
+from viscoroll.extras import imported
+
 from .collocation import Radau, zero_between
-from .driven_base import Phase
+from .phase import Phase
 
 #: iterations of a step, of which the first take a new matrix, and steps that look for an event
 _MOST_ITERATIONS, _MATRICES, _CUTS = 14, 3, 12

@@ -1,6 +1,6 @@
 """Stage 0: fit the Bessel ratios -> src/viscoroll/kernels/bessel/ratios.npy (kept in git).
 
-    python -m pipeline.reference.ratios [-o FILE]
+    python -m pipeline.truth.ratios [-o FILE]
 
 r = I1/I0, k = K0/K1 and i2 = I2/I0 are evaluated with 60 digits (mpmath) at the Chebyshev
 points of every bin of the layout, interpolated there, and rounded to double once, as
