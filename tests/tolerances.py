@@ -585,3 +585,11 @@ CALLABLE_JUMP = 1e-14
 # --- setting out (motion/test_sets_out.py) ---
 #: Faint drives against one of 1e-9, which is not quite linear.
 FAINT = 1e-7
+
+# --- identification (tests/identification) ---
+#: Values from data without noise: least squares stop where chi2 stays to 1e-10; measured 2e-8.
+IDENTIFIED = 1e-5
+#: and what is left of chi2.
+IDENTIFIED_CHI2 = 1e-6
+#: Ends of an interval against a scan of the profile, over its width: the bound asked.
+INTERVAL = 0.02
