@@ -205,8 +205,6 @@ VALIDATION_WRONG = 1e-4
 # --- figures (test_figures.py) ---
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
-#: Equilibria of a slope beside the curve of M on level ground: kappa of the slope, and linear interpolation.
-FIGURE_CURVE = 5e-3
 
 # --- the benchmark at smoke sizes (test_bench.py) ---
 #: Motions of this package at rtol 1e-6: MOTION_RTOL times that; measured 1.4e-6.

@@ -20,9 +20,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from viscoroll.figures import save
 from viscoroll.files import write_dataset
-from viscoroll.plots.style import new_figure
+from viscoroll.plots.style import new_figure, save
 from viscoroll.symbols import SYMBOLS, label
 
 from ..results import RESULTS, parser, read_sizes

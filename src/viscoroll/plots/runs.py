@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..plots.style import labelled, new_figure, quantile_bands, with_unit
+from .style import labelled, new_figure, quantile_bands, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr

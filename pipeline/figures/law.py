@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..plots.style import LINES, THIN, describe, new_figure, scaled
-from ..presets import PAPER_FIGURES_2_3
-from ..rolling_contact import contact
-from ..scene import Scene
-from ..symbols import label
+from viscoroll.plots.style import LINES, THIN, describe, new_figure, scaled
+from viscoroll.presets import PAPER_FIGURES_2_3
+from viscoroll.rolling_contact import contact
+from viscoroll.symbols import label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,11 +17,12 @@ if TYPE_CHECKING:
 _MOST_SPEED, _MOST_CREEP = 0.4, 4e-3
 
 
-def figure_2(scene: Scene = PAPER_FIGURES_2_3, alphas: tuple[float, ...] = (1.0, 1.5, 21.5, 81.5)) -> Figure:
-    """Critical creep ratio delta_star over V, one line an alpha (at most four)."""
+def figure_2() -> Figure:
+    """Critical creep ratio delta_star over V, one line an alpha."""
+    scene = PAPER_FIGURES_2_3
     V = np.linspace(0.0, _MOST_SPEED, 401)
     figure, axes = new_figure(f"Critical creep ratio, Eq. (9), for {describe(scene, 'mu', 'kappa')}")
-    for alpha, line in zip(alphas, LINES, strict=False):
+    for alpha, line in zip((1.0, 1.5, 21.5, 81.5), LINES, strict=True):
         star = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="delta_star").delta_star
         axes.plot(V, 1e3 * star, label=rf"{label('alpha')} = {alpha:g}", **line)
     axes.set(xlabel=label("V"), ylabel=r"$\delta^*_\alpha\times 10^3$", xlim=(0.0, _MOST_SPEED), ylim=(0.0, None))
@@ -30,19 +30,16 @@ def figure_2(scene: Scene = PAPER_FIGURES_2_3, alphas: tuple[float, ...] = (1.0,
     return figure
 
 
-def figure_3(
-    scene: Scene = PAPER_FIGURES_2_3,
-    speeds: tuple[float, ...] = (0.1, 0.2, 0.4),
-    alphas: tuple[float, ...] = (1.5, 21.5, 81.5),
-) -> Figure:
-    """(a) traction Q over delta at some speeds; (b) moment M over V at some alphas (at most four)."""
+def figure_3() -> Figure:
+    """(a) traction Q over delta at some speeds; (b) moment M over V at some alphas."""
+    scene = PAPER_FIGURES_2_3
     title = f"Traction and rolling resistance, Eqs. (17), (18), for {describe(scene, 'mu', 'kappa')}"
     figure, (left, right) = new_figure(title, 1, 2, (9.0, 4.0))
     delta, V = np.linspace(-_MOST_CREEP, _MOST_CREEP, 801), np.linspace(-_MOST_SPEED, _MOST_SPEED, 801)
-    for speed, line in zip(speeds, LINES, strict=False):
+    for speed, line in zip((0.1, 0.2, 0.4), LINES, strict=False):
         Q = contact(scene, speed, delta=delta, fields="Q").Q
         left.plot(1e3 * delta, Q, label=f"{label('V')} = {speed:g}", **line)
-    for alpha, line in zip(alphas, LINES, strict=False):
+    for alpha, line in zip((1.5, 21.5, 81.5), LINES, strict=False):
         M = contact(scene.replace(alpha=alpha), V, delta=0.0, fields="M").M
         right.plot(V, 1e3 * M, label=f"{label('alpha')} = {alpha:g}", **line)
     left.set(xlabel=scaled("delta", 3), ylabel=label("Q"), title=f"a) {describe(scene, 'alpha')}")

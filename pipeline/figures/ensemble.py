@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..plots.style import new_figure, number, quantile_bands, scaled
-from ..presets import PAPER_SECTION_5
-from ..symbols import label
+from viscoroll.plots.style import new_figure, number, quantile_bands, scaled
+from viscoroll.symbols import label
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,17 +16,14 @@ if TYPE_CHECKING:
 _UNIT, _EXPONENT = 1e4, 4
 
 
-def ensemble_distribution(summary: xr.Dataset | None = None, sample: xr.Dataset | None = None) -> Figure:
+def distribution(summary: xr.Dataset, sample: xr.Dataset) -> Figure:
     """Quantiles of V over time, and a histogram of the onset of stick.
 
     Parameters
     ----------
     summary : of ``Ensemble.summary`` with an odd number of quantiles; one of t holds V.
-    sample : of ``Ensemble.to_xarray``, all of the motions or some; default for both: a small
-        ensemble of starts that are even in [-2, 2]^2, rolled now.
+    sample : of ``Ensemble.to_xarray``, all of the motions or some.
     """
-    if summary is None or sample is None:
-        summary, sample = _small_ensemble()
     count = int(summary.attrs["motions"])
     common = [name for name in ("alpha", "kappa", "mu", "gamma") if sample[name].ndim == 0]
     scene = ", ".join(f"{label(name)} = ${number(sample[name].item())}$" for name in common)
@@ -43,14 +39,3 @@ def ensemble_distribution(summary: xr.Dataset | None = None, sample: xr.Dataset 
     if not stuck.all():
         right.set_title(f"{np.count_nonzero(~stuck)} more without onset", fontsize="small")
     return figure
-
-
-def _small_ensemble() -> tuple[xr.Dataset, xr.Dataset]:
-    from scipy.stats import uniform
-
-    from ..motion import ensemble
-    from ..sampling import sample
-
-    starts = sample(2048, 0, "sobol", V0=uniform(-2, 4), omega0=uniform(-2, 4))
-    result = ensemble(PAPER_SECTION_5, starts["V0"], starts["omega0"], np.linspace(0.0, 4e-3, 41), rtol=1e-6)
-    return result.summary(), result.to_xarray()

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..contact_stress import stress
-from ..plots.style import LINES, THIN, new_figure
-from ..rolling_contact import contact
-from ..scene import Scene
-from ..symbols import label
+from viscoroll.contact_stress import stress
+from viscoroll.plots.style import LINES, THIN, new_figure
+from viscoroll.rolling_contact import contact
+from viscoroll.scene import Scene
+from viscoroll.symbols import label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,19 +26,13 @@ _TEXT: dict[str, Any] = {"textcoords": "offset points", "fontsize": "large"}
 _SPAN = {"arrowstyle": "<|-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.8}
 
 
-def geometry(scene: Scene = _SCENE, V: float = _V, share: float = _SHARE) -> Figure:
-    """Left: the cylinder on the half-space; right: its contact with lam, epsilon, beta, pressure and shear.
-
-    Parameters
-    ----------
-    scene, V : whose contact is shown.
-    share : of the critical creep ratio.
-    """
+def geometry() -> Figure:
+    """Left: the cylinder on the half-space; right: its contact with lam, epsilon, beta, pressure and shear."""
     figure, (left, right) = new_figure(
         "Cylinder and half-space, and the contact between them, enlarged", 1, 2, (9.4, 4.1), width_ratios=(1.0, 1.35)
     )
     _body(left)
-    _contact(right, scene, V, share * contact(scene, V, delta=0.0).delta_star)
+    _contact(right, _SCENE, _V, _SHARE * contact(_SCENE, _V, delta=0.0).delta_star)
     return figure
 
 

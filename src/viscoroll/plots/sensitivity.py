@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..plots.style import THIN, labelled, new_figure, with_unit
 from ..symbols import label
+from .style import THIN, labelled, new_figure, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
