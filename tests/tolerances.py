@@ -591,3 +591,17 @@ IDENTIFIED = 1e-5
 IDENTIFIED_CHI2 = 1e-6
 #: Ends of an interval against a scan of the profile, over its width: the bound asked.
 INTERVAL = 0.02
+#: Motions under a bearing likewise: their slopes are good to 1e-7 of the largest.
+IDENTIFIED_DRIVEN = 1e-4
+#: Slopes at a step of their own against differences at another: the truncation of both.
+IDENTIFIED_SLOPES = 1e-5
+#: A standard deviation from some 40 residuals: three of its own.
+SIGMA = 0.4
+#: Standard deviations to expect against those of a fit: its values are off by a standard deviation or two.
+PLANNED = 0.3
+#: A band from 200 draws against that by slopes: its quantiles lie that near, three standard deviations of theirs.
+DRAWN = 0.35
+#: What 10 % on E and E_1 leave of each unknown at most, with a product known to a few per cent.
+PRIOR = 0.15
+#: What two outliers of 20 standard deviations move a robust fit by, of a logarithm, at most, and another at least.
+OUTLIERS = 0.1

@@ -20,7 +20,7 @@ from .problem import Column, Found, Problem
 from .profile import Profile, profile
 from .records import Record
 from .said import NARROW, Noise, directions, flat, noise_of, wide, without
-from .search import minima, settle
+from .search import minima
 from .unknowns import Shift, cylinder_of, unknowns_of
 
 if TYPE_CHECKING:
@@ -383,9 +383,7 @@ def identify(
         return Identification(problem, [Found(problem.start, problem.cost(problem.residuals(problem.start)))])
     if not (isinstance(starts, (int, np.integer)) and starts >= 1):
         raise ParameterError("starts", starts, "a whole number >= 1")
-    found = minima(problem, int(starts), seed, progress)
-    best = settle(problem, found[0])
-    return Identification(problem, [best, *found[1:]])
+    return Identification(problem, minima(problem, int(starts), seed, progress))
 
 
 def _called(data: Sequence[Record], shifts: Any) -> dict[str, Record]:

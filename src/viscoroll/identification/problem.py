@@ -118,7 +118,8 @@ class Problem:
         self.evaluations += 1
         r = np.full(self.y.size, FAR)
         try:
-            with np.errstate(all="ignore"):
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of what the search passes through
                 found = self.model(u)
         except (ViscorollError, ArithmeticError):
             pass  # no such cylinder
@@ -183,12 +184,10 @@ class Problem:
         if free:
             narrow = 1e-9 * (self.high - self.low)
             first = np.clip(whole, self.low + narrow, self.high - narrow)[free]
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of motions that the search passes through
-                found = least_squares(
-                    residuals, first, jacobian, (self.low[free], self.high[free]), x_scale="jac", ftol=tolerance,
-                    xtol=tolerance, gtol=tolerance, loss=self._rho if self.robust else "linear", max_nfev=steps,
-                )  # fmt: skip
+            found = least_squares(
+                residuals, first, jacobian, (self.low[free], self.high[free]), x_scale="jac", ftol=tolerance,
+                xtol=tolerance, gtol=tolerance, loss=self._rho if self.robust else "linear", max_nfev=steps,
+            )  # fmt: skip
             whole = at(found.x)
         return Found(whole, self.cost(self.residuals(whole)))
 

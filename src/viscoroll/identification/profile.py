@@ -124,8 +124,11 @@ def profile(
             continue
         d, last = walk.out(sign, reach, rise)
         if d is not None:
-            beyond = [d + share * (reach - d) for share in _BEYOND]
-            seen = [walk.look(centre + sign * x, u, rise) for x in beyond for u in others]
+            seen = []
+            for u in others:
+                own = sign * (float(powers @ u) - centre)
+                places = [d + share * (reach - d) for share in _BEYOND] + [own] * (own > d)
+                seen += [walk.look(centre + sign * x, u, rise) for x in places]
             lower = [one for one in seen if one.chi2 - best.chi2 < rise]
             if lower:
                 pieces = True

@@ -144,12 +144,7 @@ def over(name: str, given: Any, one: Units) -> Any:
         return None
     unit, low = np.asarray(QUANTITIES[name].of(one)), 0.0 if name == "brake" else -np.inf
     if isinstance(given, Feedback):
-        if unit.ndim:
-            raise ParameterError(
-                name, "a feedback", "a number", f"{name} is a feedback: cylinder and slope must be numbers then"
-            )
-        gains = given.V * one.speed / unit, given.omega / one.T / unit
-        return Feedback(over(name, given.value, one), *map(float, gains))
+        return Feedback(over(name, given.value, one), given.V * one.speed / unit, given.omega / one.T / unit)
     if callable(given):
         if unit.ndim:
             raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
