@@ -13,7 +13,21 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import Interrupted, ViscorollError
-from . import contact, doctor, ensemble, fmu, material, motion, plot, sensitivity, steady, tables, validity, warmup
+from . import (
+    contact,
+    doctor,
+    ensemble,
+    fmu,
+    identify,
+    material,
+    motion,
+    plot,
+    sensitivity,
+    steady,
+    tables,
+    validity,
+    warmup,
+)
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
@@ -53,6 +67,7 @@ def parser() -> Parser:
         validity,
         ensemble,
         sensitivity,
+        identify,
         tables,
         fmu,
         material,
