@@ -14,9 +14,9 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth.series import functions, rates
 from viscoroll.cli import main
 from viscoroll.equilibria.zeros import zeros
-from viscoroll.reference.series import functions, rates
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -641,27 +641,28 @@ def test_refusals():
     refused(partial(vr.steady, vr.Scene([2.0, 3.0], KAPPA, MU)), "alpha = an array")
     refused(partial(vr.humps, SCENE.replace(kappa=np.ones(2))), "kappa = an array")
     refused(partial(vr.Feedback, math.nan), "value = nan")
-    refused(partial(vr.Feedback, 0.0, V=[1.0, 2.0]), "V = [1.0, 2.0]", "a single number")
+    refused(partial(vr.Feedback, 0.0, V=[[1.0, 2.0]]), "V = of shape (1, 2)", "a number, or one a motion")
+    refused(refuse(torque=vr.Feedback(0.0, V=[1.0, 2.0])), "torque = a feedback with gains of shape (2,)")
     refused(partial(vr.Feedback, 0.0, omega=math.inf), "omega = inf")
     controlled = partial(vr.PAPER_CYLINDER.steady, torque=vr.Feedback(1.0, V=-1.0), slope=[0.0, 0.1])
-    refused(controlled, "torque is a feedback: cylinder and slope must be numbers")
+    refused(controlled, "torque = a feedback with gains of shape (2,)", "numbers for gains")
 
 
 # --- the command ---
 
 
 def test_command(capsys, tmp_path):
-    scene = ["--preset", "paper-section-5-rounded"]
-    assert main(["steady", *scene, "--slope", "0deg:6deg:7", "-o", str(tmp_path / "s.csv")]) == 0
+    scene = ["paper-section-5-rounded"]
+    assert main(["steady", *scene, "--slope", "0:0.105:7", "-o", str(tmp_path / "s.csv")]) == 0
     rows = np.genfromtxt(tmp_path / "s.csv", delimiter=",", names=True)
-    s = vr.steady(SCENE, slope=np.radians(np.linspace(0.0, 6.0, 7)))
+    s = vr.steady(SCENE, slope=np.linspace(0.0, 0.105, 7))
     np.testing.assert_array_equal(rows["V"], s.V[np.isfinite(s.V)])
     np.testing.assert_array_equal(rows["stable"] == 1, s.stable[np.isfinite(s.V)])
-    assert main(["steady", *scene, "--slope", "3deg,4deg"]) == 2
+    assert main(["steady", *scene, "--slope", "3deg"]) == 2
     assert main(["steady", *scene, "--force", "0.12"]) == 0
     assert "load 1: force + torque = 0.12 exceeds" in capsys.readouterr().out
     assert main(["steady", *scene, "--V", "0.1", "--torque", "0"]) == 0
     assert "angular velocity" in capsys.readouterr().out
-    for words in (["--slope", "90deg"], ["--V", "1"], ["--slope", "1:3deg:2"], ["--force", "nan"]):
+    for words in (["--slope", "1.6"], ["--V", "1"], ["--force", "nan"]):
         assert main(["steady", *scene, *words]) == 2
         assert capsys.readouterr().err.count("\n") == 1

@@ -20,7 +20,7 @@ from viscoroll.kernels.bessel import layout as layout
 from viscoroll.kernels.material.functions import generators, standard
 from viscoroll.rolling_contact import WORTHWHILE
 
-from ..reference.check_values import EDGE_ALPHAS
+from ..truth.check_values import EDGE_ALPHAS
 from .claim import Claim
 
 #: the two ways that contact() takes, and the largest fall allowed: see above

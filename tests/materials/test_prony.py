@@ -13,11 +13,11 @@ from precise import series_slope
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth import series as raw
 from viscoroll.kernels.material import series as kernels
 from viscoroll.kernels.material.functions import at_contact, generators
 from viscoroll.kernels.material.standard import standard
 from viscoroll.materials.tables import record, series
-from viscoroll.reference import series as raw
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

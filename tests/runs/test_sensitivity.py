@@ -18,7 +18,7 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll.cli import main
-from viscoroll.figures import sobol_bars
+from viscoroll.plots.sensitivity import sobol_bars
 from viscoroll.runs import read_run
 from viscoroll.runs.sensitivity import sobol_indices
 

@@ -35,6 +35,21 @@ def agree(m, free, load):
     assert np.array_equal(m.regime, free.regime)
 
 
+def test_a_drag_acts_on_each_of_many_cylinders():
+    """Gains over m/s and rad/s, cylinders of their own units: as each rolls alone."""
+    loads, drags = np.array([50.0, 200.0, 900.0]), np.array([0.002, 0.0, 0.03])
+    rollers = vr.RUBBER_CYLINDER.replace(load=loads, R=np.array([0.05, 0.1, 0.2]))
+    drag = vr.Feedback(0.01, V=-0.001, omega=-drags)
+    fields = {"V": 0.5, "omega": 5.0, "torque": 0.1}
+    e = rollers.ensemble(0.5, 3.0, TIMES, torque=drag, fields=fields)
+    for n in range(3):
+        alone = vr.RUBBER_CYLINDER.replace(load=loads[n], R=rollers.R[n])
+        m = alone.roll(0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags[n]))
+        for name, scale in fields.items():
+            assert close(getattr(e, name)[n], getattr(m, name), rel=tol.SI_MOTION, scale=scale), (n, name)
+    refused(lambda: vr.RUBBER_CYLINDER.roll(0.5, 3.0, TIMES, torque=drag), "drive = of 3 motions", "ensemble")
+
+
 def test_the_dimensionless_motion_in_other_units():
     """Numbers, schedules, callables, feedback, slope, brake: each over its unit, by hand."""
     down, scene = -0.05, ROLLER.scene()

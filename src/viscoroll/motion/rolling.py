@@ -42,8 +42,8 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, 
 
     ready = prepared(inputs.drive, inputs.scene, inputs.V0, inputs.omega0, inputs.end, inputs.rtol)
     refuse_rest(inputs.rest, ready)
-    if ready.pieces.shape[0] > 1:
-        raise ParameterError("drive", f"of {ready.pieces.shape[0]} motions", "one motion's; for many use ensemble")
+    if (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
+        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     scene, law = ready.scene, law_of(ready.scene)
     one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
