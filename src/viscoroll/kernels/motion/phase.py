@@ -36,7 +36,7 @@ _CUTS, _HOPELESS = 8, 10.0
 #: length, over the time so far and to come, of a regime that ends where it begins
 _INSTANT = 1e-14
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
-_FASTER, _TINY = 2.5, 1e-12
+_FASTER, _TINY = 1.5, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
 _LESS, _FAR_LESS = 0.7, 0.4
 #: share of the speed that divides slow from fast rolling, over rtol^(1/7), that the first panel from V = 0 on may rise
