@@ -13,7 +13,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.kernels.law.state import ROWS, M, Need, Q, State, contact_state
+from viscoroll.kernels.law.state import contact_state
+from viscoroll.kernels.law.states import ROWS, M, Need, Q, State
 from viscoroll.kernels.material.functions import standard
 
 from ..bench.jit import compiled

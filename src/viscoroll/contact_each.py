@@ -18,7 +18,7 @@ from .materials.tables import records, series
 def states_each(materials: MaterialArray, per_speed: set[str]) -> Callable:
     """``state_loop`` of states with a material each, each in its own time; it takes their numbers for the material."""
     from .kernels.law.contact_loop import state_loop
-    from .kernels.law.state import ROWS
+    from .kernels.law.states import ROWS
 
     def loop(numbers: NDArray, states: Any, need: Any, rows: NDArray, out: NDArray, start: int, stop: int) -> Any:
         record, unit = records(materials, numbers.astype(np.int64))

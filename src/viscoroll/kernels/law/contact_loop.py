@@ -8,7 +8,8 @@ from ..compile.jit import kernel
 from ..material.functions import material_of
 from . import lockstep
 from .length import OK
-from .state import FAR, NEAR, ROWS, contact_state, contact_state_at, creep_ratio, signed_slip, state_of
+from .state import FAR, NEAR, contact_state, contact_state_at
+from .states import ROWS, creep_ratio, signed_slip, state_of
 from .stick import slight
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
 from ..compile.choice import by_record
@@ -13,18 +11,28 @@ from ..material.functions import at_contact, fast_limit, generator_slopes, momen
 from ..material.pair import Pair, fast_parts, parts
 from .length import OK, contact_solution, near_length
 from .slopes import slope_ratio, slope_ratio_rise
-from .stick import CLOSE, stick_from_root, stick_solution
-
-#: Order of the rows of the kernel's output; the last four, of a pair alone.
-ROWS = (
-    "lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M",
-    "dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV",
-    "M_half_space", "M_cylinder", "dM_half_space_dV", "dM_cylinder_dV",
+from .states import (
+    BETA,
+    DELTA,
+    DELTA_STAR,
+    DM_CYLINDER_DV,
+    DM_DV,
+    DM_HALF_SPACE_DV,
+    DQ_DDELTA,
+    DQ_DOMEGA,
+    DQ_DV,
+    EPSILON,
+    FULL_SLIP,
+    LAM,
+    M_CYLINDER,
+    M_HALF_SPACE,
+    ZETA,
+    M,
+    Q,
+    creep_ratio,
+    signed_slip,
 )  # fmt: skip
-(
-    LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, DQ_DOMEGA, DM_DV,
-    M_HALF_SPACE, M_CYLINDER, DM_HALF_SPACE_DV, DM_CYLINDER_DV,
-) = range(len(ROWS))  # fmt: skip
+from .stick import CLOSE, stick_from_root, stick_solution
 
 #: above this zeta, g <= 1/2 is below rounding beside zeta and the law is Carter's
 FAR = 1e17
@@ -36,68 +44,6 @@ _LINEAR = 1e-17
 _NOWHERE = (0.0,) * 8
 #: in place of (eta, g and h there, whether it is known) for ``stick``: eta is to be solved for
 UNSOLVED = (0.0, 0.0, 0.0, False)
-
-
-class State(NamedTuple):
-    """kappa, mu, V, and the creep as delta or as omega."""
-
-    kappa: float
-    mu: float
-    V: float
-    creep: float
-    creep_is_omega: bool
-
-
-class States(NamedTuple):
-    """Arrays of what a :class:`State` holds: one value, or one a state."""
-
-    kappa: Any
-    mu: Any
-    V: Any
-    creep: Any
-    creep_is_omega: bool
-
-
-class Need(NamedTuple):
-    """Whether epsilon and delta_star, beta or Q, beta, M, and slopes are wanted."""
-
-    shift: bool
-    stick: bool
-    beta: bool
-    moment: bool
-    slopes: bool
-
-
-@kernel(inline=True)
-def state_of(states, n):
-    """State number n."""
-    return State(
-        states.kappa[min(n, states.kappa.size - 1)], states.mu[min(n, states.mu.size - 1)],
-        states.V[min(n, states.V.size - 1)], states.creep[min(n, states.creep.size - 1)], states.creep_is_omega,
-    )  # fmt: skip
-
-
-@kernel
-def signed_slip(state):
-    """(omega - V, sign of the slip, direction of travel); V = 0 counts as V -> 0+."""
-    V, creep = state.V, state.creep
-    direction = -1.0 if V < 0.0 else 1.0
-    slip = creep - V if state.creep_is_omega else creep * V
-    if state.creep_is_omega:
-        sign = np.sign(slip)
-    else:
-        sign = np.sign(creep) * direction
-    return slip, sign, direction
-
-
-@kernel
-def creep_ratio(state, slip):
-    """delta of Eq. (5); infinite when V = 0 < |omega|, 0 at rest."""
-    if not state.creep_is_omega:
-        return state.creep
-    if state.V != 0.0:
-        return slip / state.V
-    return 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
 
 
 @kernel

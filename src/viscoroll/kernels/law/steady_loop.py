@@ -17,7 +17,8 @@ from ..material.functions import at_contact, generator_slopes
 from ..material.pair import Pair, parts
 from ..material.tabulated import Tabulated
 from .length import OK, contact_length, contact_solution, near_length
-from .state import UNSOLVED, State, stick, traction_slopes
+from .state import UNSOLVED, stick, traction_slopes
+from .states import State
 from .stick import CLOSE, differences
 
 #: rows of :func:`curve_loop`: kappa V, kappa (M - gain V), and the slope of that over V

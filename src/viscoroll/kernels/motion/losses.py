@@ -14,8 +14,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.state import ROWS as CONTACT_ROWS
-from ..law.state import Need, Q, State, contact_state
+from ..law.state import contact_state
+from ..law.states import ROWS as CONTACT_ROWS
+from ..law.states import Need, Q, State
 from ..material.standard import GAUSS_W, GAUSS_X
 from ..numerics.arrays import fill
 from .integrate import integrate

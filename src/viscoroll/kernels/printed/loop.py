@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import OK
-from ..law.state import (
+from ..law.states import (
     BETA,
     DELTA,
     DELTA_STAR,
