@@ -68,9 +68,11 @@ RATIO_BIN_ULP = 2.0
 RATIO_SLOPE = 1e-15
 
 # --- rolling_contact.py (test_contact.py) ---
-#: Table law against 50 digits, relative, beta times 1/(1 - s): a dozen roundings; the documentation states 1e-13;
-#: measured 7.5e-16.
-CONTACT = 4e-15
+#: A state by the rows of its law against 50 digits, relative: delta_star, Q and M; measured 3e-15 over 900 states.
+CONTACT = 5e-15
+#: lam and zeta, and beta times 1/(1 - s), and epsilon: 24 powers leave so much of lam and epsilon in one octave for
+#: alpha from 20 to 35; measured 1.0e-14 and 2.0e-14 there, 2e-15 and 5e-15 elsewhere.
+CONTACT_LENGTH, CONTACT_SHIFT = 1.5e-14, 3e-14
 #: Carter's closed forms at alpha = 1: two or three roundings.
 CARTER = 1e-15
 #: Values at kappa V = 1e-12 and V = 1e14 from their limits: the limits' own error, kappa V and alpha^2/V; measured
@@ -116,8 +118,8 @@ AXIS_LAW = 1e-14
 AXIS_UNSTEADY = 2e-14
 
 # --- materials/law_table.py (test_law_table.py) ---
-#: lam, M/V, eta/F and H/F^2 by a row, relative, and epsilon: the bounds asked.
-TABLE_LAW, TABLE_SHIFT = 5e-15, 2e-14
+#: M/V, eta/F and H/F^2 by a row, relative; lam and epsilon as of states (CONTACT_LENGTH, CONTACT_SHIFT).
+TABLE_LAW = 5e-15
 
 # --- scene.py (test_scene.py) ---
 #: Conversions: a few roundings of products and one square root.
