@@ -88,6 +88,8 @@ SHAPE_ULP = 5.0
 #: Slopes against 50 digits, times 1/(1 - s): dQ_ddelta and dQ_domega relative, dQ_dV over mu/V (it cancels as
 #: delta -> 0), dM_dV over c (it changes sign); measured 9e-16.
 SLOPE = 1e-14
+#: dM_dV over M/V: in the octave where 24 powers leave so much of lam; measured 3.1e-14.
+SLOPE_OF_M = 5e-14
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 #: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
@@ -371,7 +373,7 @@ UNIT = 1e-12
 #: which some hundredths of delta_star magnify; against 50 digits 7.7e-12 over 540 states, in
 #: other units of time 2.4e-12.
 SERIES_SLOPE = 2e-11
-#: States by roots against those by tables; the equation of the length.
+#: States and stresses by the modes against those by rows; the equation of the length.
 SERIES_STATES = 1e-12
 #: Eqs. (10), (15) put back together from beta: differences of near numbers.
 SERIES_CLOSURE = 1e-8

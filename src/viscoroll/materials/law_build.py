@@ -237,8 +237,10 @@ def with_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) 
     lam = np.zeros_like(rows.x)
     for k in range(TERMS - 1, -1, -1):
         lam = lam * rows.t + table[:, k, :1]
-    N = evaluate((0.5 * lam / rows.x).ravel()).reshape(rows.x.shape)
-    whole[:, :, FUNCTIONS.index("N")] = rows.fit(N, rounding=_ROUNDING_OF_N)
+    *N, slowest = evaluate(np.append(0.5 * lam / rows.x, np.inf))
+    fitted = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
+    fitted[0, 0] = slowest
+    whole[:, :, FUNCTIONS.index("N")] = fitted
     return whole
 
 
