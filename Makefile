@@ -62,7 +62,7 @@ numbers: setup ## measure again what README and docs state, and put it there (ab
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	-$(RUN) -m pipeline.measure.outside --config $(CONFIG)
 	$(RUN) -m pipeline.document
-	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(BIN)/viscoroll plot $$name -o docs/figures/$$name.png; done
+	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(RUN) -m pipeline.figures $$name -o docs/figures/$$name.png; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)

@@ -39,8 +39,8 @@ SAMPLE = (
     "tests/docs/test_readme.py::test_howto_blocks_run",
     "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
     "tests/pipeline/test_prove.py::test_contact_has_the_check_values",
-    "tests/reference/test_reference_motions.py::test_roll_has_the_check_motions",
-    "tests/reference/test_reference_motions.py::test_flow_map_has_the_check_motions",
+    "tests/truth/test_motions.py::test_roll_has_the_check_motions",
+    "tests/truth/test_motions.py::test_flow_map_has_the_check_motions",
 )
 _VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
 _LIBRARIES = "import importlib.metadata as m, sys; print(*(f'{n} {m.version(n)}' for n in sys.argv[1:]), sep=', ')"

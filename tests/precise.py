@@ -1,4 +1,4 @@
-"""Truth for the tests: the printed law of viscoroll.reference, its slopes, and distances in ULP."""
+"""Truth for the tests: the printed law of pipeline.truth, its slopes, and distances in ULP."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import mpmath as mp
 
-from viscoroll.reference import precise
+from pipeline.truth import precise
 
 DIGITS = 50
-#: digits that the printed forms may lose (see viscoroll.reference.precise)
+#: digits that the printed forms may lose (see pipeline.truth.precise)
 GUARD = 30
 
 

@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth import contact_enclosure
 from viscoroll.contact_fields import FIELDS, SLOPES
 from viscoroll.kernels.law.stick import differences
 from viscoroll.kernels.material.functions import standard
-from viscoroll.reference import contact_enclosure
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu

@@ -299,6 +299,7 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
     assert "do not go together" in text
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # units that are not given
 @pytest.mark.parametrize(
     ("text", "factors"),
     [

@@ -26,6 +26,8 @@ from refusals import refused
 import viscoroll as vr
 from viscoroll.motion import flow_store
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
 GRID = {"what": SCENE, "V": [0.1, 0.3, 2.0], "delta": [-0.01, 0.0, 0.03], "alpha": [1.0, 11.0]}

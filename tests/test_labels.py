@@ -10,6 +10,8 @@ from refusals import refused
 
 import viscoroll as vr
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 ROLLER = vr.RUBBER_CYLINDER
 V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")

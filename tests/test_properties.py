@@ -20,6 +20,8 @@ from viscoroll.materials.law_table import law_table
 from viscoroll.motion.batch import FIELDS
 from viscoroll.tables import schema
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+
 #: seconds for each of the six tests; 0: the short profile
 SECONDS = float(os.environ.get("FUZZ_SECONDS", "0")) / 6.0
 #: a motion that takes longer hangs

@@ -14,9 +14,11 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth.series import functions, rates
 from viscoroll.cli import main
 from viscoroll.equilibria.zeros import zeros
-from viscoroll.reference.series import functions, rates
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
@@ -639,10 +641,11 @@ def test_refusals():
     refused(partial(vr.steady, vr.Scene([2.0, 3.0], KAPPA, MU)), "alpha = an array")
     refused(partial(vr.humps, SCENE.replace(kappa=np.ones(2))), "kappa = an array")
     refused(partial(vr.Feedback, math.nan), "value = nan")
-    refused(partial(vr.Feedback, 0.0, V=[1.0, 2.0]), "V = [1.0, 2.0]", "a single number")
+    refused(partial(vr.Feedback, 0.0, V=[[1.0, 2.0]]), "V = of shape (1, 2)", "a number, or one a motion")
+    refused(refuse(torque=vr.Feedback(0.0, V=[1.0, 2.0])), "torque = a feedback with gains of shape (2,)")
     refused(partial(vr.Feedback, 0.0, omega=math.inf), "omega = inf")
     controlled = partial(vr.PAPER_CYLINDER.steady, torque=vr.Feedback(1.0, V=-1.0), slope=[0.0, 0.1])
-    refused(controlled, "torque is a feedback: cylinder and slope must be numbers")
+    refused(controlled, "torque = a feedback with gains of shape (2,)", "numbers for gains")
 
 
 # --- the command ---

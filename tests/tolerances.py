@@ -209,8 +209,6 @@ VALIDATION_WRONG = 1e-4
 # --- figures (test_figures.py) ---
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
-#: Equilibria of a slope beside the curve of M on level ground: kappa of the slope, and linear interpolation.
-FIGURE_CURVE = 5e-3
 
 # --- the benchmark at smoke sizes (test_bench.py) ---
 #: Motions of this package at rtol 1e-6: MOTION_RTOL times that; measured 1.4e-6.
@@ -311,14 +309,14 @@ CHEBYSHEV = 1e-12
 #: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
 SI_SERIES_RTOL = 1e-7
 
-# --- motions in extended precision (test_reference_motions.py) ---
+# --- motions in extended precision (truth/test_motions.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
 #: 60 digits: its square; measured 1e-23.
 PRECISE_RATE = 1e-20
 #: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20.
 PRECISE_MOTION = 1e-17
 
-#: Driven ones likewise (test_reference_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
+#: Driven ones likewise (truth/test_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
 PRECISE_DRIVEN = 1e-17
 
 # --- boundary elements (reference/test_boundary.py) ---
@@ -589,3 +587,25 @@ CALLABLE_JUMP = 1e-14
 # --- setting out (motion/test_sets_out.py) ---
 #: Faint drives against one of 1e-9, which is not quite linear.
 FAINT = 1e-7
+
+# --- identification (tests/identification) ---
+#: Values from data without noise: least squares stop where chi2 stays to 1e-10; measured 2e-8.
+IDENTIFIED = 1e-5
+#: and what is left of chi2.
+IDENTIFIED_CHI2 = 1e-6
+#: Ends of an interval against a scan of the profile, over its width: the bound asked.
+INTERVAL = 0.02
+#: Motions under a bearing likewise: their slopes are good to 1e-7 of the largest.
+IDENTIFIED_DRIVEN = 1e-4
+#: Slopes at a step of their own against differences at another: the truncation of both.
+IDENTIFIED_SLOPES = 1e-5
+#: A standard deviation from some 40 residuals: three of its own.
+SIGMA = 0.4
+#: Standard deviations to expect against those of a fit: its values are off by a standard deviation or two.
+PLANNED = 0.3
+#: A band from 200 draws against that by slopes: its quantiles lie that near, three standard deviations of theirs.
+DRAWN = 0.35
+#: What 10 % on E and E_1 leave of each unknown at most, with a product known to a few per cent.
+PRIOR = 0.15
+#: What two outliers of 20 standard deviations move a robust fit by, of a logarithm, at most, and another at least.
+OUTLIERS = 0.1

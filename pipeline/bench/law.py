@@ -25,9 +25,9 @@ from viscoroll.kernels.bessel.ratios import (
 )
 from viscoroll.kernels.material.functions import generators, standard
 from viscoroll.kernels.motion.partial_slip import slip_differences
-from viscoroll.reference import contact_precise
 
 from ..timing import nanoseconds, rounds
+from ..truth import contact_precise
 from .jit import compiled
 
 FIELDS = ("Q", "M")

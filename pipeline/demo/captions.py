@@ -32,9 +32,9 @@ SECTIONS: dict[str, dict[str, str]] = {
         "reversal": "Braked through V = 0: the traction jumps, for the stick zone forms anew at the other end.",
     },
     "Other materials": {
-        "rolling-resistance": "A rubber from its master curve to rolling resistance at three temperatures.",
+        "rolling-resistance": "Rolling resistance of a rubber at three temperatures.",
         "law-of-modes": "One relaxation time and many, with the same moduli: humps far apart, or a plateau.",
-        "law-of-pairs": "A rubber on its like, on a rigid and an elastic base, and on another rubber.",
-        "broad-stresses": "Pressure and shear of a rubber with ten relaxation times.",
+        "law-of-pairs": "Rubber on rubber and on steel under one load; dashed: the part of M in the base.",
+        "broad-stresses": "Pressure and shear of a rubber with ten relaxation times at four speeds.",
     },
 }  # fmt: skip

@@ -13,9 +13,10 @@ import xarray as xr
 from tqdm import tqdm
 
 from viscoroll.errors import FileProblem
-from viscoroll.figures import FIGURES, save
+from viscoroll.plots.style import save
 
 from .. import stage
+from ..figures import FIGURES
 
 
 def load_ensemble(path: Path) -> xr.Dataset:

@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.reference import contact_precise
 from viscoroll.validation.states import differences
 from viscoroll.validation.stresses import closures
 
@@ -28,6 +27,7 @@ from ..bench.cold_start import cold_start
 from ..bench.problem import speed_error
 from ..results import run
 from ..timing import alternating
+from ..truth import contact_precise
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 DIGITS = 50

@@ -11,8 +11,8 @@ import numpy as np
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.reference import boundary
 
+from ..truth import boundary
 from .claim import Claim, at
 
 DOMAIN = "1 to 3 modes over up to 2 decades, kappa V in [0.03, 10], creep in [0.05, 0.95] of delta_star"

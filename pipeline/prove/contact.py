@@ -11,9 +11,9 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.reference.enclosures import INPUTS, condition_numbers, contact_enclosure
 
-from ..reference.check_values import EDGE_ALPHAS, chosen_state
+from ..truth.check_values import EDGE_ALPHAS, chosen_state
+from ..truth.enclosures import INPUTS, condition_numbers, contact_enclosure
 from .claim import Claim, at
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")

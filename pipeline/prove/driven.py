@@ -17,8 +17,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 
-from ..reference.check_driven import PATHS, motion_of
-from ..reference.check_driven import TARGET as CHECK_DRIVEN
+from ..truth.check_driven import PATHS, motion_of
+from ..truth.check_driven import TARGET as CHECK_DRIVEN
 from .claim import Claim, at
 
 #: errors are over rtol: of all motions, and of 99 in 100

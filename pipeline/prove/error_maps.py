@@ -21,15 +21,14 @@ import xarray as xr
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from viscoroll.figures import save
 from viscoroll.files import write_dataset
-from viscoroll.plots.style import new_figure
-from viscoroll.reference import contact_enclosure
+from viscoroll.plots.style import new_figure, save
 from viscoroll.symbols import SYMBOLS, label
 
 from ..results import RESULTS, parser, read_sizes
 from ..stage import ROOT, told
 from ..stamps import kernels_digest
+from ..truth import contact_enclosure
 from .contact import by_roots, by_rows, relative_error
 
 if TYPE_CHECKING:

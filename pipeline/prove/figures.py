@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from viscoroll.figures import save
-from viscoroll.plots.style import LINES, THIN, new_figure
+from viscoroll.plots.style import LINES, THIN, new_figure, save
 
 from ..results import RESULTS, parser
 from ..stage import ROOT, told

@@ -15,11 +15,11 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.errors import MotionStatus
-from viscoroll.reference import roll_precise
 
 from ..bench.problem import speed_error
-from ..reference.random_motions import DOMAIN, ChosenMotion, chosen_motion
 from ..stage import ROOT, read_rows
+from ..truth import roll_precise
+from ..truth.random_motions import DOMAIN, ChosenMotion, chosen_motion
 from .claim import Claim
 
 CHECK_MOTIONS = ROOT / "data/reference/check_motions.csv"

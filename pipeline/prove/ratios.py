@@ -13,8 +13,8 @@ from tqdm import tqdm
 
 from viscoroll.kernels.bessel import layout as layout
 from viscoroll.kernels.bessel import ratios as kernels
-from viscoroll.reference import enclosures
 
+from ..truth import enclosures
 from .claim import Claim
 
 #: a polynomial or series to a unit, a product and a logarithm

@@ -1,6 +1,6 @@
 """Materials of many relaxation times and pairs: the matching conditions at 60 digits, and Chebyshev polynomials.
 
-The conditions stand in ``viscoroll.reference.series`` as they were derived, without the system that the kernels
+The conditions stand in ``pipeline.truth.series`` as they were derived, without the system that the kernels
 solve; the Chebyshev solver knows neither Bessel functions nor the relaxation form.
 """
 
@@ -19,9 +19,9 @@ from viscoroll.kernels.material.functions import at_contact, generators
 from viscoroll.kernels.material.series import AT_HALF_SPACE, Parts, room, values
 from viscoroll.kernels.material.series import shares as parts_of
 from viscoroll.materials.tables import record, series
-from viscoroll.reference import series as raw
-from viscoroll.reference import spectral
 
+from ..truth import series as raw
+from ..truth import spectral
 from .claim import Claim, at
 
 MODES = (1, 3, 10, 30)

@@ -19,7 +19,7 @@ import viscoroll as vr
 from viscoroll.kernels.bessel import layout as layout
 from viscoroll.kernels.material.functions import generators, standard
 
-from ..reference.check_values import EDGE_ALPHAS
+from ..truth.check_values import EDGE_ALPHAS
 from .claim import Claim
 
 #: the two ways that contact() takes, and the largest fall allowed: see above

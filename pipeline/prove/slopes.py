@@ -12,7 +12,11 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.material.functions import generators, standard
-from viscoroll.reference.enclosures import (
+from viscoroll.validation.states import random_states
+from viscoroll.validation.stresses import closures
+
+from ..truth.check_values import chosen_alpha
+from ..truth.enclosures import (
     INPUTS,
     condition_numbers,
     contact_enclosure,
@@ -20,10 +24,6 @@ from viscoroll.reference.enclosures import (
     slope_changes,
     slopes,
 )
-from viscoroll.validation.states import random_states
-from viscoroll.validation.stresses import closures
-
-from ..reference.check_values import chosen_alpha
 from .claim import Claim, at
 from .shape import WAYS, at_edges, contact
 

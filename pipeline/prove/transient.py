@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from scipy.linalg import matmul_toeplitz, toeplitz
 
 import viscoroll as vr
-from viscoroll.figures import save
-from viscoroll.plots.style import LINES, THIN, new_figure
+from viscoroll.plots.style import LINES, THIN, new_figure, save
 
 from ..results import RESULTS, machine, parser, write_results
 from ..stage import ROOT, told

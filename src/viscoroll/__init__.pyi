@@ -23,6 +23,10 @@ from .errors import OutputError as OutputError
 from .errors import ParameterError as ParameterError
 from .errors import TableError as TableError
 from .errors import ViscorollError as ViscorollError
+from .identification import Coastdown as Coastdown
+from .identification import Resistance as Resistance
+from .identification import Traction as Traction
+from .identification import identify as identify
 from .materials.bodies import Bodies as Bodies
 from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material

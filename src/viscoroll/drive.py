@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import checked, number
+from .checks import checked
 from .errors import ParameterError
 
 
@@ -22,27 +22,41 @@ class Feedback:
     ----------
     value : what acts at rest, over P for a force, over P R for a torque: a number or an array; for motions also
         (times, values) or a callable of t, see :func:`roll`.
-    V, omega : gains, numbers; < 0 brakes what is too fast, as an engine's torque falls with its speed.
+    V, omega : gains, numbers, for motions of an ensemble also (n,); < 0 brakes what is too fast, as an engine's torque
+        falls with its speed.
 
     Raises
     ------
     ParameterError
-        What is not numeric or not finite, gains that are no single numbers.
+        What is not numeric or not finite, gains that are neither numbers nor vectors.
     """
 
     value: Any
-    V: float = 0.0
-    omega: float = 0.0
+    V: Any = 0.0
+    omega: Any = 0.0
 
     def __post_init__(self) -> None:
         if not (callable(self.value) or isinstance(self.value, tuple)):  # those are checked with their motion
-            value = checked("value", self.value)
-            if value.ndim:
-                value = value.copy()
-                value.flags.writeable = False
-            object.__setattr__(self, "value", value if value.ndim else float(value))
+            object.__setattr__(self, "value", _own("value", self.value))
         for name in ("V", "omega"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
+            object.__setattr__(self, name, gain := _own(name, getattr(self, name)))
+            if np.ndim(gain) > 1:
+                raise ParameterError(name, f"of shape {np.shape(gain)}", "a number, or one a motion, (n,)")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of its gains."""
+        return np.broadcast_shapes(np.shape(self.V), np.shape(self.omega))
+
+
+def _own(name: str, given: Any) -> Any:
+    """A number, or an array that nobody else writes to."""
+    value = checked(name, given)
+    if not value.ndim:
+        return float(value)
+    value = value.copy()
+    value.flags.writeable = False
+    return value
 
 
 def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:

@@ -11,7 +11,6 @@ import shlex
 import subprocess
 import sys
 import tomllib
-import types
 import warnings
 
 import numpy as np
@@ -27,6 +26,8 @@ from viscoroll.cli import main
 from viscoroll.materials.file import read_materials
 from viscoroll.materials.law_store import checksum, content_of
 from viscoroll.motion import warned
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 PRESET = ["--preset", "paper-section-5"]
 START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
@@ -86,16 +87,6 @@ def tables(tmp_path_factory):
     return folder
 
 
-@pytest.fixture
-def figures(monkeypatch):
-    """A stand-in for viscoroll.figures: the real ones have tests of their own."""
-    module = types.ModuleType("viscoroll.figures")
-    module.FIGURES = {"figure-5": lambda: "the figure"}
-    module.save = lambda figure, path: path.write_text(figure)
-    monkeypatch.setitem(sys.modules, "viscoroll.figures", module)
-    monkeypatch.setattr(vr, "figures", module, raising=False)
-
-
 def rows(text: str) -> dict[str, np.ndarray]:
     """Columns of a CSV of numbers."""
     names, *values = csv.reader(io.StringIO(text))
@@ -151,7 +142,7 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
 
 
 @pytest.mark.parametrize("command", ["", "tables", "material", *COMMANDS])
-def test_example_of_help_runs(run, tables, here, figures, monkeypatch, command):
+def test_example_of_help_runs(run, tables, here, monkeypatch, command):
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
     (here / "docs").symlink_to(ROOT / "docs")
@@ -809,19 +800,11 @@ def test_negative_seed_of_validate(refuse, tables):
     assert "seed = -1" in refuse("tables", "validate", str(tables / "rubber.nc"), "--seed", "-1")
 
 
-# --- plot ---
-
-
-def test_plot(run, figures, here):
-    assert run("plot", "figure-5", "-o", "f.png") == ""
-    assert (here / "f.png").read_text() == "the figure"
-
-
-def test_refused_plot(refuse, figures):
+def test_refused_plot(refuse):
     for argv, words in (
-        ("figure-9 -o f.png", "'figure-9' is no figure and no file to plot: give figure-5"),
-        ("figure-5", "-o"),
+        ("figure-9 -o f.png", "'figure-9' is no file to plot: give FILE.nc"),
+        ("motion.nc", "-o"),
         ("missing.nc -o f.png", "missing.nc: there is no such file"),
-        ("figure-5 -o f.gif", "'f.gif'"),
+        ("missing.nc -o f.gif", "'f.gif'"),
     ):  # fmt: skip
         assert words in refuse("plot", *argv.split()), argv

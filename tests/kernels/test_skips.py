@@ -14,6 +14,8 @@ from processes import printed
 
 import viscoroll as vr
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 ROLL = "vr.ensemble(scene, [1.5], [0.5], [3e-3], method='flow', fields={!r})"
 WORK = {

@@ -14,8 +14,8 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.prove.series import any_state, state_errors
+from pipeline.truth import series as raw
 from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
-from viscoroll.reference import series as raw
 
 DIGITS = 60
 SOFT, STIFF = vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7])

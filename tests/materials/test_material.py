@@ -18,6 +18,8 @@ from viscoroll.files import seal, write_dataset
 from viscoroll.materials.file import as_toml, read_materials
 from viscoroll.materials.store import as_dataset
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 RUBBER = vr.Material(
     E=2.3e5,
     nu=0.49,

@@ -18,6 +18,8 @@ from viscoroll.kernels.law.stick import differences
 from viscoroll.kernels.material.functions import at_contact, standard
 from viscoroll.kernels.material.tabulated import tabulated
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 ALPHAS = (1.0001, 1.5, 11.0, 100.0, 1e4)

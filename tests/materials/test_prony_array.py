@@ -13,6 +13,8 @@ import viscoroll as vr
 from viscoroll.kernels.material.tabulated import Tabulated
 from viscoroll.materials.tables import _series_table, records, series
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 COUNT = 12
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "beta", "Q", "M", "dQ_dV", "dM_dV")
 SCENE = {"kappa": 2.91, "mu": 0.2, "gamma": 700.0}

@@ -13,6 +13,8 @@ from scipy.optimize import brentq
 
 import viscoroll as vr
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 T = np.linspace(0.0, 8.0, 33)

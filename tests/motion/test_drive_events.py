@@ -10,6 +10,8 @@ from closeness import close
 
 import viscoroll as vr
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 #: errors over rtol: of V and omega over the largest speed so far, and of times of events
 BOUND, TIGHT = 30.0, 1e-11
 

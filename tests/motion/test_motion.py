@@ -21,6 +21,8 @@ import viscoroll as vr
 from viscoroll.motion import single
 from viscoroll.presets import PAPER_STARTS
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SECTION_5 = DATA / "reference/section5.csv"
 ROUNDED, UNROUNDED = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_SECTION_5
 SCENES = {"rounded": ROUNDED, "unrounded": UNROUNDED}

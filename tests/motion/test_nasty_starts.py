@@ -32,7 +32,11 @@ SCENES = {
 }
 #: a motion with several changes of regime takes some hundred
 STEPS = 2000
-pytestmark = pytest.mark.usefixtures("maps_of_this_file")
+# the paper's own scene is beyond the model
+pytestmark = [
+    pytest.mark.usefixtures("maps_of_this_file"),
+    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
+]
 
 
 def decay_time(scene: vr.Scene) -> float:

@@ -9,6 +9,8 @@ from closeness import close
 
 import viscoroll as vr
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 T = np.linspace(0.0, 2.0, 9)
 

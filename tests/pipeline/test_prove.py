@@ -19,8 +19,8 @@ from processes import made, printed, stage
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.reference import MissingDependencyError, contact_enclosure, contact_precise
-from viscoroll.reference.enclosures import INPUTS, slope_changes, slopes
+from pipeline.truth import contact_enclosure, contact_precise
+from pipeline.truth.enclosures import INPUTS, slope_changes, slopes
 
 CHECK_VALUES = DATA / "reference/check_values.csv"
 
@@ -58,7 +58,7 @@ def test_enclosures_refuse():
 
 def test_enclosures_without_flint(monkeypatch):
     monkeypatch.setitem(sys.modules, "flint", None)
-    with pytest.raises(MissingDependencyError, match="python-flint"):
+    with pytest.raises(vr.MissingDependencyError, match="python-flint"):
         contact_enclosure(11.0, 2.91, 0.2, 0.5, 0.01)
 
 
@@ -142,7 +142,7 @@ def test_check_values_are_made_again(tmp_path):
     """The stage with the same seed begins with the same rows."""
     text = (PIPELINE / "config/production.toml").read_text(encoding="utf-8")
     (tmp_path / "few.toml").write_text(text.replace("states = 2000", "states = 40"), encoding="utf-8")
-    made("reference.check_values", "--config", tmp_path / "few.toml", "--folder", tmp_path, "-o", tmp_path)
+    made("truth.check_values", "--config", tmp_path / "few.toml", "--folder", tmp_path, "-o", tmp_path)
     again = (tmp_path / "check_values.csv").read_text(encoding="utf-8").splitlines()
     assert len(again) == 41
     assert again == CHECK_VALUES.read_text(encoding="utf-8").splitlines()[:41]

@@ -15,6 +15,8 @@ from viscoroll.runs.evaluate import block_inputs, roll_block
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.store import columns_of
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SCENE = """
 preset = "paper-section-5"
 [start]

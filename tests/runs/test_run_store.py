@@ -26,6 +26,8 @@ from viscoroll.runs import engine, export_netcdf, open_summaries, read_run, run_
 from viscoroll.runs.evaluate import roll_block
 from viscoroll.runs.store import Store, locked
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 RUN = """
 preset = "paper-section-5"
 [scene]

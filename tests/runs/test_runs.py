@@ -38,6 +38,8 @@ from viscoroll.runs.summaries import (
     summary_dataset,
 )  # fmt: skip
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 ANY = {"distribution": "uniform", "loc": -2.0, "scale": 4.0}
 FULL = """
 preset = "paper-section-5"

@@ -18,9 +18,11 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll.cli import main
-from viscoroll.figures import sobol_bars
+from viscoroll.plots.sensitivity import sobol_bars
 from viscoroll.runs import read_run
 from viscoroll.runs.sensitivity import sobol_indices
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 N = 1024
 GAMMA = 1e4

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 ROLLER = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
 R, T, P = ROLLER.R, ROLLER.T_ref, ROLLER.load
@@ -30,6 +33,21 @@ def agree(m, free, load):
     assert close(events, np.array(expected) * T, rel=tol.SI_MOTION)
     assert [s.regime for s in m.switches] == [s.regime for s in free.switches]
     assert np.array_equal(m.regime, free.regime)
+
+
+def test_a_drag_acts_on_each_of_many_cylinders():
+    """Gains over m/s and rad/s, cylinders of their own units: as each rolls alone."""
+    loads, drags = np.array([50.0, 200.0, 900.0]), np.array([0.002, 0.0, 0.03])
+    rollers = vr.RUBBER_CYLINDER.replace(load=loads, R=np.array([0.05, 0.1, 0.2]))
+    drag = vr.Feedback(0.01, V=-0.001, omega=-drags)
+    fields = {"V": 0.5, "omega": 5.0, "torque": 0.1}
+    e = rollers.ensemble(0.5, 3.0, TIMES, torque=drag, fields=fields)
+    for n in range(3):
+        alone = vr.RUBBER_CYLINDER.replace(load=loads[n], R=rollers.R[n])
+        m = alone.roll(0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags[n]))
+        for name, scale in fields.items():
+            assert close(getattr(e, name)[n], getattr(m, name), rel=tol.SI_MOTION, scale=scale), (n, name)
+    refused(lambda: vr.RUBBER_CYLINDER.roll(0.5, 3.0, TIMES, torque=drag), "drive = of 3 motions", "ensemble")
 
 
 def test_the_dimensionless_motion_in_other_units():

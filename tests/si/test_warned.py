@@ -91,6 +91,7 @@ def test_workers_are_quiet(told, monkeypatch):
     assert told(lambda: BELT.contact(10.0, delta=0.0)) == []
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_curves_are_dashed_beyond(tmp_path):
     """Over speed, also from a file, and over frequency: what is solid and what is dashed meet, and are all there is."""
     V = np.geomspace(0.01, 100.0, 81)

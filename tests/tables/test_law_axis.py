@@ -15,10 +15,10 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth import series as raw
 from viscoroll.materials.law_axis import FUNCTIONS, LawAxis, law_axis
 from viscoroll.materials.law_table import FUNCTIONS as OF_ONE
 from viscoroll.materials.law_table import LawTable, law_table
-from viscoroll.reference import series as raw
 from viscoroll.validation.table_check import check_table
 
 ALPHAS = (1.0 + 2.0**-52, 1.0 + 1e-9, 1.9, 2.0, 11.0, 27.0, 300.0, 4096.0, 2.0**20 - 1.0, 2.0**20)

@@ -20,6 +20,8 @@ from viscoroll.validation.direct_motion import roll_direct
 from viscoroll.validation.motions import motion_checks
 from viscoroll.validation.states import along_motion_checks, random_state_checks, random_states
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 SMALL = {"states": 2000, "stress_states": 3, "table_points": 300, "times": 20}
 RETURNS = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4)
 

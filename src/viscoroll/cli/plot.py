@@ -19,30 +19,29 @@ def add_commands(commands: Any) -> None:
     """Add the command to the program."""
     parser = commands.add_parser(
         "plot",
-        help="one of the figures, a result file, a scene, or the results of a run",
-        description="Draw one of the figures of viscoroll.figures (a wrong name gets the list of names); the result\n"
-        "in a netCDF file of this program; the contact law over speed of a scene file; or the summaries of a store.",
-        epilog="examples:\n  viscoroll plot figure-5 -o figure-5.png\n  viscoroll plot motion.nc -o motion.png",
+        help="a result file, a scene, or the results of a run",
+        description="Draw the result in a netCDF file of this program, the contact law over speed of a scene file, or\n"
+        "the summaries of a store.",
     )
-    parser.add_argument("what", metavar="WHAT", help="name of the figure, FILE.nc, SCENE.toml or STORE.zarr")
+    parser.add_argument("what", metavar="WHAT", help="FILE.nc, SCENE.toml or STORE.zarr")
     add_output_option(parser, *FORMATS, required=True)
     parser.set_defaults(run=_plot)
 
 
 def _plot(arguments: Namespace) -> int:
-    from ..figures import FIGURES, save
+    from ..plots.style import save
 
     kinds: dict[str, Callable[[str], Any]] = {".zarr": _of_store, ".nc": _of_file, ".toml": _of_scene}
     draw = kinds.get(Path(arguments.what).suffix.lower())
-    if draw is None and arguments.what not in FIGURES:
-        sentence = f"{arguments.what!r} is no figure and no file to plot: give {', '.join(FIGURES)}"
-        raise ParameterError("plot", arguments.what, "a figure", f"{sentence}, FILE.nc, SCENE.toml or STORE.zarr")
-    save(FIGURES[arguments.what]() if draw is None else draw(arguments.what), arguments.output)
+    if draw is None:
+        sentence = f"{arguments.what!r} is no file to plot: give FILE.nc, SCENE.toml or STORE.zarr"
+        raise ParameterError("plot", arguments.what, "a file to plot", sentence)
+    save(draw(arguments.what), arguments.output)
     return 0
 
 
 def _of_store(path: str) -> Any:
-    from ..figures import run_distributions
+    from ..plots.runs import run_distributions
     from ..runs import open_summaries
 
     return run_distributions(open_summaries(path))

@@ -48,7 +48,8 @@ def _sensitivity(arguments: Namespace) -> int:
     if path is not None and path.suffix.lower() != ".txt":
         print(_sheet(indices).text(), end="")
     if arguments.plot is not None:
-        from ..figures import save, sobol_bars
+        from ..plots.sensitivity import sobol_bars
+        from ..plots.style import save
 
         save(sobol_bars(indices), arguments.plot)
     return 0

@@ -100,6 +100,8 @@ def _feedback(name: str, value: ArrayLike | Feedback | None) -> Feedback:
         return Feedback(checked(name, 0.0 if value is None else value))
     if not isinstance(value.value, float | np.ndarray):
         raise ParameterError(name, "a feedback on a schedule", "constant in time")
+    if value.shape:
+        raise ParameterError(name, f"a feedback with gains of shape {value.shape}", "one with numbers for gains")
     return value
 
 

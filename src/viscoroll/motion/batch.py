@@ -163,7 +163,8 @@ def _inputs(scene: Scene, starts: Any, drive: Drive, ready: Prepared | None) -> 
     """(Parameters and start speeds, how many motions they make)."""
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
     arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
-    drives = drive.numbers | ({"drive": np.zeros(ready.pieces.shape[0])} if ready and ready.pieces.shape[0] > 1 else {})
+    counts = {"drive": ready.pieces.shape[0], "gains": ready.gains.shape[1]} if ready else {}
+    drives = drive.numbers | {name: np.zeros(count) for name, count in counts.items() if count > 1}
     shape = broadcast_shape(**arrays, **{name: each for name, each in drives.items() if name not in arrays})
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import checked
+from ..checks import broadcast_shape, checked
 from ..drive import Feedback, slope_factor
 from ..errors import ParameterError, one_of
 from ..labels import Labels, unlabelled
@@ -20,6 +20,8 @@ ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
 ROWS = STATES + ACTING + LOSSES
 #: a prescribed start may be off by this share of the largest prescribed speed
 _START = 1e-9
+#: gains in the order of the kernel's
+_GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
 
 
 class Drive(NamedTuple):
@@ -64,7 +66,7 @@ def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, 
 
 
 class Prepared(NamedTuple):
-    """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, 1), which speed is prescribed; the scene on
+    """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, m), which speed is prescribed; the scene on
     its slope, start speeds, and the largest difference between a callable and its fit."""
 
     pieces: NDArray[np.float64]
@@ -86,7 +88,8 @@ class Prepared(NamedTuple):
             pieces[..., START] /= unit
             pieces[..., SCALE] *= unit
             pieces[..., FIRST + RATE * terms : FIRST + (RATE + 1) * terms] *= unit * unit
-        return np.ascontiguousarray(pieces), self.gains / unit, self.prescribed
+        gains = self.gains[:, chosen] if self.gains.shape[1] > 1 else self.gains
+        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains) / unit, self.prescribed
 
 
 def tilted(scene: Scene, slope: Any) -> tuple[Scene, Any]:
@@ -168,7 +171,9 @@ def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.flo
 def _gains(drive: Drive) -> NDArray[np.float64]:
     """Of force over V, force over omega, torque over V, torque over omega."""
     pairs = [(each.V, each.omega) if isinstance(each, Feedback) else (0.0, 0.0) for each in (drive.force, drive.torque)]
-    return np.array(pairs, float).reshape(4, 1)
+    rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
+    count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
+    return np.array([np.broadcast_to(row, count) for row in rows])
 
 
 def refuse_rest(rest: float, drives: Prepared) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ..drive import Feedback
+from ..results import short
 from .driven import Drive
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
@@ -30,7 +31,8 @@ def drive_variables(
         given = whole.value if feeds_back else whole
         gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}
         if callable(given):
-            texts[key] = "a function of t" + "".join(f", {what} = {gain:.15g}" for what, gain in gains.items())
+            told = {what: short(gain) if np.ndim(gain) else f"{gain:.15g}" for what, gain in gains.items()}
+            texts[key] = "a function of t" + "".join(f", {what} = {gain}" for what, gain in told.items())
             continue
         about = described(name)
         about = about | {"long_name": f"given: {about['long_name']}"} | gains

@@ -39,8 +39,8 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, 
     if driven:
         ready = prepared(drive, scene, V0, omega0, inputs.end, inputs.rtol)
         refuse_rest(inputs.rest, ready)
-        if ready.pieces.shape[0] > 1:
-            raise ParameterError("drive", f"of {ready.pieces.shape[0]} motions", "one motion's; for many use ensemble")
+        if (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
+            raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
         scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
     material, unit = scene.in_own_time()
     one = np.array((scene.kappa, scene.mu, scene.gamma * unit * unit, scene.j, V0 * unit, omega0 * unit)).reshape(-1, 1)

@@ -95,7 +95,7 @@ class RunResults(Shown):
         OutputError
             If it cannot be written there.
         """
-        from ..figures import run_distributions
+        from ..plots.runs import run_distributions
         from ..plots.style import saved
 
         return saved(run_distributions(self.summaries), path)

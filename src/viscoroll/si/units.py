@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -143,12 +144,7 @@ def over(name: str, given: Any, one: Units) -> Any:
         return None
     unit, low = np.asarray(QUANTITIES[name].of(one)), 0.0 if name == "brake" else -np.inf
     if isinstance(given, Feedback):
-        if unit.ndim:
-            raise ParameterError(
-                name, "a feedback", "a number", f"{name} is a feedback: cylinder and slope must be numbers then"
-            )
-        gains = given.V * one.speed / unit, given.omega / one.T / unit
-        return Feedback(over(name, given.value, one), *map(float, gains))
+        return Feedback(over(name, given.value, one), given.V * one.speed / unit, given.omega / one.T / unit)
     if callable(given):
         if unit.ndim:
             raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
@@ -159,6 +155,22 @@ def over(name: str, given: Any, one: Units) -> Any:
         return times / one.T, values / (unit[:, np.newaxis] if unit.ndim else unit)
     value = checked(name, given, low=low) / unit
     return value if value.ndim else float(value)
+
+
+def refuse_other_unit(name: str, value: Any, unit: str) -> None:
+    """Raise ParameterError for an array of xarray or pandas that says it is in another unit; "m/s" is "m s-1"."""
+    given = getattr(value, "attrs", {}).get("units")
+    if given is not None and _powers(str(given)) != _powers(unit):
+        raise ParameterError(name, f"in {given!s:.40}", f"in {unit}")
+
+
+def _powers(unit: str) -> dict[str, int]:
+    """Powers of the units in "N m/m" or "N m m-1"."""
+    found: dict[str, int] = {}
+    for n, part in enumerate(unit.split("/")):
+        for symbol, power in re.findall(r"([^\W\d_]+|%)\^?(-?\d+)?", part):
+            found[symbol] = found.get(symbol, 0) + (-1 if n else 1) * int(power or 1)
+    return {symbol: power for symbol, power in found.items() if power}
 
 
 def in_words(error: ParameterError, one: Units) -> ParameterError:

@@ -12,9 +12,9 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.truth import series as raw
 from viscoroll.kernels.law.unsteady import room, unsteady
 from viscoroll.materials.tables import series
-from viscoroll.reference import series as raw
 
 DIGITS = 50
 #: about the largest |N|

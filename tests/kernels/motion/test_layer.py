@@ -20,6 +20,8 @@ from viscoroll.presets import PAPER_STARTS
 from viscoroll.scene import kernel_scene
 from viscoroll.validation.direct_motion import roll_direct
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 PAPER = vr.PAPER_SECTION_5_ROUNDED
 
 

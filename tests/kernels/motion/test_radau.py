@@ -15,6 +15,8 @@ from viscoroll.kernels.motion.slow import slow_solve, slow_start, workspace
 from viscoroll.scene import kernel_scene
 from viscoroll.validation.direct_motion import roll_direct
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 PAPER = vr.PAPER_SECTION_5_ROUNDED
 #: little stiffness: omega - V relaxes hardly faster than V decays
 SOFT = vr.Scene(alpha=7.1, kappa=0.54, mu=0.08, gamma=1.0, j=1.67)

@@ -11,6 +11,8 @@ import viscoroll as vr
 from viscoroll.kernels.motion.full_slip import HOLDS
 from viscoroll.validation.direct_motion import roll_direct
 
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
 PAPER = vr.PAPER_SECTION_5_ROUNDED
 #: rolling resistance widens the slip where it is at its largest, before friction closes it
 WIDENING = PAPER.replace(mu=0.01)

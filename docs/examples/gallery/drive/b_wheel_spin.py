@@ -7,6 +7,34 @@ cannot hold it: the wheel spins, until the throttle is let go and the wheel grip
 Full slip is shaded.
 """
 
-from viscoroll.figures import wheel_spin
+import matplotlib.pyplot as plt
+import numpy as np
 
-figure = wheel_spin()
+import viscoroll as vr
+
+scene = vr.PAPER_SECTION_5
+grip = (1.0 + scene.j) * scene.mu
+times = np.array([0.0, 5.0, 8.0, 8.0]) / scene.gamma
+torque = np.array([0.0, 2.0, 2.0, 0.25]) * grip
+t = np.unique(np.concatenate([np.linspace(0.0, 16.0 / scene.gamma, 801), times]))
+m = vr.roll(scene, 0.0, 0.0, t, torque=(times, torque))
+
+figure, (top, bottom) = plt.subplots(
+    2, 1, figsize=(7.2, 5.6), sharex=True, layout="constrained"
+)
+top.plot(t, m.V, "k", label="V")
+top.plot(t, m.omega, "--", label="omega")
+bottom.plot(t, m.contact("Q").Q, "k", label="traction Q")
+bottom.plot(t, m.torque, "--", label="torque")
+for limit, name in ((scene.mu, "mu"), (grip, "(1 + j) mu")):
+    bottom.axhline(limit, color="0.7", linewidth=0.6)
+    bottom.text(t[-1], limit, name, ha="right", va="bottom")
+ends = [*(switch.t for switch in m.switches[1:]), t[-1]]
+for switch, end in zip(m.switches, ends, strict=True):
+    if switch.regime == "full slip":
+        for axes in (top, bottom):
+            axes.axvspan(switch.t, end, color="0.87", linewidth=0.0)
+top.set(ylabel="V, omega", xlim=(0.0, t[-1]))
+bottom.set(xlabel="t", ylabel="Q, torque", ylim=(None, 2.15 * grip))
+for axes in (top, bottom):
+    axes.legend(loc="upper left")

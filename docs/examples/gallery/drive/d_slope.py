@@ -7,6 +7,57 @@ the stable speed (filled dot), all right of it run away.  The line ends in the u
 speed (open dot).
 """
 
-from viscoroll.figures import slope_portrait
+import matplotlib.pyplot as plt
+import numpy as np
 
-figure = slope_portrait()
+import viscoroll as vr
+
+scene, slope = vr.PAPER_SECTION_5, np.radians(3.0)
+s = vr.steady(scene, slope=slope)
+node, saddle = s.V
+plane = np.array([-0.5, 2.0]) * saddle
+
+# %%
+# The orange line: for each omega the V whose motion ends in the unstable speed, by halving.
+# 30 times as long as the slowest change there takes, it is clear on which side a start lies.
+across = np.linspace(*plane, 81)
+rate = s.eigenvalues[1].real.max() * scene.gamma * np.cos(slope)
+# V + j omega hardly changes while all of the contact slips
+guess = saddle + scene.j * (s.omega[1] - across)
+low, high = guess - saddle, guess + saddle
+for _ in range(40):
+    middle = 0.5 * (low + high)
+    end = vr.ensemble(scene, middle, across, 30.0 / rate, slope=slope, rtol=1e-6)
+    runs_away = end.V[:, 0] > saddle
+    low, high = (
+        np.where(runs_away, low, middle),
+        np.where(runs_away, middle, high),
+    )
+separatrix = 0.5 * (low + high)
+
+# %%
+# Right: the difference omega - V, a thousand times enlarged.
+V = np.linspace(*plane, 801)
+band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
+end = 150.0 / scene.gamma
+starts = [(V0, omega0) for V0 in np.linspace(*plane, 11)[1:-1] for omega0 in plane]
+starts += [(share * saddle, share * s.omega[1]) for share in (0.999, 1.001)]
+motions = [vr.roll(scene, *start, end, 1e-6, slope=slope) for start in starts]
+
+figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 5.0), layout="constrained")
+for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
+    axes.set_facecolor("0.87")
+    axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")
+    for m in motions:
+        fine = m.at(np.unique(np.linspace(m.t[:-1], m.t[1:], 6)))
+        axes.plot(fine.V, tilt * fine.V + unit * (fine.omega - fine.V), "C0", lw=0.9)
+    axes.plot(separatrix, tilt * separatrix + unit * (across - separatrix), "C1")
+    for n, face in enumerate(("black", "white")):
+        height = tilt * s.V[n] + unit * (s.omega[n] - s.V[n])
+        axes.plot(s.V[n], height, "o", color="black", mfc=face, zorder=4)
+    axes.set_xlabel("V")
+left.set(xlim=plane, ylim=plane, aspect="equal", ylabel="omega")
+room = 1.2e3 * band[(V > -0.2 * saddle) & (V < 1.6 * saddle)].max()
+right.set(xlim=(-0.2 * saddle, 1.6 * saddle), ylim=(-room, room))
+right.set_ylabel("(omega - V), times 1000")
+figure.suptitle("White: partial slip; grey: full slip", fontsize="medium")

@@ -8,12 +8,46 @@ such a cylinder, which would rock in its own imprint (nu = 600, where the law of
 rolling asks for less than 0.4; :doc:`/may_i`).
 """
 
-from viscoroll.figures import figure_5, figure_6
+import matplotlib.pyplot as plt
+import numpy as np
 
-figure = figure_5()
+import viscoroll as vr
+
+scene = vr.PAPER_SECTION_5
+t = np.linspace(0.0, 4e-3, 2001)  # in units of T_epsilon
+figure, axes = plt.subplots(figsize=(7.6, 4.6), layout="constrained")
+for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):
+    m = vr.roll(scene, *start, t)
+    axes.plot(1e4 * t, m.V, f"C{n}", label=f"{name}: V")
+    axes.plot(1e4 * t, m.omega, f"C{n}--", label=f"{name}: omega")
+    axes.axvline(1e4 * m.onset_time, color=f"C{n}", linewidth=0.6, linestyle=":")
+axes.set(xlabel="t, times 10^4", ylabel="V, omega", xlim=(0.0, 40.0))
+axes.set_title("Fig. 5 of the paper; dotted: stick begins", fontsize="medium")
+axes.legend(frameon=False, ncols=3)
 
 # %%
-# The contact during the first of these motions: at the onset of stick the stick zone
-# ``beta`` opens within a few ten-thousandths of T_epsilon, and the creep ``delta`` falls
-# to nearly nothing.
-contact = figure_6()
+# The contact during the first of these motions (Fig. 6): at the onset of stick the stick
+# zone ``beta`` opens within a few ten-thousandths of T_epsilon, and the creep ``delta``
+# falls to nearly nothing.  Circles: the times of Fig. 7.
+onset = vr.roll(scene, 1.5, 0.5, t).onset_time
+t = np.unique(np.concatenate([t, onset * np.linspace(0.9, 1.3, 401)]))
+m = vr.roll(scene, 1.5, 0.5, t)
+marked = vr.roll(scene, 1.5, 0.5, [1.52e-4, 4e-4, 24e-4, 30e-4])
+contact, (near, whole) = plt.subplots(
+    1, 2, figsize=(9.6, 4.2), sharey=True, width_ratios=(1.0, 1.6), layout="constrained"
+)
+for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
+    for n, name in enumerate(("delta", "lam", "epsilon", "beta")):
+        for motion, style in ((m, "-"), (marked, "o")):
+            values = (
+                motion.delta if name == "delta" else getattr(motion.contact(name), name)
+            )
+            axes.plot(
+                1e4 * motion.t,
+                values,
+                f"C{n}{style}",
+                mfc="none",
+                label=name if style == "-" else "_",
+            )
+    axes.set(xlim=(0.0, 1e4 * end), ylim=(-0.75, 1.1), xlabel="t, times 10^4")
+whole.legend(frameon=False)

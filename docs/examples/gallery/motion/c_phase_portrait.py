@@ -7,10 +7,38 @@ axis together, and V + j omega hardly changes.  Then the motion turns onto one c
 curve, the slow manifold, and creeps along it towards rest.
 """
 
-from viscoroll.figures import phase_portrait
+import matplotlib.pyplot as plt
+import numpy as np
 
-figure = phase_portrait()
+import viscoroll as vr
+
+scene, radius = vr.PAPER_SECTION_5, 2.0
+angles = (np.arange(24) + 0.5) * np.pi / 12.0
+starts = [(radius * np.cos(a), radius * np.sin(a)) for a in angles]
+motions = [vr.roll(scene, *start, 60.0 / scene.gamma) for start in starts]
+rest = vr.roll(scene, 2.5, 2.5, 1e6 / scene.gamma, rest=1e-3).rest_time
+rolling = vr.roll(scene, 2.5, 2.5, rest)
+late = rolling.t > 0.05 / scene.gamma  # the first panel leads onto the manifold
+
+V = np.linspace(-2.5, 2.5, 801)
+band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
+figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 5.0), layout="constrained")
+for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
+    axes.set_facecolor("0.87")
+    axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")
+    for m in motions:
+        fine = m.at(np.unique(np.linspace(m.t[:-1], m.t[1:], 6)))
+        axes.plot(fine.V, tilt * fine.V + unit * (fine.omega - fine.V), "C0", lw=0.9)
+    slow = rolling.at(rolling.t[late])
+    for sign in (1.0, -1.0):
+        height = tilt * slow.V + unit * (slow.omega - slow.V)
+        axes.plot(sign * slow.V, sign * height, "k", zorder=3)
+    axes.set_xlabel("V")
+left.plot(*np.transpose(starts), "C0.")
+left.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), aspect="equal", ylabel="omega")
+room = 1.15e3 * band[np.abs(V) <= radius].max()
+right.set(xlim=(-2.0, 2.0), ylim=(-room, room), ylabel="(omega - V), times 1000")
 
 # %%
-# Right: the difference omega - V a thousand times enlarged.  The band of partial slip,
-# which the left panel cannot show, is a few thousandths of V wide.
+# White: partial slip.  Right: the difference omega - V a thousand times enlarged.  The band
+# of partial slip, which the left panel cannot show, is a few thousandths of V wide.

@@ -8,7 +8,7 @@ Sobol indices share out the variance of a result over the uncertain inputs.  A r
 
 from pathlib import Path
 
-from viscoroll.figures import sobol_bars
+from viscoroll.plots.sensitivity import sobol_bars
 from viscoroll.runs import read_run
 from viscoroll.runs.sensitivity import sobol_indices
 

@@ -1,0 +1,50 @@
+"""Pictures by name (:data:`FIGURES`): the paper's, the drawing behind the symbols, and those of the site's gallery.
+
+A picture of the gallery is the code of its page: it is run here as a reader runs it.
+
+    python -m pipeline.figures NAME -o FILE
+"""
+
+from __future__ import annotations
+
+import runpy
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from ..stage import ROOT
+from .ensemble import distribution
+from .geometry import geometry
+from .law import figure_2, figure_3
+from .stresses import figure_7
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+GALLERY = ROOT / "docs/examples/gallery"
+
+
+def of_page(page: str, name: str = "figure") -> Figure:
+    """The figure that a page of the gallery gives this name."""
+    figure: Figure = runpy.run_path(str(GALLERY / f"{page}.py"))[name]
+    return figure
+
+
+FIGURES: dict[str, Callable[..., Figure]] = {
+    "geometry": geometry,
+    "figure-2": figure_2,
+    "figure-3": figure_3,
+    "figure-5": partial(of_page, "motion/b_section_5"),
+    "figure-6": partial(of_page, "motion/b_section_5", "contact"),
+    "figure-7": figure_7,
+    "phase-portrait": partial(of_page, "motion/c_phase_portrait"),
+    "ensemble": distribution,
+    "rolling-resistance": partial(of_page, "materials/b_three_temperatures"),
+    "rolling-equilibria": partial(of_page, "drive/a_equilibria"),
+    "wheel-spin": partial(of_page, "drive/b_wheel_spin"),
+    "reversal": partial(of_page, "drive/c_reversal"),
+    "slope": partial(of_page, "drive/d_slope"),
+    "law-of-modes": partial(of_page, "contact/d_broad_rubber"),
+    "law-of-pairs": partial(of_page, "materials/c_rubber_on_steel"),
+    "broad-stresses": partial(of_page, "contact/d_broad_rubber", "stresses"),
+}

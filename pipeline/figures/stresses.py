@@ -1,0 +1,81 @@
+"""The contact during a deceleration: counterpart of the paper's Fig. 7."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from viscoroll.contact_stress import stress
+from viscoroll.motion import Motion, roll
+from viscoroll.plots.style import LINES, THIN, caveat, describe, new_figure, number
+from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
+from viscoroll.symbols import label
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: The times of the paper's Fig. 7.
+PAPER_TIMES = (1.52e-4, 4e-4, 24e-4, 30e-4)
+#: beta as the paper prints it at the first of these times
+PAPER_BETA = 0.45
+_SCENE = ("alpha", "kappa", "mu", "gamma")
+#: Times are shown in units of 1e-4.
+_UNIT = 1e4
+#: Fig. 7: points of 801 that make the front edge, and how much of x/l0 its inset shows
+_FRONT, _NEAR = 30, 0.02
+
+
+def figure_7() -> Figure:
+    """Shear stress and mu p along the contact at four times of the paper's first motion."""
+    scene, start = PAPER_SECTION_5, PAPER_STARTS["IC1"]
+    thrown = f"$V(0) = {start[0]:g}$, {label('omega')}$(0) = {start[1]:g}$"
+    title = f"Stresses, Eqs. (11)-(13), during deceleration from {thrown}\nfor {describe(scene, *_SCENE)}"
+    title += caveat(scene, start[0])
+    figure, panels = new_figure(title, 2, 2, (8.4, 6.0), sharex=True, sharey=True)
+    motion = roll(scene, *start, PAPER_TIMES)
+    state = motion.contact(("lam", "epsilon", "beta"))
+    for n, axes in enumerate(panels.flat):
+        rear, front = 0.5 * state.lam[n] * (state.epsilon[n] + np.array([-1.0, 1.0]))
+        x = 0.5 * (rear + front) - 0.5 * (front - rear) * np.cos(np.linspace(0.0, np.pi, 801))
+        found = stress(scene, x, motion.V[n], delta=motion.delta[n])
+        axes.plot(x, 1e3 * np.abs(found.tau), label=r"$|\tau|/E'$", **LINES[0])
+        axes.plot(x, 1e3 * scene.mu * found.p, label=r"$\mu p/E'$", **LINES[1])
+        axes.axvline(front - state.lam[n] * state.beta[n], **THIN, label="slip | stick")
+        axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
+        text = f"{label('delta')} = ${number(motion.delta[n], 2)}$, {label('beta')} = {state.beta[n]:.3f}"
+        axes.set_title(rf"{label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
+        if found.p[-_FRONT:].max() > found.p[-2 * _FRONT]:  # pressure rises towards the front edge
+            _front_edge(axes, x, found, scene.mu)
+    for axes in panels[1]:
+        axes.set_xlabel("$x/l_0$")
+    for axes in panels[:, 0]:
+        axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
+    panels[0, 0].legend(frameon=False, loc="upper left")
+    panels[0, 0].text(0.02, 0.6, _printed(motion), transform=panels[0, 0].transAxes, va="top", fontsize="small")
+    return figure
+
+
+def _printed(motion: Motion) -> str:
+    """Why beta at the first of the paper's times is not what the paper prints."""
+    near = motion.at(np.linspace(motion.onset_time, PAPER_TIMES[0], 101))
+    beta = near.contact("beta").beta
+    passed, rise = np.interp(PAPER_BETA, beta, near.t), (beta[-1] - beta[-2]) / (near.t[-1] - near.t[-2])
+    return (
+        f"the paper prints {label('beta')} = {PAPER_BETA},\n"
+        rf"passed at {label('t')} = ${_UNIT * passed:.4g}\times 10^{{-4}}$:"
+        f"\n{label('beta')} climbs here by\n{1e-6 * rise:.1g} in $10^{{-6}}$ of {label('t')}"
+    )
+
+
+def _front_edge(axes: Any, x: NDArray, found: Any, mu: float) -> None:
+    """An inset of the front edge: material that has not relaxed yet makes a narrow peak there."""
+    inset = axes.inset_axes((0.52, 0.5, 0.4, 0.42))
+    inset.plot(x, 1e3 * mu * found.p, **LINES[1])
+    inset.plot(x, 1e3 * np.abs(found.tau), **LINES[0])
+    near = x > x[-1] - _NEAR
+    inset.set(xlim=(x[-1] - _NEAR, x[-1] + 0.15 * _NEAR), ylim=(0.0, 1.3e3 * mu * float(found.p[near].max())))
+    inset.set_title("front edge", fontsize="small")
+    inset.locator_params(nbins=3)
+    inset.tick_params(labelsize="small")

@@ -1,0 +1,10 @@
+"""The truth: law and motions in many digits, sharing no code with the kernels, and the check values made by them.
+
+Nothing here is installed with the package: python-flint and mpmath come with ``viscoroll[dev]``.
+"""
+
+from .enclosures import contact_enclosure
+from .motion import roll_precise
+from .precise import contact_precise
+
+__all__ = ["contact_enclosure", "contact_precise", "roll_precise"]

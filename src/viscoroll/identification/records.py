@@ -1,0 +1,310 @@
+"""What was measured, in SI units: :class:`Resistance`, :class:`Traction`, :class:`Coastdown`.
+
+A record without values is a plan: what would be learnt from it is told before it is made.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import broadcast_shape, checked, number
+from ..cylinder import Cylinder
+from ..drive import Feedback
+from ..errors import ParameterError, one_of, unknown
+from ..labels import Labels, unlabelled
+from ..si.units import QUANTITIES, refuse_other_unit
+from ..typed import Numbers
+
+#: of a motion: free, and driven, whose outputs are smooth in the parameters to 2e-12 at this one
+_RTOL, _RTOL_DRIVEN = 1e-8, 1e-10
+#: what a start may be in place of a number: V0/R
+ROLLING = "rolling"
+#: quantity -> what it is called where units are
+_CALLED = {"F": "force"}
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """What all records have: places, values and their standard deviations, each one a place or one for all."""
+
+    #: names of places and of what may be measured there, the first what a plan is about
+    PLACES: ClassVar[tuple[str, ...]] = ()
+    KINDS: ClassVar[tuple[str, ...]] = ()
+    KIND: ClassVar[str] = ""
+
+    sigma: Any = field(default=None, kw_only=True)
+    load: float | None = field(default=None, kw_only=True)
+    temperature: float | None = field(default=None, kw_only=True)
+    name: str = field(default="", kw_only=True)
+    labels: Labels | None = field(default=None, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or ":" in self.name:
+            raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
+        given = {name: getattr(self, name) for name in (*self.PLACES, *self.KINDS)}
+        for name, value in given.items():
+            refuse_other_unit(self._of(name), value, self.unit(name))
+        plain, labels = unlabelled({name: value for name, value in given.items() if value is not None})
+        arrays = {name: np.atleast_1d(checked(self._of(name), value)) for name, value in plain.items()}
+        shape = broadcast_shape(**{self._of(name): array for name, array in arrays.items()})
+        if broadcast_shape(**{name: arrays[name] for name in self.PLACES}) != shape:
+            raise ParameterError(self._of(self.KINDS[0]), f"of shape {shape}", "a value a place")
+        for name, array in arrays.items():
+            self._set(name, np.broadcast_to(array, shape))
+        self._set("labels", labels)
+        self._set("sigma", self._sigmas(shape))
+        for name, low in (("load", 0.0), ("temperature", -math.inf)):
+            if (value := getattr(self, name)) is not None:
+                self._set(name, number(self._of(name), value, low=low, strict=True))
+
+    @staticmethod
+    def unit(name: str) -> str:
+        """SI unit of a place or quantity; a creep has none."""
+        name = _CALLED.get(name, name)
+        return QUANTITIES[name].units if name in QUANTITIES else "1"
+
+    def _set(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, value)
+
+    def _of(self, name: str) -> str:
+        return f"{self.name or self.KIND}: {name}"
+
+    def _sigmas(self, shape: tuple[int, ...]) -> dict[str, NDArray[np.float64] | None]:
+        """Standard deviation of each quantity, None where it is to be estimated; of a plan it says what is measured."""
+        measured = [name for name in self.KINDS if getattr(self, name) is not None]
+        given = self.sigma
+        if not isinstance(given, Mapping):
+            if len(measured) > 1 and given is not None:
+                allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in measured)}}}"
+                raise ParameterError(self._of("sigma"), f"{given!r:.40}", allowed)
+            given = {} if given is None else {(measured or self.KINDS)[0]: given}
+        for name in given:
+            if name not in (measured or self.KINDS):
+                raise unknown(self._of("sigma"), name, measured or self.KINDS, "a quantity of it")
+        sigmas = {
+            name: checked(self._of(f"sigma of {name}"), value, low=0.0, strict=True) for name, value in given.items()
+        }
+        try:
+            whole = {name: np.broadcast_to(value, shape) for name, value in sigmas.items()}
+        except ValueError:
+            raise ParameterError(self._of("sigma"), "of another shape", f"a number, or of shape {shape}") from None
+        return {name: whole.get(name) for name in measured or whole}
+
+    @property
+    def planned(self) -> bool:
+        """Whether it holds no values."""
+        return all(getattr(self, name) is None for name in self.KINDS)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of its places."""
+        return np.shape(getattr(self, self.PLACES[0]))
+
+    @property
+    def own(self) -> dict[str, float]:
+        """What it has in place of the cylinder's."""
+        return {} if self.load is None else {"load": self.load}
+
+    def starts(self, cylinder: Cylinder) -> dict[str, tuple[float, float, float]]:
+        """Unknowns of its own that it brings along, as "V0": (start, low, high)."""
+        return {}
+
+    def order(self) -> NDArray[np.int64]:
+        """Its places in ascending order, in which residuals have neighbours."""
+        return np.lexsort([np.ravel(getattr(self, name)) for name in reversed(self.PLACES)])
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+        """What the ``cylinder`` would show of all :attr:`KINDS`; ``values`` of bearing and record by their names."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False)
+class Resistance(Record):
+    """Rolling resistance over speed: of a drum, or of a roller that is pulled.
+
+    Parameters
+    ----------
+    V : speeds, m/s.
+    M : moments that rolling takes, N m per m of length, with that of the bearing: what a drum's shaft bears.
+    F : in its place the forces that pull, M/R, N/m.  Neither: a plan.
+    sigma : their standard deviation, a number or one a point; default: estimated.
+    load : of this record, N/m, in place of the cylinder's.
+    temperature : of this record, degrees Celsius, see ``shift`` of :func:`viscoroll.identify`.
+    name : by which the report calls it.
+
+    Raises
+    ------
+    ParameterError
+        Values that are not finite, with their row, or of another unit (``attrs["units"]``), both M and F, sigma <= 0.
+    """
+
+    PLACES, KINDS, KIND = ("V",), ("M", "F"), "resistance"
+
+    V: Numbers
+    M: Numbers | None = None
+    _: KW_ONLY
+    F: Numbers | None = None
+
+    def __post_init__(self) -> None:
+        if self.M is not None and self.F is not None:
+            raise one_of("M", "F", both=True)
+        super().__post_init__()
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+        V = np.asarray(self.V)
+        M = cylinder.contact(V, delta=0.0, fields="M").M
+        M = M + np.sign(V) * values.get("brake", 0.0) + values.get("drag", 0.0) * V / cylinder.R
+        return {"M": M, "F": M / cylinder.R}
+
+
+@dataclass(frozen=True, eq=False)
+class Traction(Record):
+    """Traction over creep, at one speed or several.
+
+    Parameters
+    ----------
+    V : speeds of the axis, m/s, one for all or one a point.
+    delta : creep ratios (omega R - V)/V.
+    Q : traction, N/m; None: a plan.
+    sigma, load, temperature, name : as of :class:`Resistance`.
+
+    Raises
+    ------
+    ParameterError
+        As there.
+    """
+
+    PLACES, KINDS, KIND = ("V", "delta"), ("Q",), "traction"
+
+    V: Numbers
+    delta: Numbers
+    Q: Numbers | None = None
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+        return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
+
+
+@dataclass(frozen=True, eq=False)
+class Coastdown(Record):
+    """Speeds or way over time of a roller that was thrown or let go.
+
+    Parameters
+    ----------
+    t : times, s, ascending.
+    V, omega, x : speed of the axis, m/s, angular velocity, rad/s, way since the release, m; at least one, of a plan
+        none.
+    V0 : speed at the release, m/s; default: unknown, about what the first values say.
+    omega0 : angular velocity at the release, rad/s; "rolling" (default): V0/R; None: unknown, likewise.
+    t0 : time of the release, s, before which the roller has its first speeds; (low, high): unknown.
+    m : mass with which it rolled, kg/m, in place of the cylinder's.
+    sigma : as of :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, which of a plan says what is
+        measured.
+    load, temperature, name : as of :class:`Resistance`.
+
+    Raises
+    ------
+    ParameterError
+        As there; times that fall.
+    """
+
+    PLACES, KINDS, KIND = ("t",), ("V", "omega", "x"), "run"
+
+    t: Numbers
+    V: Numbers | None = None
+    omega: Numbers | None = None
+    x: Numbers | None = None
+    _: KW_ONLY
+    V0: float | None = None
+    omega0: float | str | None = ROLLING
+    t0: float | tuple[float, float] = 0.0
+    m: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        t = np.asarray(self.t)
+        if t.ndim != 1 or (back := np.flatnonzero(np.diff(t) < 0.0)).size:
+            at = (
+                f"{t[back[0]]:g}, {t[back[0] + 1]:g} at rows {back[0]}, {back[0] + 1}"
+                if t.ndim == 1
+                else f"of shape {t.shape}"
+            )
+            raise ParameterError(self._of("t"), at, "a vector in ascending order")
+        if isinstance(self.omega0, str) and self.omega0 != ROLLING:
+            raise ParameterError(self._of("omega0"), repr(self.omega0), f"a number, {ROLLING!r} or None")
+        for name in ("V0", "omega0", "m"):
+            if isinstance(value := getattr(self, name), (str, type(None))):
+                continue
+            low = 0.0 if name == "m" else -math.inf
+            self._set(name, number(self._of(name), value, low=low, strict=True))
+        ends = checked(self._of("t0"), self.t0)
+        if ends.shape not in ((), (2,)) or (ends.ndim and not ends[0] < ends[1]):
+            raise ParameterError(self._of("t0"), self.t0, "a number, or (low, high)")
+        self._set("t0", tuple(ends.tolist()) if ends.ndim else float(ends))
+        if self.V0 is None and self.planned:
+            raise ParameterError(
+                self._of("V0"), None, "a number", f"{self._of('V0')} is not given: a plan has no data to take it from"
+            )
+
+    @property
+    def own(self) -> dict[str, float]:
+        return super().own | ({} if self.m is None else {"m": self.m})
+
+    def starts(self, cylinder: Cylinder) -> dict[str, tuple[float, float, float]]:
+        found = {}
+        for name, given in (("V", self.V0), ("omega", self.omega0)):
+            if given is None:
+                first, most = self._first(name, cylinder.R)
+                found[f"{name}0"] = (first, first - most, first + most)
+        if isinstance(self.t0, tuple):
+            found["t0"] = (min(max(0.0, self.t0[0]), self.t0[1]), *self.t0)
+        return found
+
+    def _first(self, name: str, R: float) -> tuple[float, float]:
+        """A speed at the release by the data, and the largest of it."""
+        given = getattr(self, name)
+        if given is None and name == "V" and self.omega0 == ROLLING and self.omega is not None:
+            given = R * np.asarray(self.omega)
+        if given is None and name == "V" and self.x is not None:
+            some = slice(0, max(3, np.size(self.t) // 10))
+            given = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
+        if given is None:
+            sentence = f"{self._of(name)}0 is not given, and the data do not show it: give a number"
+            raise ParameterError(self._of(f"{name}0"), None, "a number", sentence)
+        return float(given[0]), float(np.max(np.abs(given)))
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+        first, t = self._release(cylinder, values)
+        found = {name: np.full(t.shape, value) for name, value in first.items()}
+        if (late := t >= 0.0).any():
+            motion = self._rolled(cylinder, first, t[late], values)
+            for name, column in found.items():
+                column[late] = getattr(motion, name)
+        return found
+
+    def slipping(self, cylinder: Cylinder, values: Mapping[str, float]) -> int:
+        """How many of its points fall into full slip."""
+        first, t = self._release(cylinder, values)
+        late = t[t >= 0.0]
+        return int((self._rolled(cylinder, first, late, values).regime == 0).sum()) if late.size else 0
+
+    def _release(self, cylinder: Cylinder, values: Mapping[str, float]) -> tuple[dict[str, Any], NDArray[np.float64]]:
+        """First speeds and way, and times since then."""
+        V0, omega0 = values.get("V0", self.V0), values.get("omega0", self.omega0)
+        omega0 = V0 / cylinder.R if omega0 == ROLLING else omega0
+        return {"V": V0, "omega": omega0, "x": 0.0}, np.asarray(self.t) - values.get("t0", self.t0)
+
+    @staticmethod
+    def _rolled(cylinder: Cylinder, first: dict[str, Any], t: NDArray[np.float64], values: Mapping[str, float]) -> Any:
+        """The motion from the release on, with the bearing of ``values``."""
+        drive: dict[str, Any] = {}
+        if values.get("brake", 0.0) > 0.0:
+            drive["brake"] = values["brake"]
+        if values.get("drag", 0.0) != 0.0:
+            drive["torque"] = Feedback(0.0, omega=-values["drag"])
+        return cylinder.roll(first["V"], first["omega"], t, _RTOL_DRIVEN if drive else _RTOL, **drive)

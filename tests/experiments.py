@@ -1,0 +1,49 @@
+"""A roller of known truth, and experiments on it: a standard linear solid whose M has its hump at 0.64 m/s."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import viscoroll as vr
+
+TRUTH = {"mu": 0.3, "E": 3e6, "E_1": 9.0, "T_ref": 1e-3}
+RANGES = {"mu": (0.03, 3.0), "E": (3e5, 3e7), "E_1": (0.9, 90.0), "T_ref": (1e-4, 1e-2)}
+BRAKE, DRAG = 0.05, 0.003
+SLOW, HUMP = np.geomspace(0.02, 0.2, 40), np.geomspace(0.02, 20.0, 40)
+TIMES = np.linspace(0.0, 20.0, 200)
+
+
+def roller(**changes: float) -> vr.Cylinder:
+    """The truth, or another."""
+    value = TRUTH | changes
+    rubber = vr.Material(value["E"], 0.5, vr.Prony([value["E_1"]], [1.0]), value["T_ref"])
+    return vr.Cylinder(R=0.1, m=35.5, mu=value["mu"], material=rubber)
+
+
+def ranges(*names: str) -> dict[str, tuple[float, float]]:
+    return {name: RANGES[name] for name in names}
+
+
+def noise(seed: int | None, values: np.ndarray, sigma: float) -> np.ndarray:
+    """Values with noise; without a seed as they are."""
+    return values if seed is None else values + sigma * np.random.default_rng(seed).standard_normal(values.shape)
+
+
+def resistance(V: np.ndarray = HUMP, seed: int | None = None, sigma: float = 0.01, **more) -> vr.Resistance:
+    body = roller() if "load" not in more else roller().replace(load=more["load"])
+    return vr.Resistance(V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more)
+
+
+def traction(speeds=(0.1,), seed: int | None = None, sigma: float = 1.0, **more) -> vr.Traction:
+    delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
+    V = np.repeat(speeds, 21)
+    return vr.Traction(
+        V, delta, noise(seed, roller().contact(V, delta=delta, fields="Q").Q, sigma), sigma=sigma, **more
+    )
+
+
+def thrown(seed: int | None = None, t: np.ndarray = TIMES, omega0: float | None = 0.0, **more) -> vr.Coastdown:
+    """V of a roller thrown at 4 m/s without spin, or let go rolling."""
+    motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, 1e-10, **more)
+    spin = {} if omega0 is None else {"omega0": omega0}
+    return vr.Coastdown(t, noise(seed, motion.V, 5e-3), sigma=5e-3, name="throw", **spin)

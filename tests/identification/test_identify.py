@@ -1,0 +1,342 @@
+"""From synthetic measurements back to the parameters, and what is said where they do not hold them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from experiments import (
+    BRAKE,
+    DRAG,
+    HUMP,
+    SLOW,
+    TIMES,
+    TRUTH,
+    ranges,
+    resistance,
+    roller,
+    thrown,
+    traction,
+)
+from refusals import refused
+
+import viscoroll as vr
+
+V = HUMP
+M = roller().contact(V, delta=0.0, fields="M").M
+OFF = {"mu": 0.4, "E": 4e6, "E_1": 6.0, "T_ref": 2e-3}
+
+#: data without noise, and what they hold
+HELD = {
+    "M over the hump": ([resistance()], ("E", "E_1", "T_ref")),
+    "pull over the hump": ([vr.Resistance(V, F=M / 0.1, sigma=0.1)], ("E", "E_1", "T_ref")),
+    "Q at three speeds": ([traction((0.1, 1.0, 10.0))], ("mu", "E")),
+    "M and Q": ([resistance(), traction()], ("mu", "E", "E_1", "T_ref")),
+    "a throw": ([thrown()], ("mu", "E", "E_1", "T_ref")),
+    "a throw and M, the series known": ([thrown(), resistance()], ("mu", "E", "T_ref")),
+}
+
+
+@pytest.mark.parametrize("case", HELD)
+def test_exact_data_give_the_truth(case):
+    data, names = HELD[case]
+    start = roller(**{name: OFF[name] for name in names})
+    fit = vr.identify(start, ranges(*names), data, starts=1)
+    for name in names:
+        assert close(fit.values[name], TRUTH[name], rel=tol.IDENTIFIED), name
+    assert fit.chi2 < tol.IDENTIFIED_CHI2
+    assert fit.cylinder.mu == fit.values.get("mu", TRUTH["mu"])
+    assert not fit.does_not_act
+    assert not fit.misfit
+
+
+def test_a_report_says_how_well_the_values_are_known():
+    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [resistance(seed=3)], starts=1)
+    for name, (low, high) in fit.intervals().items():
+        assert low < TRUTH[name] < high
+        assert low < fit.values[name] - fit.stderr[name] < fit.values[name] + fit.stderr[name] < high
+    text = str(fit)
+    assert text.startswith("3 unknowns, 40 points; chi2 ")
+    assert "E_1 and T_ref are correlated: -0.999" in text
+    assert len(text.splitlines()) == 7
+
+
+def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
+    fit = vr.identify(roller(), ranges("E", "E_1"), [resistance(seed=1)], starts=1)
+    low, high = fit.intervals()["E"]
+
+    def rise(E: float) -> float:
+        one = vr.identify(roller(E=E), ranges("E_1"), fit.records.values(), starts=1)
+        return one.chi2 - fit.chi2
+
+    width = high - low
+    for end, inward in ((low, 1.0), (high, -1.0)):
+        assert rise(end + inward * tol.INTERVAL * width) < 3.841 < rise(end - inward * tol.INTERVAL * width)
+
+
+def test_slow_rolling_tells_a_product_alone():
+    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW, seed=2)], starts=1)
+    assert fit.does_not_act == ("mu",)
+    assert fit.undetermined == ("E", "E_1", "T_ref")
+    assert fit.intervals()["mu"] == (None, None)
+    (product,) = fit.products()
+    assert product.powers == {"E_1": 1.0, "T_ref": 1.0}
+    assert product.low < TRUTH["E_1"] * TRUTH["T_ref"] / product.value < product.high
+    text = str(fit)
+    assert "mu does not act on these data" in text
+    assert "E, E_1 and T_ref cannot be told apart by these data: only E_1 T_ref = 0.00" in text
+
+
+REFUSED = {
+    "an unknown name": (lambda: vr.identify(roller(), {"mue": (0.1, 1.0)}, [resistance()]), "'mue'", "mu, j"),
+    "a range without the start": (
+        lambda: vr.identify(roller(), {"E": (1e6, 2e6)}, [resistance()]), "unknown E", "(1e+06, 2e+06)", "3e+06",
+    ),
+    "a range that falls": (lambda: vr.identify(roller(), {"E": (4e6, 2e6)}, [resistance()]), "low < high"),
+    "a range for a logarithm": (lambda: vr.identify(roller(), {"E": (0.0, 9e6)}, [resistance()]), "above 0"),
+    "NaN with its row": (lambda: vr.Resistance([0.1, 0.2], [1.0, np.nan], name="drum"), "drum: M = nan at row 1"),
+    "more unknowns than points": (
+        lambda: vr.identify(roller(), ranges("E", "T_ref"), [vr.Resistance(0.1, 0.1)]), "2 unknowns, but 1",
+    ),
+    "sigma of 0": (lambda: vr.Resistance(V, M, sigma=0.0), "sigma of M = 0.0", "> 0"),
+    "one sigma for two": (lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1), "'V': ..., 'omega': ..."),
+    "times that fall": (lambda: vr.Coastdown([0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1), "2, 1 at rows 1, 2"),
+    "values of another shape": (lambda: vr.Resistance(V, M[:-1], sigma=0.1), "(39,)", "(40,)"),
+    "M and F": (lambda: vr.Resistance(V, M, F=M), "M and F are both given"),
+    "two of one name": (
+        lambda: vr.identify(roller(), ranges("E"), [resistance(name="a"), resistance(name="a")]), "'a'", "another",
+    ),
+    "values and plans": (
+        lambda: vr.identify(roller(), ranges("E"), [resistance(), vr.Resistance(V, sigma=0.1, name="b")]), "then plan",
+    ),
+    "a plan without sigma": (lambda: vr.identify(roller(), ranges("E"), [vr.Resistance(V)]), "resistance: sigma"),
+    "a start that nobody knows": (lambda: vr.Coastdown(TIMES, sigma=0.1), "V0", "a plan has no data"),
+    "a temperature without a shift": (
+        lambda: vr.identify(roller(), ranges("E"), [resistance(temperature=60.0)]), "temperature = 60 needs shift",
+    ),
+    "many cylinders": (lambda: vr.identify(roller().replace(mu=[0.1, 0.2]), ranges("E"), [resistance()]), "mu", "(2,)"),
+    "no record": (lambda: vr.identify(roller(), ranges("E"), []), "no record"),
+    "no unknown": (lambda: vr.identify(roller(), {}, [resistance()]), "at least one name"),
+    "a prior of nothing": (
+        lambda: vr.identify(roller(), ranges("E"), [resistance()], prior={"mu": (0.3, 0.1)}), "prior", "'mu'",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bad_input_is_refused_in_one_line(case):
+    call, *words = REFUSED[case]
+    refused(call, *words)
+
+
+@pytest.mark.parametrize("units", ["km/h", "cm s-1", "%"])
+def test_other_units_are_refused(units):
+    xarray = pytest.importorskip("xarray")
+    speeds = xarray.DataArray(V, dims="speed", attrs={"units": units})
+    refused(lambda: vr.Resistance(speeds, sigma=0.1), "resistance: V", f"in {units}", "in m s-1")
+    for same in ("m/s", "m s-1", "m s^-1"):
+        assert vr.Resistance(speeds.assign_attrs(units=same), sigma=0.1).shape == V.shape
+
+
+def test_bearing_is_told_from_the_material_at_two_loads():
+    """Of a drum: M + brake + drag omega."""
+    data = [
+        vr.Resistance(V, at.M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=name)
+        for name, load in (("light", 100.0), ("heavy", 700.0))
+        for at in [roller().replace(load=load).contact(V, delta=0.0, fields=("M",))]
+    ]
+    fit = vr.identify(roller(E=4e6), ranges("E", "T_ref") | {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}, data, starts=1)
+    for name, value in {"E": TRUTH["E"], "T_ref": TRUTH["T_ref"], "brake": BRAKE, "drag": DRAG}.items():
+        assert close(fit.values[name], value, rel=tol.IDENTIFIED), name
+
+
+# --- what is not a fit of one minimum of good data ---
+
+
+WIDE = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-5, 1e-1)}
+
+
+def test_an_end_that_a_range_makes_is_told():
+    """Q at two speeds: mu and E, and of E_1 and T_ref hardly more than their product."""
+    fit = vr.identify(roller(), WIDE, [traction((0.1, 1.0), seed=0)], starts=2)
+    assert fit.undetermined == ("E_1", "T_ref")
+    low, high = fit.intervals()["E_1"]
+    assert low < TRUTH["E_1"]
+    assert high is None
+    said = str(fit)
+    assert "E_1 is open on its upper side" in said
+    assert "the best fit has E_1 at the end of its range" in said
+    assert "the range of E_1, not the data, makes" in said
+
+
+def test_an_interval_reaches_over_its_pieces():
+    """A walk from the best fit, a narrow well, ends at its rim; the truth lies on the plateau behind it."""
+    fit = vr.identify(roller(), WIDE, [traction((0.1, 1.0), seed=3)], starts=2)
+    low, high = fit.intervals()["E_1"]
+    assert low < TRUTH["E_1"] < high
+    assert fit.values["E_1"] < 0.1 * TRUTH["E_1"]
+    assert fit.profile("E_1").pieces
+    assert "the interval of E_1 is not in one piece" in str(fit)
+
+
+def test_a_wrong_model_is_told_before_any_interval():
+    """M of two modes, by one."""
+    two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
+    measured = vr.Resistance(V, two.contact(V, delta=0.0, fields="M").M, sigma=0.01)
+    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [measured], starts=1)
+    assert fit.misfit == ("M of resistance",)
+    lines = str(fit).splitlines()
+    assert lines[1].startswith("  ! residuals of M of resistance are no noise (lag-1 correlation 0.8")
+    assert "intervals mean nothing" in lines[1]
+
+
+def test_sigma_that_is_not_given_is_estimated():
+    data = [resistance(seed=4), traction(seed=5)]
+    given = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), data, starts=1)
+    bare = [vr.Resistance(V, data[0].M), vr.Traction(data[1].V, data[1].delta, data[1].Q)]
+    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), bare, starts=1)
+    for name, sigma in {"M of resistance": 0.01, "Q of traction": 1.0}.items():
+        assert close(fit.sigma[name][0], sigma, rel=tol.SIGMA), name
+    for name in fit.values:
+        assert abs(fit.values[name] - given.values[name]) < 0.5 * given.stderr[name]
+        assert close(fit.stderr[name], given.stderr[name], rel=tol.SIGMA), name
+    assert "standard deviation estimated: M of resistance 0.0" in str(fit)
+
+
+def test_outliers_count_less_where_asked():
+    bad = M.copy()
+    bad[[5, 25]] += 0.2, -0.2
+    names = ("E", "E_1", "T_ref")
+    for robust, bound in ((False, 1.0), (True, tol.OUTLIERS)):
+        fit = vr.identify(roller(), ranges(*names), [vr.Resistance(V, bad, sigma=0.01)], starts=1, robust=robust)
+        off = max(abs(np.log(fit.values[name] / TRUTH[name])) for name in names)
+        assert tol.OUTLIERS * (not robust) < off < bound
+
+
+def test_a_prior_tells_what_slow_rolling_does_not():
+    prior = {"E": (3e6, 0.1), "E_1": (9.0, 0.1)}
+    data = [resistance(SLOW, seed=7)]
+    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, prior=prior)
+    assert fit.undetermined == ()
+    for name in fit.values:
+        assert fit.stderr[name] < tol.PRIOR * fit.values[name]
+    assert fit.residuals(fit.values).size == SLOW.size + 2
+
+
+def test_a_plan_tells_what_a_fit_will_know():
+    names = ("mu", "E", "E_1", "T_ref")
+    plan = vr.identify(
+        roller(),
+        ranges(*names),
+        [vr.Resistance(V, sigma=0.01), vr.Traction(0.1, np.linspace(-0.06, 0.06, 21), sigma=1.0)],
+    )
+    assert plan.planned
+    assert plan.chi2 == 0.0
+    assert plan.cylinder.mu == roller().mu
+    fit = vr.identify(roller(), ranges(*names), [resistance(seed=8), traction(seed=9)], starts=1)
+    for name in names:
+        assert close(plan.stderr[name], fit.stderr[name], rel=tol.PLANNED), name
+        low, high = plan.intervals()[name]
+        assert low < TRUTH[name] < high
+    assert "planned" in str(plan)
+    throw = vr.Coastdown(TIMES, V0=4.0, omega0=0.0, sigma={"V": 5e-3, "omega": 0.05}, name="throw")
+    plan = vr.identify(roller(), ranges("mu", "E") | {"V0:throw": (2.0, 8.0)}, [throw])
+    assert plan.stderr.keys() == {"mu", "E", "V0:throw"}
+
+
+def test_a_prediction_has_bands():
+    fit = vr.identify(roller(), ranges("E", "T_ref"), [resistance(seed=1)], starts=1)
+    t = np.linspace(0.0, 30.0, 7)
+    by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
+    exact = roller().roll(3.0, 30.0, t).V
+    assert ((by_slopes.V.low <= exact) & (exact <= by_slopes.V.high)).all()
+    width = [found.V.high - found.V.low for found in (by_slopes, drawn)]
+    assert close(width[1][1:], width[0][1:], rel=tol.DRAWN)
+    assert by_slopes.V.value[0] == 3.0
+    assert set(by_slopes.to_xarray()) >= {"V", "V_low", "V_high", "omega", "x_high"}
+    refused(lambda: fit.predict(vr.Coastdown(t, np.ones(7))), "V0", "a prediction starts with it")
+
+
+def test_labels_come_back_in_predictions():
+    xarray = pytest.importorskip("xarray")
+    speeds = xarray.DataArray([0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"})
+    fit = vr.identify(roller(), ranges("E"), [resistance()], starts=1)
+    band = fit.predict(vr.Resistance(speeds)).M
+    assert float(band.value.sel(speed="fast")) == float(fit.cylinder.contact(1.0, delta=0.0, fields="M").M)
+    assert float(band.low.sel(speed="slow")) < float(band.high.sel(speed="slow"))
+
+
+def test_a_records_temperature_is_the_shift_of_its_material():
+    shift = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
+    warm = roller(T_ref=TRUTH["T_ref"] * shift(60.0))
+    data = [
+        resistance(),
+        vr.Resistance(V, warm.contact(V, delta=0.0, fields="M").M, sigma=0.01, temperature=60.0, name="warm"),
+    ]
+    fit = vr.identify(roller(T_ref=2e-3), ranges("E", "T_ref"), data, starts=1, shift=shift)
+    assert close(fit.values["T_ref"], TRUTH["T_ref"], rel=tol.IDENTIFIED)
+    assert fit.chi2 < tol.IDENTIFIED_CHI2
+    # the base alone is a rubber
+    steel = vr.Material.elastic(2.1e11, 0.3)
+    belt = vr.Cylinder(R=0.1, m=200.0, material=steel, base=roller().material, mu=0.3)
+    hot = belt.replace(base=belt.base.at(60.0, shift))
+    data = [vr.Resistance(V, hot.contact(V, delta=0.0, fields="M").M, sigma=0.01, temperature=60.0)]
+    start = belt.replace(base=vr.Material(3e6, 0.5, vr.Prony([6.0], [1.0]), 1e-3))
+    fit = vr.identify(start, {"base_E_1": (1.0, 50.0)}, data, starts=1, shift={"material": shift, "base": shift})
+    assert close(fit.values["base_E_1"], TRUTH["E_1"], rel=tol.IDENTIFIED)
+
+
+def test_a_late_clock_and_a_bearing_are_found_in_a_motion():
+    t = np.linspace(0.0, 30.0, 200)
+    m = roller().roll(3.0, 30.0, t, 1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
+    late = vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
+    unknown = ranges("T_ref") | {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}
+    fit = vr.identify(roller(T_ref=1.2e-3), unknown, [late], starts=1)
+    truth = {"T_ref": TRUTH["T_ref"], "brake": BRAKE, "drag": DRAG, "t0:run": 0.15}
+    for name, value in truth.items():
+        assert close(fit.values[name], value, rel=tol.IDENTIFIED_DRIVEN), name
+
+
+def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
+    rolled = vr.Cylinder.roll
+
+    def fails(self, V0, *more, **options):
+        if self.mu > 0.45:
+            raise vr.ConvergenceError("planted")
+        m = rolled(self, V0, *more, **options)
+        return m if self.mu > 0.2 else type("Failed", (), {"V": m.V * np.nan, "omega": m.V, "x": m.V})
+
+    monkeypatch.setattr(vr.Cylinder, "roll", fails)
+    data = [thrown(seed=2)]
+    fit = vr.identify(roller(mu=0.4), ranges("mu", "E"), data, starts=4)
+    assert abs(fit.values["mu"] - TRUTH["mu"]) < 5.0 * fit.stderr["mu"]
+    assert fit.residuals({"mu": 0.5}).max() == fit.residuals({"mu": 0.1}).max() == 1e6
+
+
+def test_slopes_are_those_of_the_residuals():
+    fit = vr.identify(roller(), ranges("mu", "E") | {"V0:throw": (3.0, 5.0)}, [thrown(), traction()], starts=1)
+    J = fit.jacobian(fit.values)
+    for i, (name, value) in enumerate(fit.values.items()):
+        step = 1e-4 * value
+        up, down = (fit.residuals(fit.values | {name: value + sign * step}) for sign in (1.0, -1.0))
+        assert close(J[:, i], (up - down) / (2.0 * step), rel=tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()), name
+    refused(lambda: fit.residuals({"nu": 0.4}), "values", "'nu'", "mu, E")
+
+
+def test_too_few_points_in_a_slip_are_told():
+    t = np.linspace(0.0, 60.0, 200)
+    fit = vr.identify(roller(), ranges("mu"), [thrown(seed=1, t=t)], starts=1)
+    assert "throw has 2 points while it slips: mu rests on these" in str(fit)
+
+
+def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
+    fit = vr.identify(roller(), ranges("mu", "E"), [resistance(seed=1), thrown(seed=2)], starts=1)
+    data = fit.to_xarray()
+    assert list(data["unknown"].values) == ["mu", "E", "V0:throw"]
+    assert close(data["throw V"] - data["throw V fit"], -fit.residuals(fit.values)[V.size :] * 5e-3, rel=tol.IDENTIFIED)
+    assert data["throw V"].attrs["units"] == "m s-1"
+    fit.plot(tmp_path / "fit.png")
+    assert (tmp_path / "fit.png").stat().st_size > 10_000
+    assert "E" in repr(fit)
+    assert "chi2" in fit._repr_html_()
