@@ -115,7 +115,7 @@ def states(random: np.random.Generator, count: int) -> list[Claim]:
     kinds = "1.01 <= alpha <= 1e6, 1 to 10 and 30 modes, pairs of 1 to 5 modes a body"
     where = "kappa V from 1e-14 over the slowest time to 1e14 over the fastest, creep from 1e-14 delta_star to its end"
     claims = {group: Claim(f"{group}, by rows", f"{kinds}; {where}", bound) for group, (bound, _) in STATES.items()}
-    materials = [make for make, share in _MATERIALS for _ in range(max(count // share, 1))]
+    materials = [make for make, share in _MATERIALS for _ in range(max(count // (4 * share), 1))]
     for make in tqdm(materials, desc="states", leave=False):
         material = make(random)
         known = raw.rates_of(mpmath, material)
@@ -132,7 +132,7 @@ def _any_bodies(random: np.random.Generator) -> vr.Bodies:
     return vr.Bodies(cylinder, half_space, random.uniform(0.05, 0.95))
 
 
-#: materials, and of how many pairs there is one of them
+#: materials, and of how many fours of pairs there is one of them
 _MATERIALS: list[tuple[Callable[[np.random.Generator], Any], int]] = [
     (lambda random: float(10.0 ** random.uniform(np.log10(1.01), 6.0)), 1),
     (lambda random: float(random.uniform(20.0, 35.0)), 4),
