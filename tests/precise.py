@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import mpmath as mp
 
-from pipeline.truth import precise, series
+from pipeline.truth import precise
 
 DIGITS = 50
 #: digits that the printed forms may lose (see pipeline.truth.precise)
@@ -57,32 +57,6 @@ def slope(alpha: float, kappa: float, mu: float, V: float, delta: float, by: str
         h = base[by] * mp.mpf(10) ** -15
         up, down = (state(alpha, kappa, mu, **(base | {by: base[by] + sign * h})) for sign in (1, -1))
         return {name: (getattr(up, name) - getattr(down, name)) / (2 * h) for name in ("Q", "M")}
-
-
-def series_slope(
-    known: series.Rates, kappa: float, mu: float, zeta: float, eta: float
-) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
-    """V, delta and dQ_dV at fixed delta of a series where the contact and its stick zone have these lengths.
-
-    Both are given, so nothing is solved: F and H by central differences, the rest by the chain rule.
-    """
-
-    def of(z: mp.mpf) -> tuple[mp.mpf, mp.mpf]:
-        found = series.functions(mp, known, z)
-        return z + found.g, z * z + 2 * z * found.h
-
-    def slopes(z: mp.mpf) -> list[mp.mpf]:
-        step = z * mp.mpf(10) ** -20
-        return [(above - below) / (2 * step) for above, below in zip(of(z + step), of(z - step), strict=True)]
-
-    with mp.workdps(DIGITS + GUARD):
-        zeta, eta, mu = mp.mpf(zeta), mp.mpf(eta), mp.mpf(mu)
-        (F, H), (F_eta, H_eta) = of(zeta), of(eta)
-        (dF, dH), (dF_eta, dH_eta) = slopes(zeta), slopes(eta)
-        V = 1 / (2 * kappa * mp.sqrt(H))
-        dzeta = -2 * H / dH / V
-        deta = (dF * dzeta + (F - F_eta) / V) / dF_eta
-        return V, (F - F_eta) * mu * V, mu * (H_eta * dH * dzeta / H - dH_eta * deta) / H
 
 
 def ulps(value: float, exact: mp.mpf) -> float:

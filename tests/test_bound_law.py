@@ -13,7 +13,7 @@ import scipy
 from processes import printed
 
 import viscoroll as vr
-from viscoroll.kernels.law.loads import Loads, LoadsAndSlopes
+from viscoroll.kernels.rows.loads import Loads, LoadsAndSlopes
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
 
@@ -57,14 +57,14 @@ def called(law, V, omega):
 
 
 def test_law_is_contact_to_the_bit(law):
-    function, out = law.ctypes, (ctypes.c_double * 8)()
+    (function, scene), out = law.ctypes, (ctypes.c_double * 8)()
     for V, omega in states(law.scene):
         state = vr.contact(law.scene, V, omega=omega, slopes=True, fields=LoadsAndSlopes._fields)
         expected = bits([getattr(state, name) for name in LoadsAndSlopes._fields])
         assert bits(law(V, omega, slopes=True)) == expected, (V, omega)
         assert bits(law(V, omega)) == expected[:4]
         assert bits(called(law.jitted, V, omega)) == bits(law.jitted(V, omega)) == expected
-        assert function(V, omega, out, None) == 0
+        assert function(V, omega, out, scene) == 0
         assert bits(out) == expected
     assert len(called.signatures) == 1  # a user's function is compiled once for all laws
 
@@ -87,14 +87,14 @@ def test_arrays_are_those_of_contact(law):
 
 
 def test_what_is_no_number_is_an_error_or_nan(law):
-    out = (ctypes.c_double * 8)()
+    (function, scene), out = law.ctypes, (ctypes.c_double * 8)()
     for V, omega in BAD:
         with pytest.raises(vr.ParameterError):
             law(V, omega)
         with pytest.raises(vr.ParameterError):
             law(np.array([V, V]), omega)
         out[:] = [0.0] * 8
-        assert law.ctypes(V, omega, out, None) != 0
+        assert function(V, omega, out, scene) != 0
         assert np.isnan(out[:]).all()
         assert np.isnan(called(law.jitted, V, omega)).all()
     for V in ("fast", None, True, 10**400, [1.0, "x"]):
@@ -104,18 +104,18 @@ def test_what_is_no_number_is_an_error_or_nan(law):
 
 @pytest.mark.parametrize("name", ["series", "on an elastic base"])
 def test_threads_share_a_law(name):
-    """Speeds beyond the ends of the table too, where each thread of contact() writes to a table of its own."""
+    """Speeds beyond the ends of the table too."""
     law = vr.law(vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name]))
     V, omega = np.array(states(law.scene)).T
     expected = bits([law(*state, slopes=True) for state in zip(V, omega, strict=True)])
-    function = law.ctypes
+    function, scene = law.ctypes
 
     def work(_):
         wrong, out = 0, (ctypes.c_double * 8)()
         for _ in range(30):
             found = []
             for state in zip(V, omega, strict=True):
-                function(*state, out, None)
+                function(*state, out, scene)
                 found.append(out[:])
             wrong += bits(found) != expected
         return wrong
@@ -125,17 +125,19 @@ def test_threads_share_a_law(name):
 
 
 def test_scipy_takes_the_c_function(law):
-    found = scipy.LowLevelCallable(law.ctypes)
+    found = scipy.LowLevelCallable(*law.ctypes)
     assert found.signature == "int (double, double, double *, void *)"
-    assert ctypes.cast(law.ctypes, ctypes.c_void_p).value == law.address
+    function, scene = law.ctypes
+    assert (ctypes.cast(function, ctypes.c_void_p).value, scene.value) == law.address
+    assert vr.law(law.scene.replace(mu=0.3)).address[0] == law.address[0]  # one function for all
 
 
 def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
     scene = vr.Scene(kappa=50.0, mu=0.2, material=SERIES.slower(1.7))
     expected = vr.law(scene)(0.3, 0.3001)
-    function, jitted, out = vr.law(scene).ctypes, vr.law(scene).jitted, (ctypes.c_double * 8)()
+    (function, data), jitted, out = vr.law(scene).ctypes, vr.law(scene).jitted, (ctypes.c_double * 8)()
     others = [vr.law(scene.replace(mu=mu, material=SERIES.slower(mu))) for mu in (0.3, 0.4)]
-    function(0.3, 0.3001, out, None)
+    function(0.3, 0.3001, out, data)
     assert tuple(out[:4]) == jitted(0.3, 0.3001)[:4] == expected
     assert others[0](0.3, 0.3001) != expected
 

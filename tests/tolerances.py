@@ -68,9 +68,11 @@ RATIO_BIN_ULP = 2.0
 RATIO_SLOPE = 1e-15
 
 # --- rolling_contact.py (test_contact.py) ---
-#: Table law against 50 digits, relative, beta times 1/(1 - s): a dozen roundings; the documentation states 1e-13;
-#: measured 7.5e-16.
-CONTACT = 4e-15
+#: A state by the rows of its law against 50 digits, relative: delta_star, Q and M; measured 3e-15 over 900 states.
+CONTACT = 5e-15
+#: lam and zeta, and beta times 1/(1 - s), and epsilon: 24 powers leave so much of lam and epsilon in one octave for
+#: alpha from 20 to 35; measured 1.0e-14 and 2.0e-14 there, 2e-15 and 5e-15 elsewhere.
+CONTACT_LENGTH, CONTACT_SHIFT = 1.5e-14, 3e-14
 #: Carter's closed forms at alpha = 1: two or three roundings.
 CARTER = 1e-15
 #: Values at kappa V = 1e-12 and V = 1e14 from their limits: the limits' own error, kappa V and alpha^2/V; measured
@@ -86,6 +88,8 @@ SHAPE_ULP = 5.0
 #: Slopes against 50 digits, times 1/(1 - s): dQ_ddelta and dQ_domega relative, dQ_dV over mu/V (it cancels as
 #: delta -> 0), dM_dV over c (it changes sign); measured 9e-16.
 SLOPE = 1e-14
+#: dM_dV over M/V: in the octave where 24 powers leave so much of lam; measured 3.1e-14.
+SLOPE_OF_M = 5e-14
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
 #: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
@@ -115,9 +119,17 @@ AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
 AXIS_UNSTEADY = 2e-14
 
+# --- contact_table.py (test_contact_each.py) ---
+#: An alpha each, by the axis of alpha: lam, delta_star, M and Q, and beta times its condition; epsilon.  As asked of
+#: the axis, and of epsilon what the row of one alpha has; 400 states from 1 to 2^20 have 2.5e-15 at most.
+EACH_ALPHA, EACH_SHIFT = 1e-14, 2e-14
+#: A material each, by the grid of z, against its own table: values, as asked, which 300 random series of 1 to 16 modes
+#: hold with 6e-14; slopes, of their scale, which are those of polynomials fitted to values.
+EACH_MATERIAL, EACH_SLOPE = 1e-13, 1e-11
+
 # --- materials/law_table.py (test_law_table.py) ---
-#: lam, M/V, eta/F and H/F^2 by a row, relative, and epsilon: the bounds asked.
-TABLE_LAW, TABLE_SHIFT = 5e-15, 2e-14
+#: M/V, eta/F and H/F^2 by a row, relative; lam and epsilon as of states (CONTACT_LENGTH, CONTACT_SHIFT).
+TABLE_LAW = 5e-15
 
 # --- scene.py (test_scene.py) ---
 #: Conversions: a few roundings of products and one square root.
@@ -369,7 +381,7 @@ UNIT = 1e-12
 #: which some hundredths of delta_star magnify; against 50 digits 7.7e-12 over 540 states, in
 #: other units of time 2.4e-12.
 SERIES_SLOPE = 2e-11
-#: States by roots against those by tables; the equation of the length.
+#: States and stresses by the modes against those by rows; the equation of the length.
 SERIES_STATES = 1e-12
 #: Eqs. (10), (15) put back together from beta: differences of near numbers.
 SERIES_CLOSURE = 1e-8

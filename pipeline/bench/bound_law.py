@@ -60,9 +60,9 @@ def bound_law(sizes: dict[str, Any]) -> dict[str, Any]:
                 scene, V, omega=omega, fields=FIELDS, slopes=slopes
             )
         calls[name, "jitted", True] = lambda law=law, omega=omega: jitted_states(law.jitted, V, omega)
-        function, out = law.ctypes, (ctypes.c_double * 8)()
-        calls[name, "C by ctypes", True] = lambda function=function, out=out, numbers=numbers: [
-            function(*state, out, None) for state in numbers
+        (function, data), out = law.ctypes, (ctypes.c_double * 8)()
+        calls[name, "C by ctypes", True] = lambda function=function, data=data, out=out, numbers=numbers: [
+            function(*state, out, data) for state in numbers
         ]
     for call in calls.values():
         call()

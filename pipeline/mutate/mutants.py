@@ -21,30 +21,29 @@ _DIRECT, _SLICE, _MOTION = (
     "tests/materials/test_material_tables.py",
     "tests/motion/test_motion.py",
 )
+_STEADY, _BOUND, _EACH = "tests/test_steady.py", "tests/test_bound_law.py", "tests/test_contact_each.py"
+_LENGTH, _LOSSES = "tests/kernels/law/test_length.py", "tests/motion/test_ensemble.py"
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
 
 LAW = [
     ("material/standard.py", "return share * p, share * r\n", "return share * p, share * k\n", _LAW),
     ("material/standard.py", "dp = dr * k + r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", "dp = dr * k - r * dk\n    whole = 1.0 / (1.0 + p)\n    share = c * whole\n    return", _LAW),
     ("material/standard.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _LAW),
-    ("law/stick.py", "return D, (1.0 + ratio) * D\n", "return D, ratio * D\n", _LAW),
+    ("law/stick.py", "return D, (1.0 + ratio) * D\n", "return D, ratio * D\n", _STEADY),
     ("law/stick.py", "return zeta - d, d, (2.0 - d / zeta) * d, OK", "return zeta - d, 0.5 * d, (2.0 - d / zeta) * d, OK", _MOTION),
     ("material/standard.py", "slope_zh += GAUSS_W[n] * (h + z * dh)", "slope_zh += GAUSS_W[n] * (h + zeta * dh)", _LAW),
     ("numerics/nodes.py", "weights = [1 / ((1 - x * x)", "weights = [(1 + Decimal('1e-9')) / ((1 - x * x)", _LAW),
-    ("law/stick.py", "CLOSE = 0.1\n", "CLOSE = 0.9\n", _LAW),
-    ("material/standard.py", "return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g", "return lam * ratio_i2(alpha * zeta, h / rest) * rest + g", _LAW),
-    ("law/length.py", "_CUBED = 3e-6\n", "_CUBED = 3e-3\n", _LAW),
-    ("law/length.py", "_SLOW, _FAST = 1e-17, 1e-9\n", "_SLOW, _FAST = 1e-7, 1e-9\n", _LAW),
-    ("law/stick.py", "low, high = max(y - 0.5 * material.T_mean, 0.0), y", "low, high = max(y - 0.25 * material.T_mean, 0.0), y", _LAW),
-    ("law/state.py", "direction = -1.0 if V < 0.0 else 1.0", "direction = 1.0", _LAW),
-    ("law/state.py", "delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa", "delta_star = 0.5 * mu * lam / kappa", _LAW),
-    ("law/state.py", "full_slip = abs(delta) >= delta_star", "full_slip = abs(delta) > delta_star", _LAW),
-    ("law/state.py", "return 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "return np.copysign(np.inf, slip)", _LAW),
-    ("law/state.py", "bracket = -share * H + H * fall / A + 0.5 * A_eta * d", "bracket = -share * H + H * fall / A - 0.5 * A_eta * d", _LAW),
-    ("law/state.py", "out[DQ_DV] -= dQ_ddelta * (1.0 + delta) / abs(V)", "out[DQ_DV] -= dQ_ddelta / abs(V)", _LAW),
-    ("law/state.py", "out[M], out[DM_DV] = c * V, c\n", "out[M], out[DM_DV] = V, c\n", _LAW),
+    ("law/stick.py", "CLOSE = 0.1\n", "CLOSE = 0.9\n", _STEADY),
+    ("material/standard.py", "return lam * lam * ratio_i2(alpha * zeta, h / rest) * rest + g", "return lam * ratio_i2(alpha * zeta, h / rest) * rest + g", _MOTION),
+    ("law/length.py", "_CUBED = 3e-6\n", "_CUBED = 3e-3\n", _LENGTH),
+    ("law/length.py", "_SLOW, _FAST = 1e-17, 1e-9\n", "_SLOW, _FAST = 1e-7, 1e-9\n", _LENGTH),
+    ("law/stick.py", "low, high = max(y - 0.5 * material.T_mean, 0.0), y", "low, high = max(y - 0.25 * material.T_mean, 0.0), y", _STEADY),
+    ("law/states.py", "return -creep if V < 0.0 else creep, creep", "return creep, creep", _LAW),
+    ("law/state.py", "delta_star = 0.5 * mu * lam * (1.0 + epsilon) / kappa", "delta_star = 0.5 * mu * lam / kappa", _LOSSES),
+    ("law/states.py", "else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "else np.copysign(np.inf, slip)", _LAW),
+    ("law/state.py", "bracket = -share * H + H * fall / A + 0.5 * A_eta * d", "bracket = -share * H + H * fall / A - 0.5 * A_eta * d", _STEADY),
     ("material/standard.py", "d_i2 = alpha * 2.0 * (r * r - i2) * per_x", "d_i2 = alpha * 2.0 * (r - i2) * per_x", _LAW),
-    ("law/slopes.py", "(ddH * dF - dH * ddg)", "(ddH * dF + dH * ddg)", _LAW),
+    ("law/slopes.py", "(ddH * dF - dH * ddg)", "(ddH * dF + dH * ddg)", _STEADY),
     ("bessel/ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
     ("bessel/ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
     ("bessel/ratios.py", "return k if z < 1.0 else", "return k if z <= 1.0 else", _RATIOS),
@@ -53,8 +52,6 @@ LAW = [
     ("bessel/ratios.py", "K_LEAST = 2.0**-30\n", "K_LEAST = 2.0**-20\n", _RATIOS),
     ("bessel/ratios.py", "r_complement * (1.0 + r) - r * per_x", "r_complement * (1.0 - r) - r * per_x", _LAW),
     ("compile/fma.py", "fma(t, c[5], c[4])", "fma(t, c[4], c[5])", _RATIOS),
-    ("law/lockstep.py", "small_step(lam, new)", "small_step(lam, lam)", _LAW),
-    ("law/lockstep.py", "small_step(z, new)", "small_step(z, z)", _LAW),
 ]  # fmt: skip
 STRESS = [
     ("law/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _STRESS),
@@ -67,13 +64,24 @@ STRESS = [
     ("printed/law.py", "0.5 * epsilon * (1.0 - lam * lam) + 0.5", "0.5 * epsilon * (1.0 + lam * lam) + 0.5", _DIRECT),
 ]  # fmt: skip
 SLICE = [
-    ("law/inverses.py", "share * (eta + 2.0 * h) / at", "share * (eta + 2.0 * h) / (at * (1.0 + 1e-9))", _SLICE),
-    ("law/inverses.py", "lam * (1.0 + g / zeta)", "lam * (1.0 + g / zeta * (1.0 + 1e-9))", _SLICE),
-    ("law/inverse_loop.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
-    ("law/inverse_loop.py", "part, slight_status = slight_traction", "_, slight_status = slight_traction", _SLICE),
+    ("rows/law.py", "return lanes.one(law.rows, ready(PRESS, at.row, law), at.t)", "return lanes.one(law.rows, ready(PRESS, at.row, law), at.t) * (1.0 + 1e-9)", _SLICE),
+    ("rows/law.py", "return L, m, 1.0\n", "return L * (1.0 + 1e-9), m, 1.0\n", _SLICE),
+    ("rows/contact.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
+    ("rows/contact.py", "if D >= SLIGHT * L:\n", "if D >= 0.0:\n", _SLICE),
+    ("rows/law.py", "part * here * at.per + (1.0 - part) * there * near.per", "here * at.per", _SLICE),
+    ("rows/law.py", "(1.0 + shift), shift + part, z", "(1.0 + shift), shift, z", _LAW),
     ("numerics/quartet.py", "ir.Constant(VECTOR, [float(k)] * 4)", "ir.Constant(VECTOR, [float(k * 1.0000001)] * 4)", _SLICE),
     ("material/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
     ("material/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
+]  # fmt: skip
+ROWS = [
+    ("rows/axis.py", "        marks[STAMP] += 1\n", "", _EACH),
+    ("rows/axis.py", "rows[at - j + j % 2]", "rows[at - j]", _EACH),
+    ("rows/axis.py", "rows[body], rows[body + 1] = 0.5 * c, 0.5 * c * _FAST", "rows[body], rows[body + 1] = c, c * _FAST", _EACH),
+    ("rows/grid.py", "        marks[STAMP] += 1\n", "", _EACH),
+    ("rows/grid.py", "PER, POINTS, FAST = 10, 36, 34\n", "PER, POINTS, FAST = 6, 36, 34\n", _EACH),
+    ("rows/grid.py", "counts[0], counts[1], counts[2]", "counts[0], counts[1] - 12, counts[2]", _EACH),
+    ("rows/grid.py", "numbers[_V], numbers[_V + 1] = 0.0, numbers[_V + 1] + limit", "numbers[_V] = 0.0", _EACH),
 ]  # fmt: skip
 MOTION = [
     ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),
@@ -100,7 +108,6 @@ _PRONY, _PAIR, _UNSTEADY = (
     "tests/kernels/material/test_pair.py",
     "tests/kernels/law/test_unsteady.py",
 )
-_STEADY, _BOUND = "tests/test_steady.py", "tests/test_bound_law.py"
 SERIES = [
     ("material/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _PRONY),
     ("material/series.py", "square = 1.0 + 2.0 * h_c / z  # 1/lam^2\n        m =", "square = 1.0 + h_c / z\n        m =", _PRONY),
@@ -115,9 +122,9 @@ SERIES = [
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
     ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),
-    ("law/bound.py", "out[n] *= unit\n", "out[n] *= 1.0\n", _BOUND),
-    ("law/bound.py", "out[2] = out[3] = 0.5 * state[M]", "out[2] = out[3] = state[M]", _BOUND),
-    ("law/bound.py", "state[DM_HALF_SPACE_DV], state[DM_CYLINDER_DV]", "state[DM_CYLINDER_DV], state[DM_HALF_SPACE_DV]", _BOUND),
+    ("rows/law.py", "dL * at.per, m + u * at.per * dm", "dL * at.per, m + at.per * dm", _BOUND),
+    ("rows/bound.py", "out[2] = out[3] = 0.5 * out[1]", "out[2] = out[3] = out[1]", _BOUND),
+    ("rows/bound.py", "out[6], out[7] = body_slopes", "out[7], out[6] = body_slopes", _BOUND),
     ("law/steady_loop.py", "turned = -d_share / fall * m", "turned = d_share / fall * m", _STEADY),
     ("law/steady_loop.py", "share * torque - (1.0 - share) * force", "(1.0 - share) * torque - share * force", _STEADY),
     ("law/steady_loop.py", "D + more, rise_F + more * (1.0 + dg)", "D + more, rise_F + more", _STEADY),
@@ -142,5 +149,5 @@ COEFFICIENTS = [
     ("bessel/ratios.npy", str(n), "1e-9 of it more", _RATIOS) for n in (0, 1, 302, 1203, 2104, 3005, 4006, 5007)
 ]
 MUTANTS = [
-    Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *SERIES, *DRIVE, *COEFFICIENTS)
+    Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *ROWS, *MOTION, *SERIES, *DRIVE, *COEFFICIENTS)
 ]  # fmt: skip

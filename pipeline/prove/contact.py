@@ -1,4 +1,4 @@
-"""The fields of contact() against certified enclosures, state by state and by way of the slice of one alpha."""
+"""The fields of contact() against certified enclosures: of an alpha each by the axis of alpha, of one by its rows."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.rolling_contact import WORTHWHILE
 
 from ..truth.check_values import EDGE_ALPHAS, chosen_state
 from ..truth.enclosures import INPUTS, condition_numbers, contact_enclosure
@@ -29,21 +28,17 @@ SLIP = "full_slip: distance from delta_star where wrong, ULP"
 _LEAST = 8 * 5e-324
 
 
-def one_by_one(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
-    """Calls with too few states for a slice."""
-    parts = [states[i : i + WORTHWHILE - 1] for i in range(0, len(states), WORTHWHILE - 1)]
-    found = []
-    for part in parts:
-        alpha, kappa, mu, V, delta = np.array(part).T
-        found.append(vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip")).as_dict())
-    return vr.rolling_contact.Values({name: np.concatenate([part[name] for part in found]) for name in found[0]})
+def by_roots(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
+    """States with an alpha each."""
+    alpha, kappa, mu, V, delta = np.array([*states, states[0]]).T  # of one alone its rows would be made
+    state = vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
+    return vr.rolling_contact.Values({name: value[:-1] for name, value in state.as_dict().items()})
 
 
-def by_slice(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
-    """One call for states of one alpha, filled up with copies to the number from which on a slice is used."""
-    alpha, kappa, mu, V, delta = (np.resize(column, max(WORTHWHILE, len(states))) for column in np.array(states).T)
-    state = vr.contact(vr.Scene(float(alpha[0]), kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
-    return vr.rolling_contact.Values({name: value[: len(states)] for name, value in state.as_dict().items()})
+def by_rows(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
+    """States of one alpha."""
+    alpha, kappa, mu, V, delta = np.array(states).T
+    return vr.contact(vr.Scene(float(alpha[0]), kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
 
 
 class Tally(dict[str, Claim]):
@@ -92,10 +87,10 @@ def relative_error(value: float, exact: Any) -> float:
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     rng = np.random.default_rng(sizes["seed"] + 1)
-    batches = {"one by one": [([chosen_state(rng) for _ in range(sizes["states"])], one_by_one)], "slice": []}
+    batches = {"one by one": [([chosen_state(rng) for _ in range(sizes["states"])], by_roots)], "slice": []}
     alphas = [*EDGE_ALPHAS[1:], *(10.0 ** rng.uniform(0.0, 6.0, sizes["slices"])).tolist()]
     for alpha in alphas[: sizes["slices"]]:
-        batches["slice"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_slice))
+        batches["slice"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_rows))
     result = []
     for way, parts in batches.items():
         tally = Tally(way)

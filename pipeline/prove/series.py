@@ -6,6 +6,7 @@ solve; the Chebyshev solver knows neither Bessel functions nor the relaxation fo
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import mpmath
@@ -13,6 +14,7 @@ import numpy as np
 from tqdm import tqdm
 
 import viscoroll as vr
+from viscoroll.contact_fields import OF_BODIES
 from viscoroll.kernels.material.functions import at_contact, generators
 from viscoroll.kernels.material.series import AT_HALF_SPACE, Parts, room, values
 from viscoroll.kernels.material.series import shares as parts_of
@@ -26,7 +28,20 @@ MODES = (1, 3, 10, 30)
 DIGITS, DECADES = 60, 14.0
 #: e-folds beyond the shortest and the longest time
 BELOW, ABOVE = 30.0, 28.0
-CONDITIONS, PARTS, CHEBYSHEV = 1e-13, 1e-12, 1e-11
+CONDITIONS, CHEBYSHEV = 1e-13, 1e-11
+#: states lose more of them: where lam is small, and in slopes, which are differences
+DIGITS_OF_STATES = 80
+#: fields of a state, as :func:`state_errors` measures them; for alpha from 20 to 35, 24 powers of
+#: one octave leave 1.4e-14 of epsilon and 6.5e-15 of lam
+STATES = {
+    "delta_star, Q, M, relative": (5e-15, ("delta_star", "Q", "M")),
+    # strengths of 1e4 beside 1: what a slow mode takes of M is then a difference
+    "parts of M in the bodies, over M": (1e-12, OF_BODIES),
+    "lam, relative, and beta, over its condition": (1.5e-14, ("lam", "beta")),
+    "epsilon, relative": (3e-14, ("epsilon",)),
+    "dQ_ddelta, relative, and dQ_dV, over mu/V, over the condition of beta": (1e-14, ("dQ_ddelta", "dQ_dV")),
+    "dM_dV, over M/V": (5e-14, ("dM_dV",)),
+}  # fmt: skip
 #: of the Chebyshev solver: z over its shortest time, and terms that resolve the layers there
 THICKEST, TERMS = 300.0, 220
 
@@ -64,34 +79,67 @@ def functions(random: np.random.Generator, modes: int, count: int) -> Claim:
     return claim
 
 
-def shares(random: np.random.Generator, count: int) -> Claim:
-    """M_half_space and M_cylinder of pairs of up to five modes each, at the zeta that the call reports.
+def state_errors(material: Any, known: raw.Rates, zeta: float, share: float) -> dict[str, float]:
+    """Relative errors of a state by its rows: beta and the slopes of Q over the condition of beta.
 
-    Over M: the share of a slow mode beside much faster ones, which is small, has lost digits of its own.
+    dQ_dV over mu/V where it is below, dM_dV and the parts of M in the bodies over M or M/V.
     """
-    claim = Claim(
-        "parts of M in the bodies of a pair, over M",
-        "1 to 5 modes a body, over up to 14 decades; kappa V in [1e-6, 1e8]", PARTS,
-    )  # fmt: skip
-    for _ in tqdm(range(count), desc="pairs", leave=False):
-        cylinder, half_space = (random_series(random, int(random.integers(1, 6))) for _ in range(2))
-        pair = vr.Bodies(cylinder, half_space, random.uniform(0.05, 0.95))
-        found = vr.contact(
-            vr.Scene(material=pair, kappa=1.0, mu=0.1), 10.0 ** random.uniform(-6.0, 8.0), delta=0.0,
-            fields=("M", "M_half_space", "M_cylinder", "zeta"),
-        )  # fmt: skip
-        total, weights = pair.total, pair.half_space_weights
-        known = raw.rates_of_creep(mpmath, total.J.tolist(), total.T.tolist(), total.alpha)
-        truth = raw.functions(mpmath, known, found.zeta)
-        parts = raw.shares(mpmath, known, found.zeta, truth)
-        # sum J is 1 - 1/alpha but for rounding, which g = T_mean - sum X of the conditions feels, and no part
-        half = sum(weight * part for weight, part in zip(weights, parts, strict=True)) / sum(parts)
-        pairs = zip((found.M_half_space, found.M_cylinder), (half, 1 - half), strict=True)
-        claim.add(
-            [float(abs(mpmath.mpf(part) / found.M - exact)) for part, exact in pairs],
-            at(zeta=found.zeta) + f", {pair!r}",
-        )
-    return claim
+    V, delta, exact, whole = raw.state(mpmath, known, zeta, share)
+    scene = vr.Scene(kappa=1.0, mu=1.0, **{"alpha" if isinstance(material, float) else "material": material})
+    found = vr.contact(scene, V, delta=delta, fields=(*exact, *OF_BODIES))
+    condition = 1 / (1 - delta / exact["delta_star"])
+    scales = {"dQ_dV": max(abs(exact["dQ_dV"]), 1 / V), "dM_dV": whole.m, **dict.fromkeys(OF_BODIES, exact["M"])}
+    if isinstance(material, vr.Bodies):
+        parts = raw.shares(mpmath, known, zeta, whole)
+        half = sum(weight * part for weight, part in zip(material.half_space_weights.tolist(), parts, strict=True))
+        half /= sum(parts)  # V and zeta differ by a rounding
+    else:
+        half = mpmath.mpf(0.5)
+    exact |= dict(zip(OF_BODIES, (half * exact["M"], (1 - half) * exact["M"]), strict=True))
+    errors = {name: abs(getattr(found, name) - truth) / scales.get(name, truth) for name, truth in exact.items()}
+    for name in ("beta", "dQ_dV", "dQ_ddelta"):
+        errors[name] /= condition
+    return {name: float(error) for name, error in errors.items()}
+
+
+def any_state(random: np.random.Generator, known: raw.Rates) -> tuple[float, float]:
+    """zeta, from 14 decades below the fastest time to 14 above the slowest or near them, and 1 - beta, about."""
+    near, far = (float(mpmath.log10(1 / rate)) for rate in (known.a[-1], known.b[0]))
+    beyond = 14.0 if random.random() < 0.3 else 2.0
+    share = (10.0 ** random.uniform(-14.0, 0.0), random.random(), 1.0 - 10.0 ** random.uniform(-7.0, 0.0))
+    return 10.0 ** random.uniform(near - beyond, far + beyond), share[random.integers(3)]
+
+
+def states(random: np.random.Generator, count: int) -> list[Claim]:
+    """Every field of states by their rows, five a material."""
+    kinds = "1.01 <= alpha <= 1e6, 1 to 10 and 30 modes, pairs of 1 to 5 modes a body"
+    where = "kappa V from 1e-14 over the slowest time to 1e14 over the fastest, creep from 1e-14 delta_star to its end"
+    claims = {group: Claim(f"{group}, by rows", f"{kinds}; {where}", bound) for group, (bound, _) in STATES.items()}
+    materials = [make for make, share in _MATERIALS for _ in range(max(count // (4 * share), 1))]
+    for make in tqdm(materials, desc="states", leave=False):
+        material = make(random)
+        known = raw.rates_of(mpmath, material)
+        for _ in range(5):
+            zeta, share = any_state(random, known)
+            errors = state_errors(material, known, zeta, share)
+            for group, (_, names) in STATES.items():
+                claims[group].add([errors[name] for name in names], at(zeta=zeta, share=share) + f", {material!r}")
+    return list(claims.values())
+
+
+def _any_bodies(random: np.random.Generator) -> vr.Bodies:
+    cylinder, half_space = (random_series(random, int(random.integers(1, 6))) for _ in range(2))
+    return vr.Bodies(cylinder, half_space, random.uniform(0.05, 0.95))
+
+
+#: materials, and of how many fours of pairs there is one of them
+_MATERIALS: list[tuple[Callable[[np.random.Generator], Any], int]] = [
+    (lambda random: float(10.0 ** random.uniform(np.log10(1.01), 6.0)), 1),
+    (lambda random: float(random.uniform(20.0, 35.0)), 4),
+    (lambda random: random_series(random, int(random.integers(1, 11))), 1),
+    (lambda random: random_series(random, 30), 20),
+    (_any_bodies, 1),
+]
 
 
 def chebyshev(random: np.random.Generator, count: int) -> Claim:
@@ -120,5 +168,6 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     random = np.random.default_rng(sizes["seed"] + 6)
     with mpmath.workdps(DIGITS):
         made = [functions(random, modes, max(sizes["series_states"] // modes, 10)) for modes in MODES]
-        made.append(shares(random, sizes["series_pairs"]))
+    with mpmath.workdps(DIGITS_OF_STATES):
+        made += states(random, sizes["series_pairs"])
     return [claim.row for claim in [*made, chebyshev(random, sizes["series_pairs"])]]

@@ -1,7 +1,7 @@
 """Shape of the law: Q rises and beta falls with delta, lam falls with V, |Q| <= mu, |tau| <= mu p.
 
 At random pairs over the whole domain, and at neighbouring doubles across every edge of a piece of a
-table: of the Bessel ratios, and of the slice of one alpha.  Falls of what must rise are counted in units
+table: of the Bessel ratios, and of the rows of one alpha.  Falls of what must rise are counted in units
 in the last place of mu, 1 and lam.  Two values that differ by less than their errors may come out in
 either order: the bounds are twice the errors stated for one value.
 """
@@ -18,7 +18,6 @@ from tqdm import tqdm
 import viscoroll as vr
 from viscoroll.kernels.bessel import layout as layout
 from viscoroll.kernels.material.functions import generators, standard
-from viscoroll.rolling_contact import WORTHWHILE
 
 from ..truth.check_values import EDGE_ALPHAS
 from .claim import Claim
@@ -38,16 +37,20 @@ def edges() -> NDArray:
     return (2.0 ** np.arange(-31, 8)[:, None] * (1.0 + np.arange(layout.BINS) / layout.BINS)).ravel()
 
 
+def octaves(rng: np.random.Generator) -> NDArray:
+    """Every edge of a row of any alpha up to 1e6, and as many in the slow row, each some times."""
+    return 2.0 ** rng.permutation(np.repeat(np.arange(-12, 64), 40))
+
+
 def neighbours(x: NDArray) -> NDArray:
     """x and the doubles beside it, rising along a new last axis."""
     return (x.view(np.int64)[..., None] + np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1)).view(np.float64)
 
 
 def contact(way: str, alpha: Any, kappa: Any, mu: Any, V: NDArray, delta: NDArray, fields: tuple[str, ...]) -> Any:
-    """contact() that way: with an alpha for each state there is no slice."""
+    """contact() that way."""
     shape = np.broadcast_shapes(np.shape(V), np.shape(delta))
     if way == "slice":
-        assert np.prod(shape) >= WORTHWHILE
         return vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=fields)
     return vr.contact(vr.Scene(np.broadcast_to(alpha, shape), kappa, mu), V, delta=delta, fields=fields)
 
@@ -73,7 +76,7 @@ def log_uniform(rng: np.random.Generator, low: float, high: float, *shape: int) 
 def random_pairs(way: str, count: int, rng: np.random.Generator) -> Iterator[dict[str, NDArray]]:
     """Pairs of delta at one V, s toward 0 and toward 1; pairs of V."""
     while count > 0:
-        n = max(min(count, _CHUNK), WORTHWHILE)
+        n = min(count, _CHUNK)
         count -= n
         alpha = log_uniform(rng, 1.0, 1e6) if way == "slice" else log_uniform(rng, 1.0, 1e6, n, 1)
         kappa, mu = log_uniform(rng, 1e-6, 1e6, n, 1), log_uniform(rng, 1e-6, 1e6, n, 1)
@@ -86,18 +89,23 @@ def random_pairs(way: str, count: int, rng: np.random.Generator) -> Iterator[dic
         yield falls(way, alpha, kappa, mu, V / np.array([1.0 + 10.0 ** rng.uniform(-16, 1), 1.0]), np.float64(0.0))
 
 
+def lengths(way: str, alpha: float, mu: float, V: NDArray) -> NDArray:
+    """lam (1 + epsilon) at kappa = 1."""
+    star: NDArray = contact(way, alpha, 1.0, mu, V, np.zeros(V.size), ("delta_star",)).delta_star
+    return 2.0 / mu * star
+
+
 def at_edges(way: str, alpha: float, rng: np.random.Generator) -> Iterator[tuple[Any, ...]]:
-    """(kappa, mu, V, delta) of neighbouring doubles: V where zeta or kappa V crosses an edge, delta where eta does."""
+    """(kappa, mu, V, delta) of neighbouring doubles: V where zeta or kappa V is on an edge, delta where eta or F is."""
     kappa, mu = 2.91, 0.2
     z = np.sort(np.concatenate([edges(), edges() / alpha]))
     if way == "slice":
-        yield 1.0, mu, neighbours(edges()), np.float64(0.0)  # kappa V itself
-        V = np.resize(edges(), 2 * WORTHWHILE) * rng.uniform(0.5, 2.0, 2 * WORTHWHILE)
-        L = 2.0 / mu * contact(way, alpha, 1.0, mu, V, np.zeros(V.size), ("delta_star",)).delta_star
-        y = rng.choice(edges(), V.size)
-        inside = (2.0 * V * y < 0.999 * L) & (2.0 * V * y > 1e-6 * L)
-        delta = np.resize(0.5 * mu * (L - 2.0 * V * y)[inside], WORTHWHILE)
-        yield 1.0, mu, np.resize(V[inside], WORTHWHILE)[:, None], neighbours(delta)
+        yield 1.0, mu, neighbours(octaves(rng)), np.float64(0.0)  # kappa V itself
+        V, v = octaves(rng) * rng.uniform(0.5, 2.0, 3040), octaves(rng)
+        v[::2] = 2.0 ** np.ceil(np.log2(2.0 * V[::2] / lengths(way, alpha, mu, V[::2])))  # near the whole contact's
+        L = lengths(way, alpha, mu, V)
+        inside = (2.0 * V < 0.999 * L * v) & (2.0 * V > 1e-6 * L * v)
+        yield 1.0, mu, V[inside][:, None], neighbours((0.5 * mu * (L - 2.0 * V / v))[inside])
         return
     g, h = np.array([generators(at, standard(alpha)) for at in z.tolist()]).T
     yield kappa, mu, neighbours(0.5 / kappa / np.sqrt(z * z + 2.0 * z * h)), np.float64(0.0)
@@ -109,7 +117,7 @@ def at_edges(way: str, alpha: float, rng: np.random.Generator) -> Iterator[tuple
 
 
 def falls_at_edges(way: str, rng: np.random.Generator) -> Iterator[dict[str, NDArray]]:
-    for alpha in (*EDGE_ALPHAS[1:], 1.5, 11.0, 81.5, 1e3):
+    for alpha in (*EDGE_ALPHAS[1:], 1.5, 11.0, 24.0, 28.0, 81.5, 1e3):
         for case in at_edges(way, alpha, rng):
             yield falls(way, alpha, *case)
 

@@ -25,7 +25,7 @@ from ..truth.enclosures import (
     slopes,
 )
 from .claim import Claim, at
-from .shape import at_edges, contact
+from .shape import WAYS, at_edges, contact
 
 SLOPE, STRESS, CLOSURE = 1e-10, 1e-11, 1e-11
 #: where the edges of the contact and of the stick zone lie: four roundings of x and lam, four of beta
@@ -96,12 +96,13 @@ def jump_rows(rng: np.random.Generator) -> list[dict[str, Any]]:
     claim = "step between neighbouring doubles, over its scale"
     claims = {name: Claim(f"{name}: {claim}", "every cell edge", SLOPE) for name in _FIELDS}
     for alpha in (1.0001, 1.5, 11.0, 1e3, 1e6):
-        for kappa, mu, V, delta in at_edges("one by one", alpha, rng):
-            state = contact("one by one", alpha, kappa, mu, V, delta, (*_FIELDS, "delta_star"))
-            for name, scale in slope_scales(mu, V, alpha, state.delta_star).items():
-                steps = np.abs(np.diff(getattr(state, name)))
-                size = np.broadcast_to(scale, np.shape(getattr(state, name)))[..., 1:]
-                claims[name].add(steps / size, f"alpha = {alpha!r}")
+        for way in WAYS:
+            for kappa, mu, V, delta in at_edges(way, alpha, rng):
+                state = contact(way, alpha, kappa, mu, V, delta, (*_FIELDS, "delta_star"))
+                for name, scale in slope_scales(mu, V, alpha, state.delta_star).items():
+                    steps = np.abs(np.diff(getattr(state, name)))
+                    size = np.broadcast_to(scale, np.shape(getattr(state, name)))[..., 1:]
+                    claims[name].add(steps / size, f"alpha = {alpha!r}, {way}")
     return [one.row for one in claims.values()]
 
 

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from viscoroll import Bodies
+
 from .precise import ratio_k, ratio_r
 
 
@@ -34,7 +36,7 @@ def rates(mp: Any, E: list[float], tau: list[float]) -> Rates:
     def rising(s: Any) -> Any:
         return -1 / s + sum(value / (at - s) for value, at in zip(strengths, a, strict=True))
 
-    b = [_zero(mp, rising, low, high) for low, high in zip([mp.mpf(0), *a[:-1]], a, strict=True)]
+    b = [_zero(mp, rising, low, high) for low, high in zip([mp.mpf(0), *a][: len(a)], a, strict=True)]
     T_mean = sum(value / at for value, at in zip(strengths, a, strict=True))
     return Rates(a, b, 1 + sum(strengths), T_mean)
 
@@ -63,6 +65,24 @@ def _zero(mp: Any, rising: Any, low: Any, high: Any) -> Any:
         if far - near < far * 64 * mp.eps:
             break
     return low + near if from_low else high - near
+
+
+def rates_of(mp: Any, material: Any) -> Rates:
+    """Of an alpha, whose unit of time is T_epsilon, of a series, or of both bodies of a pair."""
+    if isinstance(material, float):
+        alpha = mp.mpf(material)
+        return Rates([alpha], [mp.mpf(1)], alpha, 1 - 1 / alpha)
+    if isinstance(material, Bodies) and material.cylinder != material.half_space:
+        share = mp.mpf(material.share)
+        bodies = [(share, rates_of(mp, material.cylinder)), (1 - share, rates_of(mp, material.half_space))]
+        J = [part * strength for part, known in bodies for strength in creep_strengths(mp, known)]
+        T = [1 / b for _, known in bodies for b in known.b]
+        return rates_of_creep(mp, J, T, 1 / sum(part / known.alpha for part, known in bodies))
+    total = material.total if isinstance(material, Bodies) else material
+    if not total.by_creep:
+        return rates(mp, total.E.tolist(), total.tau.tolist())
+    alpha = 1 / (1 - sum(map(mp.mpf, total.J.tolist())))  # to all digits: at high speed all but its last cancel
+    return rates_of_creep(mp, total.J.tolist(), total.T.tolist(), alpha)
 
 
 class Functions(NamedTuple):
@@ -114,3 +134,40 @@ def creep_strengths(mp: Any, known: Rates) -> list[Any]:
         top = mp.fprod(abs(at - b) for at in known.a)
         strengths.append(top / mp.fprod(abs(at - b) for i, at in enumerate(known.b) if i != j) / known.alpha / b)
     return strengths
+
+
+def state(mp: Any, known: Rates, zeta: Any, share: Any) -> tuple[float, float, dict[str, Any], Functions]:
+    """V and delta as doubles, and the state and its slopes there at kappa = mu = 1, where beta is near 1 - ``share``.
+
+    The contact's length and its stick zone's are given, so nothing is solved; what V and delta are rounded by is made
+    good to first order.
+    """
+
+    def of(z: Any) -> tuple[Any, Any, Any]:
+        found = functions(mp, known, z)
+        return z + found.g, z * z + 2 * z * found.h, found.m
+
+    def slopes(z: Any) -> list[Any]:
+        step = z * mp.mpf(10) ** -20
+        return [(above - below) / (2 * step) for above, below in zip(of(z + step), of(z - step), strict=True)]
+
+    zeta, eta = mp.mpf(zeta), mp.mpf(zeta) * (1 - mp.mpf(share))
+    whole = functions(mp, known, zeta)
+    (F, H, m), (F_eta, H_eta, _) = of(zeta), of(eta)
+    (dF, dH, dm), (dF_eta, dH_eta, _) = slopes(zeta), slopes(eta)
+    V = 1 / (2 * mp.sqrt(H))
+    delta, dzeta = (F - F_eta) * V, -2 * H / dH / V
+    deta, by_delta = (dF * dzeta + (F - F_eta) / V) / dF_eta, -1 / (V * dF_eta)
+    dQ_dV, dQ_ddelta = (H_eta * dH * dzeta / H - dH_eta * deta) / H, -dH_eta * by_delta / H
+    near_V, near_delta = float(V), float(delta)
+    off, off_delta = near_V - V, near_delta - delta
+    exact = {
+        "lam": 2 * zeta * V + off * 2 * (dzeta * V + zeta),
+        "epsilon": whole.g / zeta + off * dzeta * (dF * zeta - F) / zeta**2,
+        "delta_star": V * F + off * (F + V * dF * dzeta),
+        "beta": eta / zeta + (off * (deta - eta * dzeta / zeta) + off_delta * by_delta) / zeta,
+        "Q": 1 - H_eta / H + off * dQ_dV + off_delta * dQ_ddelta,
+        "M": V * m + off * (m + V * dm * dzeta),
+        "dQ_dV": dQ_dV, "dQ_ddelta": dQ_ddelta, "dM_dV": m + V * dm * dzeta,
+    }  # fmt: skip
+    return near_V, near_delta, exact, whole

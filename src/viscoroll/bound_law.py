@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import checked
-from .errors import ConvergenceError, ParameterError
-from .kernels.law.loads import Loads, LoadsAndSlopes
+from .errors import ParameterError
+from .kernels.rows.loads import Loads, LoadsAndSlopes
+from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
-from .materials.tables import shared_record
 from .rolling_contact import contact, one_material, refuse_overflow
 from .scene import Scene, checked_scene
 from .typed import Numbers
@@ -34,15 +34,15 @@ class Law:
     """
 
     def __init__(self, scene: Scene) -> None:
-        from .kernels.law.jitted import SWITCHED_OFF, Jitted, Room
+        from .kernels.rows.jitted import SWITCHED_OFF, Jitted, Room
 
         if SWITCHED_OFF:
             raise ParameterError("NUMBA_DISABLE_JIT", 1, "0: a bound law is machine code")
-        material, unit = scene.in_own_time()
-        given: Any = one_material(scene, material, Loads._fields)
+        table = one_material(scene)
+        assert isinstance(table, LawTable)
         self.scene = scene
-        self._jitted = Jitted(shared_record(scene.alpha if given is None else given), scene.kappa, scene.mu, unit)
-        self._function, self._at, self._room = self._jitted.function, self._jitted.address, Room
+        self._jitted = jitted = Jitted(table.record, table.unlike, scene.kappa, scene.mu)
+        self._function, self._plain, self._sloped, self._room = jitted.function, jitted.plain, jitted.address, Room
 
     @overload
     def __call__(  # type: ignore[overload-overlap]
@@ -74,26 +74,20 @@ class Law:
         ------
         ParameterError
             NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
-        ConvergenceError
-            If a solve hits its iteration cap.
         """
         if type(V) in _NUMBERS and type(omega) in _NUMBERS:
             out = self._room()
             try:
-                status = self._function(V, omega, out, self._at)
+                status = self._function(V, omega, out, self._sloped if slopes else self._plain)
             except ctypes.ArgumentError:  # an integer beyond the doubles
                 status = 1
             if status:
-                self._refuse(V, omega)
+                refuse_overflow(np.asarray(self.scene.kappa), checked("V", V))
+                checked("omega", omega)
             return _loads_and_slopes(out) if slopes else _loads(out[:4])
         kind = LoadsAndSlopes if slopes else Loads
         found = contact(self.scene, V, omega=omega, fields=kind._fields)
         return kind(**found.as_dict())
-
-    def _refuse(self, V: Any, omega: Any) -> None:
-        refuse_overflow(np.asarray(self.scene.kappa), checked("V", V))
-        checked("omega", omega)
-        raise ConvergenceError(f"law: an iteration hit its cap at V = {V!r}, omega = {omega!r}")
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
@@ -103,18 +97,19 @@ class Law:
         return self._jitted
 
     @property
-    def address(self) -> int:
-        """Address of a C function ``int law(double V, double omega, double out[8], void *)``.
+    def address(self) -> tuple[int, int]:
+        """Address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of its user
+        data.
 
         It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
         error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
-        there.  The last argument is ignored.
+        there.  All laws share the function.
         """
-        return self._jitted.c_address
+        return self._jitted.function_address, self._jitted.address
 
     @property
-    def ctypes(self) -> Any:
-        """The function at ``address`` for ctypes and ``scipy.LowLevelCallable``; it keeps what it needs."""
+    def ctypes(self) -> tuple[Any, Any]:
+        """Both for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them; either keeps what it needs."""
         return self._jitted.ctypes
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -149,8 +144,7 @@ def law(scene: Scene) -> Law:
     -----
     For numbers the digits are those of :func:`contact` to the bit, and for arrays it is :func:`contact` that is called
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
-    a corner in V only; the slopes there are those of full slip.  A material of several relaxation times takes 6 MB,
-    which its laws share.
+    a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
     """
     checked_scene(scene, "law")
     if isinstance(scene.material, MaterialArray):

@@ -6,37 +6,28 @@ the fields that were named.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import elements, run_blocks, solve_blocks
+from .blocks import elements, solve_blocks
 from .checks import broadcast_shape, checked_extent
-from .contact_fields import OF_BODIES, SLOPES, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .contact_fields import OF_BODIES, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .contact_table import states_of
 from .errors import ParameterError, one_of
 from .labels import unlabelled
-from .materials.bodies import Bodies
 from .materials.bodies_array import BodiesArray
-from .materials.prony import Prony
+from .materials.law_table import LawTable, law_table
 from .materials.prony_array import MaterialArray
-from .materials.tables import inverses, record, unsteadiness
 from .results import Values
 from .scene import Scene, checked_scene
 from .typed import Numbers
 
 #: of bodies that are alike, half of each
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
-_NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
-_NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
-#: slopes over a speed, which follows the unit of time
-_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
-#: where each has a material of its own, which costs tens of microseconds and some kilobytes
-_BLOCK_EACH = 1 << 8
-#: states from which on those of one alpha are read from tables, which cost as much as some hundreds without
-WORTHWHILE = 4096
 _FASTEST = 1e300
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
@@ -94,7 +85,7 @@ def contact(
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
         ``dQ_domega`` is infinite.  Of bodies that differ, ``dM_half_space_dV`` and ``dM_cylinder_dV`` too.
-    method : "table" (the explicit law on tabulated Bessel ratios) or "direct" (the paper's
+    method : "table" (the rows of the law: no equation is solved) or "direct" (the paper's
         equations as printed, solved by Brent-Dekker; no slopes).
 
     Returns
@@ -113,18 +104,14 @@ def contact(
 
     Notes
     -----
-    Accuracy of method "table": 1e-13 relative in lam, epsilon, delta_star, M and Q for
-    alpha in [1, 1e4], kappa V in [1e-7, 1e5]; beta likewise times 1/(1 - |delta|/delta_star),
-    its condition number (``tests/test_contact.py``, ``tests/materials/test_material_tables.py``).  Parts of M in two
-    bodies: 1e-13 of M (``tests/kernels/material/test_pair.py``).  N, away from its zero: 2e-11 relative for one
-    mode and series over four decades (``tests/kernels/law/test_unsteady.py``).
+    Accuracy of method "table" for one material (one alpha, a series or two bodies): 5e-15 relative in lam, delta_star,
+    M and Q, the parts of M over M, 2e-14 in epsilon, for any speed and creep (``tests/materials/test_law_table.py``,
+    ``tests/test_contact.py``); for an alpha or a material each 1e-13 for alpha in [1, 1e4], kappa V in [1e-7, 1e5].
+    beta likewise times 1/(1 - |delta|/delta_star), its condition number.  N, away from its zero: 2e-11 relative for
+    one mode and series over four decades (``tests/kernels/law/test_unsteady.py``).
 
-    From 4096 states on with one alpha > 1, and no slopes, the law is read from polynomials of one
-    variable, which are made where they are met and kept for later calls; only threads that share
-    a call, of more than 32,768 states, make them anew in each.  Such a call agrees with
-    calls of single states to 2e-14 and not bit for bit; full slip begins at the delta_star that
-    the call reports, within 16 units in the last place of the other.  Either way a state's
-    result depends on nothing else in the call but the number of states and the fields.
+    The law of one material is read from polynomials of one variable (:mod:`.materials.law_table`), made on first use in
+    some milliseconds and kept.  A state's result depends on nothing else in the call.
 
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
     however they broadcast (``tests/test_hostile.py``).
@@ -147,53 +134,32 @@ def contact(
     fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST
     if extents["kappa"][1] * max(map(abs, extents["V"])) > fastest:
         refuse_overflow(arrays["kappa"], arrays["V"], fastest)
-    material, unit = scene.in_own_time()
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
-    if unit != 1.0:
-        arrays |= {name: arrays[name] * unit for name in ("V", "omega") if name in arrays}
-    one = one_material(scene, material, names)
+    one = None if method == "direct" else one_material(scene)
     if isinstance(one, MaterialArray):
+        if UNSTEADY in names:
+            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
-    halved = {} if isinstance(one, Bodies | BodiesArray) else {name: _HALVES[name] for name in names if name in _HALVES}
-    asked = ("zeta" if name == UNSTEADY else halved.get(name, name) for name in names)
-    solved = tuple(dict.fromkeys(asked))
-    found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
+    unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, BodiesArray)
+    halved = {} if unlike else {name: _HALVES[name] for name in names if name in _HALVES}
+    solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
+    broadcast = list(arrays.values()), shape, creep_name == "omega", solved
+    found = _direct(*broadcast) if method == "direct" else states_of(one, *broadcast)
     rows = dict(zip(solved, found, strict=True))
     rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
-    if UNSTEADY in names:
-        if isinstance(one, MaterialArray):
-            raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
-        rows[UNSTEADY] = _unsteady(material, arrays["alpha"], rows["zeta"], shape) * unit**2
-    for name in _PER_SPEED & rows.keys():
-        rows[name] *= unit
     given = {"V": V, creep_name: omega if delta is None else delta}
     return Values({name: shaped(name, rows[name], shape) for name in names}, given, labels=labels)
 
 
-def _unsteady(material: Any, alpha: NDArray, zeta: NDArray, shape: tuple[int, ...]) -> NDArray:
-    """N at every zeta, in the material's own time."""
-    found, alphas = np.empty(zeta.size), elements(alpha, shape)
-
-    def work(start: int, stop: int) -> None:
-        given = material if isinstance(material, Prony) else alphas(start, stop)
-        found[start:stop] = unsteadiness(given, zeta[start:stop])
-
-    run_blocks(work, zeta.size, _BLOCK)
-    return found
-
-
-def one_material(scene: Scene, material: Any, names: tuple[str, ...]) -> Prony | MaterialArray | Bodies | None:
-    """What serves all states: a series; many series or pairs; bodies that differ, for parts of M; or, None, alphas."""
-    if isinstance(material, MaterialArray):
-        return material
-    if not isinstance(material, Prony):
-        return None
-    if scene.like_bodies or not _HALVES.keys() & set(names):
-        return material
-    assert isinstance(scene.material, Bodies)
-    return scene.material.in_own_time()[0]
+def one_material(scene: Scene) -> LawTable | MaterialArray | None:
+    """The table that serves all states; many series or pairs; or, None, alphas."""
+    if scene.law is not None:
+        return scene.law
+    if scene.material is None:
+        return law_table(float(np.asarray(scene.alpha).item())) if np.size(scene.alpha) == 1 else None
+    return scene.in_own_time()[0] if isinstance(scene.material, MaterialArray) else law_table(scene.material)
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
@@ -204,68 +170,27 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
-def _compute(
-    material: Any,
-    arrays: list[NDArray],
-    shape: tuple[int, ...],
-    creep_is_omega: bool,
-    names: tuple[str, ...],
-    method: str,
-) -> NDArray:
-    """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
+def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
+    """The fields ``names`` by the printed equations, a row each, of alpha, kappa, mu, V and the creep."""
+    from .kernels.law.states import ROWS, States
+    from .kernels.material.functions import Own
+    from .kernels.printed.loop import direct_loop
 
-    ``material``: a series or bodies in place of the alphas, or None; or many of them, with their numbers in place of
-    the alphas.
-    """
-    from .kernels.law.state import ROWS, Need, States
-
-    wanted = set(names)
-    need = Need(
-        bool(wanted & _NEEDS_SHIFT), bool(wanted & _NEEDS_STICK), "beta" in wanted,
-        bool(wanted & {"M", "dM_dV", *_HALVES}), bool(wanted & set(SLOPES + SLOPES_OF_BODIES)),
-    )  # fmt: skip
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
-    loop = _chosen_loop(material, arrays[0], need.slopes, count, method)
     alphas, *parts = (elements(array, shape) for array in arrays)
 
     def solve(start: int, stop: int) -> int:
         found = np.empty((len(names), stop - start))
         kappa, mu, V, creep = (part(start, stop) for part in parts)
         states = States(kappa, mu, V, creep, creep_is_omega)
-        status: int = loop(alphas(start, stop), states, need, rows, found, 0, stop - start)
+        status: int = direct_loop(Own(alphas(start, stop)), states, rows, found, 0, stop - start)
         out[:, start:stop] = found
         return status
 
-    block = _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
-    solve_blocks(solve, count, block, f"contact: an iteration hit its cap near element {{}} (method {method!r})")
+    solve_blocks(solve, count, _BLOCK, "contact: an iteration hit its cap near element {} (method 'direct')")
     return out
-
-
-def _chosen_loop(material: Any, alpha: NDArray, slopes: bool, count: int, method: str) -> Callable:
-    """The kernel for a call, which takes the alphas of a block in place of its material."""
-    from .kernels.law.contact_loop import contact_loop, state_loop
-    from .kernels.law.lockstep import TOGETHER
-    from .kernels.material.functions import Own
-
-    if isinstance(material, MaterialArray):
-        from .contact_each import states_each
-
-        return states_each(material, _PER_SPEED)
-    if method == "direct":
-        from .kernels.printed.loop import direct_loop
-
-        return lambda alphas, *rest: direct_loop(Own(alphas), *rest)
-    # at alpha = 1 the law has closed forms
-    if count >= WORTHWHILE and alpha.size == 1 and alpha.item() > 1.0 and not slopes:
-        from .kernels.law.inverse_loop import inverse_loop
-
-        return lambda alphas, *rest: inverse_loop(inverses(material or alphas.item()), *rest)
-    if material is not None:
-        return lambda alphas, *rest: state_loop(record(material), *rest)
-    loop = state_loop if count < TOGETHER else contact_loop
-    return lambda alphas, *rest: loop(Own(alphas), *rest)
 
 
 def shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:

@@ -132,7 +132,8 @@ def test_contact_of_a_pair_each(kind):
     for i, one in enumerate(many):
         alone = vr.contact(vr.Scene(material=one, **SCENE), V[:, i], omega=1.001 * V[:, i], fields=FIELDS)
         for name in FIELDS:
-            assert close(getattr(found, name)[:, i], getattr(alone, name), rel=tol.BODIES, what=f"{name} {i}")
+            exact, scale = getattr(alone, name), alone.M / V[:, i] if name == "dM_half_space_dV" else 0.0
+            assert close(getattr(found, name)[:, i], exact, rel=tol.BODIES, scale=scale, what=f"{name} {i}")
 
 
 def test_stress_of_a_pair_each():

@@ -13,6 +13,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
+from pipeline.prove.series import any_state, state_errors
 from pipeline.truth import series as raw
 from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
 
@@ -27,7 +28,7 @@ def random_series(seed: int, modes: int, decades: float) -> vr.Prony:
 
 
 MATERIALS: dict[str, Any] = {
-    **{f"alpha {alpha:g}": alpha for alpha in (1.0 + 1e-9, 1.01, 11.0, 300.0, 1e6)},
+    **{f"alpha {alpha:g}": alpha for alpha in (1.0 + 1e-9, 1.01, 11.0, 28.0, 300.0, 1e6)},
     "four modes": random_series(1, 4, 3.0),
     "six modes, 14 decades": random_series(2, 6, 14.0),
     "two bodies": UNLIKE,
@@ -47,17 +48,9 @@ def at(table: LawTable, name: str, x: float) -> float:
 def test_against_60_digits(name):
     given = MATERIALS[name]
     table = law_table(given)
-    one = vr.Prony.creep([(given - 1.0) / given], [1.0], alpha=given) if isinstance(given, float) else given
-    total = one.total if isinstance(one, vr.Bodies) else one
     places = np.random.default_rng(5).uniform(table.e0 - 4.0, table.e0 + len(table.coefficients) - 1.5, 12)
     with mp.workdps(DIGITS + 20):
-        if isinstance(given, float):
-            known = raw.Rates([mp.mpf(given)], [mp.mpf(1)], mp.mpf(given), 1 - 1 / mp.mpf(given))
-        elif total.by_creep:
-            alpha = 1 / (1 - sum(map(mp.mpf, total.J.tolist())))  # to all digits: at high speed all but its last cancel
-            known = raw.rates_of_creep(mp, total.J.tolist(), total.T.tolist(), alpha)
-        else:
-            known = raw.rates(mp, total.E.tolist(), total.tau.tolist())
+        known = raw.rates_of(mp, given)
         for x in 2.0**places:
             z = 1 / mp.mpf(x)
             g, h, m, _ = raw.functions(mp, known, z)
@@ -66,10 +59,30 @@ def test_against_60_digits(name):
             exact = {"lam": 1 / mp.sqrt(square), "epsilon": g / z, "share": z / F, "press": square * (z / F) ** 2}
             for function, truth in exact.items():
                 found = at(table, function, float(v if function in ("share", "press") else u))
-                bound = tol.TABLE_SHIFT if function == "epsilon" else tol.TABLE_LAW
+                bound = {"lam": tol.CONTACT_LENGTH, "epsilon": tol.CONTACT_SHIFT}.get(function, tol.TABLE_LAW)
                 assert close(found, float(truth), rel=bound), (function, x)
             both = at(table, "m_half_space", float(u)) + at(table, "m_cylinder", float(u))
             assert close(both, float(m), rel=tol.TABLE_LAW), x
+
+
+#: the fields of a state
+BOUNDS = dict.fromkeys(("delta_star", "Q", "M", "M_half_space", "M_cylinder"), tol.CONTACT) | {
+    "lam": tol.CONTACT_LENGTH, "epsilon": tol.CONTACT_SHIFT, "beta": tol.CONTACT_LENGTH,
+    "dQ_dV": tol.SLOPE, "dQ_ddelta": tol.SLOPE, "dM_dV": tol.SLOPE_OF_M,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*MATERIALS, "thirty modes, 14 decades"])
+def test_states_against_60_digits(name):
+    """Speeds from 1e-14 over the slowest time to 1e14 over the fastest, creep from 1e-14 delta_star on."""
+    given = (MATERIALS | {"thirty modes, 14 decades": random_series(3, 30, 14.0)})[name]
+    draw = np.random.default_rng(7)
+    with mp.workdps(DIGITS + 20):
+        known = raw.rates_of(mp, given)
+        for _ in range(3 if len(known.a) > 20 else 10):
+            at = any_state(draw, known)
+            for field, error in state_errors(given, known, *at).items():
+                assert error <= BOUNDS[field], (field, at)
 
 
 def test_an_elastic_contact_is_closed_form():
@@ -102,7 +115,9 @@ def test_the_unit_of_time_is_an_exponent():
     for power, name in zip((0, 0, 1, 1, 2, 0, 0), FUNCTIONS, strict=True):
         for x in 2.0 ** np.random.default_rng(6).uniform(here.e0 - 2.0, here.e0 + len(here.coefficients) - 1.5, 40):
             exact, scale = at(here, name, x), max(abs(at(here, name, 0.0)), 1.0) if name == "N" else 0.0
-            assert close(at(there, name, x * 2.0**-60) * 2.0 ** (-60 * power), exact, rel=tol.TABLE_SHIFT, scale=scale)
+            assert close(
+                at(there, name, x * 2.0**-60) * 2.0 ** (-60 * power), exact, rel=tol.CONTACT_SHIFT, scale=scale
+            )
 
 
 def test_times_beyond_the_doubles_are_refused():

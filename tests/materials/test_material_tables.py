@@ -1,4 +1,4 @@
-"""One material: its tables against Bessel ratios and 50 digits, many states by its inverses, motions by its table."""
+"""One material: states by its rows and motions by its table, against Bessel ratios and 50 digits."""
 
 from __future__ import annotations
 
@@ -12,21 +12,18 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll import rolling_contact
+from viscoroll import contact_table
 from viscoroll.contact_fields import FIELDS
-from viscoroll.kernels.law import inverses
-from viscoroll.kernels.law.inverses import inverses_of
 from viscoroll.kernels.law.stick import differences
 from viscoroll.kernels.material.functions import at_contact, standard
 from viscoroll.kernels.material.tabulated import tabulated
-from viscoroll.materials import tables as material_tables
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 ALPHAS = (1.0001, 1.5, 11.0, 100.0, 1e4)
-MANY = rolling_contact.WORTHWHILE
+MANY = 4096
 
 
 def states(scene: vr.Scene, count: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -34,14 +31,12 @@ def states(scene: vr.Scene, count: int, seed: int) -> tuple[np.ndarray, np.ndarr
     rng = np.random.default_rng(seed)
     V = 10.0 ** rng.uniform(-7, 5, count) / scene.kappa
     s = np.where(rng.random(count) < 0.5, 10.0 ** rng.uniform(-12, 0, count), 1.0 - 10.0 ** rng.uniform(-9, 0, count))
-    return V, s * one_by_one(scene, V, np.zeros(count)).delta_star, s
+    return V, s * by_ratios(scene, V, np.zeros(count)).delta_star, s
 
 
-def one_by_one(scene: vr.Scene, V: np.ndarray, delta: np.ndarray) -> vr.Values:
-    """The same by Bessel ratios, by calls with too few states for tables."""
-    parts = np.array_split(np.arange(V.size), V.size // (MANY - 1) + 1)
-    found = [vr.contact(scene, V[part], delta=delta[part]).as_dict() for part in parts]
-    return rolling_contact.Values({name: np.concatenate([part[name] for part in found]) for name in FIELDS})
+def by_ratios(scene: vr.Scene, V: np.ndarray, delta: np.ndarray) -> vr.Values:
+    """The same by Bessel ratios and roots, as of states with an alpha each."""
+    return vr.contact(scene.replace(alpha=np.full(V.size, scene.alpha)), V, delta=delta)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)
@@ -60,28 +55,14 @@ def test_against_50_digits(alpha):
 
 
 @pytest.mark.parametrize("alpha", [*ALPHAS, 1.0 + 1e-12, 3.7, 1e6])
-def test_against_the_law_state_by_state(alpha):
+def test_against_the_law_by_ratios(alpha):
     scene = vr.Scene(alpha, KAPPA, MU)
     V, delta, s = states(scene, 3 * MANY, seed=12)
-    many, single = vr.contact(scene, V, delta=delta), one_by_one(scene, V, delta)
+    many, single = vr.contact(scene, V, delta=delta), by_ratios(scene, V, delta)
     assert np.array_equal(many.full_slip, single.full_slip)
     for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M", "beta"):
         error = abs(getattr(many, name) / getattr(single, name) - 1.0)
         assert (error * ((1.0 - s) if name == "beta" else 1.0)).max() <= tol.SLICE, name
-
-
-def test_a_bin_is_made_once():
-    """A second call, and one with other kappa, mu and signs, makes none: it solves no equation."""
-    scene = vr.Scene(7.25, KAPPA, MU)
-    V, delta, _ = states(scene, MANY, seed=13)
-    first = vr.contact(scene, V, delta=delta)
-    tables = material_tables.inverses(7.25)[1:]
-    made = [table.copy() for table in tables]
-    assert all(np.isfinite(table[:, 4:]).any() for table in tables)
-    again = vr.contact(scene, V, delta=delta)
-    vr.contact(vr.Scene(7.25, 0.9 * KAPPA, 3.0 * MU), -V / 0.9, omega=V)
-    assert all(np.array_equal(a[:, 0], b[:, 0], equal_nan=True) for a, b in zip(made, tables, strict=True))
-    assert all(np.array_equal(getattr(first, name), getattr(again, name)) for name in FIELDS)
 
 
 @pytest.mark.parametrize("alpha", [1.0 + 1e-12, *ALPHAS, 1e12])
@@ -131,13 +112,15 @@ def test_motions_of_one_material_are_those_of_an_alpha_each(alpha):
         assert np.array_equal(part.V, tabled.V[n : n + 2])
 
 
-def test_beyond_its_reach_as_one_by_one():
-    """Extreme speeds, V = 0 and the last millionth before delta_star: the same bits as a single state."""
-    V = np.resize([0.0, 1e-120, -1e-110, 1e110, 0.5], MANY)
-    star = one_by_one(SCENE, V, np.zeros(MANY)).delta_star
+def test_extreme_speeds_and_the_last_of_the_stick_zone():
+    """kappa |V| from 0 to near the ends of the doubles, and the last millionth before delta_star, against ratios."""
+    V = np.array([0.0, 1e-300, 1e-120, -1e-110, 1e110, -1e200, 0.5])
+    star = by_ratios(SCENE, V, np.zeros(V.size)).delta_star
     delta = np.where(V == 0.5, star * (1.0 - 1e-7), 0.4 * star)
-    many, single = vr.contact(SCENE, V, delta=delta), one_by_one(SCENE, V, delta)
-    assert all(np.array_equal(getattr(many, name), getattr(single, name)) for name in FIELDS)
+    found, exact = vr.contact(SCENE, V, delta=delta), by_ratios(SCENE, V, delta)
+    for name in FIELDS:
+        bound = tol.SLICE / 1e-7 if name == "beta" else tol.SLICE
+        assert close(getattr(found, name), getattr(exact, name), rel=bound), name
 
 
 def test_a_state_does_not_depend_on_the_others(monkeypatch):
@@ -149,7 +132,7 @@ def test_a_state_does_not_depend_on_the_others(monkeypatch):
     part = slice(MANY, 2 * MANY)
     alone = vr.contact(SCENE, V[part], delta=delta[part]).as_dict()
     monkeypatch.setenv("VISCOROLL_THREADS", "1")
-    monkeypatch.setattr(rolling_contact, "_BLOCK", 1000)
+    monkeypatch.setattr(contact_table, "_BLOCK", 1000)
     blocks = vr.contact(SCENE, V, delta=delta).as_dict()
     for name in FIELDS:
         assert np.array_equal(mixed[name], whole[name][order])
@@ -165,19 +148,6 @@ def test_from_several_threads():
     assert all(np.array_equal(Q, found[0]) for Q in found)
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="issue: one table")
-def test_threads_keep_tables_for_later_calls(monkeypatch):
-    """Once a process: each thread of each call made its own."""
-    made = []
-    monkeypatch.setattr(inverses, "inverses_of", lambda given: made.append(given) or inverses_of(given))
-    monkeypatch.setenv("VISCOROLL_THREADS", "2")
-    monkeypatch.setattr(rolling_contact, "_BLOCK", MANY)
-    V, delta, _ = states(vr.Scene(24.5, KAPPA, MU), 2 * MANY, seed=16)
-    for _ in range(2):
-        vr.contact(vr.Scene(24.5, KAPPA, MU), V, delta=delta)
-    assert len(made) == 1
-
-
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_full_slip_begins_at_delta_star(alpha):
     """At the delta_star that the call itself reports, and at no other's beyond a few units in the last place."""
@@ -188,7 +158,7 @@ def test_full_slip_begins_at_delta_star(alpha):
     assert at.full_slip.all()
     assert np.all(at.Q == -MU)
     assert np.all(at.beta == 0.0)
-    single = one_by_one(scene, V, np.zeros(MANY)).delta_star
+    single = by_ratios(scene, V, np.zeros(MANY)).delta_star
     for ulps in (-tol.SLICE_STAR_ULP, tol.SLICE_STAR_ULP):
         near = vr.contact(scene, V, delta=single + ulps * np.spacing(single))
         assert np.all(near.full_slip == (ulps > 0))
@@ -205,8 +175,7 @@ def test_signs_rest_and_omega():
     assert np.array_equal(turned.beta, base.beta)
     still = vr.contact(SCENE, V, delta=0.0)
     assert np.all(still.Q == 0.0)
-    assert close(still.beta, 1.0, rel=tol.SLICE)
-    assert still.beta.max() <= 1.0
+    assert np.all(still.beta == 1.0)
     omega = V * (1.0 + delta)
     by_omega = vr.contact(SCENE, V, omega=omega)
     as_delta = vr.contact(SCENE, V, delta=(omega - V) / V)
@@ -215,8 +184,7 @@ def test_signs_rest_and_omega():
 
 def test_one_field_alone_is_the_same_bit_for_bit():
     V, delta, _ = states(SCENE, MANY, seed=19)
-    # close to full slip a state asks for the stick zone, and goes the exact way only for that
-    whole = vr.contact(SCENE, V, delta=0.9 * delta)
+    whole = vr.contact(SCENE, V, delta=delta)
     for name in FIELDS:
-        alone = vr.contact(SCENE, V, delta=0.9 * delta, fields=name)
+        alone = vr.contact(SCENE, V, delta=delta, fields=name)
         assert np.array_equal(getattr(alone, name), getattr(whole, name)), name

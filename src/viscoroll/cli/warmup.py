@@ -44,10 +44,9 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
 
     from .. import PAPER_SECTION_5, Bodies, Feedback, Prony, Scene, contact, ensemble, law, roll, steady, stress, tables
     from ..motion import flow
-    from ..rolling_contact import WORTHWHILE
     from ..validation.direct_motion import roll_direct
 
-    scene, many = PAPER_SECTION_5, np.linspace(0.1, 1.0, WORTHWHILE)
+    scene = PAPER_SECTION_5
     modes = Prony([1.0, 2.0], [1.0, 0.1])
     series = Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     two = Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1])
@@ -56,14 +55,12 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     pairs = series.replace(material=Bodies(two, modes, 0.5))
     start: Any = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
     yield "contact", lambda: contact(scene, 0.5, delta=0.01)
-    yield "contact of an alpha each", lambda: contact(Scene(1.0 + many, 2.91, 0.2), 0.5, delta=0.01)
-    yield "contact at one alpha", lambda: contact(scene, many, delta=0.01)
+    yield "contact of an alpha each", lambda: contact(Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
+    yield "many of them", lambda: contact(Scene(np.linspace(1.0, 2.0, 99), 2.91, 0.2), 0.5, delta=0.01)
+    yield "slopes", lambda: contact(scene, 0.5, delta=0.01, slopes=True)
     yield "contact by root solves", lambda: contact(scene, 0.5, delta=0.01, method="direct")
     yield "contact of a series", lambda: contact(series, 0.5, delta=0.01)
-    yield "contact of a series, many states", lambda: contact(series, many, delta=0.01)
     yield "bound law", lambda: law(scene)
-    yield "bound law of a series", lambda: law(series)
-    yield "bound law of two bodies", lambda: law(pair)
     yield "stress of a series", lambda: stress(series, 0.5, 0.5, delta=0.01)
     yield "contact of a series each", lambda: contact(each, 0.5, delta=0.01)
     yield "motions of a series each", lambda: ensemble(each, **start)
@@ -71,7 +68,6 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "contact of a pair each", lambda: contact(pairs, 0.5, delta=0.01)
     yield "motions of a pair each", lambda: ensemble(pairs, **start)
     yield "two bodies", lambda: contact(pair, 0.5, delta=0.01)
-    yield "two bodies, many states", lambda: contact(pair, many, delta=0.01)
     yield "unsteady rolling of a series", lambda: contact(series, 0.5, delta=0.01, fields="N")
     yield "steady rolling", lambda: steady(scene, force=0.01)
     yield "steady rolling of two bodies", lambda: steady(pair, force=0.01)

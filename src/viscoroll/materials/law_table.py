@@ -4,30 +4,25 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import ParameterError
 from .bodies import Bodies
+from .law_build import FUNCTIONS, TERMS, Floats, Limits, arranged, build, first_octave, with_unsteady
 from .pair import Pair
 from .prony import Prony
 from .prony_forms import Modes
-from .tables import series_of
+from .tables import series_of, unsteadiness
 
-#: functions of a table in their order: the first five are of kappa |V|, the others of 1/F(eta)
-FUNCTIONS = ("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
-#: powers of a polynomial; octaves from that of the slowest rate of creep down to the first row
-TERMS, _SLOW_OCTAVES = 24, 5
 #: times in T_ref beyond which numbers of a table leave the doubles
 _LONGEST = 1e100
 #: tables kept, of some 0.2 MB
 _KEPT = 32
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,23 +64,29 @@ class LawTable:
 
     @cached_property
     def coefficients(self) -> Floats:
-        """(rows, 24 powers, 7 functions), the functions in the order of :data:`FUNCTIONS`."""
-        at = FUNCTIONS.index("N")
-        if not np.isnan(self.given_coefficients[0, 0, at]):
-            return self.given_coefficients
-        table = self.given_coefficients.copy()
-        _make_unsteady(self.material, self.e0, table)
-        return _read_only(table)
+        """(rows, 24 powers, 7 functions), the functions in the order of :data:`.law_build.FUNCTIONS`."""
+        table = self.given_coefficients
+        if not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
+            return table
+        given = self.material.total if isinstance(self.material, Bodies) else self.material
+        return _read_only(with_unsteady(table, self.e0, lambda z: unsteadiness(given, z)))
 
     @cached_property
     def record(self) -> Any:
         """What kernels take, derived from this table and from nothing else."""
-        from ..kernels.rows.arrange import arrange
-        from ..kernels.rows.law import Law
+        from ..kernels.rows.record import COUNT, E0, PARTS, WIDTH, Law
 
-        rows, low = _read_only(arrange(self.given_coefficients)), 1.0 / math.sqrt(self.alpha)
-        limits = map(float, self.fast_limit.ravel())
-        return Law(rows, len(self.given_coefficients), self.e0, self.alpha, low, *limits)
+        count = len(self.given_coefficients)
+        rows, marks = np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
+        rows[:8] = self.alpha, 1.0 / math.sqrt(self.alpha), *self.fast_limit.ravel()
+        rows[WIDTH:] = arranged(self.given_coefficients, self.e0, self.alpha, self.fast_limit[0]).ravel()
+        marks[[COUNT, E0]] = count, self.e0
+        return Law(_read_only(rows), _read_only(marks), 0, 0, 0)
+
+    @cached_property
+    def unsteady_rows(self) -> Floats:
+        """The polynomials of N, one row after another."""
+        return _read_only(self.coefficients[:, :, FUNCTIONS.index("N")].ravel())
 
 
 def law_table(given: float | Prony | Bodies | LawTable) -> LawTable:
@@ -122,26 +123,27 @@ def made(given: float | Prony | Bodies, least: int = 0, coefficients: Floats | N
     alpha, T_mean, modes = _numbers(given)
     unlike = isinstance(given, Bodies)
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
-    fast = modes.J * modes.b, modes.J * modes.b * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
-    limits = np.array(
-        [[math.fsum(share * term) for term in fast] for share in (np.ones(weights.size), weights, 1.0 - weights)]
-    )
+    W = modes.J * modes.b
+    fast, parts = np.stack([W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)]), (weights, 1.0 - weights)
+    limits = _sums(fast, (np.ones(weights.size), *parts))
     table, e0 = _elastic(), 0
     if modes.a.size:
-        from ..kernels.rows.build import Ends, build
-
         if not 1.0 / _LONGEST <= modes.b[0] <= modes.a[-1] <= _LONGEST:
             allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} of their unit"
             raise ParameterError("times", f"{1.0 / modes.a[-1]:g} to {1.0 / modes.b[0]:g}", allowed)
-        e0 = math.frexp(modes.b[0])[1] - _SLOW_OCTAVES
-        means = [math.fsum(share * modes.J / modes.b) for share in (weights, 1.0 - weights)]
-        ends = Ends(alpha, *means, *map(float, limits[1:].ravel()))
         if coefficients is None:
-            coefficients = build(_parts(modes, weights if unlike else np.empty(0)), e0, ends, least)
-        table = coefficients
+            means = _sums((modes.J / modes.b)[None], parts)[:, 0]
+            evaluate, ends = _evaluated(given, modes, weights), Limits(alpha, means, limits[1:])
+            coefficients = build(evaluate, modes.b[0], modes.a[-1], ends, least)
+        table, e0 = coefficients, first_octave(modes.b[0])
     table, limits, weights = map(_read_only, (table, limits, weights))
     E, tau, J, T = map(_read_only, (modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b))
     return LawTable(given, table, e0, alpha, T_mean, unlike, limits, E, tau, J, T, weights)
+
+
+def _sums(terms: Floats, shares: tuple[Floats, ...]) -> Floats:
+    """[share, row]: sums over the modes, rounded once."""
+    return np.array([[math.fsum(share * row) for row in terms] for share in shares])
 
 
 def _numbers(given: float | Prony | Bodies) -> tuple[float, float, Modes]:
@@ -157,20 +159,32 @@ def _numbers(given: float | Prony | Bodies) -> tuple[float, float, Modes]:
 
 def by_modes(given: float | Prony | Bodies, z: Floats) -> Floats:
     """(5, n): g/z, h/z, the parts of m in half-space and cylinder, and N at every z > 0, by no table."""
-    from ..kernels.rows.build import by_modes
+    _, _, modes = _numbers(given)
+    if not modes.a.size:
+        return np.zeros((5, z.size))
+    weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
+    total = given.total if isinstance(given, Bodies) else given
+    return np.vstack([_evaluated(given, modes, weights)(z)[::2], unsteadiness(total, z)])
 
-    modes, found = _numbers(given)[2], np.zeros((5, z.size))
-    if modes.a.size:
-        weights = given.half_space_weights if isinstance(given, Bodies) else np.empty(0)
-        by_modes(_parts(modes, weights), z, found)
-    return found
 
+def _evaluated(given: float | Prony | Bodies, modes: Modes, weights: Floats) -> Callable[[Floats], Floats]:
+    """What :func:`.law_build.build` takes, by the modes."""
+    from ..kernels.material.series import LANES, Parts
+    from ..kernels.rows.modes import FUNCTIONS as OF_Z
+    from ..kernels.rows.modes import functions_loop, functions_of_alpha_loop, sloped_room
 
-def _parts(modes: Modes, weights: Floats) -> Any:
-    """The record of a series of two bodies, of which the half-space has these parts; none where they are alike."""
-    from ..kernels.material.series import Parts
+    series, room, unlike = series_of(modes), sloped_room(modes.a.size), isinstance(given, Bodies)
 
-    return Parts(**series_of(modes)._asdict(), weights=weights)
+    def evaluate(z: Floats) -> Floats:
+        count, z = z.size, np.pad(z, (0, -z.size % LANES), mode="edge")
+        found = np.empty((2 * OF_Z, z.size))
+        if isinstance(given, float):
+            functions_of_alpha_loop(given, z, found)
+        else:
+            functions_loop(Parts(**series._asdict(), weights=weights) if unlike else series, room, z, found)
+        return found[:, :count]
+
+    return evaluate
 
 
 def _elastic() -> Floats:
@@ -180,13 +194,7 @@ def _elastic() -> Floats:
     return table
 
 
-def _make_unsteady(given: float | Prony | Bodies, e0: int, table: Floats) -> None:
-    from ..kernels.rows.build import build_unsteady
-
-    build_unsteady(_parts(_numbers(given)[2], np.empty(0)), e0, table)
-
-
-def _read_only(values: Floats) -> Floats:
+def _read_only(values: Any) -> Any:
     values = np.ascontiguousarray(values)
     values.flags.writeable = False
     return values

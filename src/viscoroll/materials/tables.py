@@ -8,7 +8,6 @@ from collections import OrderedDict
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
-from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,12 +31,9 @@ class _Kept(threading.local):
 
     def __init__(self) -> None:
         self.materials: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
-        self.inverses: OrderedDict[float | Prony | Bodies, Any] = OrderedDict()
 
 
 _kept = _Kept()
-#: tables that lack no bin, of 6 MB: as long as somebody reads them
-_whole: WeakValueDictionary[Prony, NDArray[np.float64]] = WeakValueDictionary()
 
 
 def record(given: float | Prony | Bodies) -> Any:
@@ -48,35 +44,6 @@ def record(given: float | Prony | Bodies) -> Any:
     if isinstance(given, Bodies) and (given.like or given.alpha == 1.0):
         return record(given.total if given.total.E.size else 1.0)
     return _found(_kept.materials, given, _tabulated)
-
-
-def shared_record(given: float | Prony | Bodies) -> Any:
-    """The record of one material, or of two bodies unlike each other, that all threads may read together.
-
-    A table that lacks no bin is never written to.
-    """
-    from ..kernels.law.bound import with_every_bin
-    from ..kernels.material.standard import standard
-
-    if not isinstance(given, Prony | Bodies):
-        return standard(given)
-    one = _pair_tables(given) if isinstance(given, Bodies) else _series_table(given)
-    series = given.total if isinstance(given, Bodies) else given
-    table = _whole.get(series)
-    if table is None:
-        _whole[series] = table = with_every_bin(_series_table(series)).table
-    return one._replace(table=table)
-
-
-def inverses(given: float | Prony | Bodies) -> Any:
-    """The record of one material, or of two bodies unlike each other, and of the inverses of its law, likewise."""
-    from ..kernels.law.inverses import inverses_of
-    from ..kernels.material.standard import standard
-
-    def made(given: float | Prony | Bodies) -> Any:
-        return inverses_of(_tabulated(given) if isinstance(given, Prony | Bodies) else standard(given))
-
-    return _found(_kept.inverses, given, made)
 
 
 def _tabulated(given: float | Prony | Bodies) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +12,9 @@ from ..blocks import flattened, run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
 from ..errors import ParameterError, unknown
-from ..materials.law_table import LawTable, law_table
+from ..materials.bodies_array import BodiesArray
+from ..materials.law_each import law_of_alphas, law_of_materials
+from ..materials.prony_array import MaterialArray
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..typed import Driving, Numbers
 from .checks import SPEED_RANGE, controls, output_times, start_speeds
@@ -20,7 +22,7 @@ from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepare
 from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
-from .rolling import law_of
+from .rolling import NO_UNIT, law_of
 from .warned import look
 
 FIELDS = ROWS
@@ -191,33 +193,30 @@ def _integrate_others(
         from ..kernels.motion.loop import INFO, motion_loop
 
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
-        notes = np.empty((0, 2)), np.empty(0)
-        for law, some in _by_law(scene, left):
-            inputs = (flattened(array[some], some.shape) if array.size > 1 else array for array in flat[1:])
-            out, info = np.empty((len(names), some.size, times.size)), np.empty((some.size, len(INFO)))
-            batch = law.record, law.unlike, *inputs
-            motion_loop(batch, ready.for_kernel(some), times, limits, rows, out, info, notes)
-            answer.out[:, some] = out
-            answer.status[some], steps[some], answer.switches[some], answer.onset[some], answer.rest[some] = info.T
+        if not left.size:
+            return
+        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
+        out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
+        batch, notes = (*_law_of(scene, alpha, left), *inputs), (np.empty((0, 2)), np.empty(0))
+        motion_loop(batch, ready.for_kernel(left), times, limits, rows, out, info, notes)
+        answer.out[:, left] = out
+        answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = answer.status.max(initial=-1) >= 0
     run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
     return steps
 
 
-def _by_law(scene: Scene, which: NDArray[np.int64]) -> Iterator[tuple[LawTable, NDArray[np.int64]]]:
-    """Motions of one law after the other."""
+def _law_of(scene: Scene, alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
+    """The law that motions ``which`` share, or that of each in turn; what it counts times in; whether bodies differ."""
+    material = scene.in_own_time()[0]
+    if isinstance(material, MaterialArray):
+        law, unit = law_of_materials(material, np.minimum(which, len(material) - 1))
+        return law, flattened(unit, unit.shape), isinstance(material, BodiesArray)
     if scene.material is None and np.ndim(scene.alpha):
-        alpha = np.broadcast_to(np.ravel(scene.alpha), (max(int(which.max(initial=0)) + 1, np.size(scene.alpha)),))[
-            which
-        ]
-        for one in np.unique(alpha):
-            yield law_table(float(one)), which[alpha == one]
-    elif np.ndim(scene.alpha):
-        for n in which:
-            yield law_table(scene.material[min(int(n), len(scene.material) - 1)]), np.array([n])
-    elif which.size:
-        yield law_of(scene), which
+        return law_of_alphas(alpha), NO_UNIT, False
+    law = law_of(scene)
+    return law.record, NO_UNIT, law.unlike
 
 
 def _among(names: tuple[str, ...], *some: str) -> bool:

@@ -12,6 +12,10 @@ from ..materials.law_table import LawTable, law_table
 from ..scene import Scene
 from .driven import ROWS, Drive, prepared, refuse_rest
 
+#: of a law that counts times in T_ref
+NO_UNIT = np.ones(1)
+NO_UNIT.flags.writeable = False
+
 
 class Inputs(NamedTuple):
     """What a motion was rolled from."""
@@ -49,6 +53,6 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, 
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     limits = inputs.rtol, inputs.rest, inputs.max_steps
     out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
-    batch = law.record, law.unlike, *one
+    batch = law.record, NO_UNIT, law.unlike, *one
     motion_loop(batch, ready.for_kernel(), times, limits, np.arange(len(ROWS)), out, info, notes)
     return scene, ready.error, out[:, 0], info[0].tolist()

@@ -17,6 +17,8 @@ from viscoroll.kernels.law.unsteady import room, unsteady
 from viscoroll.materials.tables import series
 
 DIGITS = 50
+#: about the largest |N|
+LARGEST = 0.05
 #: N of one mode over kappa V, to the digits printed, from a program of others' making
 SPEEDS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.3, 0.5, 0.684, 1.0, 1.5, 2.5, 4.37, 8.0, 20.0)
 PRINTED = {
@@ -88,7 +90,8 @@ def test_numbers_printed_elsewhere(alpha):
         last = 10.0 ** (int(f"{float(printed):e}"[-3:]) - len(printed.split("e")[0].lstrip("-0.").replace(".", "")) + 1)
         assert abs(found[0] - float(printed)) <= 0.51 * last, kappa_V
         assert found[1] == 0.0
-        assert found[0] == vr.contact(vr.Scene(alpha, kappa=1.0, mu=0.1), kappa_V, delta=0.0, fields="N").N
+        one = vr.contact(vr.Scene(alpha, kappa=1.0, mu=0.1), kappa_V, delta=0.0, fields="N").N
+        assert close(one, found[0], rel=tol.AXIS_UNSTEADY, scale=LARGEST)
         assert close(N(material, kappa_V), found[0], rel=tol.UNSTEADY_SERIES, scale=1.0)
 
 

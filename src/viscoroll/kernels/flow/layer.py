@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.length import contact_length
-from ..material.functions import generator_slopes
 from ..free.collocation import INTEGRALS, NODES, SLOPES, N, fit_terms, polynomial
 from ..free.partial_slip import branch_rates
+from ..law.length import contact_length
+from ..material.functions import generator_slopes
 from ..numerics.bracket import narrowed, secant
 from ..numerics.linear import eliminate
 from ..numerics.nodes import Interpolation, chebyshev

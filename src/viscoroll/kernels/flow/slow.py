@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.length import contact_length
 from ..free.collocation import INNER_POWERS, SLOPES
 from ..free.collocation import N as PANEL_N
 from ..free.partial_slip import branch_rates
 from ..free.slow import NODE_D, slow_go_on, slow_solve, slow_start, workspace
+from ..law.length import contact_length
 from . import layout
 from .fit import BINS, HALF, NODES, N, bin_of, find, fit_column, integrate_bin, node, value, width
 from .layout import ANGLE_TO_GO, DELTA, LAMBDA, LOSS_TO_GO, SPEED, X_TO_GO

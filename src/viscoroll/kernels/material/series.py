@@ -113,19 +113,17 @@ def unpacked(numbers, modes):
 @kernel(inline=True)
 def ratios(places, sloped, series, work):
     """Ratios and slopes of every mode."""
-    for i in range(series.a.size):
-        for c in range(LANES):
-            at = 4 * i + c
-            x = series.a[i] * places[c]
-            r, complement = ratio_r(x)
-            root = np.sqrt(r)
-            work.root[at], work.i2[at] = root, ratio_i2(x, root * root)
-            y = series.b[i] * places[c]
-            k, k_complement = ratio_k(y)
-            work.k[at] = k
-            if sloped:
-                work.slope_r[at] = series.a[i] * slope_r(x, r, complement)
-                work.slope_k[at] = series.b[i] * slope_k(y, k, k_complement)
+    for at in range(LANES * series.a.size):
+        i, z = at // LANES, places[at % LANES]
+        x, y = series.a[i] * z, series.b[i] * z
+        r, complement = ratio_r(x)
+        root = np.sqrt(r)
+        work.root[at], work.i2[at] = root, ratio_i2(x, root * root)
+        k, k_complement = ratio_k(y)
+        work.k[at] = k
+        if sloped:
+            work.slope_r[at] = series.a[i] * slope_r(x, r, complement)
+            work.slope_k[at] = series.b[i] * slope_k(y, k, k_complement)
 
 
 @kernel(inline=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..numerics.arrays import copy, fill
+from ..rows.record import hold
 from .integrate import integrate
 from .load import FIRST, RATE, SCALE, START, terms_of
 from .output import OUTPUTS, asked_by
@@ -32,18 +33,18 @@ def _own(array, i):
 
 
 @kernel
-def _drive_of(drives, gamma, i, pieces):
-    """The gains of motion i, and its drive over tau = gamma t in ``pieces``; slopes of prescribed speeds are over t."""
+def _drive_of(drives, pace, unit, i, pieces):
+    """The gains of motion i, and its drive in ``pieces``: over tau = ``pace`` t, speeds over 1/``unit``."""
     source = drives.pieces[min(i, drives.pieces.shape[0] - 1)]
     for k in range(pieces.shape[0]):
         copy(source[k], pieces[k])
-        pieces[k, START] *= gamma
-        pieces[k, SCALE] /= gamma
+        pieces[k, START] *= pace
+        pieces[k, SCALE] /= pace
         terms = terms_of(pieces[k])
         for n in range(RATE * terms, (RATE + 1) * terms):
-            pieces[k, FIRST + n] /= gamma
-    n = min(i, drives.gains.shape[1] - 1)
-    return Gains(drives.gains[0, n], drives.gains[1, n], drives.gains[2, n], drives.gains[3, n])
+            pieces[k, FIRST + n] *= unit / pace
+    n, gains = min(i, drives.gains.shape[1] - 1), drives.gains
+    return Gains(gains[0, n] / unit, gains[1, n] / unit, gains[2, n] / unit, gains[3, n] / unit)
 
 
 @kernel(allocates=True)
@@ -58,11 +59,13 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
     for i in range(out.shape[1]):
         for row in one:
             fill(np.nan, row)
-        scene = Scene(motions.laws, motions.unlike, _own(motions.kappa, i), _own(motions.mu, i), _own(motions.j, i))
-        gamma, V0, omega0 = _own(motions.gamma, i), _own(motions.V0, i), _own(motions.omega0, i)
-        gains = _drive_of(drives, gamma, i, pieces)
-        drive = Drive(pieces, gains, drives.prescribed)
-        result = integrate(scene, drive, gamma, V0, omega0, t, limits, (one, asked, switches, ends))
+        hold(motions.law, i)
+        scene = Scene(motions.law, motions.unlike, _own(motions.kappa, i), _own(motions.mu, i), _own(motions.j, i))
+        unit = _own(motions.unit, i)
+        pace, V0, omega0 = _own(motions.gamma, i) * unit, _own(motions.V0, i) * unit, _own(motions.omega0, i) * unit
+        drive = Drive(pieces, _drive_of(drives, pace, unit, i, pieces), drives.prescribed)
+        own = Limits(limits.rtol, limits.rest * unit, limits.max_steps)
+        result = integrate(scene, drive, (pace, unit), V0, omega0, t, own, (one, asked, switches, ends))
         for n in range(rows.size):
             copy(one[rows[n]], out[n, i])
         info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

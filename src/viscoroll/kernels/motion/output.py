@@ -34,10 +34,10 @@ def regime_of(frame):
 
 
 @kernel(inline=True)
-def _put_moving(column, moving, regime, out):
+def _put_moving(column, moving, regime, case):
     """(V, omega, delta) and the regime, in one column."""
-    out[0, column], out[1, column], out[4, column] = moving
-    out[5, column] = regime
+    out, (speed, omega, delta) = case.out, moving
+    out[0, column], out[1, column], out[4, column], out[5, column] = speed / case.unit, omega / case.unit, delta, regime
 
 
 @kernel(inline=True)
@@ -49,9 +49,9 @@ def _put_acting(column, force, torque, out):
 def _put_path(column, n, value, case):
     """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
     if n < 2:
-        case.out[PATH_FROM + n, column] = value / case.gamma
+        case.out[PATH_FROM + n, column] = value / (case.pace * case.unit)
     else:
-        case.out[WORK + n - 2, column] = value
+        case.out[WORK + n - 2, column] = value / (case.unit * case.unit)
 
 
 @kernel
@@ -60,7 +60,7 @@ def put_still(until, closed, regime, clock, case):
     at, out, still = clock.at, case.out, Frame(False, 1.0, 1.0, 0.0, False)
     while at < case.tau.size and (case.tau[at] < until or (closed and case.tau[at] == until)):
         load = load_at(case.tau[at], clock.piece, still, case)
-        _put_moving(at, (0.0, 0.0, 0.0), regime, out)
+        _put_moving(at, (0.0, 0.0, 0.0), regime, case)
         _put_acting(at, load.force, load.torque, out)
         for n in range(PATHS):
             _put_path(at, n, case.work.totals[n], case)
@@ -83,7 +83,7 @@ def _put_state(column, state, piece, frame, case):
     """One column but for what adds up."""
     out, direction = case.out, frame.direction
     omega, delta = speeds(state, frame, case.scene)
-    _put_moving(column, (direction * state.V, direction * omega, delta), regime_of(frame), out)
+    _put_moving(column, (direction * state.V, direction * omega, delta), regime_of(frame), case)
     if case.asked.acting:
         load = load_at(case.tau[column], piece, frame, case)
         rates = rates_at(state.V, state.second, load, frame, case.scene)
@@ -134,7 +134,7 @@ def pass_panel(end, v, panel, frame, clock, case):
             _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
             at += 1
     if clock.ends < case.notes.ends.size:
-        case.notes.ends[clock.ends] = end / case.gamma
+        case.notes.ends[clock.ends] = end / case.pace
     for n in range(paths):
         way = (
             rise_at(v, case.work.powers, OF_PATH + WIDE * n)
@@ -176,7 +176,7 @@ def coast(state, frame, clock, case):
         gone = np.expm1(-rate * (min(case.tau[at], end) - clock.tau))
         decay = 1.0 + gone if gone > -0.5 else np.exp(-rate * (case.tau[at] - clock.tau))
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
-        _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), PARTIAL if moves else REST, out)
+        _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), PARTIAL if moves else REST, case)
         _put_acting(at, 0.0, 0.0, out)
         way = -direction * state.V * gone / rate
         for n in range(PATHS):
@@ -184,4 +184,4 @@ def coast(state, frame, clock, case):
         _put_path(at, PATHS - 1, totals[PATHS - 1] + energy * (1.0 - decay * decay if moves else 1.0), case)
     last = case.tau[case.tau.size - 1]
     clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
-    return clock, end / case.gamma if end <= last else np.nan
+    return clock, end / case.pace if end <= last else np.nan

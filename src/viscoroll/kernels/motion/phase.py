@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ..compile.jit import kernel
+from ..rows.record import ALPHA, E0, WHOLE
 from .collocation import N, rise_at
 from .events import NOWHERE, ends_on, first_event, goes_behind, located, passed_over, place_of
 from .load import load_at, piece_end, undriven
@@ -53,7 +54,7 @@ _SLOWEST, _SETTLED = 1e-4, 1e-2
 @kernel(inline=True)
 def moderate_speed(scene):
     """V that divides slow from fast rolling: 1/kappa over the longest time of the material, or half of that."""
-    return math.ldexp(1.0, scene.law.e0 + _ROWS_BELOW) / scene.kappa
+    return math.ldexp(1.0, scene.law.marks[E0] + _ROWS_BELOW) / scene.kappa
 
 
 @kernel
@@ -74,7 +75,8 @@ def _rise_time(rise, clock, frame, case):
 @kernel(inline=True)
 def shortest_time(law):
     """Of relaxation, weighted by the strengths of the modes; infinite of elastic bodies, whose law does not bend."""
-    return (law.alpha - 1.0) / (law.alpha * law.alpha * law.W) if law.W > 0.0 else np.inf
+    alpha, W = law.rows[ALPHA], law.rows[WHOLE]
+    return (alpha - 1.0) / (alpha * alpha * W) if W > 0.0 else np.inf
 
 
 @kernel
@@ -198,7 +200,7 @@ def _begin(state, frame, clock, case):
 @kernel(inline=True)
 def creeps(state, frame, case):
     """Whether V is so small that, where nothing drives, it decays exponentially to a share of the tolerance."""
-    if frame.slips or not case.scene.law.alpha > 1.0:
+    if frame.slips or not case.scene.law.rows[ALPHA] > 1.0:
         return False
     rtol = case.limits.rtol
     return 0.0 < state.V < _SLOWEST * rtol * moderate_speed(case.scene) and abs(state.second) < _SETTLED * rtol

@@ -136,14 +136,18 @@ class Asked(NamedTuple):
 
 
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion; times in tau."""
+    """All that stays the same from start to end of a motion; times in tau.
+
+    pace : tau over t; unit : what the law counts times in, speeds are over 1/unit
+    """
 
     scene: Scene
     drive: Drive
     limits: Limits
     tau: Any
     out: Any
-    gamma: float
+    pace: float
+    unit: float
     asked: Asked
     notes: Notes
     work: Work
@@ -152,10 +156,12 @@ class Case(NamedTuple):
 class Batch(NamedTuple):
     """Parameters and starts of many motions: arrays of one value, or of one a motion.
 
-    laws : the law of one material for all, or what makes that of each (:mod:`..rows.law`); unlike : as in ``Scene``
+    law : of one material for all, or of that of each in turn (:mod:`..rows.record`); unit : what it counts times in
+    unlike : as in ``Scene``
     """
 
-    laws: Any
+    law: Any
+    unit: Any
     unlike: bool
     kappa: Any
     mu: Any

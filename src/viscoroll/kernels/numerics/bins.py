@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.bits import bits_of, from_bits
 from ..compile.jit import kernel
 
 _MANTISSA = (1 << 52) - 1
@@ -18,28 +19,28 @@ _OCTAVE, _LARGEST = 2047 << 52, 2046 << 52
 @kernel(inline=True)
 def bin_number(x, bits):
     """Exponent and leading mantissa bits of x > 0: rises by one from bin to bin."""
-    return np.float64(x).view(np.int64) >> (52 - bits)
+    return bits_of(x) >> (52 - bits)
 
 
 @kernel(inline=True)
 def bin_offset(x, bits):
     """Mantissa of x less that of the centre of its bin."""
-    word, half = np.float64(x).view(np.int64), 1 << (51 - bits)
-    centre = np.int64((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half)).view(np.float64)
-    return np.int64((word & _MANTISSA) | _ONE).view(np.float64) - centre
+    word, half = bits_of(x), 1 << (51 - bits)
+    centre = from_bits((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half))
+    return from_bits((word & _MANTISSA) | _ONE) - centre
 
 
 @kernel(inline=True)
 def offset_slope(x):
     """dt/dx = 2^-n; 0 at infinity."""
-    octave = np.float64(x).view(np.int64) & _OCTAVE
-    return np.int64(_LARGEST - min(octave, _LARGEST)).view(np.float64)
+    octave = bits_of(x) & _OCTAVE
+    return from_bits(_LARGEST - min(octave, _LARGEST))
 
 
 @kernel(inline=True)
 def bin_place(number, bits, at):
     """x at the fraction ``at`` of a bin, exact but for one rounding; in the last octave infinite, or NaN."""
-    octave = np.int64((number >> bits) << 52).view(np.float64)
+    octave = from_bits((number >> bits) << 52)
     part = number & ((1 << bits) - 1)
     last = octave == np.inf and part > 0  # the bits of NaN
     return np.nan if last else octave * (1.0 + (part + at) / (1 << bits))

@@ -98,7 +98,13 @@ def chebyshev(n: int) -> list[Decimal]:
 @in_many_digits
 def to_chebyshev(n: int) -> _Floats:
     """From values at the zeros of T_n to the coefficients of T_0 ... T_(n-1)."""
-    return rounded([[(_chebyshev(k, x)[0] * 2 if k else Decimal(1)) / n for x in chebyshev(n)] for k in range(n)])
+    columns = []
+    for x in chebyshev(n):
+        values = [Decimal(1), x]
+        for _ in range(n - 2):
+            values.append(2 * x * values[-1] - values[-2])
+        columns.append([values[0] / n, *(2 * value / n for value in values[1:n])])
+    return rounded(columns).T.copy()
 
 
 def rounded(values: Any) -> _Floats:

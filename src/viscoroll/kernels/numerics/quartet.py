@@ -19,6 +19,7 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from ..compile.bits import bits_of, from_bits
 from ..compile.fma import fma
 from ..compile.jit import kernel
 from .bins import bin_number, bin_offset, bin_place
@@ -61,7 +62,7 @@ def row_of(x, table):
     """(row, whether it holds the bin of x)."""
     number = bin_number(x, BITS)
     row = number & (table.shape[0] - (SPARE + 1))
-    return row, np.float64(table[np.uint64(row), np.uint64(0)]).view(np.int64) == number
+    return row, bits_of(table[np.uint64(row), np.uint64(0)]) == number
 
 
 @kernel(inline=True)
@@ -141,7 +142,7 @@ def finish(table, row, x):
         _combine(table, scratch, m, _TO_POWERS[m], row, m)
     at = FIRST
     put(table, row, 0, table[row, at] + c0, table[row, at + 1] + c1, table[row, at + 2] + c2, table[row, at + 3] + c3)
-    table[row, 0] = np.int64(bin_number(x, BITS)).view(np.float64)
+    table[row, 0] = from_bits(bin_number(x, BITS))
 
 
 _INT = ir.IntType(64)

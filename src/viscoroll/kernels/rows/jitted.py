@@ -1,7 +1,6 @@
-"""A bound scene for machine code: a value that jitted functions call, and a C function that needs nothing beside it.
+"""A bound scene for jitted code: a value that is called, with the function of :mod:`bound` and the scene behind it.
 
-Both pass the address of the scene's numbers to the function of :mod:`bound`.  All scenes have one numba type, so that a
-user's function that is given a law is compiled once for all of them.
+All scenes have one numba type, so that a user's function that is given a law is compiled once for all of them.
 """
 
 from __future__ import annotations
@@ -11,15 +10,16 @@ import inspect
 from functools import cached_property
 from typing import Any, NoReturn
 
-from llvmlite import binding, ir
+from llvmlite import ir
 from numba import config
 from numba.core import cgutils, types
 from numba.core.imputils import lower_constant
 from numba.core.typing import signature
 from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
 
-from .bound import OUT, bind, function_of
+from .bound import OUT, bind, function
 from .loads import LoadsAndSlopes
+from .record import Law
 
 #: whether numba compiles nothing
 SWITCHED_OFF = bool(config.DISABLE_JIT)
@@ -65,12 +65,13 @@ class Jitted:
 
     _numba_type_ = LawType()
 
-    def __init__(self, material: Any, kappa: float, mu: float, unit: float) -> None:
-        self._material = material  # whose tables the numbers point to
-        self._numbers = bind(material, kappa, mu, unit)
-        self.address = int(self._numbers.ctypes.data)
+    def __init__(self, law: Law, unlike: bool, kappa: float, mu: float) -> None:
+        self._law = law  # whose rows the scenes point to
+        self._scenes = bind(law, unlike, kappa, mu)
+        self.plain, self.address = (int(self._scenes[n:].ctypes.data) for n in (0, 1))
         # with the GIL: to release it takes longer than the law
-        self.function = ctypes.PYFUNCTYPE(_C[0], *_C[1:3], ctypes.c_void_p, _C[4])(function_of(self._numbers))
+        self.function_address = function()
+        self.function = ctypes.PYFUNCTYPE(_C[0], *_C[1:3], ctypes.c_void_p, _C[4])(self.function_address)
 
     def __call__(self, V: float, omega: float) -> LoadsAndSlopes:
         out = Room()
@@ -81,30 +82,11 @@ class Jitted:
         raise TypeError("law.jitted is machine code of this process: pickle the law, or its scene, and bind it there")
 
     @cached_property
-    def _engine(self) -> Any:
-        """LLVM's, with a function that calls that of :mod:`bound` with the numbers of this scene."""
-        module = ir.Module()
-        whole = ir.Function(module, _FUNCTION, name="law")
-        builder = ir.IRBuilder(whole.append_basic_block())
-        numbers = builder.inttoptr(_WORD(self.address), _DOUBLES)
-        function = builder.inttoptr(_WORD(function_of(self._numbers)), _FUNCTION.as_pointer())
-        builder.ret(builder.call(function, [*whole.args[:3], numbers]))
-        machine = binding.Target.from_default_triple().create_target_machine()
-        engine = binding.create_mcjit_compiler(binding.parse_assembly(str(module)), machine)
-        engine.finalize_object()
-        return engine
-
-    @cached_property
-    def c_address(self) -> int:
-        """Address of ``int law(double V, double omega, double out[8], void *)``, which ignores the last."""
-        return int(self._engine.get_function_address("law"))
-
-    @cached_property
-    def ctypes(self) -> Any:
-        """The same as a function of ctypes."""
-        function: Any = ctypes.CFUNCTYPE(*_C)(self.c_address)
-        function.law = self
-        return function
+    def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
+        """The C function and its user data."""
+        called, scene = ctypes.CFUNCTYPE(*_C)(self.function_address), ctypes.c_void_p(self.address)
+        called.law = scene.law = self  # type: ignore[attr-defined]
+        return called, scene
 
 
 @register_model(LawType)

@@ -1,0 +1,84 @@
+"""The law of one scene as a C function: ``int law(double V, double omega, double out[8], void *scene)``.
+
+One function, compiled once; ``scene`` is its user data, a :data:`SCENE`.  ``out``: Q, M, its parts in half-space and
+cylinder, then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega and the slopes of the parts; NaN where
+the status is not 0.  Nothing is written but ``out``: any number of threads may call.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numba
+import numpy as np
+from numba import carray
+from numba.core import types
+from numpy.typing import NDArray
+
+from ..compile.address import doubles, integers
+from ..compile.jit import kernel
+from ..law.states import State
+from .contact import slopes_of_Q, traction_of
+from .law import bodies, body_slopes, place, speed, speed_slopes, way_of
+from .record import PARTS, WIDTH, Law
+
+#: beyond this kappa |V| the status is not 0
+FASTEST = 1e300
+OUT = 8
+#: address of the function; whether slopes are asked for, whether the bodies differ; addresses of the rows and of the
+#: marks of the law, and how many these are; kappa, mu
+SCENE = np.dtype(
+    [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count")]
+    + [("kappa", np.float64), ("mu", np.float64)]
+)
+_DOUBLES = types.CPointer(types.float64)
+_SIGNATURE = types.int32(types.float64, types.float64, _DOUBLES, types.CPointer(numba.from_dtype(SCENE)))
+
+
+@kernel(inline=True, allocates=True)
+def _law_of(scene):
+    return Law(doubles(scene.rows, scene.count * WIDTH), integers(scene.marks, scene.count * PARTS), 0, 0, 0)
+
+
+@kernel(allocates=True)
+def _loads(V, omega, to, scenes):
+    out, scene = carray(to, OUT), carray(scenes, 1)[0]
+    u = scene.kappa * abs(V)
+    if not (u <= FASTEST and abs(V) < np.inf and abs(omega) < np.inf):
+        for n in range(OUT):
+            out[n] = np.nan
+        return 1
+    law, state = _law_of(scene), State(scene.kappa, scene.mu, V, omega, True)
+    here = place(u, law)
+    L, m, scale = speed(here, u, law)
+    way = way_of(here, u, scale, state)
+    out[0], out[1] = traction_of(u, L, state, law), way * m
+    out[2] = out[3] = 0.5 * out[1]
+    if scene.unlike:
+        half_space, cylinder = bodies(here, u, law)
+        out[2], out[3] = way * half_space, way * cylinder
+    if scene.slopes:
+        _, dL, rise = speed_slopes(here, u, law)
+        out[4], _, out[5] = slopes_of_Q(u, L, dL, state, law)
+        out[6] = out[7] = 0.5 * rise
+        if scene.unlike:
+            out[6], out[7] = body_slopes(here, u, law)
+    return 0
+
+
+def bind(law: Law, unlike: bool, kappa: float, mu: float) -> NDArray[Any]:
+    """Scenes without slopes and with; the law is to outlive them."""
+    found = np.zeros(2, SCENE)
+    found["function"], found["slopes"] = function(), [0, 1]
+    found["rows"], found["marks"], found["count"] = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // WIDTH
+    found["unlike"], found["kappa"], found["mu"] = unlike, kappa, mu
+    return found
+
+
+@cache
+def function() -> int:
+    """Address of the function."""
+    _loads.compile(_SIGNATURE)
+    compiled = _loads.overloads[_SIGNATURE.args]
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name))

@@ -1,0 +1,284 @@
+"""Offline: the rows of one material or pair, polynomials of 24 powers.
+
+The modes' formulas are evaluated once, at 24 nodes an octave of w = 1/z.  Polynomials of these are turned over: for the
+functions of u, w = 2 u (1 + 2 h/z)^(1/2), for those of v, w = v (1 + g/z).
+
+Slopes are fitted and integrated, and one constant is added: value, slope and secant of a polynomial are then all good
+to rounding, where one fitted to values has lost three digits in its slopes.  Powers come by way of the rapidly falling
+Chebyshev coefficients, which keeps rounding out of them.  No library of linear algebra takes part: its last digits
+differ from machine to machine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernels.numerics.nodes import chebyshev, rounded, to_chebyshev
+
+Floats = NDArray[np.float64]
+
+TERMS = 24
+#: functions of a table in their order: the first five are of kappa |V|, the others of 1/F(eta)
+FUNCTIONS = ("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
+#: the octave behind the shortest time where the fast limit is first tried, and how many are
+_FIRST, _TRIED = 12, 32
+#: what the limit may be off by there, and how many octaves further it is taken: it comes closer by 3.5 an octave
+_NEAR, _FURTHER = 2.0**-44, 5
+#: in the slow row what follows a coefficient below this share of the largest is rounding, which would grow by 5.8^n
+_ROUNDING, _ROUNDING_OF_N = 1e-16, 1e-14
+#: of Newton's iteration from a thousandth: then 1e-13 is left, whose square is rounding
+_STEPS = 2
+#: octaves from that of the slowest rate of creep down to the first row
+_SLOW = 5
+
+_NODES = rounded(chebyshev(TERMS))
+_TO_CHEBYSHEV = np.ascontiguousarray(to_chebyshev(TERMS).T)
+
+
+def _powers(twice: list[float]) -> Floats:
+    """[n, k]: coefficient of t^k in T_n(x), where 2 x = ``twice`` over the powers of t."""
+    found = np.zeros((TERMS, TERMS))
+    found[0, 0], found[1, :2] = 1.0, 0.5 * np.array(twice)
+    for n in range(2, TERMS):
+        found[n] = twice[0] * found[n - 1] - found[n - 2]
+        found[n, 1:] += twice[1] * found[n - 1, :-1]
+    return found
+
+
+#: of T_n(t), and in the slow row of T_n(2 t - 1)
+_POWERS, _SLOW_POWERS = _powers([0.0, 2.0]), _powers([-2.0, 4.0])
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a table: row 0 holds [0, 2^e0), each of the others an octave."""
+
+    e0: int
+    count: int
+
+    @cached_property
+    def t(self) -> Floats:
+        """Arguments of the polynomials at their nodes, [row, node]."""
+        found = np.tile(_NODES, (self.count, 1))
+        found[0] = 0.5 + 0.5 * _NODES
+        return found
+
+    @cached_property
+    def x(self) -> Floats:
+        """The nodes."""
+        found = np.ldexp(0.25 * (self.t + 3.0), self.e0 + np.arange(self.count)[:, None])
+        found[0] = np.ldexp(self.t[0], self.e0)
+        return found
+
+    @cached_property
+    def per(self) -> Floats:
+        """dln x/dt there."""
+        found = 1.0 / (self.t + 3.0)
+        found[0] = 1.0 / self.t[0]
+        return found
+
+    def read(self, powers: Floats, x: Floats) -> tuple[Floats, Floats]:
+        """Values and slopes over ln x of the polynomials [function, row, power], [function, place]."""
+        mantissa, exponent = np.frexp(x)
+        row = np.maximum(exponent - self.e0, 0)
+        slow = row == 0
+        t = np.where(slow, np.ldexp(x, -self.e0), 4.0 * mantissa - 3.0)
+        by_power = np.moveaxis(powers, -1, 0)
+        value, slope = by_power[TERMS - 1][:, row], np.zeros((len(powers), x.size))
+        for k in range(TERMS - 2, -1, -1):
+            slope *= t
+            slope += value
+            value *= t
+            value += by_power[k][:, row]
+        return value, slope * np.where(slow, t, t + 3.0)
+
+    def fit(self, values: Floats, terms: int = TERMS, rounding: float = _ROUNDING) -> Floats:
+        """[..., row, power] of polynomials with these values at the nodes, of so many Chebyshev coefficients."""
+        fitted = _added(values, _TO_CHEBYSHEV)
+        fitted[..., terms:] = 0.0
+        slow = fitted[..., 0, :]
+        small = np.abs(slow) < rounding * np.abs(slow).max(axis=-1, keepdims=True)
+        slow[np.logical_or.accumulate(small, axis=-1)] = 0.0
+        powers = _added(fitted, _POWERS)
+        powers[..., 0, :] = _added(slow, _SLOW_POWERS)
+        return powers
+
+    def fit_slopes(self, values: Floats, slopes: Floats) -> Floats:
+        """Likewise with these slopes over ln x, and in the mean these values."""
+        fitted = self.fit(slopes * self.per, TERMS - 1)
+        found = np.zeros_like(fitted)
+        found[..., 1:] = fitted[..., :-1] / np.arange(1, TERMS)
+        total = np.zeros_like(values)
+        for k in range(TERMS - 1, -1, -1):
+            total = total * self.t + found[..., k, None]
+        rest = values - total
+        # near each other: their sum alone would round in the last digits of the mean
+        first = rest[..., :1]
+        found[..., 0] = (first + _added(rest - first, np.full((TERMS, 1), 1.0 / TERMS)))[..., 0]
+        return found
+
+
+def _added(values: Floats, matrix: Floats) -> Floats:
+    """``values @ matrix``, one term after another."""
+    found = values[..., :1] * matrix[0]
+    for k in range(1, len(matrix)):
+        found += values[..., k, None] * matrix[k]
+    return found
+
+
+@dataclass(frozen=True)
+class Limits:
+    """alpha; sum J_j T_j, and the two numbers of the fast limit, of the half-space and of the cylinder."""
+
+    alpha: float
+    means: Floats
+    fast: Floats
+
+    def off(self, w: Floats, found: Floats) -> Floats:
+        """What the fast limit is off by, at most, at the places w where ``found`` was evaluated."""
+        shift, rise, *parts = found[::2]
+        square, (W, C) = 1.0 + 2.0 * rise, self.fast.sum(axis=0)
+        v, z = w / (1.0 + shift), np.sqrt(square / self.alpha) / w
+        share = 1.0 - 0.5 * self.alpha * (C + W * np.log(v)) / v
+        half = 0.5 * self.alpha * z
+        pairs = [(square / (1.0 + shift) ** 2, self.alpha * share**2), (shift, half * (C - W * np.log(z)))]
+        pairs += [(m, half * z * (C - W * (np.log(z) - 0.25))) for m, (W, C) in zip(parts, self.fast, strict=True)]
+        known = 0.0625 * sum(parts)  # a small part is known to roundings of their sum
+        scales = [pairs[0][0], shift, *(np.maximum(m, known) for m in parts)]
+        return np.max([np.abs(limit - m) / scale for (m, limit), scale in zip(pairs, scales, strict=True)], axis=0)
+
+
+@dataclass(frozen=True)
+class Fine:
+    """Polynomials over w = 1/z of g/z, h/z and the parts of m."""
+
+    rows: Rows
+    powers: Floats
+    values: Floats  # at its nodes
+
+    def at(self, functions: list[int], w: Floats) -> tuple[Floats, Floats]:
+        """Values and slopes over ln w, a row each."""
+        return self.rows.read(self.powers[functions], w)
+
+    def speed(self, u: Floats) -> tuple[Floats, Floats]:
+        """lam, epsilon and the parts of M/V at u, and their slopes over ln u."""
+        w = self._near(u, 0.5 / np.sqrt(1.0 + 2.0 * self.values[1]))
+        for _ in range(_STEPS):
+            (rise,), (bend,) = self.at([1], w)
+            w += (2.0 * u * np.sqrt(1.0 + 2.0 * rise) - w) / (1.0 - bend / (1.0 + 2.0 * rise))
+        values, slopes = self.at([0, 1, 2, 3], w)
+        rise, bend = values[1], slopes[1]
+        turn = 1.0 / (1.0 - bend / (1.0 + 2.0 * rise))
+        values += slopes * ((2.0 * u * np.sqrt(1.0 + 2.0 * rise) / w - 1.0) * turn)
+        lam = 1.0 / np.sqrt(1.0 + 2.0 * values[1])
+        slopes *= turn
+        return np.stack([lam, *values[[0, 2, 3]]]), np.stack([-(lam**3) * slopes[1], *slopes[[0, 2, 3]]])
+
+    def stick(self, v: Floats) -> tuple[Floats, Floats]:
+        """eta/F and H/F^2 at v, and their slopes over ln v."""
+        w = self._near(v, 1.0 / (1.0 + self.values[0]))
+        for _ in range(_STEPS):
+            (shift,), (bend,) = self.at([0], w)
+            w += (v * (1.0 + shift) - w) / (1.0 - bend / (1.0 + shift))
+        values, slopes = self.at([0, 1], w)
+        turn = 1.0 / (1.0 - slopes[0] / (1.0 + values[0]))
+        values += slopes * ((v * (1.0 + values[0]) / w - 1.0) * turn)
+        slopes *= turn
+        share = 1.0 / (1.0 + values[0])
+        press, fall = (1.0 + 2.0 * values[1]) * share**2, share * slopes[0]
+        return np.stack([share, press]), np.stack([-share * fall, 2.0 * (slopes[1] * share**2 - press * fall)])
+
+    def _near(self, x: Floats, per: Floats) -> Floats:
+        """w to a thousandth where w per = x, from the nodes."""
+        w = self.rows.x.ravel()
+        return np.exp(np.interp(np.log(x), np.log(w * per), np.log(w)))
+
+
+def first_octave(slowest: float) -> int:
+    """e0 of a table, from the slowest rate of creep."""
+    return math.frexp(slowest)[1] - _SLOW
+
+
+def build(
+    evaluate: Callable[[Floats], Floats], slowest: float, fastest: float, limits: Limits, least: int = 0
+) -> Floats:
+    """The table (rows, 24 powers, 7 functions) with NaN for N, of no fewer rows than ``least``.
+
+    ``evaluate``: from z, values and slopes over ln(1/z) of g/z, h/z and the parts of m, in turn; ``slowest``,
+    ``fastest``: rates of creep and of relaxation.
+    """
+    e0 = first_octave(slowest)
+    tried = math.frexp(fastest)[1] + np.arange(_FIRST, _FIRST + _TRIED)
+    w = np.ldexp(1.0, tried)
+    near = limits.off(w, evaluate(1.0 / w)) <= _NEAR
+    near[-1] = True
+    last = int(tried[np.argmax(near)]) + _FURTHER
+    rows, mean = Rows(e0, max(last - e0 + 1, least)), float(limits.means.sum())
+    finer = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(limits.alpha)))
+    found = evaluate(1.0 / finer.x.ravel())
+    shaped = found.reshape(-1, *finer.x.shape)
+    powers = finer.fit_slopes(shaped[::2], shaped[1::2])
+    powers[:2, 0, :2], powers[2:, 0, 0] = [0.0, math.ldexp(0.5 * mean, e0)], limits.means
+    fine = Fine(finer, powers, found[::2])
+    (speed, d_speed), (stick, d_stick) = fine.speed(rows.x.ravel()), fine.stick(rows.x.ravel())
+    values, slopes = (np.concatenate(both).reshape(-1, *rows.x.shape) for both in ((speed, stick), (d_speed, d_stick)))
+    powers = rows.fit_slopes(values, slopes)
+    powers[[0, 4, 5], 0, 0], powers[1, 0, :2], powers[2:4, 0, 0] = 1.0, [0.0, math.ldexp(mean, e0)], limits.means
+    table = np.full((rows.count, TERMS, len(FUNCTIONS)), np.nan)
+    table[:, :, [0, 1, 2, 3, 5, 6]] = np.moveaxis(powers, 0, -1)
+    return table
+
+
+def with_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) -> Floats:
+    """The table with N; ``evaluate``: N at places of z."""
+    rows, whole = Rows(e0, len(table)), table.copy()
+    lam = np.zeros_like(rows.x)
+    for k in range(TERMS - 1, -1, -1):
+        lam = lam * rows.t + table[:, k, :1]
+    *N, slowest = evaluate(np.append(0.5 * lam / rows.x, np.inf))
+    fitted = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
+    fitted[0, 0] = slowest
+    whole[:, :, FUNCTIONS.index("N")] = fitted
+    return whole
+
+
+def arranged(table: Floats, e0: int, alpha: float, fast: Floats) -> Floats:
+    """The rows that kernels read (:mod:`..kernels.rows.law`): functions side by side, and L = lam (1 + epsilon).
+
+    ``fast``: W and C of the fast limit.  L^2 press(2 u/L) = 1, which Q loses digits by, holds to rounding.
+    """
+    rows = Rows(e0, len(table))
+    lam, epsilon, half_space, cylinder, _, share, press = np.moveaxis(table, -1, 0)
+    (one, shift), _ = rows.read(np.stack([lam, epsilon]), rows.x.ravel())
+    L, u = one * (1.0 + shift), rows.x.ravel()
+    for _ in range(2):
+        v = 2.0 * u / L
+        value, slope = _press(rows, press, v, alpha, fast)
+        A = value - 0.5 * slope
+        L, dL = L - 0.5 * (L * value - 1.0 / L) / A, -0.5 * L * slope / A
+    lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
+    lengths[0, 0] = 1.0
+    pairs = [_paired(*both) for both in ((lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder))]
+    return np.concatenate([*pairs, press, share], axis=1)
+
+
+def _press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats) -> tuple[Floats, Floats]:
+    """H/F^2 and its slope over ln v, by the rows and in the fast limit behind them."""
+    inside = np.minimum(v, math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0))
+    (value,), (slope,) = rows.read(press[None], inside)
+    bracket = fast[1] + fast[0] * np.log(v)
+    share, bend = 1.0 - 0.5 * alpha * bracket / v, alpha**2 * (bracket - fast[0]) / v
+    far = v > inside
+    return np.where(far, alpha * share**2, value), np.where(far, bend * share, slope)
+
+
+def _paired(a: Floats, b: Floats) -> Floats:
+    """a0 a1 b0 b1, a2 a3 b2 b3, ... of every row."""
+    both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
+    return both.reshape(len(a), -1)
