@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, Literal
 
 import numpy as np
@@ -27,7 +27,7 @@ from .warned import look
 
 FIELDS = ROWS
 #: motions a block: where all are integrated, and where most come from a map
-_BLOCK, _MAPPED_BLOCK = 64, 1 << 14
+_BLOCK, _MAPPED_BLOCK = 256, 1 << 14
 #: motions from which on method "auto" takes the flow map: building one takes as long as integrating three to five
 #: thousand (docs/benchmark.md, "One scene")
 FLOW_PAYS = 4096
@@ -187,6 +187,7 @@ def _integrate_others(
     ``by`` : their scene, or scenes, and what drives them.
     """
     scene, ready = by
+    law = _law_of(scene)
     steps, rows = np.zeros(answer.status.size, dtype=np.int64), np.array([ROWS.index(name) for name in names], np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -197,7 +198,7 @@ def _integrate_others(
             return
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
         out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
-        batch, notes = (*_law_of(scene, alpha, left), *inputs), (np.empty((0, 2)), np.empty(0))
+        batch, notes = (*law(alpha, left), *inputs), (np.empty((0, 2)), np.empty(0))
         motion_loop(batch, ready.for_kernel(left), times, limits, rows, out, info, notes)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
@@ -207,16 +208,21 @@ def _integrate_others(
     return steps
 
 
-def _law_of(scene: Scene, alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
-    """The law that motions ``which`` share, or that of each in turn; what it counts times in; whether bodies differ."""
+def _law_of(scene: Scene) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, NDArray, bool]]:
+    """(alphas of motions, which they are) -> the law that they share, or that of each in turn; what it counts times in;
+    whether bodies differ."""
     material = scene.in_own_time()[0]
+
+    def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
+        found, unit = law_of_materials(material, np.minimum(which, len(material) - 1))
+        return found, flattened(unit, unit.shape), isinstance(material, BodiesArray)
+
     if isinstance(material, MaterialArray):
-        law, unit = law_of_materials(material, np.minimum(which, len(material) - 1))
-        return law, flattened(unit, unit.shape), isinstance(material, BodiesArray)
+        return each
     if scene.material is None and np.ndim(scene.alpha):
-        return law_of_alphas(alpha), NO_UNIT, False
-    law = law_of(scene)
-    return law.record, NO_UNIT, law.unlike
+        return lambda alpha, which: (law_of_alphas(alpha), NO_UNIT, False)
+    one = law_of(scene)
+    return lambda alpha, which: (one.record, NO_UNIT, one.unlike)
 
 
 def _among(names: tuple[str, ...], *some: str) -> bool:
