@@ -33,7 +33,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parents[1]
 #: what the tests below import beside the package and its extra
 TOOLS = ("hypothesis", "mpmath", "pytest", "python-flint")
-ASKED = ("roll", "--preset", "paper-section-5", "--ic", "IC1", "--t-end", "3e-3")
+ASKED = ("roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3")
 SAMPLE = (
     "tests/docs/test_readme.py::test_readme_block_runs",
     "tests/docs/test_readme.py::test_howto_blocks_run",

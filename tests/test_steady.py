@@ -652,17 +652,17 @@ def test_refusals():
 
 
 def test_command(capsys, tmp_path):
-    scene = ["--preset", "paper-section-5-rounded"]
-    assert main(["steady", *scene, "--slope", "0deg:6deg:7", "-o", str(tmp_path / "s.csv")]) == 0
+    scene = ["paper-section-5-rounded"]
+    assert main(["steady", *scene, "--slope", "0:0.105:7", "-o", str(tmp_path / "s.csv")]) == 0
     rows = np.genfromtxt(tmp_path / "s.csv", delimiter=",", names=True)
-    s = vr.steady(SCENE, slope=np.radians(np.linspace(0.0, 6.0, 7)))
+    s = vr.steady(SCENE, slope=np.linspace(0.0, 0.105, 7))
     np.testing.assert_array_equal(rows["V"], s.V[np.isfinite(s.V)])
     np.testing.assert_array_equal(rows["stable"] == 1, s.stable[np.isfinite(s.V)])
-    assert main(["steady", *scene, "--slope", "3deg,4deg"]) == 2
+    assert main(["steady", *scene, "--slope", "3deg"]) == 2
     assert main(["steady", *scene, "--force", "0.12"]) == 0
     assert "load 1: force + torque = 0.12 exceeds" in capsys.readouterr().out
     assert main(["steady", *scene, "--V", "0.1", "--torque", "0"]) == 0
     assert "angular velocity" in capsys.readouterr().out
-    for words in (["--slope", "90deg"], ["--V", "1"], ["--slope", "1:3deg:2"], ["--force", "nan"]):
+    for words in (["--slope", "1.6"], ["--V", "1"], ["--force", "nan"]):
         assert main(["steady", *scene, *words]) == 2
         assert capsys.readouterr().err.count("\n") == 1

@@ -14,7 +14,7 @@ _PROCESSES = {
     "numpy": ("-c", "import numpy"),
     "import": ("-c", "import viscoroll"),
     "cli_help": ("-m", "viscoroll", "--help"),
-    "cli_roll": ("-m", "viscoroll", "roll", "--preset", "paper-section-5", "--ic", "IC1", "--t-end", "3e-3"),
+    "cli_roll": ("-m", "viscoroll", "roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3"),
     "first_contact": ("-c", "import viscoroll as vr; vr.contact(vr.PAPER_SECTION_5, 0.5, delta=-0.01)"),
     "first_contact_alpha_1": ("-c", "import viscoroll as vr; vr.contact(vr.Scene(1.0, 2.91, 0.2), 0.5, delta=-0.01)"),
     "first_roll": ("-c", "import viscoroll as vr; vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, 3e-3)"),

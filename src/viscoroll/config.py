@@ -69,12 +69,13 @@ def read_scene(path: str | PathLike[str]) -> Scene:
     return body.scene() if isinstance(body, Cylinder) else body
 
 
-def read_body(path: str | PathLike[str]) -> Scene | Cylinder:
+def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene | Cylinder:
     """Scene or cylinder of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
 
     ``preset`` names a scene of :mod:`presets`, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
     ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane, load) in SI units; E to T_sigma stand in a
     section [material] instead where there is one, and [base] is the half-space where it differs.
+    ``beside`` : other sections that the file may have.
 
     Raises
     ------
@@ -83,13 +84,13 @@ def read_body(path: str | PathLike[str]) -> Scene | Cylinder:
         misspelt or missing key, a value of the wrong type or out of its range.
     """
     content = read(path)
-    refuse_unknown(path, "", content, (*_SCENES, *SECTIONS))
+    refuse_unknown(path, "", content, (*_SCENES, *SECTIONS, *beside))
     given = [name for name in _SCENES if name in content]
     if len(given) != 1:
         found = " and ".join(given) or "none"
         raise ConfigError(path, f"must hold exactly one of preset, [scene] and [cylinder], found {found}")
     if given != ["cylinder"]:
-        refuse_unknown(path, "", content, _SCENES)
+        refuse_unknown(path, "", content, (*_SCENES, *beside))
     try:
         if "preset" in content:
             return preset(content["preset"])

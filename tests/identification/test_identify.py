@@ -113,7 +113,7 @@ REFUSED = {
     "a plan without sigma": (lambda: vr.identify(roller(), ranges("E"), [vr.Resistance(V)]), "resistance: sigma"),
     "a start that nobody knows": (lambda: vr.Coastdown(TIMES, sigma=0.1), "V0", "a plan has no data"),
     "a temperature without a shift": (
-        lambda: vr.identify(roller(), ranges("E"), [resistance(temperature=60.0)]), "temperature = 60 needs shift",
+        lambda: vr.identify(roller(), ranges("E"), [resistance(temperature=60.0)]), "needs a shift of the material",
     ),
     "many cylinders": (lambda: vr.identify(roller().replace(mu=[0.1, 0.2]), ranges("E"), [resistance()]), "mu", "(2,)"),
     "no record": (lambda: vr.identify(roller(), ranges("E"), []), "no record"),

@@ -336,7 +336,6 @@ def test_command(run_file, tmp_path, whole, capsys):
 
 
 NO_COMMANDS = [
-    (["RUN", "--seed", "4", "--dry-run"], "seed = 4: must be left out: the run file says it"),
     (["RUN"], "a folder STORE.zarr"),
     (["RUN", "-o", "all.nc"], "a folder STORE.zarr"),
     (["RUN", "RUN", "-o", "s.zarr"], "one run file"),
@@ -345,11 +344,13 @@ NO_COMMANDS = [
     (["RUN", "-o", "s.zarr", "--cluster", "tcp://"], "cluster = 'tcp://': must be 'local' or 'tcp://host:port'"),
     (["RUN", "-o", "s.zarr", "--cluster", "tcp://localhost:abc"], "'local' or 'tcp://host:port'"),
     (["RUN", "-o", "s.zarr", "--cluster", "tcp://[::1"], "'local' or 'tcp://host:port'"),
-    (["RUN", "-o", "s.zarr", "--times", "1,2"], "t = [1.0, 2.0]: must be left out: the run file says it"),
     (["verify"], "verify STORE.zarr"),
     (["verify", "no.zarr"], "no results store"),
-    (["--dry-run", "-n", "3"], "given with a run file only"),
-    (["-n", "3"], "the following arguments are required: RUN.toml, or --V0"),
+    (["verify", "s.zarr", "--dry-run"], "--dry-run = True: must be given with a run file only"),
+    (["export", "s.zarr"], "a file FILE.nc"),
+    (["RUN", "--threads", "1.5"], "'1.5' must be a whole number"),
+    (["RUN", "-o", "a.csv"], "'a.csv' must end in .zarr or .nc"),
+    (["--dry-run"], "the following arguments are required: RUN.toml"),
 ]  # fmt: skip
 
 

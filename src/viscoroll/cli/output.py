@@ -7,7 +7,7 @@ import io
 import json
 import math
 from argparse import Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,10 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import __version__
-from ..results import column
-from ..si.units import attributes as si_attributes
-from ..symbols import attributes, meaning
+from ..results import column, unit_of
+from ..symbols import meaning
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,7 +57,7 @@ class Sheet:
         """A row of names, with units in brackets, then numbers that read back to the same bits."""
         rows = len(next(iter(self.columns.values())))
         columns = [[value] * rows for value in self.constants.values()]
-        columns += [_numeric(values).tolist() for values in self.columns.values()]
+        columns += [values.tolist() for values in self.columns.values()]
         file = io.StringIO()
         writer = csv.writer(file, lineterminator="\n")
         names = (*self.constants, *self.columns)
@@ -78,7 +76,13 @@ class Sheet:
         return f" {self.units[name]}" if name in self.units else ""
 
 
-def deliver(arguments: Namespace, sheet: Callable[[], Sheet], dataset: Callable[[], xr.Dataset]) -> None:
+def deliver(arguments: Namespace, result: Any, heading: Sequence[str] = ()) -> None:
+    """A result of the package by its own dataset: as :func:`put`, below its title, or ``heading`` where it has one."""
+    data = result.to_xarray()
+    put(arguments, lambda: sheet_of(data, heading), lambda: data)
+
+
+def put(arguments: Namespace, sheet: Callable[[], Sheet], dataset: Callable[[], xr.Dataset]) -> None:
     """Print the sheet in the format asked for, or write it or the dataset in the format of the suffix.
 
     Raises
@@ -103,28 +107,32 @@ def is_csv(path: Path) -> bool:
     return path.suffix.lower() == ".csv"
 
 
-def as_dataset(
-    title: str,
-    axes: dict[str, NDArray],
-    values: dict[str, NDArray],
-    constants: dict[str, float],
-    units: dict[str, str],
-) -> xr.Dataset:
-    """``values`` over the tensor product of ``axes``, with names, units and provenance."""
+def sheet_of(data: xr.Dataset, heading: Sequence[str] = ()) -> Sheet:
+    """A row for each place of the axes that most quantities lie over, but where V is NaN; the single ones above."""
     import xarray as xr
 
-    def about(name: str) -> dict[str, Any]:
-        return si_attributes(name) if name in units else attributes(name)
+    over = max((each.dims for each in data.values()), key=len)
+    data = data.assign_coords({dim: np.arange(data.sizes[dim]) + 1 for dim in over if dim not in data.coords})
+    names = [*over, *(name for name in data.variables if name not in over and set(data[name].dims) <= set(over))]
+    single = [name for name in names if over and not data[name].dims]
+    listed = [name for name in names if name not in single]
+    full = xr.broadcast(*(data[name] for name in listed))
+    columns = {str(name): _words(each.transpose(*over)).ravel() for name, each in zip(listed, full, strict=True)}
+    if "equilibrium" in over:
+        held = np.isfinite(columns["V"])
+        columns = {name: values[held] for name, values in columns.items()}
+    constants = {str(name): data[name].item() for name in single}
+    units = {str(name): unit for name in names if (unit := unit_of(data[name].attrs))}
+    return Sheet(tuple(heading) or (data.attrs["title"],), constants, columns, units)
 
-    dims = tuple(axes)
-    data = {name: xr.Variable(dims, _numeric(array), about(name)) for name, array in values.items()}
-    coordinates = {name: xr.Variable((name,), axis, about(name)) for name, axis in axes.items()}
-    provenance = {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
-    return xr.Dataset(data, coordinates, provenance | constants)
 
-
-def _numeric(array: NDArray) -> NDArray:
-    return array.astype(np.int8) if array.dtype == bool else array
+def _words(values: xr.DataArray) -> NDArray:
+    """What codes mean, by the conventions of CF; other values as they are."""
+    about = values.attrs
+    if "flag_meanings" not in about:
+        return np.asarray(values.values)
+    meanings = dict(zip(np.ravel(about["flag_values"]).tolist(), about["flag_meanings"].split(), strict=True))
+    return np.array([meanings[code] for code in values.values.ravel().tolist()]).reshape(values.shape)
 
 
 def _short(value: Any) -> str:

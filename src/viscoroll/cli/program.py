@@ -13,7 +13,21 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import Interrupted, ViscorollError
-from . import contact, doctor, ensemble, fmu, material, motion, plot, sensitivity, steady, tables, validity, warmup
+from . import (
+    contact,
+    doctor,
+    ensemble,
+    fmu,
+    identify,
+    material,
+    motion,
+    plot,
+    sensitivity,
+    steady,
+    tables,
+    validity,
+    warmup,
+)
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
@@ -42,7 +56,7 @@ def parser() -> Parser:
         "material or of another.\n\n"
         "If the scene or run file has a [cylinder] section, all inputs and outputs are in SI units.\n"
         "Otherwise all are dimensionless.",
-        epilog="example:\n  viscoroll roll --preset paper-section-5 --ic IC1 --t-end 3e-3",
+        epilog="example:\n  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 3e-3",
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
     commands = program.add_subparsers(metavar="COMMAND", required=True)
@@ -53,6 +67,7 @@ def parser() -> Parser:
         validity,
         ensemble,
         sensitivity,
+        identify,
         tables,
         fmu,
         material,

@@ -39,12 +39,12 @@ def add_commands(commands: Any) -> None:
 def _sensitivity(arguments: Namespace) -> int:
     from ..runs import read_run
     from ..runs.sensitivity import sobol_indices
-    from .output import deliver, is_csv
+    from .output import is_csv, put
 
     indices = sobol_indices(read_run(arguments.file), arguments.n, progress=sys.stderr.isatty())
     path = arguments.output
     as_csv = path is not None and is_csv(path)
-    deliver(arguments, lambda: _sheet(indices, provenance=as_csv), lambda: indices)
+    put(arguments, lambda: _sheet(indices, provenance=as_csv), lambda: indices)
     if path is not None and path.suffix.lower() != ".txt":
         print(_sheet(indices).text(), end="")
     if arguments.plot is not None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from .arguments import NUMBERS, add_output_option, add_scene_options, count, number, numbers, whole
-from .body import BodySI, body_of
+from .arguments import NUMBERS, add_output_option, add_scene, body_of, count, number, numbers, whole
 
 _LAW, _GRID = (".nc", ".h", ".json"), (".nc", ".csv", ".txt", ".mat")
 
@@ -52,12 +51,12 @@ def _add_build(group: Any) -> None:
         help="a grid over V, delta and perhaps alpha, for programs that look up tables",
         description="Write the contact of a scene, or of a cylinder in SI units, on a grid: .nc, .csv, .txt (for\n"
         f"Modelica) or .mat (MATLAB).  An axis is {NUMBERS}.",
-        epilog="example:\n  viscoroll tables build --preset paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401"
-        " -o t.nc",
+        epilog="example:\n  viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc",
     )
+    add_scene(parser)
     parser.add_argument("--V", type=numbers, required=True, help="speeds of the axis, > 0")
     parser.add_argument("--delta", type=numbers, required=True, help="creep ratios")
-    add_scene_options(parser, numbers)
+    parser.add_argument("--alpha", type=numbers, help="a third axis, of a scene")
     add_output_option(parser, *_GRID, required=True)
     parser.set_defaults(run=_build)
 
@@ -119,16 +118,10 @@ def _low_high(text: str) -> tuple[float, float]:
 
 
 def _build(arguments: Namespace) -> int:
-    import numpy as np
-
     from .. import tables
 
-    alpha = None if arguments.alpha is None or not np.ndim(arguments.alpha) else arguments.alpha
-    if alpha is not None:
-        arguments.alpha = alpha[0]
-    body = body_of(arguments)
-    what = body.cylinder if isinstance(body, BodySI) else body.scene
-    _deliver(tables.build(what, arguments.V, arguments.delta, alpha), arguments)
+    what = body_of(arguments.scene)
+    _deliver(tables.build(what, arguments.V, arguments.delta, arguments.alpha), arguments)
     return 0
 
 

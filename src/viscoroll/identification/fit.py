@@ -21,7 +21,7 @@ from .profile import Profile, profile
 from .records import Record
 from .said import NARROW, Noise, directions, flat, noise_of, wide, without
 from .search import minima
-from .unknowns import Shift, cylinder_of, unknowns_of
+from .unknowns import Shift, cylinder_of, refuse_unshifted, unknowns_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -368,8 +368,8 @@ def identify(
         A name that is none, a range that does not hold the start, more unknowns than points, records without
         standard deviations where values are missing, records with and without values, two records of one name.
     """
-    given = {"material": shift, "base": shift} if callable(shift) else shift
-    records = _called(data, given)
+    given = {"material": shift, "base": shift} if callable(shift) else shift or {}
+    records = _called(cylinder, data, given)
     unknowns = unknowns_of(cylinder, unknown, records)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
@@ -386,7 +386,7 @@ def identify(
     return Identification(problem, minima(problem, int(starts), seed, progress))
 
 
-def _called(data: Sequence[Record], shifts: Any) -> dict[str, Record]:
+def _called(cylinder: Cylinder, data: Sequence[Record], shifts: Mapping[str, Shift]) -> dict[str, Record]:
     """The records by name; those without one are called by their kind."""
     found: dict[str, Record] = {}
     for record in data:
@@ -400,9 +400,8 @@ def _called(data: Sequence[Record], shifts: Any) -> dict[str, Record]:
             called = f"{record.KIND} {n}"
         if record.planned and not record.sigma:
             raise ParameterError(f"{called}: sigma", None, "given where there are no values")
-        if record.temperature is not None and not shifts:
-            sentence = f"{called}: temperature = {record.temperature:g} needs shift=, as vr.WLF(T0=20.0)"
-            raise ParameterError("temperature", record.temperature, "given with shift", sentence)
+        if record.temperature is not None:
+            refuse_unshifted(cylinder, called, record.temperature, shifts)
         found[called] = record
     if not found:
         raise ParameterError("data", "no record", "at least one")

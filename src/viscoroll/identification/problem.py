@@ -67,7 +67,7 @@ class Problem:
     records: dict[str, Record]
     prior: list[tuple[int, float, float]]
     robust: bool
-    shifts: Mapping[str, Shift] | None
+    shifts: Mapping[str, Shift]
     evaluations: int = 0
     columns: list[Column] = field(init=False)
     #: which unknowns are searched; the others stay at their start

@@ -14,11 +14,11 @@ from .problem import Found, Held, Problem
 #: of a coordinate, first and longest step: farther ones land in other minima
 _FIRST, _STEP = 0.25, 0.7
 #: share of the s.d. that an end is found to
-_CLOSE = 1e-3
+_CLOSE = 5e-3
 #: places beyond an end that are looked at, as shares of the way to the bound
 _BEYOND = (0.15, 0.4, 0.8)
 #: tolerance and steps of a place on the way; steps of a look, and the rise over what is asked that ends it
-_LOOSE, _FEW = 1e-7, 15
+_LOOSE, _FEW = 1e-5, 15
 _LOOK, _HOPELESS = 4, 20.0
 #: share of the rise that an unknown at the end of its range must cost to make an end
 _MAKES = 0.02

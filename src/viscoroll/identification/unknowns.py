@@ -84,6 +84,14 @@ def _bodies(cylinder: Cylinder) -> dict[str, Material]:
     return {"material": pair.cylinder} | ({} if pair.base is None else {"base": pair.base})
 
 
+def refuse_unshifted(cylinder: Cylinder, called: str, temperature: float, shifts: Mapping[str, Shift]) -> None:
+    """Raise ParameterError for a temperature at which the times of a body are not known."""
+    for section, body in _bodies(cylinder).items():
+        if body.prony.alpha > 1.0 and section not in shifts:
+            sentence = f"{called}: temperature = {temperature:g} needs a shift of the {section}, as vr.WLF(T0=20.0)"
+            raise ParameterError("temperature", temperature, "given with shift", sentence)
+
+
 def unknowns_of(cylinder: Cylinder, given: Mapping[str, Any], records: Mapping[str, Record]) -> list[Unknown]:
     """The unknowns that are asked for, and those that records bring along.
 
@@ -150,7 +158,8 @@ def cylinder_of(
     bodies = _bodies(cylinder)
     made = {section: _changed(body, PREFIXES[section], values) for section, body in bodies.items()}
     if record is not None and record.temperature is not None and shifts:
-        made = {section: body.at(record.temperature, shifts[section]) for section, body in made.items()}
+        at = record.temperature
+        made = {name: body.at(at, shifts[name]) if name in shifts else body for name, body in made.items()}
     if any(made[section] is not bodies[section] for section in made):
         changes |= made
     if record is not None:

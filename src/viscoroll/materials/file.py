@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -125,6 +126,23 @@ def read_materials(path: str | PathLike[str], temperature: float | None = None) 
 def materials_of(path: Any, content: Mapping[str, Any], temperature: float | None = None) -> dict[str, Material]:
     """The materials of a file that was read; arguments and errors as :func:`read_materials`."""
     return {name: _material(path, name, content[name], temperature) for name in SECTIONS if name in content}
+
+
+def shifts_of(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
+    """a_T of the materials of a file that was read, over temperature, 1 at that of the file, where it has a shift."""
+    found: dict[str, Callable[[float], float]] = {}
+    for name in SECTIONS:
+        if name in content:
+            stored = "file" in content[name]
+            given: Any = as_struct(path, name, content[name], FileSection if stored else MaterialSection)
+            if (shift := _shift(path, name, given)) is not None:
+                own = 1.0 if given.temperature is None else shift(given.temperature)
+                found[name] = partial(_relative, shift, own)
+    return found
+
+
+def _relative(shift: WLF | Arrhenius, own: float, temperature: float) -> float:
+    return shift(temperature) / own
 
 
 def as_toml(material: Material, section: str = "material") -> str:

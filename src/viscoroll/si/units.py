@@ -158,8 +158,8 @@ def over(name: str, given: Any, one: Units) -> Any:
 
 
 def refuse_other_unit(name: str, value: Any, unit: str) -> None:
-    """Raise ParameterError for an array of xarray or pandas that says it is in another unit; "m/s" is "m s-1"."""
-    given = getattr(value, "attrs", {}).get("units")
+    """Raise ParameterError for another unit, or an array of xarray or pandas that says it has one; "m/s" is "m s-1"."""
+    given = value if isinstance(value, str) else getattr(value, "attrs", {}).get("units")
     if given is not None and _powers(str(given)) != _powers(unit):
         raise ParameterError(name, f"in {given!s:.40}", f"in {unit}")
 
