@@ -107,7 +107,6 @@ def ensemble(
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
     ready = None
-    look(scene, V0, omega0)
     if drive.acts or not scene.like_bodies:
         ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
         refuse_rest(threshold, ready)
@@ -116,6 +115,7 @@ def ensemble(
         what = "motions are driven, or bodies differ" if ready else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays, count = _inputs(scene, (V0, omega0), drive, ready)
+    look(scene, arrays["V0"], arrays["omega0"], driven=drive.acts)
     material, unit = scene.in_own_time()
     own_time = {} if unit == 1.0 else {"gamma": unit * unit, "V0": unit, "omega0": unit}
     scaled = (array * own_time[name] if name in own_time else array for name, array in arrays.items())
