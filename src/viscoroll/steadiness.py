@@ -16,8 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .contact_table import states_of
+from .materials.law_table import law_table
 from .materials.prony import Prony
-from .materials.tables import record, unsteadiness
 
 Array = NDArray[np.float64]
 
@@ -35,16 +36,8 @@ _LITTLE = 1e-7
 
 def rolling(material: float | Prony, u: Array, names: tuple[str, ...]) -> Array:
     """Rows of the law in pure rolling at kappa |V| = u, of one material in its own time; kappa = 1."""
-    from .kernels.law.contact_loop import state_loop
-    from .kernels.law.state import ROWS, Need, States
-
-    one, none, u = np.ones(1), np.zeros(1), u.view()
-    for array in (one, none, u):  # as all that a kernel reads, see ``blocks.elements``
-        array.flags.writeable = False
-    out, rows = np.empty((len(names), u.size)), np.array([ROWS.index(name) for name in names])
-    need = Need("epsilon" in names, False, False, "M" in names, False)
-    state_loop(record(material), States(one, one, u, none, False), need, rows, out, 0, u.size)
-    return out
+    one, none = np.ones(1), np.zeros(1)
+    return states_of(law_table(material), [one, one, u, none], u.shape, False, names)
 
 
 class Curve:
@@ -62,9 +55,8 @@ class Curve:
         self.s = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
         self.s -= _MARGIN * math.log(2.0)
         u = np.exp(self.s)
-        zeta, M = rolling(material, u, ("zeta", "M"))
+        M, self.nodes = rolling(material, u, ("M", "N"))
         self.low, self.high, self.M_high = float(u[0]), float(u[-1]), float(M[-1])
-        self.nodes = unsteadiness(material, zeta)
         self._N, self._rate = CubicSpline(self.s, self.nodes), CubicSpline(self.s, u * u / M)
         self._time, self._way = CubicSpline(self.s, u / M).antiderivative(), self._rate.antiderivative()
         self._rise = self._N(self.s[0], 1)
