@@ -12,7 +12,6 @@ import pytest
 from memory import forget
 
 from viscoroll.motion import flow_store
-from viscoroll.motion import warned as of_motions
 from viscoroll.si import warned as of_materials
 
 # what a user chose for other work does not reach the tests
@@ -38,8 +37,7 @@ def pytest_sessionfinish(session):
 
 @pytest.fixture(autouse=True)
 def nothing_said_yet(monkeypatch):
-    """What is said of the model once a process is said in each test; those that roll beyond it ignore ModelWarning."""
-    monkeypatch.setattr(of_motions, "_looked", 0)
+    """What is said of a material once a process is said in each test."""
     monkeypatch.setattr(of_materials, "_told", set())
 
 

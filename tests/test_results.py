@@ -1,9 +1,8 @@
-"""What results say of themselves: short text, HTML, xarray, pandas, figures; and warnings."""
+"""What results say of themselves: short text, HTML, xarray, pandas, figures."""
 
 from __future__ import annotations
 
 import dataclasses
-import warnings
 
 import numpy as np
 import pytest
@@ -15,7 +14,6 @@ from processes import printed
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.motion import warned
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -108,41 +106,10 @@ def test_no_gamma_no_motion():
     assert still.validity(1.0).small_contact == SCENE.validity(1.0).small_contact
 
 
-def test_a_word_where_the_model_is_grossly_at_fault(monkeypatch):
-    """Once a process, for the paper's own example; none for a roller inside the limits, nor in a worker."""
-
-    def told(*call, **options) -> list[str]:
-        monkeypatch.setattr(warned, "_looked", 0)
-        with warnings.catch_warnings(record=True) as found:
-            warnings.simplefilter("always")
-            vr.roll(*call, **options)
-            vr.roll(*call, **options)
-        assert all(issubclass(each.category, vr.ModelWarning) for each in found)
-        assert all(each.filename == __file__ for each in found)
-        return [str(each.message) for each in found]
-
-    (text,) = told(vr.PAPER_SECTION_5, 1.5, 0.5, 1e-3)
-    assert "nu = gamma max|N|/(1 + j) is 6" in text
-    assert told(vr.RUBBER_ROLLER, 1.0, 1.0, 1.0) == []
-    (text,) = told(vr.Scene(11.0, 0.5, 0.2, 0.1), 1.0, 1.0, 1e-3)
-    assert "kappa = R/l0 = 0.5" in text
-    (text,) = told(vr.Scene(11.0, 10.0, 0.02, 0.1), 0.5, -0.5, 1e-3)
-    assert "creep of order 1" in text
-    monkeypatch.setattr(warned, "is_worker", lambda: True)
-    assert told(vr.PAPER_SECTION_5, 1.5, 0.5, 1e-3) == []
-
-
-def test_fast_cylinders_are_told_of_waves(monkeypatch):
-    monkeypatch.setattr(warned, "_looked", 0)
-    with pytest.warns(vr.ModelWarning, match="times those of shear waves"):
-        ROLLER.roll(100.0, 1000.0, 0.01)
-
-
 def test_validity_of_motions(results):
     """All of it along a motion: the numbers are those of the scene at each output."""
     m = results["motion"]
     found = m.validity()
-    assert found.steady.value[0] == SCENE.validity(m.V[0]).steady.value
     assert close(found.creep.value, np.abs(m.delta), rel=tol.SCENE, scale=1.0)
     assert not found.creep.holds[0]
     assert found.creep.holds[-1]
@@ -150,7 +117,7 @@ def test_validity_of_motions(results):
     assert results["ensemble"].validity().steady.value.shape == (12,)
     each = vr.ensemble(SCENE.replace(mu=np.linspace(0.1, 0.3, 400)), 1.0, 0.5, 1e-3)
     assert each.validity().small_contact.value.shape == (256,)
-    assert "nu = " in str(found)
+    assert "unsteadiness" in str(found)
 
 
 def test_figures_are_not_loaded_until_drawn():

@@ -391,5 +391,4 @@ def test_the_rubber_roller_is_inside_the_limits_of_steady_rolling():
     found = vr.RUBBER_ROLLER.validity(V)
     assert found.steady.holds.all()
     assert found.small_contact.holds.all()
-    assert close(found.steady.value.max(), 0.008, rel=0.1)
-    assert close(vr.PAPER_SECTION_5.validity(0.5).steady.value, 600.0, rel=0.1)
+    assert not vr.PAPER_SECTION_5.validity(0.5).steady.holds

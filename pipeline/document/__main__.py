@@ -22,7 +22,7 @@ from viscoroll.files import write_text
 from ..results import RESULTS, Results
 from ..stage import ROOT, told
 from ..stamps import SHORT, kernels_digest, stamps
-from . import bench, ensembles, symbols, tables
+from . import bench, ensembles, identification, symbols, tables
 
 #: who measures what a block shows
 STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
@@ -35,6 +35,10 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     "measure.outside": {"page": tables.page, "outside": tables.outside},
     "measure.ensembles": {
         "ensembles": ensembles.rates, "ensembles_cluster": ensembles.cluster, "ensembles_plan": ensembles.plan,
+    },
+    "measure.identification": {
+        "identify_learn": identification.learn, "identify_bearing": identification.bearing,
+        "identify_said": identification.said, "identify_numbers": identification.numbers,
     },
     "prove": {"proofs": tables.proofs},
     "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},

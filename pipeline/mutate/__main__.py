@@ -112,7 +112,7 @@ def judge(mutant: Mutant | None, tests: str, timeout: float) -> tuple[str, str, 
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
         for part in ("src", "tests", "pipeline", "data"):
-            shutil.copytree(ROOT / part, tree / part, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(ROOT / part, tree / part, ignore=shutil.ignore_patterns("__pycache__", ".*.tmp-*"))
         shutil.copy(ROOT / "pyproject.toml", tree)
         if mutant is not None:
             plant(mutant, tree / KERNELS / mutant.file)

@@ -18,7 +18,8 @@ from . import boundary, contact, driven, motion, ratios, series, shape, slopes
 #: name -> function of the sizes that returns rows of claim, domain, bound, worst, points, where
 PROOFS = {
     "ratios": ratios.rows, "contact": contact.rows, "shape": shape.rows, "slopes": slopes.rows, "motion": motion.rows,
-    "series": series.rows, "boundary": boundary.rows, "driven": driven.rows, "check_driven": driven.precise_rows,
+    "series": series.rows, "states": series.rows_of_states, "boundary": boundary.rows, "driven": driven.rows,
+    "check_driven": driven.precise_rows,
 }  # fmt: skip
 
 

@@ -143,17 +143,17 @@ def state(mp: Any, known: Rates, zeta: Any, share: Any) -> tuple[float, float, d
     good to first order.
     """
 
-    def of(z: Any) -> tuple[Any, Any, Any]:
-        found = functions(mp, known, z)
+    def of(z: Any, found: Functions) -> tuple[Any, Any, Any]:
         return z + found.g, z * z + 2 * z * found.h, found.m
 
     def slopes(z: Any) -> list[Any]:
         step = z * mp.mpf(10) ** -20
-        return [(above - below) / (2 * step) for above, below in zip(of(z + step), of(z - step), strict=True)]
+        ends = [of(at, functions(mp, known, at)) for at in (z + step, z - step)]
+        return [(above - below) / (2 * step) for above, below in zip(*ends, strict=True)]
 
     zeta, eta = mp.mpf(zeta), mp.mpf(zeta) * (1 - mp.mpf(share))
     whole = functions(mp, known, zeta)
-    (F, H, m), (F_eta, H_eta, _) = of(zeta), of(eta)
+    (F, H, m), (F_eta, H_eta, _) = of(zeta, whole), of(eta, functions(mp, known, eta))
     (dF, dH, dm), (dF_eta, dH_eta, _) = slopes(zeta), slopes(eta)
     V = 1 / (2 * mp.sqrt(H))
     delta, dzeta = (F - F_eta) * V, -2 * H / dH / V

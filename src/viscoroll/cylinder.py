@@ -21,7 +21,7 @@ from .scene import Scene, frozen, same
 from .si.conversions import Conversions
 from .si.methods import InSI
 from .si.scaling import contact_length, scene_from_si, scene_of_pair, scene_of_solids
-from .si.validity import deforming
+from .si.validity import deforming, slowness
 from .validity import MISFIT_LIMIT, held_speeds
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
@@ -220,6 +220,12 @@ class Cylinder(InSI, Conversions):
             return scene_from_si(**solid, load=self.pressed)
         scene = scene_of_pair(self.R, self.m, self.pair, self.mu, self.j, self.g, self.pressed)
         return scene.replace(material=self.material) if isinstance(self.material, LawTable) else scene
+
+    @cached_property
+    def _wave_speed(self) -> float | None:
+        """That of the slowest shear wave in any of the cylinders, m/s; None where no density is known."""
+        per_speed = slowness(self, np.ones(()), None)[0]
+        return None if per_speed is None else 1.0 / float(np.max(per_speed))
 
     @cached_property
     def _measured(self) -> dict[str, Measured]:

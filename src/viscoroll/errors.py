@@ -100,7 +100,8 @@ class ConvergenceError(ViscorollError):
 
 class ModelWarning(UserWarning):
     """The model is grossly at fault for a motion, a material was not measured at what a contact asks of it, or a file
-    of measurements gives no units; said once a process, or once a material or file.
+    of measurements gives no units.  Every call is looked at; Python says the same words once for each line of a
+    program, those on a material or a file are said once for each.
     """
 
 

@@ -16,7 +16,8 @@ from .materials.law_table import LawTable
 from .materials.prony import Prony
 from .materials.prony_array import MaterialArray
 from .materials.prony_forms import HIGHEST_ALPHA
-from .validity import Strained, Validity, judge, steadiness, strained, unlike_speeds
+from .steadiness import Free, Strained
+from .validity import Assumption, Steadiness, Validity, judge, unlike_speeds
 
 
 def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
@@ -198,27 +199,38 @@ class Scene:
         """Also what the contact strains, for what a cylinder adds."""
         given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
         broadcast_shape(**given, **{name: np.asarray(value) for name, value in self.numbers.items()})
-        material, unit = self._own_times()
-        found = strained(material, self.kappa, given["V"] * unit)
-        nu = None
+        free = self.freely(given["V"])
+        found = free.strained(self.kappa)
+        steady = Assumption(None, None, "whether the law of steady rolling may drive a motion needs gamma")
         if self.gamma is not None:
-            nu = np.asarray(self.gamma * (unit**2 * found.unsteady) / (1.0 + np.asarray(self.j)))
+            steady = Steadiness.of(free)
         delta, full_slip = None, None
         if omega is not None:
             speed, spin = given["V"], given["omega"]
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
             full_slip = np.abs(delta) >= self.mu * np.asarray(found.reach)
-        return judge(found, steadiness(nu), unlike_speeds(delta, full_slip)), found
+        return judge(found, steady, unlike_speeds(delta, full_slip)), found
 
-    def _own_times(self) -> tuple[Any, Any]:
-        """As :meth:`in_own_time`, of a material each as arrays."""
-        if not isinstance(self.material, MaterialArray):
-            return self.in_own_time()
-        own = np.empty((2, len(self.material)), object)
-        for n, one in enumerate(self.material):
-            own[:, n] = _in_own_time(one.total if isinstance(one, Bodies) else one)
-        return own[0], own[1].astype(np.float64)
+    def freely(self, V: Any) -> Free:
+        """What rolls at V, let go."""
+        materials: Any
+        unit: Any
+        if isinstance(self.material, MaterialArray):
+            each = (_in_own_time(one.total if isinstance(one, Bodies) else one) for one in self.material)
+            materials, unit = np.array([*each], object).reshape(-1, 2).T
+            which, unit = np.arange(unit.size), unit.astype(np.float64)
+        else:
+            given, unit = self.in_own_time()
+            materials, which = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))
+            which = which.reshape(np.shape(given))
+        gamma = np.nan if self.gamma is None else self.gamma
+        with np.errstate(over="ignore"):
+            u = np.asarray(self.kappa * np.abs(V) * unit + 0.0 * which)
+            g = gamma * unit * unit / (1.0 + np.asarray(self.j))
+        shape = np.broadcast_shapes(u.shape, np.shape(g))
+        u, which = np.broadcast_to(u, shape), np.broadcast_to(which, shape)
+        return Free(materials, which, u, g, 1.0 / (self.kappa * unit), unit, 1.0 / self.kappa)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):

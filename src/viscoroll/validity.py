@@ -4,27 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from dataclasses import replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .materials.measured import Measured
 from .materials.prony import Prony
-from .materials.tables import record, unsteadiness
+from .materials.tables import record
 from .results import Row, as_html, as_text
+from .steadiness import Free, Reach, Start, Strained
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
 REACH_LIMIT = 0.2
 #: the paper's ref. [31], Table 1: below this share of the wave speeds the load is within 10 % of the static one
 WAVE_LIMIT = 0.2
-#: nu up to which a motion is within 10 % of its first speed, and beyond which it is another motion altogether: measured
-#: with a transient solver at alpha 3 and 11, kappa V from 0.29 to 4.4 (gamma 7 and 30 at alpha 11)
-STEADY_LIMIT, NOT_THIS_MOTION = 0.4, 1.6
-#: zeta in steps of an eighth of an octave, from 2^-8 of the shortest time to 2^12 of the longest: N bends on the scale
-#: of an octave, and beyond is as good as in its limits
-_STEPS, _FAST_OCTAVES, _SLOW_OCTAVES = 8, 8, 12
+#: unsteadiness up to which V is right to some 10 %: measured with a transient solver of many modes (docs/may_i.md)
+STEADY_LIMIT = 0.1
+#: share of its speed, seven tenths of its energy, that a start from rest may lose: beyond, the cylinder was caught
+_CAUGHT = 0.45
+#: a speed that is as good as rest, where a motion ended
+_REST = 1e-300
 #: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
 DUNDURS_LIMIT = 0.05
 #: in full slip cylinder and half-space pass the contact at speeds that differ by this share; M takes one speed for both
@@ -55,6 +56,88 @@ class Assumption(NamedTuple):
         return f"{self.word}: {self.sentence}"
 
 
+class Steadiness(Assumption):
+    """Whether the law of steady rolling may drive a motion, and how far; everything below is in the units of the call.
+
+    ``value`` is the unsteadiness gamma |N(V)|/(1 + j), of a motion the largest so far; it counts as small up to 0.1,
+    where V is right to some 10 %.  The attributes are of free rolling from each V, by the law.
+
+    Attributes
+    ----------
+    one_percent, ten_percent : the :class:`Reach` within which V is right to about 1 % and 10 %.
+    start : what a :class:`Start` from a contact that rested long costs.
+    whole : the way to rest.
+    share : of that way, or of the way of a motion, what lies where V is not right to 10 %; None where it is not known.
+    """
+
+    free: Free
+    #: of a motion, ``share``
+    rolled: Any = None
+
+    @classmethod
+    def of(cls, free: Free) -> Assumption:
+        """That of states that are let go."""
+        if free.u.size and not free.u.any():
+            return Assumption(None, None, "at rest there is nothing to say: it is the speed that decides")
+        return cls._made(free.unsteadiness, free)
+
+    @classmethod
+    def along(cls, free: Free, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
+        """That of motions over times, the first axis; ``ends``: of each as a whole.
+
+        rolls : where they do not slip fully, which friction rules.  x : places; NaN where they are not known.
+        """
+        free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
+        value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
+        fastest = free.at((np.argmax(free.u, axis=0), *np.indices(free.u.shape[1:])))
+        way, steps = free.whole(), np.abs(np.diff(x, axis=0)) * rolls[1:]
+        slow = np.where(fastest.unsteadiness > STEADY_LIMIT, np.inf, fastest.reach(STEADY_LIMIT).left)
+        # of each step, as in free rolling
+        with np.errstate(invalid="ignore"):
+            below, whole = (np.abs(np.diff(each, axis=0)) for each in (np.minimum(way, slow), way))
+        part = np.divide(below, whole, out=1.0 * (way[1:] < slow), where=(0.0 < whole) & (whole < np.inf))
+        share = (steps * part).sum(axis=0) / np.maximum(np.abs(np.diff(x, axis=0)).sum(axis=0), _REST)
+        return cls._made(value[-1] if ends else value, fastest, share)
+
+    @classmethod
+    def _made(cls, value: Any, free: Free, rolled: Any = None) -> Steadiness:
+        sentence = "no motion"
+        if np.size(value):
+            most = float(np.max(value))
+            worst = free.at(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
+            sentence = _let_go(worst) if rolled is None else _rolled(worst, most, float(np.mean(rolled)))
+        made = cls(value <= STEADY_LIMIT, value, sentence)
+        made.free, made.rolled = free, rolled
+        return made
+
+    def scaled(self, speed: Any, time: Any, length: Any, words: tuple[str, str, str]) -> Steadiness:
+        """The same in other units."""
+        return self._made(self.value, self.free.scaled(speed, time, length, words), self.rolled)
+
+    @cached_property
+    def one_percent(self) -> Reach:
+        return self.free.reach(0.1 * STEADY_LIMIT)
+
+    @cached_property
+    def ten_percent(self) -> Reach:
+        return self.free.reach(STEADY_LIMIT)
+
+    @cached_property
+    def start(self) -> Start:
+        return self.free.start()
+
+    @cached_property
+    def whole(self) -> Any:
+        return self.free.whole()
+
+    @cached_property
+    def share(self) -> Any:
+        if self.rolled is not None:
+            return self.rolled
+        left, whole = np.asarray(self.ten_percent.left), np.asarray(self.whole)
+        return np.divide(left, whole, out=np.asarray(self.value > STEADY_LIMIT, np.float64), where=left < whole)[()]
+
+
 class Validity(NamedTuple):
     """What the model assumes, and how far a state is from it.
 
@@ -65,9 +148,9 @@ class Validity(NamedTuple):
     under_axis : value: epsilon; where it exceeds 1 the contact lies wholly ahead of the
         axis, which is no fault of the model but worth knowing.
     quasistatic : value: speed over that of shear waves; needs a density.
-    steady : value: nu = gamma max|N|/(1 + j), M = M(V) + N V' for slow changes, over all speeds from 0 to V, to 0.5 %.
-        It rules whether the law of steady rolling may drive a motion; contact states and rolling at constant speed are
-        not concerned.
+    steady : :class:`Steadiness`; value: the unsteadiness gamma |N(V)|/(1 + j), where M = M(V) + N V' for slow changes.
+        It rules whether the law of steady rolling may drive a motion, and down to which speed; contact states and
+        rolling at constant speed are not concerned.
     creep : value: |delta|; where the contact slips fully the two bodies pass it at different speeds, and the rolling
         moment is that of the axis' speed for both.  Needs omega.
     bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
@@ -111,38 +194,6 @@ class Validity(NamedTuple):
         return as_html(*self._card())
 
 
-class Strained(NamedTuple):
-    """What the contact at a speed strains: lam (1 + epsilon)/(2 kappa), epsilon, and max|N| from rest to that speed.
-
-    And lam itself.
-    """
-
-    reach: Any
-    epsilon: Any
-    unsteady: Any
-    lam: Any
-
-
-def strained(material: Any, kappa: Any, V: NDArray[np.float64]) -> Strained:
-    """Broadcast over the arguments; ``material``: alphas, a series, or series."""
-    from .kernels.law.length import contact_length
-    from .kernels.material.functions import generators, standard
-
-    def state(given: Any, kappa: float, V: float) -> Strained:
-        material, u = record(given) if isinstance(given, Prony) else standard(given), kappa * abs(V)
-        lam, epsilon, zeta = 1.0, 0.0, np.inf
-        if u > 0.0:
-            lam, _ = contact_length(u, material)
-            zeta = 0.5 * lam / u
-            # it underflows beyond all speeds, where the contact is that of the instantaneous modulus
-            epsilon = generators(zeta, material)[0] / zeta if zeta > 0.0 else 0.0
-        return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, _largest_N(given, zeta), lam)
-
-    points = np.broadcast(material, kappa, V)
-    values = [state(given, float(kappa), float(V)) for given, kappa, V in points]
-    return Strained(*np.array(values).reshape(*points.shape, 4).transpose(-1, *range(points.ndim)))
-
-
 def passage(V: Any, length: Any) -> Any:
     """What a contact asks of its material: the rate at which a point passes it, 1/s, of a speed and a length.
 
@@ -167,41 +218,36 @@ def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
     return speed(low), speed(high)
 
 
-def _largest_N(material: float | Prony, zeta: float) -> float:
-    """The largest |N| from rest to the speed of this zeta."""
-    if material == 1.0:
-        return 0.0
-    places, N, largest = _over_speeds(material)
-    n = int(np.searchsorted(places, zeta))
-    if n == 0 or n == places.size:
-        return float(largest[min(n, places.size - 1)])
-    return float(max(largest[n], abs(np.interp(zeta, places[n - 1 : n + 1], N[n - 1 : n + 1]))))
+def _let_go(free: Free) -> str:
+    """One state that is let go, in words that one can act on."""
+    speed, time, length = (f" {word}".rstrip() for word in free.words)
+    nu, most, whole = float(free.unsteadiness), free.reach(STEADY_LIMIT), free.whole()
+    said = f"unsteadiness {nu:.2g}: "
+    if nu > STEADY_LIMIT:
+        return said + (
+            "too slow for the law of steady rolling to drive a motion (contact states and constant speed are not "
+            f"concerned); faster than {most.speed:.2g}{speed} V is right to 10 %"
+        )
+    if not np.isfinite(whole):
+        return said + "let go here it rolls for ever"
+    fine, start = free.reach(0.1 * STEADY_LIMIT), free.start()
+    said += f"let go here it rolls {whole:.4g}{length} by the law of steady rolling; V is right to "
+    said += ("1 % to the end" if not fine.speed else f"1 % down to {fine.speed:.2g}{speed}, to ") if fine.time else ""
+    if fine.speed:
+        end = f"down to {most.speed:.2g}{speed}, after {most.time:.3g}{time} and {most.left:.2g}{length} before the end"
+        said += f"10 % {end if most.speed else 'to the end'}"
+    if start.speed > _CAUGHT * float(free.u * free.speed):
+        return said + "; a contact that rested long would hold it in its imprint"
+    return said + f"; a contact that rested long would cost {start.speed:.2g}{speed} and {start.way:.2g}{length} of way"
 
 
-@lru_cache(maxsize=64)
-def _over_speeds(material: float | Prony) -> tuple[NDArray[np.float64], ...]:
-    """zeta, upward; N there; and the largest |N| from there on."""
-    shortest, longest = (material.tau[-1], material.T[0]) if isinstance(material, Prony) else (1.0 / material, 1.0)
-    count = math.ceil(_STEPS * (math.log2(longest / shortest) + _FAST_OCTAVES + _SLOW_OCTAVES))
-    places = np.append(shortest * 2.0 ** (np.arange(count) / _STEPS - _FAST_OCTAVES), 1e18 * longest)  # at last -S_E
-    N = unsteadiness(material, places)
-    return places, N, np.maximum.accumulate(abs(N)[::-1])[::-1]
-
-
-def steadiness(nu: Any) -> Assumption:
-    """Whether motions may be driven by the law of steady rolling; None where nu is not known."""
-    if nu is None:
-        return Assumption(None, None, "whether the law of steady rolling may drive a motion needs gamma")
-    most = float(np.max(nu, initial=0.0))
-    return Assumption(
-        nu <= STEADY_LIMIT, nu,
-        f"nu = {most:.2g}: a motion by the law of steady rolling "
-        + (
-            f"is off by up to some {30.0 * most:.2g} % of the first speed"
-            if most <= NOT_THIS_MOTION
-            else "is not that of this cylinder, which rocks in its own imprint; contact states are not concerned"
-        ),
-    )  # fmt: skip
+def _rolled(free: Free, most: float, share: float) -> str:
+    """A motion, or the worst of several, from its fastest speed."""
+    if most <= STEADY_LIMIT:
+        return f"unsteadiness up to {most:.2g}: by the law of steady rolling V is right to 10 % all along"
+    speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.words[0]}".rstrip()
+    below = "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the way lies below"
+    return f"unsteadiness up to {most:.2g}: by the law of steady rolling V is right to 10 % down to {speed}{below}"
 
 
 def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:

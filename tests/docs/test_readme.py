@@ -38,7 +38,7 @@ def test_readme_block_runs(capsys):
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "slides for 0.23 s, then rolls to 25.2 m" in printed
-    assert "nu = 0.0079" in printed
+    assert "unsteadiness 2.4e-05: let go here" in printed
 
 
 @pytest.mark.parametrize("page", ["index", "may_i"])

@@ -108,7 +108,6 @@ def ensemble(
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
-    look(scene, V0, omega0)
     ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
     refuse_rest(threshold, ready)
     scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
@@ -118,6 +117,7 @@ def ensemble(
         what = "motions are driven, or bodies differ" if alike else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays, count = _inputs(scene, (V0, omega0), drive, ready)
+    look(scene, arrays["V0"], arrays["omega0"], driven=drive.acts)
     flat = [flattened(array, (count,)) for array in arrays.values()]
     # without a drive nothing acts
     found = names if drive.acts else tuple(name for name in names if name not in ACTING)

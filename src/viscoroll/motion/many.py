@@ -15,7 +15,7 @@ from ..materials.prony_array import MaterialArray
 from ..results import Row, Shown, unit_of
 from ..scene import Scene
 from ..symbols import attributes
-from ..validity import Validity
+from ..validity import Steadiness, Validity
 from .driven import Drive
 
 if TYPE_CHECKING:
@@ -114,7 +114,8 @@ class Ensemble(Shown):
     def validity(self) -> Validity:
         """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
 
-        See :meth:`Scene.validity`; arrays over the motions, of more than 256 over that many of them, evenly picked.
+        ``steady`` looks at all speeds on the way.  See :meth:`Scene.validity`; arrays over the motions, of more than
+        256 over that many of them, evenly picked.
         """
         some, V, omega = self.judged()
         parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
@@ -122,7 +123,14 @@ class Ensemble(Shown):
             del parts["alpha"]
             parts["material"] = self.scene.material[some]
         scene = self.scene.replace(**parts) if parts else self.scene
-        return scene.validity(V, omega=omega)
+        found = scene.validity(V, omega=omega)
+        if self.V is None or not some.size:
+            return found
+        speeds = np.vstack([self.V0[some], self.V[some].T])
+        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)
+        x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(some.size), self.x[some].T])
+        steady = Steadiness.along(scene.freely(np.nan_to_num(speeds)), rolls, x, ends=True)
+        return found._replace(steady=steady)
 
     def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
         """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""

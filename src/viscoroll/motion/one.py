@@ -14,7 +14,7 @@ from ..results import Row, Shown, Values, unit_of
 from ..rolling_contact import contact
 from ..scene import Scene
 from ..symbols import attributes
-from ..validity import Validity
+from ..validity import Steadiness, Validity
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS, Drive
 from .rolling import Inputs, rolled
@@ -125,10 +125,14 @@ class Motion(Shown):
     def validity(self) -> Validity:
         """Which assumptions of the model the motion strains, at each output time that it reached.
 
-        See :meth:`Scene.validity`; ``creep`` is that of the motion, ``steady`` takes in all speeds from 0 to V.
+        See :meth:`Scene.validity`; ``creep`` is that of the motion, and ``steady`` looks at its speeds so far.
         """
         reached = self.regime >= 0
-        return self.scene.validity(self.V[reached], omega=self.omega[reached])
+        found = self.scene.validity(self.V[reached], omega=self.omega[reached])
+        if not reached.any():
+            return found
+        free, rolls = self.scene.freely(self.V[reached]), self.regime[reached] > 0
+        return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
 
     def _card(self) -> tuple[str, list[Row]]:
         return card_of(self, attributes)

@@ -107,7 +107,6 @@ def roll(
     checked_scene(scene, "roll", moves=True)
     times = output_times(t)
     drive = Drive(force, torque, slope, brake, omega, V)
-    look(scene, V0, omega0)
     given = [0.0 if value is None else value for value in (V0, omega0)] if drive.prescribes else [V0, omega0]
     speeds = start_speeds(*given)
     refuse_many("the scene", scene.shape)
@@ -115,6 +114,7 @@ def roll(
         refuse_many(name, value.shape)
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
     V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
+    look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts)
     inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive)
     if np.ndim(t) == 0:
         times = _step_times(inputs)

@@ -1,16 +1,22 @@
-"""A word, once a process, where an assumption of the model fails grossly for what is rolled."""
+"""A word where an assumption of the model fails grossly for what is rolled; Python's registry decides on repeats."""
 
 from __future__ import annotations
 
 import warnings
+from bisect import bisect
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import ModelWarning
 from ..kernels.compile.notice import is_worker
-from ..scene import Scene
-from ..validity import NOT_THIS_MOTION, WAVE_LIMIT
+from ..materials.prony import Prony
+from ..materials.prony_array import MaterialArray
+from ..scene import PARAMETERS, Scene
+from ..steadiness import Free, curve
+from ..validity import STEADY_LIMIT
 
 #: kappa at which the contact at rest reaches half a radius from the axis
 _LEAST_KAPPA = 1.0
@@ -18,82 +24,91 @@ _LEAST_KAPPA = 1.0
 _CREEP, _SHARE = 1.0, 0.1
 #: of kappa M over 1 - 1/alpha at any speed, to a fifth, for one relaxation time (docs/theory.md)
 _LARGEST_M = 0.25
-#: calls that are looked at: a look takes some 30 microseconds, and the first call of a process a second
-_CALLS = 32
+#: of a motion that is let go: its first unsteadiness, and the share of its way where V is not right to 10 %
+_UNSTEADY, _SLOW_PART = 0.4, 0.1
+#: (kappa V)^2 over gamma (1 - 1/alpha)/(1 + j) from which on neither can be, of any material: (kappa V)^2 |N| is at
+#: most 1.35/16 of 1 - 1/alpha (docs/may_i.md), and the way grows at least as V
+_PLAIN = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
+#: motions of an ensemble that are looked at
+_LOOKED_AT = 256
 
-_looked = 0
 
+def look(scene: Scene, V0: Any, omega0: Any, *, driven: bool) -> None:
+    """Warn where the model is grossly at fault for motions from these starts, checked ones; in workers never.
 
-def look(scene: Scene, V0: Any, omega0: Any, *, waves: float = 0.0) -> None:
-    """Warn of the first motions that are rolled where the model is grossly at fault; in workers never.
-
-    All of it is estimated from the scene and the start without a kernel; ``validity`` tells more.
-
-    waves : the largest speed over that of shear waves, where it is known.
+    Of one motion, two floats, it takes a microsecond or two; of many it looks at some, evenly picked.
     """
-    global _looked
-    if not is_looking():
+    say(_faults(scene, V0, omega0, driven) if type(V0) is float else _faults_of_many(scene, V0, omega0, driven))
+
+
+def say(faults: list[str]) -> None:
+    """Warn of these.  No numbers: the same words are said once for each line of a program."""
+    if not faults or is_worker():
         return
-    _looked += 1
-    faults = [*_of_scene(scene), *_of_start(scene, V0, omega0)]
-    if waves > 1.0:
-        faults.append(f"speeds are {waves:.2g} times those of shear waves (up to {WAVE_LIMIT:g} counts as slow)")
-    if faults:
-        _looked = _CALLS
-        text = "the model is not good for this motion: " + "; ".join(faults) + ".  See validity() of scene or result"
-        warnings.warn(text, ModelWarning, stacklevel=outside())
+    text = "the model is not good for this motion: " + "; ".join(faults) + ".  See validity() of scene or result"
+    warnings.warn(text, ModelWarning, stacklevel=outside())
 
 
-def is_looking() -> bool:
-    """Whether the next motion is looked at."""
-    return _looked < _CALLS and not is_worker()
+def _faults(scene: Scene, V0: float, omega0: float, driven: bool) -> list[str]:
+    """Of one motion."""
+    alpha, kappa, mu, gamma, j = scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j
+    found: list[str] = []
+    part = 1.0 - 1.0 / alpha
+    if kappa < _LEAST_KAPPA:
+        found.append("kappa = R/l0 is below 1: the contact at rest is longer than the radius")
+    if abs(omega0 - V0) >= _CREEP * abs(V0) and _LARGEST_M * part > _SHARE * mu * kappa:
+        fastest = max(abs(V0), abs(omega0))
+        if fastest > 0.0 and (scene.material is not None or part * fastest > _SHARE * mu):
+            found.append(
+                "it starts in full slip at a creep of order 1, where cylinder and half-space pass the contact at "
+                "speeds of their own and the rolling moment takes one for both"
+            )
+    # the speed at the start, or that at which it comes to roll
+    u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
+    if not driven and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
+        material, unit = scene.in_own_time()
+        places, beyond = _unsteady_starts(material, gamma * unit * unit / (1.0 + j))
+        if beyond[max(bisect(places, u * unit) - 1, 0)]:
+            found.append(
+                "it is too slow for the law of steady rolling, whose V is off by more than 10 % over a good part of "
+                "the way"
+            )
+    return found
 
 
-def _of_scene(scene: Scene) -> list[str]:
-    """nu and kappa."""
-    least = np.min(scene.kappa, initial=np.inf)
-    faults = []
-    # max|N| over all speeds is at least that of slow rolling, sum E tau^2
-    nu = float(np.max(scene.gamma * _slow_N(scene) / (1.0 + np.asarray(scene.j)), initial=0.0))
-    if nu > NOT_THIS_MOTION:
-        faults.append(
-            f"nu = gamma max|N|/(1 + j) is {nu:.2g} or more, and beyond {NOT_THIS_MOTION:g} the law of steady rolling "
-            "does not give the motion of a cylinder, which rocks in its own imprint"
-        )
-    if least < _LEAST_KAPPA:
-        faults.append(f"kappa = R/l0 = {least:.2g}: the contact at rest is longer than the radius")
-    return faults
-
-
-def _slow_N(scene: Scene) -> Any:
-    """|N| of slow rolling, sum E_i tau_i^2 over T_ref^2; of one relaxation time (alpha - 1)/alpha^2."""
-    if scene.series is not None:
-        return scene.series.second_moments[0]
-    alpha = np.asarray(scene.alpha)
-    return (alpha - 1.0) / alpha**2 if scene.material is None else np.zeros(alpha.shape)
-
-
-def _of_start(scene: Scene, V0: Any, omega0: Any) -> list[str]:
-    """A creep of order 1 in full slip, where M, which takes one speed for both bodies, is no small part of mu."""
-    if V0 is None or omega0 is None:
+def _faults_of_many(scene: Scene, V0: NDArray[np.float64], omega0: NDArray[np.float64], driven: bool) -> list[str]:
+    """Of the motions that are worst by bounds, among some."""
+    arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
+    count = max((array.size for array in arrays if array.ndim), default=1)
+    some = np.linspace(0, count - 1, min(count, _LOOKED_AT)).astype(np.int64)
+    picked = np.array([np.broadcast_to(array, (count,))[some] for array in arrays])
+    if not some.size:
         return []
-    V, omega = np.broadcast_arrays(np.asarray(V0, np.float64), np.asarray(omega0, np.float64))
-    fastest = np.maximum(np.abs(V), np.abs(omega))
-    slips = np.abs(omega - V) >= _CREEP * np.abs(V)
-    part = 1.0 - 1.0 / np.asarray(scene.alpha)
-    with np.errstate(over="ignore", invalid="ignore"):
-        M = (
-            np.minimum(part * fastest, _LARGEST_M * part / scene.kappa)
-            if scene.material is None
-            else _LARGEST_M * (part / scene.kappa)
-        )
-        doubtful = slips & (fastest > 0.0) & (M > _SHARE * np.asarray(scene.mu))
-    if not np.any(doubtful):
-        return []
-    return [
-        "it starts in full slip at a creep of order 1, where cylinder and half-space pass the contact at speeds of "
-        "their own and the rolling moment takes one for both"
-    ]
+    alpha, kappa, mu, gamma, j, V0, omega0 = picked
+    part = 1.0 - 1.0 / alpha
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        u = kappa * np.maximum(np.abs(V0), np.abs(V0 + j * omega0) / (1.0 + j))
+        unsteady = np.where(u > 0.0, gamma * part / (1.0 + j) / u**2, 0.0)
+        slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
+    found: list[str] = []
+    for worst in {int(np.argmax(strain)) for strain in (-kappa, slips, unsteady)}:
+        material = scene.material[some[worst]] if isinstance(scene.material, MaterialArray) else scene.material
+        own = dict(zip((*PARAMETERS, "V0", "omega0"), picked[:, worst].tolist(), strict=True))
+        start = own.pop("V0"), own.pop("omega0")
+        one = Scene(**(own if material is None else own | {"alpha": None, "material": material}))
+        found += _faults(one, *start, driven)
+    return list(dict.fromkeys(found))
+
+
+@lru_cache(maxsize=64)
+def _unsteady_starts(material: float | Prony, g: float) -> tuple[list[float], list[bool]]:
+    """kappa V, upward, and whether motions that are let go there are beyond the law of steady rolling."""
+    known = curve(material)
+    if known is None:
+        return [], []
+    free = Free([material], np.zeros((), np.int64), np.exp(known.s), np.asarray(g), 1.0, 1.0, 1.0)
+    slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.whole()
+    return np.exp(known.s).tolist(), ((free.unsteadiness > _UNSTEADY) | slow).tolist()
 
 
 def outside() -> int:

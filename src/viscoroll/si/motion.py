@@ -18,14 +18,14 @@ from ..motion.many import Ensemble
 from ..motion.many import card_of as ensemble_card
 from ..motion.one import Motion, Switch, card_of
 from ..motion.single import roll
-from ..motion.warned import is_looking, look
+from ..motion.warned import say
 from ..results import Row, Shown, Values
 from ..scene import Scene
 from ..typed import Numbers
-from ..validity import Validity
+from ..validity import WAVE_LIMIT, Validity
 from .contact import in_si as contact_in_si
 from .units import Cylinder, Units, attributes, in_words, over, to_si, units_of
-from .validity import slowness
+from .validity import steadily
 from .warned import look_at_motion
 
 if TYPE_CHECKING:
@@ -133,7 +133,8 @@ class MotionSI(Shown):
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motion strains, at each output time, as :meth:`Motion.validity`."""
-        return self.cylinder.validity(self.V[self.regime >= 0], omega=self.omega[self.regime >= 0])
+        found = self.cylinder.validity(self.V[self.regime >= 0], omega=self.omega[self.regime >= 0])
+        return found._replace(steady=steadily(self.cylinder, self.motion.validity().steady))
 
     def at(self, t: Numbers) -> MotionSI:
         """The same motion at other times within [0, end], s, as :meth:`Motion.at`."""
@@ -192,7 +193,8 @@ class EnsembleSI(Shown):
         cylinders, T = self.cylinder._some(some, len(self)), self.cylinder.T_ref
         own = cylinders.validity(V * cylinders.R / T, omega=omega / T)
         names = ("quasistatic", "bodies", "measured", "thick", "plane")
-        return found._replace(**{name: getattr(own, name) for name in names})
+        others = {name: getattr(own, name) for name in names}
+        return found._replace(**others, steady=steadily(cylinders, found.steady))
 
     def messages(self) -> dict[str, int]:
         """How many motions ended in which way, in words."""
@@ -243,7 +245,7 @@ def roll_of(
         )
     )
     rest = None if rest is None else over("V", number("rest", rest, low=0.0, strict=True), one)
-    _look_at_waves(cylinder, scene, start, (V0, omega0))
+    _look_at_waves(cylinder, start)
     try:
         motion = roll(
             scene, V0, omega0, (times if np.ndim(t) else times[0]) / one.T, rtol, rest=rest, max_steps=max_steps,
@@ -255,15 +257,18 @@ def roll_of(
     return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
 
 
-def _look_at_waves(cylinder: Cylinder, scene: Scene, start: tuple[Any, Any], bare: tuple[Any, Any]) -> None:
-    """As ``look``, with the start's speeds over that of shear waves where a density is known."""
-    if not is_looking():
+def _look_at_waves(cylinder: Cylinder, start: tuple[Any, Any]) -> None:
+    """Warn of starts beyond the speed of shear waves where a density is known."""
+    wave = cylinder._wave_speed
+    if wave is None:
         return
-    V, omega = (0.0 if speed is None else np.abs(np.asarray(speed, np.float64)) for speed in start)
-    ratio = slowness(cylinder, np.maximum(V, omega * cylinder.R), None)[0]
-    fastest = 0.0 if ratio is None else float(np.max(ratio, initial=0.0))
-    if fastest > 1.0:  # else ``roll`` and ``ensemble`` look themselves
-        look(scene, *bare, waves=fastest)
+    V, omega = (0.0 if speed is None else speed for speed in start)
+    if type(V) is type(omega) is type(cylinder.R) is float:
+        fastest = max(abs(V), abs(omega) * cylinder.R)
+    else:
+        fastest = float(np.max(np.maximum(np.abs(V), np.abs(omega) * cylinder.R), initial=0.0))
+    if fastest > wave:
+        say([f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"])
 
 
 def in_si(cylinder: Cylinder, drive: Drive, motion: Motion, times: NDArray[np.float64]) -> MotionSI:
@@ -286,7 +291,7 @@ def ensemble_of(
     if rest is not None and np.ndim(one.speed):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     rest = None if rest is None else over("V", number("rest", rest, low=0.0, strict=True), one)
-    _look_at_waves(cylinder, scene, start, (V0, omega0))
+    _look_at_waves(cylinder, start)
     if options.get("speed") is not None:
         options["speed"] = over("V", number("speed", options["speed"], low=0.0, strict=True), one)
     try:

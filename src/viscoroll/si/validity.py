@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..checks import checked, number
 from ..materials.material import Material
 from ..typed import Numbers
-from ..validity import Assumption, Validity, coupling, inertia, measurement, passage, thickness
+from ..validity import Assumption, Steadiness, Validity, coupling, inertia, measurement, passage, thickness
 from .units import Cylinder
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes
@@ -31,12 +31,20 @@ def validity_of(cylinder: Cylinder, V: Numbers, density: float | None, omega: Nu
     length = strained.lam * cylinder.l0
     long = "a long cylinder, or one held between walls (plane strain)"
     return found._replace(
+        steady=steadily(cylinder, found.steady),
         quasistatic=inertia(*slowness(cylinder, fastest, density)),
         bodies=coupling(*constants, like=cylinder._papers or cylinder.pair.like),
         measured=measurement(passage(speed, length), cylinder._measured),
         thick=thickness(length, {name: body.thickness for name, body in deforming(cylinder).items()}),
         plane=Assumption(None, None, long if cylinder.plane == "strain" else "a thin disc (plane stress)"),
     )
+
+
+def steadily(cylinder: Cylinder, found: Assumption) -> Assumption:
+    """The steadiness of a cylinder's scene in SI units."""
+    if not isinstance(found, Steadiness):
+        return found
+    return found.scaled(cylinder.R / cylinder.T_ref, cylinder.T_ref, cylinder.R, ("m/s", "s", "m"))
 
 
 def deforming(cylinder: Cylinder) -> dict[str, Material]:

@@ -11,7 +11,8 @@ from ..errors import ModelWarning
 from ..kernels.compile.notice import is_worker
 from ..materials.measured import Measured
 from ..motion.warned import outside
-from ..validity import measurement, passage, strained
+from ..steadiness import rolling
+from ..validity import measurement, passage
 from .units import Cylinder
 
 #: said once a process for each
@@ -39,7 +40,7 @@ def look(cylinder: Cylinder, V: Any, extent: tuple[float, float] | None = None) 
     _told.update(cylinder._measured.values())
     material, unit = cylinder.scene().in_own_time()
     rates = np.array([slowest, fastest])
-    seen = passage(rates, strained(material, 1.0, rates * unit * cylinder.T_ref).lam)
+    seen = passage(rates, rolling(material, rates * unit * cylinder.T_ref, ("lam",))[0])
     text = f"the material is not known here as measured: {measurement(seen, cylinder._measured).sentence}.  M and the "
     text += "contact length are a guess of the fit then; validity(V).measured tells where"
     warnings.warn(text, ModelWarning, stacklevel=outside())

@@ -1,0 +1,253 @@
+"""How far the law of steady rolling drives a motion: the unsteadiness, speeds down to which it is small, warnings."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import viscoroll as vr
+from viscoroll.motion import warned
+
+#: a fit of docs/examples/dma.csv, and a roller on it as of docs/may_i.md: 0.1 m, T_ref 3 s
+DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
+#: 1 m/s is 30 R/T_ref
+ROLLER = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=9.81 * 3.0**2 / 0.1, j=0.5)
+ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
+UNLIKE = ROLLER.replace(material=vr.Bodies(DMA, vr.Prony([4.0], [3e-3]), 0.3))
+
+
+def law(scene, V):
+    """gamma N/(1 + j) and gamma M/(1 + j)."""
+    c = vr.contact(scene, V, delta=0.0, fields=("N", "M"))
+    g = scene.gamma / (1.0 + scene.j)
+    return g * c.N, g * c.M
+
+
+def over(scene, low, high, f):
+    """Integral of f(V, braking) from one speed to another, over ln V."""
+    ends = np.linspace(np.log(low), np.log(high), 25)
+    parts = (
+        quad(lambda s: np.exp(s) * f(np.exp(s), law(scene, np.exp(s))[1]), a, b, epsrel=1e-10)[0]
+        for a, b in pairwise(ends)
+    )
+    return sum(parts)
+
+
+@pytest.mark.parametrize(("scene", "V"), [(ROLLER, 30.0), (ROLLER, 6.0), (ONE, 3.0), (UNLIKE, 20.0)])
+def test_by_quadrature_of_N_and_M(scene, V):
+    """The unsteadiness, the speeds at which it is 1 % and 10 %, time and way until there and the way left."""
+    found = scene.validity(-V).steady
+    assert close(found.value, abs(law(scene, V)[0]), rel=tol.STEADINESS)
+    rest = over(scene, 1e-9, V, lambda V, brake: V / brake)
+    assert close(found.whole, rest, rel=tol.STEADINESS)
+    for reach, level in ((found.one_percent, 0.01), (found.ten_percent, 0.1)):
+        grid = np.geomspace(1e-4 * V, V, 2000)
+        top = grid[np.flatnonzero(abs(law(scene, grid)[0]) >= level)[-1]]
+        speed = brentq(lambda V, level=level: law(scene, V)[0] - level, top, 1.01 * top, rtol=1e-14)
+        assert close(reach.speed, speed, rel=tol.STEADINESS)
+        assert close(reach.time, over(scene, speed, V, lambda V, brake: 1.0 / brake), rel=tol.STEADINESS)
+        assert close(reach.way, over(scene, speed, V, lambda V, brake: V / brake), rel=tol.STEADINESS)
+        assert close(reach.way + reach.left, rest, rel=tol.STEADINESS)
+    assert close(found.share, found.ten_percent.left / rest, rel=tol.STEADINESS)
+
+
+def test_by_the_motion_itself():
+    """It passes that speed at that time and place."""
+    found = ROLLER.validity(30.0).steady.ten_percent
+    m = vr.roll(ROLLER, 30.0, 30.0, [found.time], rtol=1e-10)
+    assert close((m.V[0], m.x[0]), (found.speed, found.way), rel=tol.STEADINESS_MOTION)
+
+
+def test_the_numbers_that_were_measured():
+    """That roller from 1 m/s, as local_steadiness says: right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s."""
+    found = ROLLER.validity(30.0).steady.scaled(1.0 / 30.0, 3.0, 0.1, ("m/s", "s", "m"))
+    assert close(found.value, 2.6e-4, rel=0.02)
+    assert close(found.whole, 14.04, rel=1e-3)
+    assert close(found.one_percent.speed, 0.14, rel=0.03)
+    assert close(found.ten_percent.speed, 0.039, rel=0.03)
+    assert close(found.start.way, 0.062, rel=0.01)
+    words = "14.03 m .* 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s, after 25.5 s .* 0.002 m/s and 0.062 m of way"
+    assert re.search(words, found.sentence)
+
+
+@pytest.mark.parametrize("V", [30.0, 5.0])
+def test_a_start_from_rest_costs_an_energy(V):
+    """W in closed form; the speed that is left, and the way from it."""
+    J, T, u, g = DMA.J, DMA.T, ROLLER.kappa * V, ROLLER.gamma / 1.5
+    found = ROLLER.validity(V).steady
+    L = np.minimum(2.0 * u * T, 4.84 * max(2.0 * ROLLER.kappa * found.whole, 20.0))
+    W = (0.25 * J * np.log(1.0 + (0.681 * L) ** 2)).sum() - np.log(DMA.alpha) / (8.0 * DMA.alpha)
+    left = np.sqrt(V * V - 0.5 * g * W / ROLLER.kappa**2)
+    assert close(found.start.speed, V - left, rel=tol.STEADINESS)
+    assert close(found.start.way, found.whole - ROLLER.validity(left).steady.whole, rel=tol.STEADINESS)
+
+
+def test_slow_starts():
+    """Caught in its imprint from long rest; too slow at all, with the speed from which on it is not; at rest."""
+    found = ROLLER.validity(1.3).steady  # 0.043 m/s
+    assert "would hold it in its imprint" in found.sentence
+    slow = ROLLER.validity(1.0).steady
+    assert not slow.holds
+    assert slow.ten_percent.way == slow.ten_percent.time == 0.0
+    assert slow.share == 1.0
+    assert close(slow.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, rel=tol.STEADINESS)
+    assert "faster than 1.2 V is right to 10 %" in slow.sentence
+    assert ROLLER.validity([0.0, 0.0]).steady[:2] == (None, None)
+    assert ROLLER.validity([0.0, 30.0]).steady.value[0] == 0.0
+
+
+def test_the_paper_s_cylinder_is_slow_at_nine_millimetres_a_second():
+    """And not at 1 m/s."""
+    slow, fast = (vr.PAPER_CYLINDER.validity(V).steady for V in (0.1 / 10.7, 1.0))
+    assert close(slow.value, 57.0, rel=0.02)
+    assert fast.holds
+
+
+def test_no_relaxation_time_bounds_it():
+    """Of any material |N| (kappa V)^2 <= 1.35/16 (1 - 1/alpha); modes that are slower change nothing much."""
+    draw = np.random.default_rng(1)
+    some = [vr.Prony(10.0 ** draw.uniform(-2, 2, 4), 10.0 ** draw.uniform(-6, 2, 4)) for _ in range(20)]
+    for material in (*(vr.Prony([alpha - 1.0], [1.0 / alpha]) for alpha in (1.05, 11.0, 100.0, 1e4)), *some):
+        V = np.geomspace(1e-3 / material.T[0], 1e3 / material.T[-1], 300)
+        N = abs(law(vr.Scene(material=material, kappa=1.0, mu=0.5, gamma=1.5), V)[0])
+        assert (N * V * V).max() <= tol.STEADINESS_BOUND * (1.0 - 1.0 / material.alpha)
+    years = vr.Prony([0.1, 0.1, *DMA.E], [1e4, 1e2, *DMA.tau])
+    speeds = [ROLLER.replace(material=each).validity(30.0).steady.ten_percent.speed for each in (DMA, years)]
+    assert close(speeds[1], speeds[0], rel=0.1)
+
+
+def test_each_of_many_is_as_alone():
+    """Speeds, gammas, alphas, a material each, some of them elastic; a million speeds."""
+    V, gamma = np.array([3.0, 0.3, 30.0]), np.array([10.0, 500.0, 2.0])
+    series = vr.Prony(np.array([[1.0, 2.0], [3.0, 0.5], [0.0, 0.0]]), [1.0, 1e-2])
+    pairs = vr.Bodies(series, DMA, np.array([0.2, 0.5, 0.5]))
+    laws = [{"alpha": np.array([1.0, 11.0, 2.0])}, {"alpha": 11.0}, {"material": series}, {"material": pairs}]
+    for given in laws:
+        found = vr.Scene(kappa=20.0, mu=0.3, gamma=gamma, **given).validity(V)
+        for n in range(3):
+            own = {name: value if np.isscalar(value) else value[n] for name, value in given.items()}
+            one = vr.Scene(kappa=20.0, mu=0.3, gamma=gamma[n], **own).validity(V[n])
+            assert close(found.steady.value[n], one.steady.value, rel=tol.STEADINESS, scale=1e-9)
+            assert close(found.small_contact.value[n], one.small_contact.value, rel=tol.SCENE)
+            for name in ("one_percent", "ten_percent", "start"):
+                for some, alone in zip(getattr(found.steady, name), getattr(one.steady, name), strict=True):
+                    assert close(some[n], alone, rel=tol.STEADINESS) or some[n] == alone == np.inf
+    V = np.geomspace(1.0, 1e3, 100_000)
+    many = ROLLER.validity(V).steady
+    assert np.array_equal(many.holds, many.ten_percent.speed[0] <= V)
+
+
+def test_beyond_all_bounds():
+    """No NaN, no warning of numpy."""
+    found = ONE.validity([5e-324, 1e-300, 1e20, 1e100, 1e150, 1e300]).steady
+    for each in (found.value, found.whole, found.share, *found.one_percent, *found.ten_percent, *found.start):
+        assert not np.isnan(each).any()
+    assert found.share[-1] == 0.0
+    assert vr.Scene(1.0, 29.1, 0.2, 1e9).validity(0.1).steady.value == 0.0
+    assert "rolls for ever" in vr.Scene(1.0, 29.1, 0.2, 1e9).validity(0.1).steady.sentence
+
+
+def test_along_a_motion():
+    """The largest so far of what rolls, and the part of the way that lies below the speed where V is right to 10 %."""
+    t = np.linspace(0.0, 20.0, 4001)
+    m, thrown = (vr.roll(ROLLER, 30.0, omega0, t) for omega0 in (30.0, 0.0))
+    found = m.validity().steady
+    assert close(found.value, np.maximum.accumulate(abs(law(ROLLER, m.V)[0])), rel=tol.STEADINESS)
+    assert close(found.share, ROLLER.validity(30.0).steady.share, rel=0.02)
+    assert close(found.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, rel=tol.STEADINESS)
+    assert vr.roll(ROLLER, 30.0, 30.0, t[:200]).validity().steady.holds.all()
+    slides = thrown.validity().steady.value[t < thrown.onset_time]
+    assert slides.size
+    assert not slides.any()
+    many = vr.ensemble(ROLLER, [30.0, 30.0], [30.0, 0.0], t).validity().steady
+    alone = [each.validity().steady for each in (m, thrown)]
+    assert close(many.value, [each.value[-1] for each in alone], rel=tol.STEADINESS)
+    assert close(many.share, [each.share for each in alone], rel=1e-3, scale=1.0)
+    assert "0.12 % of the way lies below" in found.sentence
+
+
+def test_along_a_motion_in_SI_units():
+    roller = vr.PAPER_CYLINDER
+    m, e = roller.roll(1.0, 10.0, [0.0, 50.0, 90.0]), roller.ensemble([1.0, 2.0], [10.0, 20.0], [50.0, 1e4])
+    for found in (m.validity().steady, e.validity().steady):
+        assert close(found.ten_percent.speed, roller.validity(1.0).steady.ten_percent.speed, rel=tol.STEADINESS)
+        assert "down to 0.21 m/s" in found.sentence
+
+
+# --- warnings of roll and ensemble ---
+
+
+@pytest.fixture
+def told():
+    """What a call warns of."""
+
+    def of(call) -> list[str]:
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            call()
+        assert all(issubclass(each.category, vr.ModelWarning) for each in found)
+        assert all(each.filename == __file__ for each in found)
+        return [str(each.message).split(": ", 1)[1].split(".  See")[0] for each in found]
+
+    return of
+
+
+SLOW = "it is too slow for the law of steady rolling, whose V is off by more than 10 % over a good part of the way"
+UNSURE = ROLLER.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA.E), DMA.tau))
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: vr.roll(ROLLER, 30.0, 30.0, 1.0), []),  # 1 m/s
+        (lambda: vr.roll(ROLLER, 9.0, 0.0, 1.0), []),
+        (lambda: vr.roll(ROLLER, 3.0, 3.0, 1.0), [SLOW]),  # 0.1 m/s: 16 % of the way lie below 0.04 m/s
+        (lambda: vr.roll(ROLLER, 0.0, 9.0, 1.0), [SLOW]),  # rolls at a third of that
+        (lambda: vr.roll(ROLLER, 0.0, 0.0, 1.0), []),
+        (lambda: vr.roll(ROLLER, 3.0, 3.0, 1.0, force=0.1), []),
+        (lambda: vr.ensemble(ROLLER, [30.0, 20.0], 30.0, 1.0), []),
+        (lambda: vr.ensemble(ROLLER, [30.0, 3.0], [30.0, 3.0], 1.0), [SLOW]),
+        (lambda: vr.ensemble(UNSURE, 30.0, 30.0, 1.0), []),
+        (lambda: vr.ensemble(UNSURE, 3.0, 3.0, 1.0), [SLOW]),
+        (lambda: vr.ensemble(ONE.replace(alpha=[2.0, 11.0]), 1.0, 1.0, 1.0), [SLOW]),
+        (lambda: vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, 1e-3), [SLOW]),
+        (lambda: vr.RUBBER_CYLINDER.roll(0.01, 0.1, 1.0), []),
+        (lambda: vr.roll(vr.Scene(11.0, 0.5, 0.2, 0.1), 9.0, 9.0, 1e-3), ["kappa = R/l0 is below 1"]),
+        (lambda: vr.roll(vr.Scene(11.0, 10.0, 0.02, 0.1), 0.5, -0.5, 1e-3), ["it starts in full slip at a creep"]),
+        (lambda: vr.RUBBER_CYLINDER.roll(100.0, 1000.0, 0.01), ["speeds are beyond those of shear waves"]),
+        (lambda: vr.RUBBER_CYLINDER.ensemble([1.0, 99.0], 10.0, 0.01), ["speeds are beyond those of shear waves"]),
+    ],
+)
+def test_a_word_where_it_matters(told, call, said):
+    found = told(call)
+    assert len(found) == len(said)
+    assert all(one.startswith(word) for one, word in zip(found, said, strict=True))
+
+
+def test_the_thousandth_call_is_looked_at_as_the_first(told):
+    for _ in range(100):
+        assert told(lambda: vr.roll(ROLLER, 30.0, 30.0, [0.01])) == []
+    for V in (3.0, 2.9):
+        assert told(lambda V=V: vr.roll(ROLLER, V, V, [0.01])) == [SLOW]
+
+
+def test_a_program_is_told_once_a_line():
+    """By Python's own registry, whatever the numbers."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("default")
+        for V in (3.0, 2.9, 2.8):
+            vr.roll(ROLLER, V, V, [0.01])
+    assert len(found) == 1
+
+
+def test_workers_are_quiet(told, monkeypatch):
+    monkeypatch.setattr(warned, "is_worker", lambda: True)
+    assert told(lambda: vr.roll(ROLLER, 3.0, 3.0, 1.0)) == []
