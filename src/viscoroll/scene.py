@@ -279,11 +279,3 @@ def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
     wrong = ratio[~((low <= ratio) & (ratio <= high))]
     if wrong.size:
         raise ParameterError("mu/kappa", f"{wrong.flat[0]:g}", f"in [{low:g}, {high:g}]")
-
-
-def kernel_scene(material: float | Prony, kappa: float, mu: float, j: float) -> Any:
-    """The record that the kernels of a motion take, for this thread alone."""
-    from .kernels.free import records
-    from .materials.tables import record
-
-    return records.Scene(record(material), kappa, mu, j)

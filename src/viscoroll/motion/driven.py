@@ -84,6 +84,14 @@ class Prepared(NamedTuple):
         return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), self.prescribed
 
 
+def undriven() -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """Pieces and gains of nothing that drives, and which speed is prescribed."""
+    from ..kernels.motion.load import FIRST, FUNCTIONS
+    from ..kernels.motion.records import NEITHER
+
+    return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
+
+
 def tilted(scene: Scene, slope: Any) -> tuple[Scene, Any]:
     """(The scene under the load P cos(slope), tan(slope)): force, torque, Q and M are over P cos(slope) then.
 
@@ -116,11 +124,10 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
         What is no drive (:func:`viscoroll.roll`); V and omega both prescribed, with what is then found given as well;
         a start that is not the prescribed one.
     """
-    from ..kernels.motion.load import FIRST, FUNCTIONS
     from ..kernels.motion.records import NEITHER, OMEGA, SPEED
 
     if not drive.acts:
-        return Prepared(np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER, scene, V0, omega0, 0.0)
+        return Prepared(*undriven(), scene, V0, omega0, 0.0)
     scene, tangent = tilted(scene, drive.slope)
     if drive.V is not None and drive.omega is not None:
         raise one_of("V", "omega", both=True)

@@ -1,1 +1,0 @@
-"""Eq. (22): one motion through every change of regime, and many."""
