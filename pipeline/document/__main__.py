@@ -22,7 +22,7 @@ from viscoroll.files import write_text
 from ..results import RESULTS, Results
 from ..stage import ROOT, told
 from ..stamps import SHORT, kernels_digest, stamps
-from . import bench, ensembles, identification, symbols, tables
+from . import bench, ensembles, identification, symbols, tables, unsteady
 
 #: who measures what a block shows
 STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
@@ -42,6 +42,9 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     },
     "prove": {"proofs": tables.proofs},
     "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},
+    "prove.unsteady": {
+        "unsteady_gamma": unsteady.over_gamma, "unsteady": unsteady.errors, "unsteady_ways": unsteady.ways,
+    },
     "torture": {"torture": tables.torture},
     "bench": {
         "bench_peers": bench.peers, "bench_all": bench.headline, "bench_fixed_scene": bench.fixed_scene,
