@@ -8,7 +8,6 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.kernels.free.full_slip import HOLDS
 from viscoroll.validation.direct_motion import roll_direct
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -71,7 +70,7 @@ def test_against_the_printed_equations(name):
     onset = vr.roll(scene, V0, omega0, [1.0], rtol=1e-8).onset_time
     before = vr.roll(scene, V0, omega0, [onset * (1.0 - 1e-12)], rtol=1e-8)
     star = vr.contact(scene, before.V[0], delta=0.0, fields="delta_star").delta_star
-    assert close(abs(before.omega[0] / before.V[0] - 1.0), star, rel=1e-6)
+    assert close(abs(before.omega[0] / before.V[0] - 1.0), star, rel=1e-8, scale=1.0)
     for rtol in (1e-4, 1e-8):
         many = vr.roll(scene, V0, omega0, np.linspace(0.0, 1.5 * onset, 40), rtol=rtol)
         one = vr.roll(scene, V0, omega0, [1.5 * onset], rtol=rtol)
@@ -96,7 +95,7 @@ def test_a_held_cylinder_takes_no_steps(spin):
     scene = PAPER.replace(mu=0.005)
     motion = vr.roll(scene, 0.0, spin, [spin * scene.j / (4.0 * scene.gamma * scene.mu)], rtol=1e-8)
     assert motion.regime[0] == 0
-    assert motion.steps <= 20
+    assert motion.steps <= 30
     M = vr.contact(scene, motion.V[0], omega=motion.omega[0], fields="M").M
     assert close(M, 2.0 * scene.mu, rel=1e-6 if spin < 1e2 else 1e-9)
     assert close(motion.omega[0], 0.5 * spin, rel=1e-1)
@@ -140,7 +139,7 @@ def test_largest_rolling_resistance():
     alphas = np.geomspace(1.0001, 1e12, 60)
     M = np.array([vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas])
     assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
-    assert 0.3090 < M.max() < 0.3091 < 2.0 * HOLDS
+    assert 0.3090 < M.max() < 0.3091
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 3e-4, 1e-4])

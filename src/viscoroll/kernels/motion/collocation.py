@@ -48,8 +48,9 @@ def _columns(matrix: np.ndarray) -> np.ndarray:
 SLOPES = _columns(np.vstack([np.zeros(WIDE), _ALL.slopes(_INNER.exact)]))
 #: values at all nodes, less that at node 0, to what :func:`rise_at` takes
 _RISES = _columns(np.vstack([_divided(_ALL.powers()), np.zeros(WIDE)]))
-#: values at all nodes to the same of their integral
-_TO_INTEGRAL = _columns(_divided(np.vstack([np.zeros(WIDE), _ALL.powers() / np.arange(1.0, WIDE + 1.0)[:, None]])))
+#: values at all nodes, less that at node 0, to what :func:`integral_at` takes; that of node 0 is then 0
+_INTEGRALS = np.vstack([np.zeros(WIDE), _ALL.powers() / np.arange(1.0, WIDE + 1.0)[:, None]])
+_TO_INTEGRAL = _columns(np.vstack([_divided(_divided(_INTEGRALS)), np.zeros(WIDE)]))
 
 
 _ONE = np.eye(WIDE).ravel()
@@ -107,16 +108,20 @@ def rise_terms(row, nodes, to, powers):
 
 
 @kernel
-def integral_terms(row, half, nodes, to, powers):
-    """The same of the integral of the interpolant, scaled by ``half``."""
-    product(_TO_INTEGRAL, row, 0.0, nodes, to, powers)
-    for k in range(WIDE):
-        powers[to + k] *= half
+def integral_terms(row, nodes, to, powers):
+    """Coefficients for :func:`integral_at` of the interpolant of all nodes."""
+    product(_TO_INTEGRAL, row, nodes[row], nodes, to, powers)
+
+
+@kernel(inline=True)
+def integral_at(v, first, powers, row):
+    """The integral from the left end, where what is integrated is ``first``, to v = 1 + t: right beside itself."""
+    return v * (first + rise_at(v, powers, row))
 
 
 @kernel(inline=True)
 def rise_at(v, powers, row):
-    """The rise, or the integral, in this row from the left end to v = 1 + t."""
+    """The rise in this row from the left end to v = 1 + t."""
     t, total = v - 1.0, 0.0
     for k in range(WIDE - 1, -1, -1):
         total = fma(t, total, powers[row + k])

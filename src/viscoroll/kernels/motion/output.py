@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..rows.law import bodies, place, speed
-from .collocation import WIDE, integral_terms, rise_at
+from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed
 from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, V, put_path, risen
 from .rates import creep_limit, rates_at
@@ -103,13 +103,20 @@ def put_to_end(state, frame, clock, case):
 
 
 @kernel(inline=True)
+def _way(n, v, panel, work):
+    """What number ``n`` of what adds up has risen by at v."""
+    first = work.nodes[PATH + WIDE * n]
+    return 0.5 * panel.length * integral_at(v, first, work.powers, OF_PATH + WIDE * n)
+
+
+@kernel(inline=True)
 def _put(column, v, panel, frame, case):
     """One column from the interpolants of a panel."""
     nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
     state = State(nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND))
     _put_state(column, state, panel.piece, frame, case)
     for n in range(PATHS if case.asked.paths else 0):
-        way = rise_at(v, powers, OF_PATH + WIDE * n)
+        way = _way(n, v, panel, case.work)
         _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
 
 
@@ -127,7 +134,7 @@ def pass_panel(end, v, panel, frame, clock, case):
         put_path(panel, frame, case)
     if outputs or v < 2.0:
         for n in range(paths):
-            integral_terms(PATH + WIDE * n, 0.5 * panel.length, case.work.nodes, OF_PATH + WIDE * n, case.work.powers)
+            integral_terms(PATH + WIDE * n, case.work.nodes, OF_PATH + WIDE * n, case.work.powers)
     if outputs:
         while at < tau.size and (tau[at] < end or closed):
             share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
@@ -136,11 +143,7 @@ def pass_panel(end, v, panel, frame, clock, case):
     if clock.ends < case.notes.ends.size:
         case.notes.ends[clock.ends] = end / case.pace
     for n in range(paths):
-        way = (
-            rise_at(v, case.work.powers, OF_PATH + WIDE * n)
-            if v < 2.0
-            else risen(PATH + WIDE * n, panel, case.work.nodes)
-        )
+        way = _way(n, v, panel, case.work) if v < 2.0 else risen(PATH + WIDE * n, panel, case.work.nodes)
         case.work.totals[n] += frame.direction * way if n < 2 else way
     return Clock(end, at, clock.piece, clock.steps, clock.ends + 1, clock.length)
 

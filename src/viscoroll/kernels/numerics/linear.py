@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from ..compile.fma import fma
 from ..compile.jit import kernel
 
 
 @kernel(inline=True)
 def factorize(matrix, count):
-    """Two triangular factors in place of a matrix, and inverses on its diagonal, without pivoting: what that spoils, Newton's convergence shows."""
+    """Two triangular factors in place of a matrix, without pivoting: what that spoils, Newton's convergence shows."""
     for i in range(count):
         inverse = 1.0 / matrix[i, i]
-        matrix[i, i] = inverse
         for row in range(i + 1, count):
             share = matrix[row, i] * inverse
             matrix[row, i] = share
             for column in range(i + 1, count):
-                matrix[row, column] = fma(-share, matrix[i, column], matrix[row, column])
+                matrix[row, column] -= share * matrix[i, column]
 
 
 @kernel(inline=True)
@@ -25,13 +23,13 @@ def substitute(matrix, right, count):
     for row in range(1, count):
         total = right[row]
         for i in range(row):
-            total = fma(-matrix[row, i], right[i], total)
+            total -= matrix[row, i] * right[i]
         right[row] = total
     for i in range(count - 1, -1, -1):
         total = right[i]
         for column in range(i + 1, count):
-            total = fma(-matrix[i, column], right[column], total)
-        right[i] = total * matrix[i, i]
+            total -= matrix[i, column] * right[column]
+        right[i] = total / matrix[i, i]
 
 
 @kernel

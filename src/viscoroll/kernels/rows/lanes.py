@@ -77,7 +77,7 @@ class _Row:
 
 
 def _pair(orders: int) -> Callable:
-    """(table, at, t) -> values of two functions, their slopes where ``orders`` is 2, and the slopes of these where 3."""
+    """(table, at, t) -> values of two functions; their slopes where ``orders`` is 2, and slopes of these where 3."""
 
     def instructions(row: _Row, t: Any) -> list:
         square, found = row.builder.fmul(t, t), []
