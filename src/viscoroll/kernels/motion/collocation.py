@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..numerics.four import LANES, add, fused, load, multiply, spread, store
+from ..numerics.four import LANES, fused, load, multiply, spread, store
 from ..numerics.nodes import Interpolation, radau
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
@@ -53,7 +53,9 @@ _INTEGRALS = np.vstack([np.zeros(WIDE), _ALL.powers() / np.arange(1.0, WIDE + 1.
 _TO_INTEGRAL = _columns(np.vstack([_divided(_divided(_INTEGRALS)), np.zeros(WIDE)]))
 
 
+#: of every column, the number on the diagonal, and all others
 _ONE = np.eye(WIDE).ravel()
+_OTHERS = 1.0 - _ONE
 
 
 @kernel(inline=True)
@@ -86,19 +88,17 @@ def invert(matrix):
     """
     for i in range(1, WIDE):
         at = WIDE * i
-        pivot = 1.0 / matrix[at + i]
-        scale, rest = spread(pivot), spread(pivot - 1.0)
-        low, high = load(_ONE, at), load(_ONE, at + LANES)
-        a = fused(load(matrix, at), scale, multiply(rest, low))
-        b = fused(load(matrix, at + LANES), scale, multiply(rest, high))
-        low, high = add(a, low), add(b, high)
+        pivot = spread(1.0 / matrix[at + i])
+        others, rest = load(_OTHERS, at), load(_OTHERS, at + LANES)
+        low = fused(load(_ONE, at), pivot, multiply(multiply(load(matrix, at), others), pivot))
+        high = fused(load(_ONE, at + LANES), pivot, multiply(multiply(load(matrix, at + LANES), rest), pivot))
         for k in range(1, WIDE):
             if k != i:
                 less = spread(-matrix[WIDE * k + i])
-                store(matrix, WIDE * k, fused(less, low, load(matrix, WIDE * k)))
-                store(matrix, WIDE * k + LANES, fused(less, high, load(matrix, WIDE * k + LANES)))
-        store(matrix, at, a)
-        store(matrix, at + LANES, b)
+                store(matrix, WIDE * k, fused(less, low, multiply(load(matrix, WIDE * k), others)))
+                store(matrix, WIDE * k + LANES, fused(less, high, multiply(load(matrix, WIDE * k + LANES), rest)))
+        store(matrix, at, low)
+        store(matrix, at + LANES, high)
 
 
 @kernel(inline=True)
