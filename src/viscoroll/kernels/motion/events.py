@@ -116,7 +116,7 @@ def located(event, v, frame, case):
     for _ in range(_STEPS):
         speed, second = nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND)
         limit = creep_limit(speed, case.scene)
-        off = frame.spin * speed * (1.0 + limit * second)
+        off = frame.spin * (1.0 + limit * second)
         if frame.slips:
             off = frame.sigma * (second - speed) - limit * abs(speed)
         if not abs(off) < _NEAR_BY * abs(slope):

@@ -111,7 +111,11 @@ def put_events(panel, frame, case):
         if not frame.slips:
             nodes[EVENT + WIDE * KINK + i] = frame.sigma * nodes[SECOND + i] + FAINT
         if frame.spin != 0.0:
-            nodes[EVENT + WIDE * STOP + i] = frame.spin * nodes[OF_OMEGA + i]
+            omega, speed = nodes[OF_OMEGA + i], nodes[V + i]
+            # in partial slip omega vanishes with V, which is another event, and by its own
+            nodes[EVENT + WIDE * STOP + i] = frame.spin * (
+                omega if frame.slips else omega / speed if speed > 0.0 else 1.0
+            )
         if panel.rest > 0.0:
             nodes[EVENT + WIDE * SLOW + i] = nodes[SPEED + i] - panel.rest
         if frame.locked:  # of squares: smooth where what the brake takes changes its sign

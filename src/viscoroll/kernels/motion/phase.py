@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..compile.jit import kernel
@@ -54,7 +52,7 @@ _SLOWEST, _SETTLED = 1e-4, 1e-2
 @kernel(inline=True)
 def moderate_speed(scene):
     """V that divides slow from fast rolling: 1/kappa over the longest time of the material, or half of that."""
-    return math.ldexp(1.0, scene.law.marks[E0] + _ROWS_BELOW) / scene.kappa
+    return 2.0 ** (scene.law.marks[E0] + _ROWS_BELOW) / scene.kappa
 
 
 @kernel
