@@ -24,8 +24,8 @@ from viscoroll.kernels.bessel.ratios import (
     ratio_r,
 )
 from viscoroll.kernels.material.functions import generators, standard
-from viscoroll.kernels.free.partial_slip import slip_differences
 
+from ..peers.reduction import slip_differences
 from ..timing import nanoseconds, rounds
 from ..truth import contact_precise
 from .jit import compiled

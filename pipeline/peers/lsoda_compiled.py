@@ -22,10 +22,9 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.material.functions import standard
-from viscoroll.kernels.free.partial_slip import creep_speeds, partial_rates, slow_D
-from viscoroll.kernels.free.records import Scene
 
 from ..bench.jit import compiled
+from .reduction import Scene, creep_speeds, partial_rates, slow_D
 
 ENGINE = "numbalsoda" if find_spec("numbalsoda") else "scipy"
 #: share of rtol that the absolute tolerance is; 1e-3 and less cost half as much again for the same error

@@ -37,13 +37,13 @@ SYMBOLS = {
     "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
     "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)", "scene.py"),
     "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)", "scene.py"),
-    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1", "kernels/free/integrate.py"),
+    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
     "omega": Symbol(
-        r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1", "kernels/free/integrate.py"
+        r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1", "kernels/motion/integrate.py"
     ),
     "t": Symbol("t", "time over T_epsilon", ">= 0", "Sect. 4"),
-    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)", "kernels/free/path.py"),
-    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)", "kernels/free/path.py"),
+    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
+    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
     "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/law/state.py"),
     "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/law/state.py"),
     "lam": Symbol(
@@ -110,14 +110,14 @@ SYMBOLS = {
         "energy lost in slip since t = 0 over m (R/T_epsilon)^2",
         ">= 0",
         "Eq. (22)",
-        "kernels/free/losses.py",
+        "kernels/motion/nodes.py",
     ),
     "rolling_loss": Symbol(
         r"E_\mathrm{roll}",
         "energy lost in rolling since t = 0 over m (R/T_epsilon)^2",
         "finite",
         "Eq. (22)",
-        "kernels/free/losses.py",
+        "kernels/motion/nodes.py",
     ),
     "work_force": Symbol(
         r"W_f", "work of the force since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/motion/rates.py"
@@ -133,7 +133,7 @@ SYMBOLS = {
         "kernels/motion/rates.py",
     ),
     "onset_time": Symbol(
-        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/free/slide_phase.py"
+        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/motion/phase.py"
     ),
 }
 

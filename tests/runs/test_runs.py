@@ -448,7 +448,7 @@ def test_energy_only_falls(read):
     assert np.abs(np.sum(shares, axis=0) - 1.0).max() < tol.MOMENT
     parts = [QUANTITIES[name].values(motions, 1) for name in ("slip_loss", "rolling_loss")]
     assert np.min(parts[0]) >= 0.0  # rolling resistance gains from a spin against the motion
-    assert np.abs(np.sum(parts, axis=0) - shares[2]).max() < tol.MOMENT
+    assert np.abs(np.sum(parts, axis=0) - shares[2]).max() < 30.0 * run.settings.rtol
 
 
 # --- what is refused, and at which line ---

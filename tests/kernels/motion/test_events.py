@@ -9,8 +9,8 @@ import pytest
 import tolerances as tol
 from closeness import close
 
-from viscoroll.kernels.motion.events import first_event, place_of
 from viscoroll.kernels.motion.collocation import NODES, WIDE, N
+from viscoroll.kernels.motion.events import first_event, place_of
 from viscoroll.kernels.motion.nodes import EVENT, INTERPOLANTS, NUMBERS, Panel
 from viscoroll.kernels.motion.records import EVENTS, NO_EVENT, Frame, Work
 
