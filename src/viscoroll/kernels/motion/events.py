@@ -14,6 +14,8 @@ from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 _ON, _LEAST = 1e-2, 4e-15
 #: halvings of a bracket of the interpolant
 _HALVINGS = 60
+#: parts of a bracket in which its lowest point is looked for
+_THIRDS = 40
 #: an edge that a panel starts on, to rounding, is not met there
 _ROUNDING = 1e-14
 #: what rounding makes of slip that lies on its edge, over the speeds that it is made of
@@ -54,6 +56,10 @@ def first_event(panel, frame, work):
         here = place_of(row, node, work)
         if event == NO_EVENT or node < last or here < v:
             event, last, v = row, node, here
+    if event == NO_EVENT and frame.slips:
+        here = _dip(EDGE, work)
+        if here > 0.0:
+            return EDGE, here
     return event, v
 
 
@@ -91,8 +97,13 @@ def place_of(event, node, work):
     panel."""
     nodes, powers = work.nodes, work.powers
     rise_terms(EVENT + WIDE * event, nodes, OF_EVENT, powers)
-    start = nodes[EVENT + WIDE * event]
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _BEYOND)
+    return _zero(nodes[EVENT + WIDE * event], low, high, powers)
+
+
+@kernel
+def _zero(start, low, high, powers):
+    """v where the interpolant there falls through 0."""
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
@@ -102,6 +113,25 @@ def place_of(event, node, work):
         else:
             high = middle
     return 0.5 * (low + high)
+
+
+@kernel
+def _dip(event, work):
+    """v where an event's function falls through 0 between nodes at all of which it is positive; 0 for nowhere."""
+    nodes, powers, at = work.nodes, work.powers, EVENT + WIDE * event
+    for i in range(1, N):
+        if 0.0 < nodes[at + i] < min(nodes[at + i - 1], nodes[at + i + 1]):
+            rise_terms(at, nodes, OF_EVENT, powers)
+            start, low, high = 1.0 + NODES[i - 1], 1.0 + NODES[i - 1], 1.0 + NODES[i + 1]
+            for _ in range(_THIRDS):
+                third = (high - low) / 3.0
+                if rise_at(low + third, powers, OF_EVENT) < rise_at(high - third, powers, OF_EVENT):
+                    high -= third
+                else:
+                    low += third
+            if nodes[at] + rise_at(low, powers, OF_EVENT) < 0.0:
+                return _zero(nodes[at], start, low, powers)
+    return 0.0
 
 
 @kernel
