@@ -80,7 +80,7 @@ def test_they_are_what_single_ones_are(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_ensemble_is_its_motions(kind):
-    """``roll`` of each pair, to what rounding of its rows moves it, and bit for bit in blocks that are cut elsewhere."""
+    """``roll`` of each pair to the rounding of its rows, and bit for bit in blocks that are cut elsewhere."""
     many, draw = pairs(kind), np.random.default_rng(5)
     start, mu = draw.uniform(-2.0, 2.0, (2, COUNT)), draw.uniform(0.1, 0.3, COUNT)
     scene = vr.Scene(material=many, **SCENE | {"mu": mu})

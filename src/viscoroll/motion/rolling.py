@@ -34,7 +34,8 @@ def law_of(scene: Scene) -> LawTable:
     """The law of a scene of one material."""
     if scene.law is not None:
         return scene.law
-    return law_table(float(np.asarray(scene.alpha).item()) if scene.material is None else scene.material)
+    material: Any = scene.material
+    return law_table(float(np.asarray(scene.alpha).item()) if material is None else material)
 
 
 def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, NDArray, list[float]]:
