@@ -87,10 +87,10 @@ def relative_error(value: float, exact: Any) -> float:
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     rng = np.random.default_rng(sizes["seed"] + 1)
-    batches = {"one by one": [([chosen_state(rng) for _ in range(sizes["states"])], by_roots)], "slice": []}
+    batches = {"an alpha each": [([chosen_state(rng) for _ in range(sizes["states"])], by_roots)], "one alpha": []}
     alphas = [*EDGE_ALPHAS[1:], *(10.0 ** rng.uniform(0.0, 6.0, sizes["slices"])).tolist()]
     for alpha in alphas[: sizes["slices"]]:
-        batches["slice"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_rows))
+        batches["one alpha"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_rows))
     result = []
     for way, parts in batches.items():
         tally = Tally(way)
