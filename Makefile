@@ -70,7 +70,7 @@ prove: setup ## law and motions against enclosures and extended precision: data/
 	$(RUN) -m pipeline.prove.figures
 	$(RUN) -m pipeline.prove.error_maps --config $(CONFIG)
 	$(RUN) -m pipeline.prove.independent
-	$(RUN) -m pipeline.prove.transient
+	$(RUN) -m pipeline.prove.unsteady
 	$(RUN) -m pipeline.prove.layer
 	$(RUN) -m pipeline.measure.large --config $(CONFIG)
 	$(RUN) -m pipeline.document

@@ -22,7 +22,7 @@ from viscoroll.files import write_text
 from ..results import RESULTS, Results
 from ..stage import ROOT, told
 from ..stamps import SHORT, kernels_digest, stamps
-from . import bench, ensembles, symbols, tables
+from . import bench, ensembles, identification, symbols, tables, unsteady
 
 #: who measures what a block shows
 STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
@@ -36,8 +36,15 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     "measure.ensembles": {
         "ensembles": ensembles.rates, "ensembles_cluster": ensembles.cluster, "ensembles_plan": ensembles.plan,
     },
+    "measure.identification": {
+        "identify_learn": identification.learn, "identify_bearing": identification.bearing,
+        "identify_said": identification.said, "identify_numbers": identification.numbers,
+    },
     "prove": {"proofs": tables.proofs},
     "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},
+    "prove.unsteady": {
+        "unsteady_gamma": unsteady.over_gamma, "unsteady": unsteady.errors, "unsteady_ways": unsteady.ways,
+    },
     "torture": {"torture": tables.torture},
     "bench": {
         "bench_peers": bench.peers, "bench_all": bench.headline, "bench_fixed_scene": bench.fixed_scene,

@@ -123,15 +123,18 @@ def starts_of(records: Iterable[Record]) -> dict[str, tuple[float, float]]:
 
 
 def told(name: str, fit: Identification, names: Iterable[str], truth: dict[str, float] = TRUTH) -> dict[str, Any]:
-    """A row: of each unknown s.d. and interval over the truth, and what is determined together."""
+    """A row: of each unknown s.d. and ends of the interval, both over the truth, less 1 (results keep three digits)."""
     intervals, stderr = fit.intervals(), fit.stderr
     unknowns = {}
     for each in names:
         low, high = intervals[each]
         unknowns[each] = {
-            "sd": stderr[each] / truth[each], "low": low and low / truth[each], "high": high and high / truth[each],
+            "sd": stderr[each] / truth[each], "low": low and low / truth[each] - 1.0,
+            "high": high and high / truth[each] - 1.0,
         }  # fmt: skip
-    products = [one._asdict() for one in fit.products()]
+    products = [
+        {"powers": one.powers, "low": one.low - 1.0, "high": one.high - 1.0, "near": one.near} for one in fit.products()
+    ]
     return {
         "experiment": name, "unknowns": unknowns, "does_not_act": fit.does_not_act, "undetermined": fit.undetermined,
         "products": products,
@@ -199,7 +202,7 @@ def said(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         "M below the hump": lambda: fitted([drum(SLOW)], 2),
         "M above the hump": lambda: fitted([drum(FAST)], 2),
         "Q at one slow speed": lambda: fitted([traction(0.1)], 2),
-        "Q at two speeds": lambda: fitted([traction(0.1, 1.0)], 3, starts=sizes["searches"]),
+        "Q at two speeds": lambda: fitted([traction(0.1, 1.0)], 0, starts=sizes["searches"]),
         "M of two relaxation times, fitted by one": lambda: vr.identify(roller(), shape, [bad], starts=1),
         "a coast-down whose bearing is left out": lambda: vr.identify(
             roller(), shape | starts_of(held), held, starts=1

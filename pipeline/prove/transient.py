@@ -1,215 +1,265 @@
-"""Rolling that is not steady: a transient solver of the normal contact, beside the law of steady rolling.
+"""Rolling that is not steady: a transient solver of the normal contact, of any Prony series.
 
-Two like standard linear solids in two dimensions, quasistatic, constant load, rolling without slip.  Lengths in half
-the contact length at rest, times in T_epsilon, the load pi/2.  With Phi = G p, G the logarithmic kernel,
+Two like bodies in two dimensions, quasistatic, constant load, rolling without slip.  Lengths in half the contact length
+at rest, times in T_ref, the load pi/2, the speed u = kappa V.  With Phi = G p, G the logarithmic kernel, and the creep
+form of the series, J(t) = 1 - sum J_k exp(-t/T_k),
 
-    w = Phi/alpha + (1 - 1/alpha) m,   m' = Phi - m   at every point of the surface
+    w = Phi/alpha + sum J_k m_k,   T_k m_k' = Phi - m_k   at every point of the surface
     w = D - (X - Xc)^2/2 and p >= 0 in contact, the gap >= 0 outside, the integral of p is the load
-    (1 + j) V' = -gamma M,   Xc' = 2 kappa V,   M = (mean X of the pressure - Xc)/(2 kappa)
+    u' = -g kM,   Xc' = 2 u,   kM = kappa M = (mean X of the pressure - Xc)/2,   g = gamma/(1 + j)
 
-Nothing of viscoroll enters but the curve that this is held against.
-
-python -m pipeline.prove.transient [-o FILE] [--figure FILE] [--h H]: data/results/transient.json and
-docs/figures/transient.png, in some minutes.
+A fine grid is fixed in the material, in a window that goes with the contact.  Ahead of it, where slow modes remember
+the load from afar, coarse nodes carry the memory of a point load and its second moment.  Nothing of viscoroll enters.
 """
 
 from __future__ import annotations
 
-import sys
-from copy import deepcopy
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
-from scipy.linalg import matmul_toeplitz, toeplitz
+from scipy.linalg import toeplitz
+from scipy.special import exp1
 
-import viscoroll as vr
-from viscoroll.plots.style import LINES, THIN, new_figure, save
+Array = NDArray[np.float64]
 
-from ..results import RESULTS, machine, parser, write_results
-from ..stage import ROOT, told
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-Curves = dict[float, dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]]
-
-ALPHA, KAPPA, J, V0 = 11.0, 2.91, 0.5, 1.5
-GAMMAS = (0.32, 1.07, 3.2, 10.7, 32.0, 107.0)
-#: those drawn, from where the law of steady rolling is good to where it is not
-SHOWN = (3.2, 10.7, 32.0, 107.0)
-STARTS = {"steady": "from steady contact", "rest": "from a contact at rest"}
-#: of the window behind and ahead of the axis, and of the run-in
-BEHIND, AHEAD, RUN_IN = 4.0, 40.0, 60.0
-#: gamma t that motions are followed to
-LAST = 60.0
-#: steps of the contact's own swing, and of the memory
-_SWING, _MEMORY = 0.1, 0.02
+#: of the window behind and ahead of the axis, of the way of a run-in, and of the coarse nodes
+BEHIND, AHEAD, RUN_IN, COARSE = 3.0, 6.0, 18.0, 0.5
+#: half width of the contact that there is room for
+_WIDEST = 1.2
+#: steps of the contact's own swing
+_SWING = 0.1
 
 
-def kernel(h: float, count: int) -> NDArray[np.float64]:
+def kernel(h: float, count: int) -> Array:
     """Displacement by hats of pressure of width h, at distances 0, h, ...; a constant is free."""
     x = np.abs(np.arange(-1, count + 1) * h)
     twice = 0.5 * x * x * np.log(np.where(x == 0.0, 1.0, x)) - 0.75 * x * x
-    second: NDArray[np.float64] = np.diff(twice, 2)
+    second: Array = np.diff(twice, 2)
     return -second / (h * np.pi)
 
 
-class Imprint:
-    """A contact and the memory of the surface around it, on a grid that is fixed in the material."""
+class Grid(NamedTuple):
+    """The kernel at distances 0, h, ...; the inverse of its matrix over 1, 2, ... nodes; sums of the rows of these."""
 
-    def __init__(self, h: float) -> None:
-        self.h, self.at = h, round(BEHIND / h)
-        self.g = kernel(h, self.at + round(AHEAD / h))
-        self.inverses: dict[int, NDArray[np.float64]] = {}
-        self.first, self.Xc = -self.at, 0.0
-        self.low, self.high = self.at - round(1.0 / h), self.at + round(1.0 / h) + 1
-        self.M = 0.0
-        self.p = self.pressure(1.0, np.zeros(self.g.size))
-        self.phi = self.displacement()
-        self.m = self.phi.copy()  # relaxed
-
-    def displacement(self) -> NDArray[np.float64]:
-        """Phi on the window."""
-        whole = np.zeros(self.g.size)
-        whole[self.low : self.high] = self.p
-        found: NDArray[np.float64] = matmul_toeplitz(self.g, whole)
-        return found
-
-    def pressure(self, compliance: float, history: NDArray[np.float64]) -> NDArray[np.float64]:
-        """p on the nodes in contact, which are found too; ``history``: what the surface keeps of the past."""
-        x = (self.first + np.arange(self.g.size)) * self.h - self.Xc
-        wanted = 0.5 * x * x + history
-        for _ in range(1000):
-            low, high = self.low, self.high
-            inverse = self._inverse(high - low)
-            rows, load = inverse.sum(axis=1), 0.5 * np.pi / self.h
-            r = inverse @ wanted[low:high]
-            D = (compliance * load + r.sum()) / rows.sum()
-            p: NDArray[np.float64] = (D * rows - r) / compliance
-            if p[0] < 0.0 or p[-1] < 0.0:
-                self.low, self.high = low + (p[0] < 0.0), high - (p[-1] < 0.0)
-                continue
-            n = high - low
-            behind = wanted[low - 1] + compliance * (self.g[1 : n + 1] @ p) - D
-            ahead = wanted[high] + compliance * (self.g[n:0:-1] @ p) - D
-            if behind >= 0.0 and ahead >= 0.0:
-                self.M = float(x[low:high] @ p / p.sum()) / (2.0 * KAPPA)
-                return p
-            self.low, self.high = low - (behind < 0.0), high + (ahead < 0.0)
-        raise RuntimeError("the contact was not found")
-
-    def _inverse(self, n: int) -> NDArray[np.float64]:
-        if n not in self.inverses:
-            self.inverses[n] = np.linalg.inv(toeplitz(self.g[:n]))
-        return self.inverses[n]
-
-    def move(self, way: float, dt: float) -> None:
-        """The axis goes on by ``way`` in ``dt``; the memory is exact where Phi is linear over the step."""
-        self.Xc += way
-        cells = round(self.Xc / self.h) - (self.first + self.at)
-        if cells:
-            self._shift(cells)
-        c, kept = 1.0 - 1.0 / ALPHA, np.exp(-dt)
-        new = 1.0 + np.expm1(-dt) / dt
-        old = 1.0 - kept - new
-        past = kept * self.m + old * self.phi
-        self.p = self.pressure(1.0 / ALPHA + c * new, c * past)
-        self.phi = self.displacement()
-        self.m = past + new * self.phi
-
-    def _shift(self, cells: int) -> None:
-        """Keep the axis in its place on the window; beyond its ends the memory lags by as much as at them."""
-        self.first, self.low, self.high = self.first + cells, self.low - cells, self.high - cells
-        lag = self.m - self.phi
-        lag = np.concatenate((lag[cells:], np.full(cells, lag[-1]))) if cells > 0 else np.roll(lag, -cells)
-        if cells < 0:
-            lag[:-cells] = lag[-cells]
-        self.phi = self.displacement()
-        self.m = self.phi + lag
+    h: float
+    g: Array
+    inverses: Array
+    rows: Array
 
 
-def steadily(imprint: Imprint, V: float) -> Imprint:
-    """Run in at a constant speed, a cell a step."""
-    for _ in range(round(RUN_IN / imprint.h)):
-        imprint.move(imprint.h, imprint.h / (2.0 * KAPPA * V))
-    return imprint
+def grid(h: float) -> Grid:
+    """That of cells h."""
+    g, most = kernel(h, round((BEHIND + AHEAD) / h)), round(2.0 * _WIDEST / h)
+    inverses = np.zeros((most + 1, most, most))
+    for n in range(1, most + 1):
+        inverses[n, :n, :n] = np.linalg.inv(toeplitz(g[:n]))
+    return Grid(h, g, inverses, inverses.sum(axis=2))
 
 
-def rolled(imprint: Imprint, gamma: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """t and V of a cylinder that is let go at V0."""
-    t, V, pull = [0.0], [V0], -gamma * imprint.M / (1.0 + J)
-    longest = min(_SWING / np.sqrt(gamma * (ALPHA - 1.0) / (1.0 + J)), _MEMORY)
-    while gamma * t[-1] < LAST:
-        dt = min(imprint.h / (2.0 * KAPPA * max(abs(V[-1]), 1e-9)), longest)
-        imprint.move(2.0 * KAPPA * dt * (V[-1] + 0.5 * dt * pull), dt)
-        before, pull = pull, -gamma * imprint.M / (1.0 + J)
-        t.append(t[-1] + dt)
-        V.append(V[-1] + 0.5 * dt * (before + pull))
-    return np.array(t), np.array(V)
+class Memory(NamedTuple):
+    """Of the nodes of the window p, Phi and m_k, and of the coarse nodes, from ``start`` on, Phi and m_k."""
+
+    p: Array
+    phi: Array
+    m: Array
+    start: float
+    far_phi: Array
+    far_m: Array
 
 
-def scene_of(gamma: float) -> vr.Scene:
-    """The cylinder."""
-    return vr.Scene(alpha=ALPHA, kappa=KAPPA, mu=0.2, gamma=gamma, j=J)
+@njit(cache=True)
+def _pressure(grid, x0, compliance, history, low, high, p):
+    """p on the nodes in contact, which are found from those of last time; x0: place of node 0 from the axis."""
+    h, g, load = grid.h, grid.g, 0.5 * np.pi / grid.h
+    r = np.empty(grid.rows.shape[1])
+    for _ in range(1000):
+        n, total = high - low, 0.0
+        inverse, rows = grid.inverses[n], grid.rows[n]
+        for i in range(n):
+            r[i] = 0.0
+            for k in range(n):
+                x = x0 + (low + k) * h
+                r[i] += inverse[i, k] * (0.5 * x * x + history[low + k])
+            total += r[i]
+        D = (compliance * load + total) / rows[:n].sum()
+        for i in range(n):
+            p[low + i] = (D * rows[i] - r[i]) / compliance
+        if p[low] < 0.0 or p[high - 1] < 0.0:
+            while p[low] < 0.0:
+                p[low] = 0.0
+                low += 1
+            while p[high - 1] < 0.0:
+                p[high - 1] = 0.0
+                high -= 1
+            continue
+        behind = ahead = 0.0
+        for k in range(low, high):
+            behind += g[k - low + 1] * p[k]
+            ahead += g[high - k] * p[k]
+        xb, xa = x0 + (low - 1) * h, x0 + high * h
+        behind = 0.5 * xb * xb + history[low - 1] + compliance * behind - D
+        ahead = 0.5 * xa * xa + history[high] + compliance * ahead - D
+        if behind >= 0.0 and ahead >= 0.0:
+            return low, high
+        low, high = low - (behind < 0.0), high + (ahead < 0.0)
+    return -1, -1
 
 
-def by_steady_rolling(gamma: float, t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """V by the law of steady rolling."""
-    return vr.roll(scene_of(gamma), V0, V0, t).V
+@njit(cache=True, fastmath=True)
+def _displacement(g, p, low, high, phi):
+    for i in range(phi.size):
+        total = 0.0
+        for k in range(low, high):
+            total += g[abs(i - k)] * p[k]
+        phi[i] = total
 
 
-def curves(h: float, gammas: tuple[float, ...] = GAMMAS) -> Curves:
-    """t and V by gamma and by start."""
-    run_in = steadily(Imprint(h), V0)
-    return {gamma: {"steady": rolled(deepcopy(run_in), gamma), "rest": rolled(Imprint(h), gamma)} for gamma in gammas}
+@njit(cache=True)
+def _centre(h, x0, p, low, high):
+    """Mean place of the pressure from the axis, and its variance."""
+    total = first = second = 0.0
+    for k in range(low, high):
+        x = x0 + k * h
+        total += p[k]
+        first += p[k] * x
+        second += p[k] * x * x
+    mean = first / total
+    return mean, second / total - mean * mean
 
 
-def rows_of(found: Curves) -> list[dict[str, float]]:
-    """nu of each gamma, and the largest error of V over the first speed from either start."""
-    rows = []
-    for gamma, starts in found.items():
-        row = {"gamma": gamma, "nu": float(scene_of(gamma).validity(V0).steady.value)}
-        for start, (t, V) in starts.items():
-            row[start] = float(np.abs(V - by_steady_rolling(gamma, t)).max() / V0)
-        rows.append(row)
-        print(", ".join(f"{name} {value:.3g}" for name, value in row.items()))
-    return rows
+@njit(cache=True)
+def _next_node(grid, memory, low, high, first):
+    """Move the window by a cell: what enters lags as far as the coarse nodes do."""
+    p, phi, m, W = memory.p, memory.phi, memory.m, memory.p.size
+    p[:-1], phi[:-1] = p[1:].copy(), phi[1:].copy()
+    p[-1] = phi[-1] = 0.0
+    for k in range(low - 1, high - 1):
+        phi[-1] += grid.g[W - 1 - k] * p[k]
+    place = ((first + W) * grid.h - memory.start) / COARSE
+    i = int(place)
+    t = place - i
+    for k in range(m.shape[0]):
+        m[k, :-1] = m[k, 1:].copy()
+        f = memory.far_m[k, i - 1 : i + 3] - memory.far_phi[i - 1 : i + 3]
+        lag = -t * (t - 1.0) * (t - 2.0) / 6.0 * f[0] + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * f[1]
+        m[k, -1] = phi[-1] + lag - (t + 1.0) * t * (t - 2.0) / 2.0 * f[2] + (t + 1.0) * t * (t - 1.0) / 6.0 * f[3]
 
 
-def drawn(found: Curves) -> Figure:
-    """V/V0 over gamma t: one curve by steady rolling, and the transient ones."""
-    title = "A cylinder rolls to rest: by the law of steady rolling (grey) and by a transient solver"
-    figure, panels = new_figure(title, 1, 2, (9.6, 3.8), sharey=True)
-    s = np.linspace(0.0, LAST, 301)
-    for axes, (start, words) in zip(panels, STARTS.items(), strict=True):
-        axes.plot(s, by_steady_rolling(1.0, s) / V0, color="0.75", linewidth=5.0)
-        for gamma, line in zip(SHOWN, LINES, strict=True):
-            t, V = found[gamma][start]
-            nu = float(scene_of(gamma).validity(V0).steady.value)
-            axes.plot(gamma * t, V / V0, **line, label=rf"$\gamma$ = {gamma:g}, nu = {nu:.2g}")
-        axes.axhline(0.0, **THIN)
-        axes.set(title=words, xlabel=r"$\gamma t$", xlim=(0.0, LAST))
-    panels[0].set_ylabel("$V/V_0$")
-    panels[0].legend(fontsize="small", frameon=False)
-    return figure
+@njit(cache=True)
+def _remember(memory, weights, low, centre, variance):
+    """The coarse nodes from ``low`` on, over a step."""
+    kept, old, new = weights
+    for i in range(low, memory.far_phi.size):
+        D = max(memory.start + i * COARSE - centre, 1.0)
+        phi = -0.5 * np.log(D) + 0.25 * variance / (D * D)
+        for k in range(kept.size):
+            memory.far_m[k, i] = kept[k] * memory.far_m[k, i] + old[k] * memory.far_phi[i] + new[k] * phi
+        memory.far_phi[i] = phi
 
 
-def main() -> int:
-    options = parser(__doc__, RESULTS / "transient.json", sizes=False)
-    options.add_argument("--figure", type=Path, default=ROOT / "docs/figures/transient.png")
-    options.add_argument("--h", type=float, default=0.04, help="cell of the grid, over half the contact length at rest")
-    arguments = options.parse_args()
-
-    def measured() -> None:
-        found = curves(arguments.h)
-        write_results(arguments.output, {"rows": rows_of(found), "h": arguments.h, "machine": machine()})
-        save(drawn(found), arguments.figure)
-        print(f"{arguments.output}, {arguments.figure}: written")
-
-    return told("transient", measured)
+@njit(cache=True)
+def _weights(dt, T):
+    """Of m, of Phi before and of Phi after a step over which Phi is linear."""
+    d = dt / T
+    kept, mean = np.exp(-d), -np.expm1(-d) / d
+    new = np.where(d > 1e-4, 1.0 - mean, 0.5 * d - d * d / 6.0)
+    return kept, 1.0 - kept - new, new
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+@njit(cache=True)
+def _rolled(grid, series, memory, where, u, g, ends, out):
+    """Steps until u <= 0 and t >= the end of time, or to an end of the way; (steps, low, high, first, Xc, u)."""
+    J, T, alpha = series
+    first, low, high, Xc = where
+    h, W, p, phi, m, t = grid.h, memory.p.size, memory.p, memory.phi, memory.m, 0.0
+    t_end, X_end = ends
+    history = np.empty(W)
+    mean, variance = _centre(h, first * h - Xc, p, low, high)
+    for step in range(out.shape[0]):
+        out[step, 0], out[step, 1], out[step, 2] = t, Xc, u
+        if t >= t_end or Xc >= X_end or low < 4:
+            return step + 1, low, high, first, Xc, u
+        pull, a = -0.5 * g * mean, 0.5 * (high - low) * h
+        dt = min(_SWING / np.sqrt(g * max(alpha * a * a - 1.0, 0.05 * (alpha - 1.0))) if g > 0.0 else 1e30, t_end)
+        v, faster = abs(u), pull if u >= 0.0 else -pull
+        if 2.0 * v * dt + faster * dt * dt > h:
+            dt = h / (v + np.sqrt(max(v * v + faster * h, 0.0)))
+        Xc += 2.0 * u * dt + pull * dt * dt
+        if round(Xc / h) - first - round(BEHIND / h) > 0:
+            _next_node(grid, memory, low, high, first)
+            first, low, high = first + 1, low - 1, high - 1
+        weights = _weights(dt, T)
+        kept, old, new = weights
+        history[:] = 0.0
+        for k in range(T.size):
+            m[k] = kept[k] * m[k] + old[k] * phi
+            history += J[k] * m[k]
+        p[low:high] = 0.0
+        x0 = first * h - Xc
+        low, high = _pressure(grid, x0, 1.0 / alpha + (J * new).sum(), history, low, high, p)
+        _displacement(grid.g, p, low, high, phi)
+        for k in range(T.size):
+            m[k] += new[k] * phi
+        mean, variance = _centre(h, x0, p, low, high)
+        u += 0.5 * dt * (pull - 0.5 * g * mean)
+        t += dt
+        _remember(memory, weights, int(((first + W) * h - memory.start) / COARSE) - 2, Xc + mean, variance)
+    return out.shape[0], low, high, first, Xc, u
+
+
+class Contact:
+    """A contact and the memory of the surface, relaxed at rest, or (``u``, ``lam``) run in at a constant speed.
+
+    series : J, T, alpha.  path : half lengths that it will roll.
+    """
+
+    def __init__(self, series: tuple[Array, Array, float], cells: Grid, path: float, u: float = 0.0, lam: float = 1.0):
+        self.series, self.grid, self.u = (np.array(series[0]), np.array(series[1]), float(series[2])), cells, u
+        h, back, W = cells.h, round(BEHIND / cells.h), cells.g.size
+        half, start = round(0.6 / h), AHEAD - 4.0 * COARSE
+        X = start + COARSE * np.arange(round((path + RUN_IN + 60.0) / COARSE))
+        x, variance = (np.arange(W) - back) * h, 0.25 * lam * lam
+        p, T = np.zeros(W), self.series[1]
+        self.where = -back, back - half, back + half + 1, 0.0
+        near = np.sqrt(x * x + 0.3)  # near the contact to begin with
+        if u:
+            m, far_m = (
+                np.array([_remembered(D, 2.0 * u * each, s) for each in T]) for D, s in ((near, 0.0), (X, variance))
+            )
+            low, high = _pressure(cells, -back * h, 1.0 / series[2], self.series[0] @ m, *self.where[1:3], p)
+            phi = -0.5 * np.log(near)
+        else:
+            low, high = _pressure(cells, -back * h, 1.0, np.zeros(W), *self.where[1:3], p)
+            phi = np.zeros(W)
+            _displacement(cells.g, p, low, high, phi)
+            m, far_m = np.tile(phi, (T.size, 1)), np.tile(-0.5 * np.log(X) + 0.0625 / X**2, (T.size, 1))
+        self.where = -back, low, high, 0.0
+        self.memory = Memory(p, phi, m, start, -0.5 * np.log(X) + 0.25 * variance / X**2, far_m)
+        if u:
+            self.roll(0.0, X_end=RUN_IN)
+
+    @property
+    def kM(self) -> float:
+        """kappa M."""
+        first, low, high, Xc = self.where
+        return 0.5 * float(_centre(self.grid.h, first * self.grid.h - Xc, self.memory.p, low, high)[0])
+
+    def roll(self, g: float, *, t_end: float = 1e300, X_end: float = 1e300, steps: int = 2_000_000) -> Array:
+        """Rows t, X and u of a motion from now."""
+        out = np.empty((steps, 3))
+        ends = t_end, X_end + self.where[3]
+        count, low, high, first, Xc, u = _rolled(self.grid, self.series, self.memory, self.where, self.u, g, ends, out)
+        rows: Any = out[:count] - [0.0, self.where[3], 0.0]
+        self.where, self.u = (first, low, high, Xc), u
+        return np.array(rows)
+
+
+def _remembered(D: Array, L: float, variance: float) -> Array:
+    """m at distances D ahead of a steady load that fades over the length L."""
+    z = D / L
+    E = np.where(z < 200.0, np.exp(np.minimum(z, 200.0)) * exp1(np.minimum(z, 200.0)), 1.0 / z - 1.0 / z**2)
+    second = np.where(z < 200.0, (1.0 / D - E / L) / L, 1.0 / D**2)
+    found: Array = -0.5 * (np.log(D) + E) + 0.25 * variance * second
+    return found

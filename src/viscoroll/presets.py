@@ -16,8 +16,8 @@ PAPER_SECTION_5_ROUNDED = Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0
 #: Figs. 2 and 3 use kappa = 29.1, ten times that of Sects. 4-5; alpha is varied there
 #: (1, 1.5, 21.5, 81.5 in Figs. 2 and 3b, 11 in Fig. 3a).
 PAPER_FIGURES_2_3 = Scene(alpha=11.0, kappa=29.1, mu=0.2, gamma=1.1e4, j=0.5)
-#: The paper's cylinder of a rubber with short times: nu = 0.008, where the paper's has 600, so that the law of steady
-#: rolling may drive its motion (:meth:`Scene.validity`).  T_ref is 1 s: V is the speed in radii a second.
+#: The paper's cylinder of a rubber with short times, so that the law of steady rolling may drive its motion at any
+#: speed (:meth:`Scene.validity`).  T_ref is 1 s: V is the speed in radii a second.
 RUBBER_CYLINDER = Cylinder(
     R=0.1, m=35.5, mu=0.3,
     material=Material(3e6, 0.5, Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5]), name="rubber", density=1130.0),

@@ -37,8 +37,8 @@ def test_readme_block_runs(capsys):
     assert len([line for line in code.splitlines() if line.strip()]) <= 12
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
-    assert "slides for 0.23 s, then rolls to 25.2 m" in printed
-    assert "unsteadiness 2.4e-05: let go here" in printed
+    assert "slides for 0.13 s, then rolls to 27.1 m" in printed
+    assert "V is right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s" in printed
 
 
 @pytest.mark.parametrize("page", ["index", "may_i"])

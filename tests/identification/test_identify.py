@@ -116,6 +116,8 @@ REFUSED = {
         lambda: vr.identify(roller(), ranges("E"), [resistance(temperature=60.0)]), "needs a shift of the material",
     ),
     "many cylinders": (lambda: vr.identify(roller().replace(mu=[0.1, 0.2]), ranges("E"), [resistance()]), "mu", "(2,)"),
+    "no places": (lambda: vr.Resistance([], []), "resistance: V = empty"),
+    "no start at all": (lambda: vr.identify(roller(), ranges("E"), resistance(), starts=0), "starts = 0"),
     "no record": (lambda: vr.identify(roller(), ranges("E"), []), "no record"),
     "no unknown": (lambda: vr.identify(roller(), {}, [resistance()]), "at least one name"),
     "a prior of nothing": (
@@ -255,7 +257,7 @@ def test_a_prediction_has_bands():
     assert close(width[1][1:], width[0][1:], rel=tol.DRAWN)
     assert by_slopes.V.value[0] == 3.0
     assert set(by_slopes.to_xarray()) >= {"V", "V_low", "V_high", "omega", "x_high"}
-    refused(lambda: fit.predict(vr.Coastdown(t, np.ones(7))), "V0", "a prediction starts with it")
+    refused(lambda: fit.predict(vr.Coastdown(t, np.ones(7))), "V0", "a prediction needs it")
 
 
 def test_labels_come_back_in_predictions():

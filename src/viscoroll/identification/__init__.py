@@ -1,11 +1,15 @@
 """From measurements to parameters: records, the fit, and what it says.
 
-Read in this order: :mod:`records`, what was measured; :mod:`unknowns`, names and a cylinder of their values;
-:mod:`problem`, residuals and least squares; :mod:`search`, starts and minima; :mod:`profile`, intervals; :mod:`said`,
-what the data do not tell; :mod:`fit`, all of it together; :mod:`report`, in words; :mod:`file`, of a TOML file.
+Read in this order: :mod:`records` and :mod:`motions`, what was measured; :mod:`unknowns`, names and a cylinder of
+their values; :mod:`problem`, residuals and least squares; :mod:`search`, starts and minima; :mod:`profile`, intervals;
+:mod:`products`, what goes together; :mod:`said`, what comes first; :mod:`fit`, what is found; :mod:`ask`, all of it;
+:mod:`report`, in words; :mod:`file`, of a TOML file.
 """
 
-from .fit import Identification, Product, identify
-from .records import Coastdown, Resistance, Traction
+from .ask import identify
+from .fit import Identification
+from .motions import Coastdown
+from .products import Product
+from .records import Resistance, Traction
 
 __all__ = ["Coastdown", "Identification", "Product", "Resistance", "Traction", "identify"]

@@ -17,7 +17,8 @@ from ..errors import ConfigError, ParameterError, TableError
 from ..materials.file import shifts_of
 from ..sections import as_struct, fault, hint, read
 from ..si.units import refuse_other_unit
-from .records import Coastdown, Record, Resistance, Traction
+from .motions import Coastdown
+from .records import Record, Resistance, Traction
 
 _SECTIONS = ("unknown", "prior", "data")
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}

@@ -1,51 +1,34 @@
-"""From measurements to parameters: :func:`identify`, and what it finds, :class:`Identification`."""
+"""What was found: :class:`Identification`."""
 
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+from collections.abc import Mapping
+from functools import cached_property, partial
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import number
-from ..cylinder import Cylinder
 from ..errors import ParameterError, unknown
 from ..results import Row, Shown
 from .predict import Prediction, predicted
 from .problem import Column, Found, Problem
+from .products import Product, Ties
 from .profile import Profile, profile
 from .records import Record
-from .said import NARROW, Noise, directions, flat, noise_of, wide, without
-from .search import minima
-from .unknowns import Shift, cylinder_of, refuse_unshifted, unknowns_of
+from .said import Noise, noise_of
+from .unknowns import OF_RECORDS, cylinder_of
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 _LEVEL = 0.95
-#: how much wider the interval of a product with rounder exponents may be
-_ROUNDER = 5.0
 #: of coordinates, what is one place
 _SAME = 1e-6
-
-
-class Product(NamedTuple):
-    """A product of powers of unknowns that the data determine where they cannot tell these apart.
-
-    powers : exponents by name; those of brake, drag, V0, omega0 and t0 hold near the values found.
-    value : of the product.
-    low, high : ends of its interval over ``value``.
-    """
-
-    powers: dict[str, float]
-    value: float
-    low: float
-    high: float
 
 
 class Identification(Shown):
@@ -57,14 +40,15 @@ class Identification(Shown):
     ----------
     cylinder : the :class:`Cylinder` of the best values.
     values : of the unknowns by name, SI.
-    stderr : their standard deviations by the slopes at the best fit; infinite where nothing acts.
+    stderr : their standard deviations by the slopes at the best fit, and as far as ranges go; infinite where one does
+        not act.
     correlations : (n, n), in the order of ``values``.
     chi2, dof : sum of the squared residuals over sigma, and what it should be; of robust fits outliers count less.
     sigma : standard deviation of each record's quantity, as given or as estimated.
     minima : (chi2, values) of all minima near the best, the best first.
     does_not_act : names of unknowns that do not change what was measured.
-    undetermined : names of those whose interval tells little: wider than a factor of e^2, or than half their range;
-        :meth:`products` says what of them is determined.
+    undetermined : names of those whose interval tells little, wider than a factor of e^2 or than half their range, and
+        of what is correlated with these beyond 0.95; :meth:`products` says what of them is determined.
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation.
     misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1.  Intervals
         mean nothing then.
@@ -84,7 +68,6 @@ class Identification(Shown):
         self.noise: dict[str, Noise] = {} if self.planned else noise_of(problem, r)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self._profiles: dict[tuple[Any, ...], Profile] = {}
-        # left to the user's eye: what the search passed through is not told
         self.cylinder = cylinder_of(problem.cylinder, {n: v for n, v in self.values.items() if ":" not in n})
 
     @property
@@ -105,9 +88,7 @@ class Identification(Shown):
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record, with its bands."""
-        width = float(np.sqrt(self._rise(_LEVEL)))
-        given = self._problem, self._best.u, self._within, _LEVEL, width
-        return {called: predicted(*given, record, called) for called, record in self.records.items()}
+        return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
 
     @property
     def sigma(self) -> dict[str, Any]:
@@ -115,18 +96,7 @@ class Identification(Shown):
         return {str(one): self._problem.sigma[one.at].copy() for one in self._problem.columns}
 
     @cached_property
-    def _cov(self) -> NDArray[np.float64]:
-        """Of the coordinates, by slopes alone; infinite where nothing acts."""
-        live = self._problem.live
-        cov = np.diag(np.full(len(self._problem.names), np.inf))
-        _, s, Vt = np.linalg.svd(self._J[:, live], full_matrices=False)
-        if live:
-            s = np.maximum(s, 1e-12 * s[0])
-            cov[np.ix_(live, live)] = (Vt.T / s**2) @ Vt
-        return cov
-
-    @cached_property
-    def _within(self) -> Any:
+    def _cov(self) -> Any:
         """Of the coordinates, by slopes and as far as the ranges let them."""
         problem = self._problem
         return np.linalg.inv(self._J.T @ self._J + np.diag(12.0 / (problem.high - problem.low) ** 2))
@@ -135,15 +105,15 @@ class Identification(Shown):
     def stderr(self) -> dict[str, float]:
         """See above."""
         sd = np.sqrt(np.diag(self._cov))
+        sd[[i for i, name in enumerate(self.values) if name in self.does_not_act]] = np.inf
         spread = (one.spread(self.values[one.name]) for one in self._problem.unknowns)
         return {name: float(size * each) for name, size, each in zip(self.values, sd, spread, strict=True)}
 
     @property
-    def correlations(self) -> NDArray[np.float64]:
+    def correlations(self) -> Any:
         """See above."""
-        cov = np.where(np.isfinite(self._cov), self._cov, 1.0)
-        sd = np.sqrt(np.diag(cov))
-        return cov / np.outer(sd, sd)
+        sd = np.sqrt(np.diag(self._cov))
+        return self._cov / np.outer(sd, sd)
 
     def profile(self, name: str, level: float = _LEVEL) -> Profile:
         """The walk behind an interval, in coordinates (logarithms): ends, whose range makes them, further pieces."""
@@ -159,7 +129,7 @@ class Identification(Shown):
             problem = self._problem
             begun = [problem.start] * bool(np.abs(problem.start - self._best.u).max() > _SAME)
             self._profiles[key] = profile(
-                problem, self._best, self._within, powers, self._rise(level), [*self._others, *begun]
+                problem, self._best, self._cov, powers, self._rise(level), [*self._others, *begun]
             )
         return self._profiles[key]
 
@@ -177,7 +147,7 @@ class Identification(Shown):
 
         All other unknowns follow while one is moved, until chi2 has risen by what ``level`` asks: 3.84 at 0.95 where
         sigma was given, by F where it was estimated.  A side is open where it does not rise up to the end of the
-        range, or to a factor of a hundred.  If another piece is found beyond an end, the interval reaches over it.
+        range.  If another piece is found beyond an end, the interval reaches over it.
 
         Parameters
         ----------
@@ -201,43 +171,20 @@ class Identification(Shown):
     @property
     def undetermined(self) -> tuple[str, ...]:
         """See above."""
-        return tuple(self._problem.names[i] for i in self._undetermined(_LEVEL))
-
-    def _undetermined(self, level: float) -> list[int]:
-        problem = self._problem
-        return [i for i in problem.live if wide(problem, i, self.profile(problem.names[i], level))]
+        return tuple(self._problem.names[i] for i in self._ties(_LEVEL).which)
 
     def products(self, level: float = _LEVEL) -> list[Product]:
         """What is determined of the :attr:`undetermined` unknowns: products of powers, with profiles as intervals.
 
-        Exponents are those in which all that fits lies nearest to each other; the interval is of just these.
+        Exponents are those in which all that fits lies nearest to each other; the interval is of just these.  Where no
+        exponents do, those by slopes at the best fit.
         """
-        problem, which = self._problem, self._undetermined(level)
-        if len(which) < 2:
-            return []
-        within = np.concatenate([self.profile(problem.names[i], level).within[:, which] for i in which])
-        J = without(self._J, which, [i for i in problem.live if i not in which])
-        far, near = (self._products(which, family, level) for family in directions(within, J))
-        rounder = far and (not near or np.log(far[0].high / far[0].low) < _ROUNDER * np.log(near[0].high / near[0].low))
-        return far if rounder else near
+        return self._ties(level).products()
 
-    def _products(self, which: list[int], family: list[NDArray[np.float64]], level: float) -> list[Product]:
-        """Those of a family, up to the first one that is open or wide."""
-        problem, found = self._problem, []
-        for direction in family:
-            powers = np.zeros(len(problem.names))
-            powers[which] = direction
-            sides, centre = self._profile(powers, level), float(powers @ self._best.u)
-            if sides.low.at is None or sides.high.at is None or sides.high.at - sides.low.at > NARROW:
-                break
-            exponents = {
-                one.name: float(p if one.unit is None else p * self.values[one.name] / one.unit)
-                for one, p in zip(problem.unknowns, powers, strict=True) if p
-            }  # fmt: skip
-            value = np.prod([self.values[name] ** p for name, p in exponents.items()])
-            ends = (float(np.exp(end - centre)) for end in (sides.low.at, sides.high.at))
-            found.append(Product(exponents, float(value), *ends))
-        return found
+    def _ties(self, level: float) -> Ties:
+        return Ties(
+            self._problem, self._best.u, self._J, self._cov, partial(self._profile, level=level), self._rise(level)
+        )
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
         """What a record would show, with bands.
@@ -263,11 +210,16 @@ class Identification(Shown):
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
-        if getattr(record, "V0", 0.0) is None:
-            raise ParameterError("V0", None, "a number", "V0 of the record is not given: a prediction starts with it")
+        for name in OF_RECORDS:
+            if isinstance(getattr(record, name, 0.0), tuple | None):
+                raise ParameterError(
+                    name, None, "a number", f"{name} of the record is not given: a prediction needs it"
+                )
+        return self._predicted(record, "", level, draws, seed)
+
+    def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         width = float(np.sqrt(self._rise(level)))
-        given = self._problem, self._best.u, self._within, level, width
-        return predicted(*given, record, draws=draws, seed=seed)
+        return predicted(self._problem, record, called, self._best.u, self._cov, level, width, draws, seed)
 
     def residuals(self, values: Mapping[str, float]) -> NDArray[np.float64]:
         """Residuals over sigma of all records, in their order, and of the prior, at values by name.
@@ -323,105 +275,3 @@ class Identification(Shown):
         from .export import as_dataset
 
         return as_dataset(self)
-
-
-def identify(
-    cylinder: Cylinder,
-    unknown: Mapping[str, tuple[float, float]],
-    data: Sequence[Record],
-    *,
-    prior: Mapping[str, tuple[float, float]] | None = None,
-    shift: Shift | Mapping[str, Shift] | None = None,
-    robust: bool = False,
-    starts: int = 8,
-    seed: int = 0,
-    progress: bool = False,
-) -> Identification:
-    """Fit what is unknown of a cylinder and its bearing to measurements, and say what they do not tell.
-
-    Parameters
-    ----------
-    cylinder : what is known, and where the search starts.
-    unknown : range (low, high) of each, SI, by the names of run files: R, m, mu, j, g, load; E, nu, T_ref of the
-        material, E_1, tau_1 of its first, longest mode, over T_ref; the same of another half-space as base_E, base_E_1;
-        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega; V0, omega0 and t0
-        of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times: with mu they
-        are the whole job for a material of a DMA.
-    data : :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, all with values, or none: then what would be
-        learnt if the cylinder were the truth.
-    prior : (value, standard deviation) of what is known beforehand; that of the logarithm, but for brake, drag, nu
-        and unknowns of records.
-    shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
-        of the cylinder; where its bodies differ {"material": ..., "base": ...}.
-    robust : let outliers count less, as |r| in place of r^2.
-    starts : searches, the first from the cylinder, the others spread over the ranges.
-    seed : of the latter.
-    progress : draw a progress bar if it takes longer than a second.
-
-    Returns
-    -------
-    Identification
-
-    Raises
-    ------
-    ParameterError
-        A name that is none, a range that does not hold the start, more unknowns than points, records without
-        standard deviations where values are missing, records with and without values, two records of one name.
-    """
-    given = {"material": shift, "base": shift} if callable(shift) else shift or {}
-    records = _called(cylinder, data, given)
-    unknowns = unknowns_of(cylinder, unknown, records)
-    if not unknowns:
-        raise ParameterError("unknown", "nothing", "at least one name and its range")
-    problem = Problem(cylinder, unknowns, records, _priors(prior or {}, unknowns), bool(robust), given)
-    if problem.y.size + len(problem.prior) < len(unknowns):
-        sentence = f"{len(unknowns)} unknowns, but {problem.y.size} points: measure more, or leave unknowns out"
-        raise ParameterError("unknown", len(unknowns), f"at most {problem.y.size}", sentence)
-    idle = flat(problem)
-    problem.live = [i for i, name in enumerate(problem.names) if name not in idle]
-    if next(iter(records.values())).planned:
-        return Identification(problem, [Found(problem.start, problem.cost(problem.residuals(problem.start)))])
-    if not (isinstance(starts, (int, np.integer)) and starts >= 1):
-        raise ParameterError("starts", starts, "a whole number >= 1")
-    return Identification(problem, minima(problem, int(starts), seed, progress))
-
-
-def _called(cylinder: Cylinder, data: Sequence[Record], shifts: Mapping[str, Shift]) -> dict[str, Record]:
-    """The records by name; those without one are called by their kind."""
-    found: dict[str, Record] = {}
-    for record in data:
-        if not isinstance(record, Record):
-            raise ParameterError("data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown")
-        called, n = record.name or record.KIND, 1
-        while called in found:
-            n += 1
-            if record.name:
-                raise ParameterError("name", repr(record.name), "another for each record")
-            called = f"{record.KIND} {n}"
-        if record.planned and not record.sigma:
-            raise ParameterError(f"{called}: sigma", None, "given where there are no values")
-        if record.temperature is not None:
-            refuse_unshifted(cylinder, called, record.temperature, shifts)
-        found[called] = record
-    if not found:
-        raise ParameterError("data", "no record", "at least one")
-    if len({record.planned for record in found.values()}) > 1:
-        sentence = "some records have values and some have none: fit those first, then plan with its cylinder"
-        raise ParameterError("data", "mixed", "all with values, or none", sentence)
-    return found
-
-
-def _priors(given: Mapping[str, tuple[float, float]], unknowns: list[Any]) -> list[tuple[int, float, float]]:
-    """(Which coordinate, its mean, its standard deviation)."""
-    found, names = [], [one.name for one in unknowns]
-    for name, pair in given.items():
-        if name not in names:
-            raise unknown("prior", name, names, "an unknown")
-        one = unknowns[names.index(name)]
-        if np.shape(pair) != (2,):
-            raise ParameterError(f"prior {name}", f"{pair!r:.40}", "(value, standard deviation)")
-        low = -np.inf if one.unit is not None else 0.0
-        mean = number(f"prior {name}", pair[0], low=low, strict=True)
-        sd = number(f"standard deviation of prior {name}", pair[1], low=0.0, strict=True)
-        found.append((names.index(name), float(one.to_u(mean)), sd if one.unit is None else sd / one.unit))
-    return found

@@ -65,8 +65,8 @@ class Prediction(Shown):
 
 
 def predicted(
-    problem: Problem, u: NDArray[np.float64], cov: NDArray[np.float64], level: float, width: float, record: Record,
-    called: str = "", *, draws: int = 0, seed: int = 0,
+    problem: Problem, record: Record, called: str, u: NDArray[np.float64], cov: NDArray[np.float64], level: float,
+    width: float, draws: int, seed: int,
 ) -> Prediction:  # fmt: skip
     """At coordinates u with covariance cov: by slopes, ``width`` standard deviations to a side, or by draws."""
 

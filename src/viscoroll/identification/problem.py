@@ -21,6 +21,8 @@ STEP = 3e-4
 FAR = 1e6
 #: how much stiffer than the data a combination is held
 _STIFF = 1e3
+#: a standard deviation that was not given, over that of the values, to begin with
+_GUESS = 1e-3
 #: of a range, how near to an end counts as at it
 _AT_END = 1e-6
 
@@ -85,7 +87,7 @@ class Problem:
             for quantity, given in record.sigma.items():
                 values = plan[called][quantity] if record.planned else getattr(record, quantity)
                 y.append(np.ravel(values))
-                spread = np.full(values.size, max(float(np.std(values)), 1e-300))
+                spread = np.full(values.size, max(_GUESS * float(np.std(values)), 1e-300))
                 sigma.append(spread if given is None else np.ravel(given))
                 self.columns.append(Column(called, quantity, slice(size, size + values.size), given is None))
                 size += values.size

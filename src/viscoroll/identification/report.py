@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from .records import Coastdown
+from .motions import Coastdown
 from .unknowns import named
 
 #: points of a motion's phase below which it is told
@@ -22,7 +22,7 @@ def report(fit: Any) -> str:
     width = max(map(len, fit.values))
     for name, value in fit.values.items():
         lines.append(
-            f"  {name:<{width}}  {value:<12.6g} {_spread(fit, name):<12} {_LEVEL:.0%}: {_interval(*intervals[name])}"
+            f"  {name:<{width}}  {value:<12.6g} +- {fit.stderr[name]:<9.2g} {_LEVEL:.0%}: {_interval(*intervals[name])}"
         )
     return "\n".join([*lines, *(f"  ! {line}" for line in sentences(fit))])
 
@@ -59,11 +59,6 @@ def noise_said(fit: Any) -> Iterator[str]:
         )
 
 
-def _spread(fit: Any, name: str) -> str:
-    sd, value = fit.stderr[name], abs(fit.values[name])
-    return f"+- {sd:.2g}" if not value or sd < 10.0 * value else "+- ?"
-
-
 def _interval(low: float | None, high: float | None) -> str:
     return f"{'open' if low is None else f'{low:.6g}'} to {'open' if high is None else f'{high:.6g}'}"
 
@@ -82,6 +77,7 @@ def _loose(fit: Any) -> Iterator[str]:
         return
     products = fit.products(_LEVEL)
     only = f"only {' and '.join(map(_product, products))} {'is' if len(products) == 1 else 'are'} determined"
+    only += ", near these values" if products and products[0].near else ""
     yield f"{', '.join(names[:-1])} and {names[-1]} cannot be told apart by these data: " + (
         only if products else "no product of their powers is determined"
     )
@@ -90,7 +86,8 @@ def _loose(fit: Any) -> Iterator[str]:
 def _product(one: Any) -> str:
     ordered = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in ordered)
-    return f"{text} = {one.value:.4g} ({_LEVEL:.0%}: {one.low - 1.0:+.2g} to {one.high - 1.0:+.2g} of it)"
+    low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
+    return f"{text} = {one.value:.4g} ({_LEVEL:.0%}: {low} to {high})"
 
 
 def _sides(fit: Any) -> Iterator[str]:

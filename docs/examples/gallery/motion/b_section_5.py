@@ -4,8 +4,8 @@ The example of the paper
 
 Sect. 5 of the paper throws a soft, slow cylinder in three ways; its Fig. 5 shows V and
 omega.  A caveat: this is the exact solution of the paper's Eq. (22), but not the motion of
-such a cylinder, which would rock in its own imprint (nu = 600, where the law of steady
-rolling asks for less than 0.4; :doc:`/may_i`).
+such a cylinder, which at 9 mm/s would rock in its own imprint: it is too slow for the law of
+steady rolling (:doc:`/may_i`).
 """
 
 import matplotlib.pyplot as plt
