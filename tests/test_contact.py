@@ -413,12 +413,15 @@ def test_a_state_is_the_same_bits_in_any_company():
 
 
 def test_a_stick_zone_that_rounds_to_nothing():
-    """F(zeta) - d is below 0 by a rounding of zeta = 3.6e15, while |delta| is below delta_star: eta is 0."""
-    scene = vr.Scene(alpha=[117726.85190886419, 2.0], kappa=590140.0176455299, mu=122614.17601092247)
-    state = vr.contact(scene, 2.3857438251867764e-22, delta=0.1038856647106511)
-    assert not state.full_slip[0]
-    assert state.beta[0] == 0.0
-    assert state.Q[0] == scene.mu
+    """One rounding below delta_star, where L - D may round to 0: slip is not full, and there is no beta below 0."""
+    draw = np.random.default_rng(6)
+    mu, V = 10.0 ** draw.uniform(-2, 5, 300), 10.0 ** draw.uniform(-22, 22, 300)
+    for alpha in (117726.85190886419, 1.0 + 10.0 ** draw.uniform(-8, 6, 300)):
+        scene = vr.Scene(alpha, 10.0 ** draw.uniform(-2, 6, 300), mu)
+        state = vr.contact(scene, V, delta=np.nextafter(delta_star(scene, V), 0.0))
+        assert not state.full_slip.any()
+        assert ((state.beta >= 0.0) & (state.beta < tol.CONTACT)).all()
+        assert close(state.Q, mu, rel=tol.CONTACT)
 
 
 def test_differences_of_an_elastic_contact():

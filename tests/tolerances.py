@@ -119,6 +119,14 @@ AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
 AXIS_UNSTEADY = 2e-14
 
+# --- contact_table.py (test_contact_each.py) ---
+#: An alpha each, by the axis of alpha: lam, delta_star, M and Q, and beta times its condition; epsilon.  As asked of
+#: the axis, and of epsilon what the row of one alpha has; 400 states from 1 to 2^20 have 2.5e-15 at most.
+EACH_ALPHA, EACH_SHIFT = 1e-14, 2e-14
+#: A material each, by the grid of z, against its own table: values, as asked, which 300 random series of 1 to 16 modes
+#: hold with 6e-14; slopes, of their scale, which are those of polynomials fitted to values.
+EACH_MATERIAL, EACH_SLOPE = 1e-13, 1e-11
+
 # --- materials/law_table.py (test_law_table.py) ---
 #: M/V, eta/F and H/F^2 by a row, relative; lam and epsilon as of states (CONTACT_LENGTH, CONTACT_SHIFT).
 TABLE_LAW = 5e-15

@@ -13,8 +13,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.kernels.law.state import contact_state
-from viscoroll.kernels.law.states import ROWS, M, Need, Q, State
+from viscoroll.kernels.law.state import loads
+from viscoroll.kernels.law.states import State
 from viscoroll.kernels.material.functions import standard
 
 from ..bench.jit import compiled
@@ -25,16 +25,15 @@ INSTALLED = bool(find_spec("numbalsoda"))
 ATOL_SHARE = 1e-3
 #: between two outputs
 _MOST_STEPS = 20_000
-_NEED = Need(True, True, False, True, False)
 
 
 @compiled
-def _rates(V, omega, t, par, out, du):
+def _rates(V, omega, t, par, du):
     """Rates over tau at f = par[4] + par[5] t and q = par[6] + par[7] t; counts the call in par[8]."""
-    contact_state(standard(par[0]), State(par[1], par[2], V, omega, True), _NEED, out)
+    Q, M = loads(standard(par[0]), State(par[1], par[2], V, omega, True))
     f, q = par[4] + par[5] * t, par[6] + par[7] * t
-    du[0] = out[Q] - 0.5 * out[M] + f
-    du[1] = (q - out[Q] - 0.5 * out[M]) / par[3]
+    du[0] = Q - 0.5 * M + f
+    du[1] = (q - Q - 0.5 * M) / par[3]
     par[8] += 1.0
 
 
@@ -46,7 +45,7 @@ def _compiled():
     @numba.cfunc(driver.lsoda_sig, cache=True)
     def rates(t, u, du, p):
         y = numba.carray(u, 2)
-        _rates(y[0], y[1], t, numba.carray(p, 9), np.empty(len(ROWS)), numba.carray(du, 2))
+        _rates(y[0], y[1], t, numba.carray(p, 9), numba.carray(du, 2))
 
     @numba.njit(nogil=True)
     def one(address, start, par, t, rtol, atol):

@@ -1,4 +1,4 @@
-"""The fields of contact() against certified enclosures: of an alpha each by root solves, of one alpha by its rows."""
+"""The fields of contact() against certified enclosures: of an alpha each by the axis of alpha, of one by its rows."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@
 
 Largest relative error in each cell of a grid, over random states in it, against certified enclosures: of lam,
 epsilon, delta_star and M over (kappa V, alpha), of Q and beta over (kappa V, s) at one alpha, where there are
-two ways: by root solves, as of states with an alpha each, and by the rows of that alpha.  beta's is times
+two ways: by the axis of alpha, as of states with an alpha each, and by the rows of that alpha.  beta's is times
 1 - s, over its condition number.
 Grid, states a cell and seed are in [error_maps] of the configuration, those of --quick in [error_maps.quick].
 With --draw nothing is computed: the figure is drawn from the file.

@@ -1,4 +1,4 @@
-"""The law and the stresses of states that have a material each, as :mod:`rolling_contact` asks for them."""
+"""The stresses of points that have a material each."""
 
 from __future__ import annotations
 
@@ -12,30 +12,7 @@ from numpy.typing import NDArray
 from .blocks import flattened
 from .materials.bodies import Bodies
 from .materials.prony_array import MaterialArray
-from .materials.tables import records, series
-
-
-def states_each(materials: MaterialArray, per_speed: set[str]) -> Callable:
-    """``state_loop`` of states with a material each, each in its own time; it takes their numbers for the material."""
-    from .kernels.law.contact_loop import state_loop
-    from .kernels.law.states import ROWS
-
-    def loop(numbers: NDArray, states: Any, need: Any, rows: NDArray, out: NDArray, start: int, stop: int) -> Any:
-        record, unit = records(materials, numbers.astype(np.int64))
-        states = states._replace(V=_times(states.V, unit))
-        if states.creep_is_omega:
-            states = states._replace(creep=_times(states.creep, unit))
-        status = state_loop(record, states, need, rows, out, start, stop)
-        for n, row in enumerate(rows):
-            if ROWS[row] in per_speed:
-                out[n] *= unit
-        return status
-
-    return loop
-
-
-def _times(values: NDArray, unit: NDArray) -> NDArray:
-    return flattened(values * unit, np.broadcast_shapes(values.shape, unit.shape))
+from .materials.tables import series
 
 
 def stresses_each(materials: MaterialArray) -> Callable:

@@ -1,42 +1,84 @@
-"""The law at many states of one material, from its table, as :mod:`rolling_contact` asks for it."""
+"""The law at many states, by rows of one table, of an alpha each or of a material each, for :mod:`rolling_contact`."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import elements, run_blocks
+from .blocks import elements, flattened, run_blocks
 from .contact_fields import SLOPES, SLOPES_OF_BODIES, UNSTEADY
+from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from .materials.law_table import LawTable
+from .materials.prony_array import MaterialArray
+from .materials.tables import unsteadiness
 
-#: states of a block, and of what a kernel works on side by side
-_BLOCK, _TOGETHER = 1 << 15, 64
+#: states of a block, where each has a material of its own, which takes some kilobytes, and where not
+_BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
+#: states of one law that a kernel works on side by side
+_TOGETHER = 64
+#: fields over a speed, which follows the unit of time
+_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 
 
 def states_of(
-    table: LawTable, arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]
+    given: LawTable | MaterialArray | None,
+    arrays: list[NDArray],
+    shape: tuple[int, ...],
+    creep_is_omega: bool,
+    names: tuple[str, ...],
 ) -> NDArray:
-    """The fields ``names``, a row each, of kappa, mu, V and the creep broadcast to ``shape``."""
+    """The fields ``names``, a row each, of the alphas, kappa, mu, V and the creep broadcast to ``shape``.
+
+    ``given``: one law for all; many materials, with their numbers in place of the alphas; or, None, alphas.
+    """
     from .kernels.law.states import ROWS, States
     from .kernels.rows.contact import slopes_loop, table_loop, unsteady_loop
 
-    count, law = int(np.prod(shape)), table.record
-    to, out, parts = np.full(len(ROWS), -1), np.empty((len(names), count)), [elements(array, shape) for array in arrays]
-    to[[ROWS.index(name) for name in names if name != UNSTEADY]] = [
-        row for row, name in enumerate(names) if name != UNSTEADY
-    ]
-    slopes = set(names) & set(SLOPES + SLOPES_OF_BODIES)
+    count, slopes = int(np.prod(shape)), set(names) & set(SLOPES + SLOPES_OF_BODIES)
     values = set(names) - slopes - {UNSTEADY}
+    to, out = np.full(len(ROWS), -1), np.empty((len(names), count))
+    for row, name in enumerate(names):
+        if name != UNSTEADY:
+            to[ROWS.index(name)] = row
+    own, *parts = (elements(array, shape) for array in arrays)
 
     def work(start: int, stop: int) -> None:
         kappa, mu, V, creep = (part(start, stop) for part in parts)
+        each, unit, order = own(start, stop), None, np.empty(0, np.int64)
+        if isinstance(given, LawTable):
+            law: Any = given.record
+        elif given is None:
+            law, order = law_of_alphas(each), order_of_alphas(each, kappa, V)
+        else:
+            law, unit = law_of_materials(given, each.astype(np.int64))
+            order = np.argsort(each, kind="stable") if each.size > 1 else order
+            V = _in(unit, V)
+            creep = _in(unit, creep) if creep_is_omega else creep
         states = States(kappa, mu, V, creep, creep_is_omega)
+        room = np.empty((2, _TOGETHER if isinstance(given, LawTable) else 1))
         if values:
-            table_loop(law, states, to, out, np.empty((2, _TOGETHER)), start, stop)
+            table_loop(law, states, order, to, out, room, start, stop)
         if slopes:
-            slopes_loop(law, states, to, out, start, stop)
+            slopes_loop(law, states, order, to, out, start, stop)
         if UNSTEADY in names:
-            unsteady_loop(law, table.unsteady_rows, states, out[names.index(UNSTEADY)], start, stop)
+            N = names.index(UNSTEADY)
+            if isinstance(given, LawTable):
+                unsteady_loop(law, given.unsteady_rows, states, out[N], start, stop)
+            else:
+                to_N = np.where(np.arange(len(ROWS)) == ROWS.index("zeta"), N, -1)
+                table_loop(law, states, order, to_N, out, room, start, stop)
+                out[N, start:stop] = unsteadiness(each, out[N, start:stop])
+        if unit is not None:
+            for row, name in enumerate(names):
+                if name in _PER_SPEED:
+                    out[row, start:stop] *= unit
 
-    run_blocks(work, count, _BLOCK)
+    run_blocks(work, count, _BLOCK_EACH if isinstance(given, MaterialArray) else _BLOCK)
     return out
+
+
+def _in(unit: NDArray, speeds: NDArray) -> NDArray:
+    """Speeds in the time of each material."""
+    return flattened(speeds * unit, np.broadcast_shapes(speeds.shape, unit.shape))

@@ -6,7 +6,7 @@ the fields that were named.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -14,27 +14,20 @@ from numpy.typing import NDArray
 
 from .blocks import elements, solve_blocks
 from .checks import broadcast_shape, checked_extent
-from .contact_fields import OF_BODIES, SLOPES, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .contact_fields import OF_BODIES, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import states_of
 from .errors import ParameterError, one_of
 from .labels import unlabelled
 from .materials.bodies_array import BodiesArray
 from .materials.law_table import LawTable, law_table
 from .materials.prony_array import MaterialArray
-from .materials.tables import unsteadiness
 from .results import Values
 from .scene import Scene, checked_scene
 from .typed import Numbers
 
 #: of bodies that are alike, half of each
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
-_NEEDS_STICK = {"beta", "Q", "dQ_dV", "dQ_ddelta", "dQ_domega"}
-_NEEDS_SHIFT = _NEEDS_STICK | {"epsilon", "delta_star", "delta", "full_slip"}
-#: slopes over a speed, which follows the unit of time
-_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 _BLOCK = 1 << 15
-#: where each has a material of its own, which costs tens of microseconds and some kilobytes
-_BLOCK_EACH = 1 << 8
 _FASTEST = 1e300
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
@@ -92,7 +85,7 @@ def contact(
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
         ``dQ_domega`` is infinite.  Of bodies that differ, ``dM_half_space_dV`` and ``dM_cylinder_dV`` too.
-    method : "table" (the explicit law on tabulated Bessel ratios) or "direct" (the paper's
+    method : "table" (the rows of the law: no equation is solved) or "direct" (the paper's
         equations as printed, solved by Brent-Dekker; no slopes).
 
     Returns
@@ -152,10 +145,8 @@ def contact(
     unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, BodiesArray)
     halved = {} if unlike else {name: _HALVES[name] for name in names if name in _HALVES}
     solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
-    if isinstance(one, LawTable):
-        found = states_of(one, list(arrays.values())[1:], shape, creep_name == "omega", solved)
-    else:
-        found = _compute(one, list(arrays.values()), shape, creep_name == "omega", solved, method)
+    broadcast = list(arrays.values()), shape, creep_name == "omega", solved
+    found = _direct(*broadcast) if method == "direct" else states_of(one, *broadcast)
     rows = dict(zip(solved, found, strict=True))
     rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
     given = {"V": V, creep_name: omega if delta is None else delta}
@@ -179,64 +170,27 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
         raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
-def _compute(
-    material: MaterialArray | None,
-    arrays: list[NDArray],
-    shape: tuple[int, ...],
-    creep_is_omega: bool,
-    names: tuple[str, ...],
-    method: str,
-) -> NDArray:
-    """The fields ``names`` by ``method``, a row each, of alpha, kappa, mu, V and the creep broadcast to ``shape``.
+def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
+    """The fields ``names`` by the printed equations, a row each, of alpha, kappa, mu, V and the creep."""
+    from .kernels.law.states import ROWS, States
+    from .kernels.material.functions import Own
+    from .kernels.printed.loop import direct_loop
 
-    ``material``: many series or bodies, with their numbers in place of the alphas.
-    """
-    from .kernels.law.states import ROWS, Need, States
-
-    # N is found from zeta
-    wanted = ["zeta" if name == UNSTEADY else name for name in names]
-    need = Need(
-        bool(_NEEDS_SHIFT & {*wanted}), bool(_NEEDS_STICK & {*wanted}), "beta" in wanted,
-        bool({"M", "dM_dV", *_HALVES} & {*wanted}), bool({*SLOPES, *SLOPES_OF_BODIES} & {*wanted}),
-    )  # fmt: skip
     count = int(np.prod(shape))
-    rows = np.array([ROWS.index(name) for name in wanted], dtype=np.int64)
+    rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
-    loop = _chosen_loop(material, count, method)
     alphas, *parts = (elements(array, shape) for array in arrays)
 
     def solve(start: int, stop: int) -> int:
         found = np.empty((len(names), stop - start))
         kappa, mu, V, creep = (part(start, stop) for part in parts)
-        states, alpha = States(kappa, mu, V, creep, creep_is_omega), alphas(start, stop)
-        status: int = loop(alpha, states, need, rows, found, 0, stop - start)
-        if UNSTEADY in names:
-            N = names.index(UNSTEADY)
-            found[N] = unsteadiness(alpha, found[N])
+        states = States(kappa, mu, V, creep, creep_is_omega)
+        status: int = direct_loop(Own(alphas(start, stop)), states, rows, found, 0, stop - start)
         out[:, start:stop] = found
         return status
 
-    block = _BLOCK_EACH if isinstance(material, MaterialArray) else _BLOCK
-    solve_blocks(solve, count, block, f"contact: an iteration hit its cap near element {{}} (method {method!r})")
+    solve_blocks(solve, count, _BLOCK, "contact: an iteration hit its cap near element {} (method 'direct')")
     return out
-
-
-def _chosen_loop(material: MaterialArray | None, count: int, method: str) -> Callable:
-    """The kernel for a call, which takes the alphas of a block in place of its material."""
-    from .kernels.law.contact_loop import contact_loop, state_loop
-    from .kernels.law.lockstep import TOGETHER
-    from .kernels.material.functions import Own
-
-    if material is not None:
-        from .contact_each import states_each
-
-        return states_each(material, _PER_SPEED)
-    if method == "direct":
-        from .kernels.printed.loop import direct_loop
-
-        return lambda alphas, *rest: direct_loop(Own(alphas), *rest)
-    loop = state_loop if count < TOGETHER else contact_loop
-    return lambda alphas, *rest: loop(Own(alphas), *rest)
 
 
 def shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:

@@ -37,7 +37,7 @@ _LITTLE = 1e-7
 def rolling(material: float | Prony, u: Array, names: tuple[str, ...]) -> Array:
     """Rows of the law in pure rolling at kappa |V| = u, of one material in its own time; kappa = 1."""
     one, none = np.ones(1), np.zeros(1)
-    return states_of(law_table(material), [one, one, u, none], u.shape, False, names)
+    return states_of(law_table(material), [one, one, one, u, none], u.shape, False, names)
 
 
 class Curve:

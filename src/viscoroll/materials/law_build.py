@@ -149,7 +149,9 @@ class Limits:
         half = 0.5 * self.alpha * z
         pairs = [(square / (1.0 + shift) ** 2, self.alpha * share**2), (shift, half * (C - W * np.log(z)))]
         pairs += [(m, half * z * (C - W * (np.log(z) - 0.25))) for m, (W, C) in zip(parts, self.fast, strict=True)]
-        return np.max([np.abs(limit - m) / np.where(m > 0.0, m, 1.0) for m, limit in pairs], axis=0)
+        known = 0.0625 * sum(parts)  # a small part is known to roundings of their sum
+        scales = [pairs[0][0], shift, *(np.maximum(m, known) for m in parts)]
+        return np.max([np.abs(limit - m) / scale for (m, limit), scale in zip(pairs, scales, strict=True)], axis=0)
 
 
 @dataclass(frozen=True)
@@ -214,7 +216,9 @@ def build(
     e0 = first_octave(slowest)
     tried = math.frexp(fastest)[1] + np.arange(_FIRST, _FIRST + _TRIED)
     w = np.ldexp(1.0, tried)
-    last = int(tried[np.argmax(limits.off(w, evaluate(1.0 / w)) <= _NEAR)]) + _FURTHER
+    near = limits.off(w, evaluate(1.0 / w)) <= _NEAR
+    near[-1] = True
+    last = int(tried[np.argmax(near)]) + _FURTHER
     rows, mean = Rows(e0, max(last - e0 + 1, least)), float(limits.means.sum())
     finer = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(limits.alpha)))
     found = evaluate(1.0 / finer.x.ravel())

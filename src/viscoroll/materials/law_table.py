@@ -74,11 +74,14 @@ class LawTable:
     @cached_property
     def record(self) -> Any:
         """What kernels take, derived from this table and from nothing else."""
-        from ..kernels.rows.law import Law
+        from ..kernels.rows.record import COUNT, E0, PARTS, WIDTH, Law
 
-        rows = _read_only(arranged(self.given_coefficients, self.e0, self.alpha, self.fast_limit[0]).ravel())
-        limits = map(float, self.fast_limit.ravel())
-        return Law(rows, len(self.given_coefficients), self.e0, self.alpha, 1.0 / math.sqrt(self.alpha), *limits)
+        count = len(self.given_coefficients)
+        rows, marks = np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
+        rows[:8] = self.alpha, 1.0 / math.sqrt(self.alpha), *self.fast_limit.ravel()
+        rows[WIDTH:] = arranged(self.given_coefficients, self.e0, self.alpha, self.fast_limit[0]).ravel()
+        marks[[COUNT, E0]] = count, self.e0
+        return Law(_read_only(rows), _read_only(marks), 0, 0, 0)
 
     @cached_property
     def unsteady_rows(self) -> Floats:
@@ -191,7 +194,7 @@ def _elastic() -> Floats:
     return table
 
 
-def _read_only(values: Floats) -> Floats:
+def _read_only(values: Any) -> Any:
     values = np.ascontiguousarray(values)
     values.flags.writeable = False
     return values

@@ -40,16 +40,6 @@ class States(NamedTuple):
     creep_is_omega: bool
 
 
-class Need(NamedTuple):
-    """Whether epsilon and delta_star, beta or Q, beta, M, and slopes are wanted."""
-
-    shift: bool
-    stick: bool
-    beta: bool
-    moment: bool
-    slopes: bool
-
-
 @kernel(inline=True)
 def _element(values, n):
     return values[np.uint64(n * (values.size > 1))]

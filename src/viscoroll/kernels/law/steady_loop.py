@@ -17,7 +17,7 @@ from ..material.functions import at_contact, generator_slopes
 from ..material.pair import Pair, parts
 from ..material.tabulated import Tabulated
 from .length import OK, contact_length, contact_solution, near_length
-from .state import UNSOLVED, stick, traction_slopes
+from .state import stick, traction_slopes
 from .states import State
 from .stick import CLOSE, differences
 
@@ -265,7 +265,7 @@ def _slipping(material, zeta, slip, kappa, mu, n, out):
         out[DELTA, n], out[Q, n] = sign * delta, sign * mu
         out[BETA, n], out[DQ_DV, n], out[DQ_DOMEGA, n] = 0.0, 0.0, 0.0
         return OK
-    stuck = stick(speed, delta, mu, solved, star, UNSOLVED, material)
+    stuck = stick(speed, delta, mu, solved, star, material)
     out[Q, n] = sign * mu * stuck[3]
     _answers(material, State(kappa, mu, speed, delta, False), sign, solved, stuck, n, out)
     return stuck[4]

@@ -58,25 +58,18 @@ def stick_solution(zeta, g, h, dg, d, material):
         return _sharper(zeta, D * (1.0 + 0.5 * D * ddg / (1.0 + dg)), d, material)
     y = (zeta + g) - d
     eta, g_eta, h_eta, status = root_of_F(y, near_eta(y, zeta, g, dg), material)
-    eta, D, rise_H = stick_from_root(eta, g_eta, h_eta, zeta, g, h, d, material)
-    return eta, D, rise_H, status
+    D = d - (g - g_eta)
+    if d <= CLOSE * (zeta + g):
+        eta, D, rise_H, _ = _sharper(zeta, D, d, material)
+        return eta, D, rise_H, status
+    ratio = eta / zeta
+    return eta, D, (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta), status
 
 
 @kernel(inline=True)
 def slight(d, zeta, g):
     """Whether slip is so slight that zeta - eta starts from the slopes at zeta."""
     return d <= _SLIGHT * (zeta + g)
-
-
-@kernel(inline=True)
-def stick_from_root(eta, g_eta, h_eta, zeta, g, h, d, material):
-    """``stick_solution`` without its status from the root of F(eta) = F(zeta) - d and g, h there."""
-    D = d - (g - g_eta)
-    if d <= CLOSE * (zeta + g):
-        eta, D, rise_H, _ = _sharper(zeta, D, d, material)
-        return eta, D, rise_H
-    ratio = eta / zeta
-    return eta, D, (1.0 + ratio) * D + 2.0 * (h - ratio * h_eta)
 
 
 @kernel

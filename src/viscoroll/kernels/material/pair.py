@@ -13,7 +13,7 @@ from ..compile.rarely import rarely
 from ..numerics import quartet
 from ..numerics.bins import offset_slope
 from .each import Body, Ends
-from .tabulated import at_an_end, beyond, make, moment_at_an_end, moment_over_z
+from .tabulated import at_an_end, beyond, make, moment_at_an_end
 
 
 class Pair(NamedTuple):
@@ -52,12 +52,6 @@ def _parts_at_an_end(z, material):
     half_space, d_half_space = moment_at_an_end(z, one.T_mean, one.ends, material)
     cylinder, d_cylinder = moment_at_an_end(z, other.T_mean, other.ends, material)
     return half_space, cylinder, d_half_space, d_cylinder
-
-
-@kernel(inline=True)
-def fast_parts(z, material):
-    """Parts of m/z at a z that is so small that its square may underflow."""
-    return moment_over_z(z, material.half_space.ends, material), moment_over_z(z, material.cylinder.ends, material)
 
 
 @kernel(inline=True)

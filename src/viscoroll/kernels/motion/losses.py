@@ -14,9 +14,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.state import contact_state
-from ..law.states import ROWS as CONTACT_ROWS
-from ..law.states import Need, Q, State
+from ..law.state import loads
+from ..law.states import State
 from ..material.standard import GAUSS_W, GAUSS_X
 from ..numerics.arrays import fill
 from .integrate import integrate
@@ -26,7 +25,6 @@ from .records import PARTIAL, Batch, Limits, Notes
 
 #: rows that follow those of :mod:`output`, and the number of all
 SLIP_LOSS, ROLLING_LOSS, ROWS = OUTPUTS, OUTPUTS + 1, OUTPUTS + 2
-_NEED = Need(True, True, False, False, False)
 _POINTS = GAUSS_X.size
 #: room for the ends of steps at first
 _ENDS = 1000
@@ -39,12 +37,12 @@ def kinetic_energy_lost(V0, omega0, V, omega, j):
 
 
 @kernel
-def _slip_power(V, omega, delta, regime, scene, state):
+def _slip_power(V, omega, delta, regime, scene):
     """(omega - V) Q >= 0; where slip is partial delta keeps the digits that omega - V has lost."""
     if regime != PARTIAL:
         return abs(omega - V) * scene.mu
-    contact_state(scene.material, State(scene.kappa, scene.mu, V, delta, False), _NEED, state)
-    return delta * V * state[Q]
+    Q, _ = loads(scene.material, State(scene.kappa, scene.mu, V, delta, False))
+    return delta * V * Q
 
 
 @kernel(allocates=True)
@@ -79,16 +77,15 @@ def loss_points(step_ends, t):
     return edges, times
 
 
-@kernel(allocates=True)
+@kernel
 def add_losses(scene, gamma, V0, omega0, t, edges, points, out):
     """Fill the two rows of losses of a motion from its ``points``: rolled once more, in the same steps, with output at
     those of :func:`loss_points`."""
-    state = np.empty(len(CONTACT_ROWS))
     lost, n = 0.0, 0
     for m in range(t.size):
         while n < edges.size - 1 and edges[n + 1] <= t[m]:
             for k in range(n * _POINTS, (n + 1) * _POINTS):
-                power = _slip_power(points[0, k], points[1, k], points[4, k], points[5, k], scene, state)
+                power = _slip_power(points[0, k], points[1, k], points[4, k], points[5, k], scene)
                 lost += gamma * (edges[n + 1] - edges[n]) * GAUSS_W[k - n * _POINTS] * power
             n += 1
         out[SLIP_LOSS, m] = lost

@@ -1,6 +1,6 @@
 """Four numbers at once: one instruction of the processor adds, multiplies or divides them all.
 
-Each of the four is rounded as it would be alone.
+Each of the four is rounded as it would be alone; of :func:`fused`, product and sum together.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any, Callable
 import numba
 import numpy as np
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic, models, register_model
 
 #: how many
@@ -63,6 +63,22 @@ add, subtract = _binary("fadd", np.add), _binary("fsub", np.subtract)
 multiply, divide = _binary("fmul", np.multiply), _binary("fdiv", np.divide)
 
 
+def _fused(typing_context, a, b, c):
+    def lower(context, builder, signature, given):
+        known = ir.FunctionType(VECTOR, [VECTOR] * 3)
+        return builder.call(cgutils.get_or_insert_function(builder.module, known, "llvm.fma.v4f64"), given)
+
+    return _four(_four, _four, _four), lower
+
+
+def _slide(typing_context, a, b):
+    def lower(context, builder, signature, given):
+        order = [LANES - 1 + n for n in range(LANES)]
+        return builder.shuffle_vector(given[0], given[1], ir.Constant(ir.VectorType(_INT, LANES), order))
+
+    return _four(_four, _four), lower
+
+
 def _spread(typing_context, x):
     def lower(context, builder, signature, given):
         return spread_over(builder, given[0])
@@ -104,12 +120,18 @@ def _put(array: Any, at: int, four: Any) -> None:
 
 if numba.config.DISABLE_JIT:
     four = lambda *given: np.array(given)  # noqa: E731
+    fused = lambda a, b, c: a * b + c  # noqa: E731
+    slide = lambda a, b: np.concatenate([a[-1:], b[:-1]])  # noqa: E731
     spread = lambda x: np.full(LANES, x)  # noqa: E731
     load = lambda array, at: array[at : at + LANES].copy()  # noqa: E731
     store = _put
 else:
     #: four numbers as one
     four = intrinsic(_four_of)
+    #: the last of one before the first three of another: a load across two stores would wait for both
+    slide = intrinsic(_slide)
+    #: a b + c
+    fused = intrinsic(_fused)
     #: a number, four times
     spread = intrinsic(_spread)
     #: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors

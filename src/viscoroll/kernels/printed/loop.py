@@ -1,4 +1,4 @@
-"""The contact law as printed, over arrays of states; rows and signs as in contact_loop."""
+"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..law.states`."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ def direct_state(alpha, state, out):
 
 
 @kernel(allocates=True)
-def direct_loop(own, states, need, rows, out, start, stop):
-    """States start..stop; arguments as of ``contact_loop`` (``need`` is not used)."""
+def direct_loop(own, states, rows, out, start, stop):
+    """States start..stop; ``rows`` picks the output."""
     state = np.empty(len(ROWS))
     worst = OK
     for i in range(start, stop):

@@ -12,46 +12,33 @@ from typing import Any
 
 import numba
 import numpy as np
-from llvmlite import ir
 from numba import carray
 from numba.core import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from ..compile.address import doubles, integers
 from ..compile.jit import kernel
 from ..law.states import State
 from .contact import slopes_of_Q, traction_of
-from .law import WIDTH, Law, bodies, body_slopes, place, speed, speed_slopes, way_of
+from .law import bodies, body_slopes, place, speed, speed_slopes, way_of
+from .record import PARTS, WIDTH, Law
 
 #: beyond this kappa |V| the status is not 0
 FASTEST = 1e300
 OUT = 8
-#: address of the function; whether slopes are asked for, whether the bodies differ; kappa, mu; the law, with the
-#: address of its rows for these
+#: address of the function; whether slopes are asked for, whether the bodies differ; addresses of the rows and of the
+#: marks of the law, and how many these are; kappa, mu
 SCENE = np.dtype(
-    [("function", np.uint64), ("slopes", np.int64), ("unlike", np.int64)]
-    + [("rows", np.uint64), ("count", np.int64), ("e0", np.int64)]
-    + [(name, np.float64) for name in ("kappa", "mu", *Law._fields[3:])]
+    [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count")]
+    + [("kappa", np.float64), ("mu", np.float64)]
 )
 _DOUBLES = types.CPointer(types.float64)
 _SIGNATURE = types.int32(types.float64, types.float64, _DOUBLES, types.CPointer(numba.from_dtype(SCENE)))
 
 
-@intrinsic
-def _doubles_at(typing_context, address):
-    def lower(context, builder, signature, given):
-        return builder.inttoptr(given[0], ir.DoubleType().as_pointer())
-
-    return _DOUBLES(types.uint64), lower
-
-
 @kernel(inline=True, allocates=True)
 def _law_of(scene):
-    rows = carray(_doubles_at(scene.rows), scene.count * WIDTH)
-    return Law(
-        rows, scene.count, scene.e0, scene.alpha, scene.low, scene.W, scene.C, scene.W_half_space, scene.C_half_space,
-        scene.W_cylinder, scene.C_cylinder,
-    )  # fmt: skip
+    return Law(doubles(scene.rows, scene.count * WIDTH), integers(scene.marks, scene.count * PARTS), 0, 0, 0)
 
 
 @kernel(allocates=True)
@@ -81,11 +68,11 @@ def _loads(V, omega, to, scenes):
 
 
 def bind(law: Law, unlike: bool, kappa: float, mu: float) -> NDArray[Any]:
-    """Scenes without slopes and with; the rows of the law are to outlive them."""
+    """Scenes without slopes and with; the law is to outlive them."""
     found = np.zeros(2, SCENE)
     found["function"], found["slopes"] = function(), [0, 1]
-    for name, value in {"unlike": unlike, "kappa": kappa, "mu": mu, **law._asdict()}.items():
-        found[name] = value.ctypes.data if name == "rows" else value
+    found["rows"], found["marks"], found["count"] = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // WIDTH
+    found["unlike"], found["kappa"], found["mu"] = unlike, kappa, mu
     return found
 
 

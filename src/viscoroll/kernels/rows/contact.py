@@ -49,6 +49,7 @@ from .law import (
     speed_slopes,
     way_of,
 )
+from .record import ALPHA, COUNT, E0, LOW, hold
 
 #: share of L below which D is slight
 SLIGHT = 0.125
@@ -139,6 +140,12 @@ def slopes_of_Q(u, L, dL, state, law):
 
 
 @kernel(inline=True)
+def _turn(order, k):
+    """The state whose turn it is."""
+    return order[np.uint64(k)] if order.size > 0 else k
+
+
+@kernel(inline=True)
 def _put(row, value, out, n):
     """A quantity into its row, if it has one."""
     if row >= 0:
@@ -146,13 +153,14 @@ def _put(row, value, out, n):
 
 
 @kernel(inline=True)
-def _speeds(law, states, to, out, found, first, begin, end):
+def _speeds(law, states, order, to, out, found, first, begin, end):
     """What depends on the speed alone, into columns begin..end of ``out``; L and lam into ``found``."""
     to_lam, to_zeta, to_epsilon, to_M = to[LAM], to[ZETA], to[EPSILON], to[M]
     to_half_space, to_cylinder = to[M_HALF_SPACE], to[M_CYLINDER]
     measured = to_lam >= 0 or to_zeta >= 0 or to_epsilon >= 0 or to[BETA] >= 0
-    for column in range(begin, end):
-        n, i, state = np.uint64(column), np.uint64(column - begin), state_of(states, column - first)
+    for k in range(begin, end):
+        now, i = _turn(order, k - first), np.uint64(k - begin)
+        n, state = np.uint64(now + first), state_of(states, now)
         u = state.kappa * abs(state.V)
         here = place(u, law)
         L, m, scale = speed(here, u, law)
@@ -172,13 +180,14 @@ def _speeds(law, states, to, out, found, first, begin, end):
 
 
 @kernel(inline=True)
-def _creeps(law, states, to, out, found, first, begin, end):
+def _creeps(law, states, order, to, out, found, first, begin, end):
     """What depends on the creep too."""
     to_Q, to_beta, to_star, to_delta, to_full_slip = to[Q], to[BETA], to[DELTA_STAR], to[DELTA], to[FULL_SLIP]
     alike = states.kappa.size == 1 and states.mu.size == 1
     per, inverse = 0.5 * states.mu[0] / states.kappa[0], 2.0 * states.kappa[0] / states.mu[0]
-    for column in range(begin, end):
-        n, i, state = np.uint64(column), np.uint64(column - begin), state_of(states, column - first)
+    for k in range(begin, end):
+        now, i = _turn(order, k - first), np.uint64(k - begin)
+        n, state = np.uint64(now + first), state_of(states, now)
         if rarely(not alike):
             per, inverse = 0.5 * state.mu / state.kappa, 2.0 * state.kappa / state.mu
         u, L = state.kappa * abs(state.V), found[0, i]
@@ -196,26 +205,30 @@ def _creeps(law, states, to, out, found, first, begin, end):
 
 
 @kernel
-def table_loop(law, states, to, out, found, first, stop):
+def table_loop(law, states, order, to, out, found, first, stop):
     """Values of states into columns first..stop of ``out``; ``to``: which row each quantity goes to, -1 for none.
 
-    ``found``: room for two lengths of some states, which wait there: so the processor works on several at once.
+    ``order``: of the states, or none.  ``found``: room for two lengths of some states, which wait there: so the
+    processor works on several at once; of one state where each has a law of its own, of which one is held at a time.
     """
     crept = to[Q] >= 0 or to[BETA] >= 0 or to[DELTA_STAR] >= 0 or to[DELTA] >= 0 or to[FULL_SLIP] >= 0
     for begin in range(first, stop, found.shape[1]):
         end = min(begin + found.shape[1], stop)
-        _speeds(law, states, to, out, found, first, begin, end)
+        hold(law, _turn(order, begin - first))
+        _speeds(law, states, order, to, out, found, first, begin, end)
         if crept:
-            _creeps(law, states, to, out, found, first, begin, end)
+            _creeps(law, states, order, to, out, found, first, begin, end)
 
 
 @kernel
-def slopes_loop(law, states, to, out, first, stop):
+def slopes_loop(law, states, order, to, out, first, stop):
     """Slopes, likewise."""
     to_V, to_creep, to_omega, to_M = to[DQ_DV], to[DQ_DDELTA], to[DQ_DOMEGA], to[DM_DV]
     to_half_space, to_cylinder = to[DM_HALF_SPACE_DV], to[DM_CYLINDER_DV]
-    for column in range(first, stop):
-        n, state = np.uint64(column), state_of(states, column - first)
+    for k in range(stop - first):
+        now = _turn(order, k)
+        hold(law, now)
+        n, state = np.uint64(now + first), state_of(states, now)
         u = state.kappa * abs(state.V)
         here = place(u, law)
         L, dL, rise = speed_slopes(here, u, law)
@@ -237,6 +250,9 @@ def unsteady_loop(law, powers, states, out, first, stop):
     for n in range(first, stop):
         state = state_of(states, n - first)
         u = state.kappa * abs(state.V)
-        row, t, _ = octave(u, law.e0)
-        z = 0.5 * law.low / u
-        out[n] = 0.25 * (law.alpha - 1.0) * z * z if row >= law.count else lanes.one(powers, row * lanes.TERMS, t)
+        row, t, _ = octave(u, law.marks[E0])
+        if row < law.marks[COUNT]:
+            out[n] = lanes.one(powers, row * lanes.TERMS, t)
+        else:
+            z = 0.5 * law.rows[LOW] / u
+            out[n] = 0.25 * (law.rows[ALPHA] - 1.0) * z * z

@@ -18,8 +18,8 @@ from numba.core.typing import signature
 from numba.extending import NativeValue, lower_builtin, models, register_model, unbox
 
 from .bound import OUT, bind, function
-from .law import Law
 from .loads import LoadsAndSlopes
+from .record import Law
 
 #: whether numba compiles nothing
 SWITCHED_OFF = bool(config.DISABLE_JIT)

@@ -1,8 +1,26 @@
-"""The record of a law that every reader takes, places in its rows, and its functions there and in the fast limit."""
+"""The law as kernels read it: places in its rows, and its functions there and in the fast limit.
+
+    record.hold(law, n)                  the law is now that of motion or state n
+    at = place(x, law)                   of x = u = kappa |V|, or x = v = 1/F(eta) = 2 u/(L - D)
+    speed, speed_slopes(at, u, law)      (L, M/V over a scale, the scale); (L, dL/du, d(u M/V)/du)
+    press, press_slopes(at, v, law)      H/F^2; (H/F^2, its slope)
+    lengths, bodies, body_slopes, share, press_secant, press_secants likewise
+
+``law`` is one record (:class:`record.Law`) of two arrays and three numbers, whatever made its rows, so that what reads
+it is compiled once: ``LawTable.record`` of one material, whose rows all stand and which all threads share; that of an
+alpha each (``materials.law_each.law_of_alphas``) or of a series or pair each (``law_of_materials``), which is one
+thread's own, made once for a block of motions.
+
+Such a law holds one material at a time.  ``hold`` gives a new material the next stamp and puts its numbers in front of
+the rows; nothing else is touched.  A part of a row bears the stamp that it was made for: a reader that finds another
+has the maker write it, by its address, once a motion.  So nothing is cleared from motion to motion, a motion pays for
+the parts that it meets, and one whose material is held finds them there.  A part depends on its material alone, not on
+what was met before.  Hold what a motion needs before its first ``place``; places of another material mean nothing.
+"""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,9 +28,22 @@ from ..compile.bits import bits_of, from_bits
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from . import lanes
+from .record import (
+    ALPHA,
+    BODIES,
+    COUNT,
+    CYLINDER,
+    E0,
+    HALF_SPACE,
+    LENGTHS,
+    LOW,
+    PRESS,
+    SHARE,
+    SPEED,
+    WHOLE,
+    ready,
+)  # fmt: skip
 
-#: where the functions of a row begin: pairs over u = kappa |V|, then what is over v = 1/F(eta), and how long a row is
-SPEED, LENGTHS, BODIES, PRESS, SHARE, WIDTH = 0, 48, 96, 144, 168, 192
 #: row of a place behind the last
 BEYOND = -1
 
@@ -20,32 +51,10 @@ BEYOND = -1
 _MIDDLE, _FOUR, _THREE = 1022, 1025, 0x4008 << 48
 
 
-class Law(NamedTuple):
-    """Rows of one material or pair; a reader takes of a row what it asks for and nothing else.
-
-    rows : one after the other, each (L, M/V), (lam, epsilon), (M_half_space/V, M_cylinder/V), H/F^2, eta/F
-    count, e0 : how many, and the exponent of the first
-    alpha, low, W, C : instantaneous over long-time modulus and its root's inverse; of the fast limit, sum J_j/T_j and
-    sum J_j/T_j (ln 2 T_j - 0.5772...), of all and of either body
-    """
-
-    rows: Any
-    count: int
-    e0: int
-    alpha: float
-    low: float
-    W: float
-    C: float
-    W_half_space: float
-    C_half_space: float
-    W_cylinder: float
-    C_cylinder: float
-
-
 class Place(NamedTuple):
-    """Where the numbers of a row begin, or :data:`BEYOND`; argument of its polynomials, and its slope over x."""
+    """A row, or :data:`BEYOND`; argument of its polynomials, and its slope over x."""
 
-    start: int
+    row: int
     t: float
     per: float
 
@@ -64,33 +73,34 @@ def octave(x, e0):
 @kernel(inline=True)
 def place(x, law):
     """Where x >= 0 lies."""
-    row, t, per = octave(x, law.e0)
-    return Place(row * WIDTH if row < law.count else BEYOND, t, per)
+    row, t, per = octave(x, law.marks[E0])
+    return Place(row if row < law.marks[COUNT] else BEYOND, t, per)
 
 
 @kernel(inline=True)
 def beyond(at):
     """Whether a place is in the fast limit."""
-    return rarely(at.start < 0)
+    return rarely(at.row < 0)
 
 
 # --- over u = kappa |V| ---
 
 
 @kernel(inline=True)
-def _shift(z, W, C, law):
-    """(alpha z/2) (C - W ln z)."""
-    return 0.5 * law.alpha * z * (C - W * np.log(z))
+def _fast(u, body, law):
+    """(z, (alpha z/2) (C - W ln z), alpha z W/8) of the whole or a body, by the fast limit."""
+    alpha, W, C = law.rows[ALPHA], law.rows[body], law.rows[body + 1]
+    z = 0.5 * law.rows[LOW] / u
+    return z, 0.5 * alpha * z * (C - W * np.log(z)), 0.125 * alpha * z * W
 
 
 @kernel(inline=True)
 def speed(at, u, law):
     """(L, M/V over ``scale``, scale) at u: where the fast limit holds M/V may underflow, and z is taken out of it."""
     if beyond(at):
-        z = 0.5 * law.low / u
-        shift = _shift(z, law.W, law.C, law)
-        return law.low * (1.0 + shift), shift + 0.125 * law.alpha * z * law.W, z
-    L, m = lanes.pair(law.rows, at.start + SPEED, at.t)
+        z, shift, part = _fast(u, WHOLE, law)
+        return law.rows[LOW] * (1.0 + shift), shift + part, z
+    L, m = lanes.pair(law.rows, ready(SPEED, at.row, law), at.t)
     return L, m, 1.0
 
 
@@ -104,51 +114,40 @@ def way_of(at, u, scale, state):
 def speed_slopes(at, u, law):
     """(L, dL/du, d(u M/V)/du) at u."""
     if beyond(at):
-        z = 0.5 * law.low / u
-        shift = _shift(z, law.W, law.C, law)
-        return (
-            law.low * (1.0 + shift),
-            -law.low * (shift - 0.5 * law.alpha * z * law.W) / u,
-            _fast_rise(z, shift, law.W, law),
-        )
-    L, m, dL, dm = lanes.pair_slopes(law.rows, at.start + SPEED, at.t)
+        z, shift, part = _fast(u, WHOLE, law)
+        low = law.rows[LOW]
+        return low * (1.0 + shift), -low * (shift - 4.0 * part) / u, z * (3.0 * part - shift)
+    L, m, dL, dm = lanes.pair_slopes(law.rows, ready(SPEED, at.row, law), at.t)
     return L, dL * at.per, m + u * at.per * dm
-
-
-@kernel(inline=True)
-def _fast_rise(z, shift, W, law):
-    """d(u m)/du of m = z (shift + alpha z W/8)."""
-    return z * (0.375 * law.alpha * z * W - shift)
 
 
 @kernel(inline=True)
 def lengths(at, u, law):
     """(lam, epsilon) at u."""
     if beyond(at):
-        return law.low, _shift(0.5 * law.low / u, law.W, law.C, law)
-    return lanes.pair(law.rows, at.start + LENGTHS, at.t)
+        _, shift, _ = _fast(u, WHOLE, law)
+        return law.rows[LOW], shift
+    return lanes.pair(law.rows, ready(LENGTHS, at.row, law), at.t)
 
 
 @kernel(inline=True)
 def bodies(at, u, law):
     """Parts of M/V, over the scale of :func:`speed`, in the half-space and in the cylinder."""
     if beyond(at):
-        z = 0.5 * law.low / u
-        weight = 0.125 * law.alpha * z
-        half_space = _shift(z, law.W_half_space, law.C_half_space, law) + weight * law.W_half_space
-        return half_space, _shift(z, law.W_cylinder, law.C_cylinder, law) + weight * law.W_cylinder
-    return lanes.pair(law.rows, at.start + BODIES, at.t)
+        _, half_space, part = _fast(u, HALF_SPACE, law)
+        _, cylinder, other = _fast(u, CYLINDER, law)
+        return half_space + part, cylinder + other
+    return lanes.pair(law.rows, ready(BODIES, at.row, law), at.t)
 
 
 @kernel(inline=True)
 def body_slopes(at, u, law):
     """d(u M/V)/du of either body at u."""
     if beyond(at):
-        z = 0.5 * law.low / u
-        half_space = _shift(z, law.W_half_space, law.C_half_space, law)
-        cylinder = _shift(z, law.W_cylinder, law.C_cylinder, law)
-        return _fast_rise(z, half_space, law.W_half_space, law), _fast_rise(z, cylinder, law.W_cylinder, law)
-    half_space, cylinder, d_half_space, d_cylinder = lanes.pair_slopes(law.rows, at.start + BODIES, at.t)
+        z, half_space, part = _fast(u, HALF_SPACE, law)
+        _, cylinder, other = _fast(u, CYLINDER, law)
+        return z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
+    half_space, cylinder, d_half_space, d_cylinder = lanes.pair_slopes(law.rows, ready(BODIES, at.row, law), at.t)
     per = u * at.per
     return half_space + per * d_half_space, cylinder + per * d_cylinder
 
@@ -159,8 +158,9 @@ def body_slopes(at, u, law):
 @kernel(inline=True)
 def _fast_share(y, law):
     """(eta/F, its slope over -y) in the fast limit."""
-    bracket = law.C - law.W * np.log(y) if y > 0.0 else 0.0
-    return 1.0 - 0.5 * law.alpha * y * bracket, 0.5 * law.alpha * (bracket - law.W)
+    half, W, C = 0.5 * law.rows[ALPHA], law.rows[WHOLE], law.rows[WHOLE + 1]
+    bracket = C - W * np.log(y) if y > 0.0 else 0.0
+    return 1.0 - half * y * bracket, half * (bracket - W)
 
 
 @kernel(inline=True)
@@ -168,7 +168,7 @@ def share(at, v, law):
     """eta/F at v."""
     if beyond(at):
         return _fast_share(1.0 / v, law)[0]
-    return lanes.one(law.rows, at.start + SHARE, at.t)
+    return lanes.one(law.rows, ready(SHARE, at.row, law), at.t)
 
 
 @kernel(inline=True)
@@ -176,8 +176,8 @@ def press(at, v, law):
     """H/F^2 at v."""
     if beyond(at):
         eta, _ = _fast_share(1.0 / v, law)
-        return law.alpha * eta * eta
-    return lanes.one(law.rows, at.start + PRESS, at.t)
+        return law.rows[ALPHA] * eta * eta
+    return lanes.one(law.rows, ready(PRESS, at.row, law), at.t)
 
 
 @kernel(inline=True)
@@ -186,8 +186,8 @@ def press_slopes(at, v, law):
     if beyond(at):
         y = 1.0 / v
         eta, d_eta = _fast_share(y, law)
-        return law.alpha * eta * eta, 2.0 * law.alpha * eta * d_eta * y * y
-    value, slope = lanes.one_slopes(law.rows, at.start + PRESS, at.t)
+        return law.rows[ALPHA] * eta * eta, 2.0 * law.rows[ALPHA] * eta * d_eta * y * y
+    value, slope = lanes.one_slopes(law.rows, ready(PRESS, at.row, law), at.t)
     return value, slope * at.per
 
 
@@ -197,11 +197,11 @@ def press_secant(at, near, v, x, law):
     if beyond(at):
         rise, _ = _fast_secants(v, x, law)
         return press(at, v, law), rise
-    if near.start == at.start:
-        value, rise = lanes.secant(law.rows, at.start + PRESS, at.t, near.t)
+    if near.row == at.row:
+        value, rise = lanes.secant(law.rows, ready(PRESS, at.row, law), at.t, near.t)
         return value, rise * at.per
-    value, here = lanes.secant(law.rows, at.start + PRESS, at.t, -1.0)
-    _, there = lanes.secant(law.rows, near.start + PRESS, 1.0, near.t)
+    value, here = lanes.secant(law.rows, ready(PRESS, at.row, law), at.t, -1.0)
+    _, there = lanes.secant(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
     part = _part(at, v, x)
     return value, part * here * at.per + (1.0 - part) * there * near.per
 
@@ -212,11 +212,11 @@ def press_secants(at, near, v, x, law):
     if beyond(at):
         return _fast_secants(v, x, law)
     per, other = at.per, near.per
-    if near.start == at.start:
-        _, rise, _, bend = lanes.secant_slopes(law.rows, at.start + PRESS, at.t, near.t)
+    if near.row == at.row:
+        _, rise, _, bend = lanes.secant_slopes(law.rows, ready(PRESS, at.row, law), at.t, near.t)
         return rise * per, bend * per * per
-    _, here, _, bend_here = lanes.secant_slopes(law.rows, at.start + PRESS, at.t, -1.0)
-    _, there, _, bend_there = lanes.secant_slopes(law.rows, near.start + PRESS, 1.0, near.t)
+    _, here, _, bend_here = lanes.secant_slopes(law.rows, ready(PRESS, at.row, law), at.t, -1.0)
+    _, there, _, bend_there = lanes.secant_slopes(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
     part = _part(at, v, x)
     bend = part * bend_here * per * per + (1.0 - part) * bend_there * other * other
     return part * here * per + (1.0 - part) * there * other, bend
@@ -232,11 +232,12 @@ def _part(at, v, x):
 @kernel
 def _fast_secants(v, x, law):
     """``press_secants`` in the fast limit."""
+    alpha, W = law.rows[ALPHA], law.rows[WHOLE]
     y = 1.0 / v
     other = y * (1.0 + x)
     eta, d_eta = _fast_share(y, law)
     near, d_near = _fast_share(other, law)
-    mean = law.W * (np.log1p(x) / x if x > 0.0 else 1.0)
-    rise = y * other * (d_near + 0.5 * law.alpha * (law.W - mean))
-    bend = other * (0.5 * law.alpha * other * other * mean - y * (y + other) * d_eta)
-    return law.alpha * (eta + near) * rise, 2.0 * law.alpha * (eta * bend + d_near * other * other * rise)
+    mean = W * (np.log1p(x) / x if x > 0.0 else 1.0)
+    rise = y * other * (d_near + 0.5 * alpha * (W - mean))
+    bend = other * (0.5 * alpha * other * other * mean - y * (y + other) * d_eta)
+    return alpha * (eta + near) * rise, 2.0 * alpha * (eta * bend + d_near * other * other * rise)

@@ -1,0 +1,114 @@
+"""Rows of an alpha each, by the axis of alpha: sums of Chebyshev's polynomials, with no root.
+
+For alpha in [2^N, 2^(N+1)) every power of every function of a row is a sum over T_j(s), s = 2 log2(alpha/2^N) - 1, with
+T_epsilon for the unit of time and M/V and epsilon over c = (alpha - 1)/alpha: their limits as alpha -> 1 are nothing
+special.  Sums stay in registers, 24 numbers side by side.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..compile.address import doubles, integers, record_at
+from ..compile.bits import bits_of, from_bits
+from ..compile.jit import kernel
+from ..numerics.four import LANES, four, fused, load, multiply, spread, store
+from .record import (
+    ALPHA,
+    BODIES,
+    COUNT,
+    CYLINDER,
+    HALF_SPACE,
+    LENGTHS,
+    LOW,
+    OWN,
+    OWN_MARKS,
+    PART,
+    PARTS,
+    SPEED,
+    STAMP,
+    WHOLE,
+    WIDTH,
+)  # fmt: skip
+
+#: terms of a sum; numbers of a part of a row for all alphas of an octave
+TERMS_OF_ALPHA = 16
+_PIECE = PART * TERMS_OF_ALPHA
+#: parts of a row of the axis: (L, M/V) and (lam, epsilon), two each, H/F^2, eta/F
+PIECES = 6
+#: exponent of the first row, for all alphas
+E0_OF_ALPHA = -4
+#: what these kernels know: addresses of the record's arrays, of alpha, how many (one, or one a state), and for every
+#: octave of alpha the address of its numbers and how many rows it has
+SOURCE = np.dtype([(name, np.int64) for name in ("rows", "marks", "alpha", "count", "octaves")])
+#: where T_j begin among the numbers in front of the rows; the mark that is the address of the octave that is held
+_WEIGHTS, _OCTAVE = OWN, OWN_MARKS
+_EXPONENT, _MANTISSA, _ONE = 1023, (1 << 52) - 1, 1023 << 52
+#: the two numbers of the fast limit are c and this times c
+_FAST = math.log(2.0) - float(np.euler_gamma)
+
+
+@kernel(allocates=True)
+def hold(n, source):
+    """:func:`record.hold`."""
+    given = record_at(source)
+    alpha, rows = doubles(given.alpha, given.count)[min(n, given.count - 1)], doubles(given.rows, WIDTH)
+    if alpha != rows[ALPHA]:
+        word = bits_of(alpha)
+        octave = (word >> 52) - _EXPONENT
+        marks, octaves = integers(given.marks, PARTS), integers(given.octaves, 2 * octave + 2)
+        s = 2.0 * np.log2(from_bits((word & _MANTISSA) | _ONE)) - 1.0
+        rows[_WEIGHTS], rows[_WEIGHTS + 1] = 1.0, s
+        for j in range(2, TERMS_OF_ALPHA):
+            at = _WEIGHTS + j
+            rows[at] = 2.0 * rows[at - j // 2] * rows[at - j + j // 2] - rows[at - j + j % 2]
+        c = (alpha - 1.0) / alpha
+        rows[ALPHA], rows[LOW], rows[WHOLE], rows[WHOLE + 1] = alpha, 1.0 / np.sqrt(alpha), c, c * _FAST
+        for body in (HALF_SPACE, CYLINDER):
+            rows[body], rows[body + 1] = 0.5 * c, 0.5 * c * _FAST
+        marks[STAMP] += 1
+        marks[_OCTAVE], marks[COUNT] = octaves[2 * octave], octaves[2 * octave + 1] if alpha > 1.0 else 1
+
+
+@kernel(allocates=True)
+def make(start, source):
+    """A part of a row; at alpha = 1, where a sum would round, its closed form."""
+    given = record_at(source)
+    rows, marks = doubles(given.rows, start + 2 * PART), integers(given.marks, start // PART + 1)
+    part, c = start % WIDTH, rows[WHOLE]
+    piece = (SPEED if part == BODIES else part) // PART - (2 if part > BODIES else 0)
+    address = marks[_OCTAVE] + ((start // WIDTH - 1) * PIECES + piece) * _PIECE * 8
+    axis = doubles(address, 2 * _PIECE)
+    terms = TERMS_OF_ALPHA if c > 0.0 else 0
+    if part == SPEED or part == BODIES or part == LENGTHS:
+        _sum(axis, 0, terms, c, rows, start)
+        _sum(axis, _PIECE, terms, c, rows, start + PART)
+    else:
+        _sum(axis, 0, terms, 1.0, rows, start)
+    if c == 0.0:
+        rows[start] = 1.0
+    if part == BODIES:
+        for n in range(start, start + 2 * PART, LANES):
+            rows[n + 2], rows[n + 3] = 0.5 * rows[n + 2], 0.5 * rows[n + 3]
+            rows[n], rows[n + 1] = rows[n + 2], rows[n + 3]
+    marks[start // PART] = marks[STAMP]
+
+
+@kernel(inline=True)
+def _sum(axis, at, terms, c, rows, to):
+    """Twenty-four numbers of a row, every third and fourth times c."""
+    a0 = a1 = a2 = a3 = a4 = a5 = spread(0.0)
+    for j in range(terms):
+        weight, p = spread(rows[_WEIGHTS + j]), at + PART * j
+        a0, a1 = fused(weight, load(axis, p), a0), fused(weight, load(axis, p + LANES), a1)
+        a2, a3 = fused(weight, load(axis, p + 2 * LANES), a2), fused(weight, load(axis, p + 3 * LANES), a3)
+        a4, a5 = fused(weight, load(axis, p + 4 * LANES), a4), fused(weight, load(axis, p + 5 * LANES), a5)
+    scale = four(1.0, 1.0, c, c)
+    store(rows, to, multiply(scale, a0))
+    store(rows, to + LANES, multiply(scale, a1))
+    store(rows, to + 2 * LANES, multiply(scale, a2))
+    store(rows, to + 3 * LANES, multiply(scale, a3))
+    store(rows, to + 4 * LANES, multiply(scale, a4))
+    store(rows, to + 5 * LANES, multiply(scale, a5))

@@ -1,0 +1,61 @@
+"""The record of a law that every reader takes, and where its numbers stand.
+
+Rows of one material all stand there; of one of many materials a part of a row is made where it is met.  Readers do not
+know which (:mod:`law`).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compile.address import call
+from ..compile.jit import kernel
+from ..compile.rarely import rarely
+from .lanes import TERMS
+
+#: where the functions of a row begin: pairs over u = kappa |V|, then what is over v = 1/F(eta), and how long a row is
+SPEED, LENGTHS, BODIES, PRESS, SHARE, WIDTH = 0, 48, 96, 144, 168, 192
+#: parts of a row, each with a mark of its own
+PART = TERMS
+PARTS = WIDTH // PART
+#: numbers in front of the rows: instantaneous over long-time modulus and its root's inverse; of the fast limit
+#: W = sum J_j/T_j and then C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all and of either body; what the maker keeps
+ALPHA, LOW, WHOLE, HALF_SPACE, CYLINDER, OWN = 0, 1, 2, 4, 6, 8
+#: marks in front: that of the material that is held, how many rows it has, the exponent of the first; then the maker's
+STAMP, COUNT, E0, OWN_MARKS = range(4)
+
+
+class Law(NamedTuple):
+    """The law of a material, or of one of many at a time.
+
+    rows : the numbers in front, as long as a row; then the rows, each (L, M/V), (lam, epsilon),
+        (M_half_space/V, M_cylinder/V), H/F^2, eta/F
+    marks : those in front, as many as a row has; then of every part of every row the stamp of the material that it was
+        made for
+    hold, make, source : addresses of the kernels (n, source) and (where a part begins, source), and of what these know
+        (:mod:`..compile.address`); 0 where all rows stand
+    """
+
+    rows: Any
+    marks: Any
+    hold: int
+    make: int
+    source: int
+
+
+@kernel(inline=True)
+def hold(law, n):
+    """Have the law be that of state or motion n: nothing where all have one, or n the one that is held."""
+    if law.hold != 0:
+        call(law.hold, n, law.source)
+
+
+@kernel(inline=True)
+def ready(part, row, law):
+    """Where a part of a row begins, made if it was not."""
+    start = (row + 1) * WIDTH + part
+    if rarely(law.marks[np.uint64((row + 1) * PARTS + part // PART)] != law.marks[STAMP]):
+        call(law.make, start, law.source)
+    return start

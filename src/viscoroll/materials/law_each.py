@@ -1,0 +1,156 @@
+"""The laws of states that have an alpha or a material each, as kernels take them: rows made where they are met."""
+
+from __future__ import annotations
+
+import math
+import threading
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .law_axis import OCTAVES, tables_of, to_chebyshev
+from .law_table import Floats
+from .prony_array import Block, MaterialArray
+from .tables import series_of
+
+_lock = threading.Lock()
+#: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.axis`), never dropped again, and
+#: its address and how many rows it has, 0: not met
+_octaves: dict[int, Floats] = {}
+_known = np.zeros((OCTAVES, 2), np.int64)
+
+
+def law_of_alphas(alpha: Floats) -> Any:
+    """The record of states or motions that have these alphas, one or one each, for one thread.
+
+    It holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
+    """
+    from ..kernels.rows.axis import E0_OF_ALPHA, SOURCE, hold, make
+    from ..kernels.rows.record import E0
+
+    alpha = np.ascontiguousarray(alpha, dtype=np.float64)
+    met = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
+    for octave in met[_known[met, 1] == 0].tolist():
+        with _lock:
+            _meet(octave)
+    rows, marks = _room(int(_known[met, 1].max()))
+    marks[E0] = E0_OF_ALPHA
+    return _record(hold, make, SOURCE, rows=rows, marks=marks, alpha=alpha, count=alpha.size, octaves=_known)
+
+
+def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> NDArray[np.int64]:
+    """An order in which states of one octave of alpha and one of kappa |V| follow each other.
+
+    What they read is then near: scattered states take half as long again.
+    """
+    octaves = 256 * np.frexp(alpha)[1].astype(np.int16) + np.clip(np.frexp(kappa * V)[1], -5, 100).astype(np.int16)
+    return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
+
+
+def _room(count: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Of so many rows, numbers and marks, with those in front."""
+    from ..kernels.rows.record import PARTS, WIDTH
+
+    return np.zeros((count + 1) * WIDTH), np.zeros((count + 1) * PARTS, np.int64)
+
+
+def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
+    """The record of a law by its kernels and what these know: numbers, and arrays by their addresses."""
+    from ..kernels.compile.address import address_of
+    from ..kernels.rows.record import Law
+
+    source = np.zeros(1, kind)
+    for name, value in known.items():
+        source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
+    # the marks keep alive all that the kernels have the addresses of
+    held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
+    addresses = address_of(hold, kind), address_of(make, kind), int(source.ctypes.data)
+    return Law(_read_only(known["rows"].view()), _read_only(np.asarray(held)), *addresses)
+
+
+def _meet(octave: int) -> None:
+    """Make an octave of alpha as kernels take it, unless another thread just has."""
+    if _known[octave, 1] == 0:
+        _octaves[octave], count = _octave(octave)
+        _known[octave] = _octaves[octave].ctypes.data, count
+
+
+def _octave(octave: int) -> tuple[Floats, int]:
+    """(numbers, rows) of an octave of alpha."""
+    from ..kernels.rows.axis import PIECES
+    from ..kernels.rows.record import BODIES, PART, PRESS, WIDTH
+
+    tables = tables_of(octave)
+    rows, c = len(tables[0].given_coefficients), np.array([table.T_mean for table in tables])
+    values = np.array([table.record.rows[WIDTH:].reshape(rows, WIDTH) for table in tables])
+    pairs = values[..., :BODIES].reshape(len(tables), rows, -1, 2, 2)  # two powers of one function, then of the other
+    pairs[..., 1, :] /= c[:, None, None, None]  # M/V and epsilon
+    values = np.concatenate([values[..., :BODIES], values[..., PRESS:]], axis=-1)
+    found = to_chebyshev(values.reshape(len(tables), rows, PIECES, PART))
+    return _read_only(np.ascontiguousarray(np.moveaxis(found, 0, 2))), rows
+
+
+def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, Floats]:
+    """(The record of states or motions that have the materials ``which``, what times of each are counted in).
+
+    For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
+    """
+    from ..kernels.material.series import packed_size, working_size
+    from ..kernels.numerics.four import LANES
+    from ..kernels.rows.grid import HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
+
+    some, of = np.unique(which, return_inverse=True)
+    blocks = list(materials.blocks(some))
+    most = max((block.modes.a.shape[-1] for block in blocks), default=0)
+    limits, counts = np.empty((some.size, LIMITS)), np.empty((some.size, 3), np.int64)
+    packed, unit = np.zeros((some.size, packed_size(most))), np.empty(some.size)
+    for block in blocks:
+        own, N = block.rows, block.modes.a.shape[-1]
+        unit[own], limits[own], counts[own] = block.unit, _limits(block), _counts(block)
+        *vectors, Q = series_of(block.modes)
+        packed[own, : packed_size(N)] = np.concatenate([*vectors, _weights(block), Q.reshape(own.size, -1)], axis=1)
+    nodes = grid_size(int(counts[:, 1].max(initial=1)), float(limits[:, 0].max(initial=1.0)))
+    rows, marks = _room(int(counts[:, 1].max(initial=1)))
+    marks[HELD], working = -1, working_size(most)
+    law = _record(
+        hold, make, SOURCE, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
+        packed=packed, limits=limits, counts=counts, numbers=np.empty(numbers_size(nodes)), nodes=nodes,
+        made=np.zeros(nodes // LANES, np.int64), series=np.empty(working), working=working, columns=packed.shape[1],
+        pair=any(block.weights is not None for block in blocks),
+    )  # fmt: skip
+    return law, unit[of]
+
+
+def _weights(block: Block) -> Floats:
+    """What of every creep mode is the half-space's."""
+    return np.full(block.modes.J.shape, 0.5) if block.weights is None else block.weights
+
+
+def _limits(block: Block) -> Floats:
+    """Numbers in front of the rows (:mod:`..kernels.rows.record`), and the sums J_j T_j of half-space and cylinder."""
+    modes, weights = block.modes, _weights(block)
+    alpha = np.broadcast_to(modes.alpha, block.rows.shape)
+    fast = modes.J * modes.b
+    logs = fast * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
+    sums = [(share * term).sum(axis=-1) for share in (1.0, weights, 1.0 - weights) for term in (fast, logs)]
+    means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
+    return np.stack([alpha, 1.0 / np.sqrt(alpha), *sums, *means], axis=1)
+
+
+def _counts(block: Block) -> NDArray[np.int64]:
+    """First row, rows, modes."""
+    from ..kernels.rows.grid import FAST
+
+    modes, found = block.modes, np.ones((block.rows.size, 3), np.int64)
+    found[:, 0], found[:, 2] = 0, modes.a.shape[-1]
+    if modes.a.shape[-1]:
+        found[:, 0] = np.frexp(modes.b[:, 0])[1] - 5
+        found[:, 1] = np.frexp(modes.a[:, -1])[1] + FAST - found[:, 0] + 1
+    return found
+
+
+def _read_only(values: Any) -> Any:
+    values.flags.writeable = False
+    return values
