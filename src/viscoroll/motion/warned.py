@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelWarning
+from ..free_rolling import curve
 from ..kernels.compile.notice import is_worker
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
 from ..materials.prony_array import MaterialArray
 from ..scene import PARAMETERS, Scene
-from ..steadiness import curve
-from ..validity import STEADY_LIMIT
+from ..steadiness import STEADY_LIMIT
 
 #: kappa at which the contact at rest reaches half a radius from the axis
 _LEAST_KAPPA = 1.0
