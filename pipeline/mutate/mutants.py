@@ -22,6 +22,7 @@ _DIRECT, _SLICE, _MOTION = (
     "tests/motion/test_motion.py",
 )
 _STEADY, _BOUND = "tests/test_steady.py", "tests/test_bound_law.py"
+_STEADY, _EACH = "tests/test_steady.py", "tests/test_contact_each.py"
 _LENGTH, _LOSSES = "tests/kernels/law/test_length.py", "tests/motion/test_ensemble.py"
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
 
@@ -64,7 +65,6 @@ STRESS = [
     ("printed/law.py", "0.5 * epsilon * (1.0 - lam * lam) + 0.5", "0.5 * epsilon * (1.0 + lam * lam) + 0.5", _DIRECT),
 ]  # fmt: skip
 SLICE = [
-    ("rows/law.py", "return lanes.one(law.rows, ready(PRESS, at.row, law), at.t)", "return lanes.one(law.rows, ready(PRESS, at.row, law), at.t) * (1.0 + 1e-9)", _SLICE),
     ("rows/law.py", "return L, m, 1.0\n", "return L * (1.0 + 1e-9), m, 1.0\n", _SLICE),
     ("rows/contact.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
     ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", _SLICE),
@@ -73,6 +73,13 @@ SLICE = [
     ("numerics/quartet.py", "ir.Constant(VECTOR, [float(k)] * 4)", "ir.Constant(VECTOR, [float(k * 1.0000001)] * 4)", _SLICE),
     ("material/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
     ("material/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
+]  # fmt: skip
+ROWS = [
+    ("rows/axis.py", "        marks[STAMP] += 1\n", "", _EACH),
+    ("rows/axis.py", "rows[at - j + j % 2]", "rows[at - j]", _EACH),
+    ("rows/grid.py", "        marks[STAMP] += 1\n", "", _EACH),
+    ("rows/grid.py", "PER, POINTS, FAST = 10, 36, 34\n", "PER, POINTS, FAST = 6, 36, 34\n", _EACH),
+    ("rows/grid.py", "numbers[_V], numbers[_V + 1] = 0.0, numbers[_V + 1] + limit", "numbers[_V] = 0.0", _EACH),
 ]  # fmt: skip
 MOTION = [
     ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),
@@ -140,5 +147,5 @@ COEFFICIENTS = [
     ("bessel/ratios.npy", str(n), "1e-9 of it more", _RATIOS) for n in (0, 1, 302, 1203, 2104, 3005, 4006, 5007)
 ]
 MUTANTS = [
-    Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *MOTION, *SERIES, *DRIVE, *COEFFICIENTS)
+    Mutant(*each) for each in (*LAW, *STRESS, *SLICE, *ROWS, *MOTION, *SERIES, *DRIVE, *COEFFICIENTS)
 ]  # fmt: skip
