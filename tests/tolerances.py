@@ -238,12 +238,12 @@ TWO_DIGITS = 0.06
 BENCH_NOT_IN_MAP = 0.01
 
 # --- flow map (test_flow.py) ---
-#: V and omega of the paper's scene, over the larger of the two: four times the worst of 100 motions; measured 5.2e-10.
+#: V and omega of a scene, over the larger of the two: four times the worst of 100 motions; measured 5.8e-10.
 FLOW_SPEED = 1e-9
-#: distance and angle likewise (5.7e-10 measured), and what depends on the late V, whose error t |V'|/|V| magnifies.
+#: distance and angle likewise (5e-10 measured), and what depends on the late V, whose error t |V'|/|V| magnifies.
 FLOW_PATH = 2e-9
-#: onset times, relative: inverse of an integral over 52 octaves in pieces of degree 7; measured 6e-12.
-FLOW_ONSET = 5e-11
+#: onset times, relative: inverse of an integral over 52 octaves in pieces of degree 23; measured 3.4e-13.
+FLOW_ONSET = 2e-12
 
 #: energy lost, over that at the start: as FLOW_SPEED, but twice, the energy being a square; measured 7.6e-10.
 FLOW_LOSS = 2e-9

@@ -82,7 +82,7 @@ ROWS = [
     ("rows/grid.py", "numbers[_V], numbers[_V + 1] = 0.0, numbers[_V + 1] + limit", "numbers[_V] = 0.0", _EACH),
 ]  # fmt: skip
 MOTION = [
-    ("motion/full_slip.py", "return sigma * scene.mu - 0.5 * _moment(V, scene)", "return sigma * scene.mu - 0.5 * _moment(V, scene) * (1.0 + 1e-7)", "tests/motion/test_flow.py"),
+    ("flow/states.py", "edge, V[i] * scale * m\n", "edge, V[i] * scale * m * (1.0 + 1e-7)\n", "tests/motion/test_flow.py"),
     ("motion/full_slip.py", "return V, sigma * mu - half_M, per_s", "return V, sigma * mu + half_M, per_s", _MOTION),
     ("motion/full_slip.py", "return V, mu * half_lam * (1.0 + g * s) * V", "return V, 0.98 * mu * half_lam * (1.0 + g * s) * V", _MOTION),
     ("motion/slide.py", "- sigma * (1.0 / j - 1.0) * I", "+ sigma * (1.0 / j - 1.0) * I", _MOTION),
@@ -96,7 +96,7 @@ MOTION = [
     ("motion/panel.py", "moved(first, second, X_rise, X_rise + turn, state)", "moved(first, second, X_rise, X_rise - turn, state)", _MOTION),
     ("motion/layer.py", "branch_rates(y, S + aside, np.sign(S + e), scene)", "branch_rates(y, S - aside, np.sign(S + e), scene)", "tests/kernels/motion/test_layer.py"),
     ("motion/losses.py", "(V0 - V) * (V0 + V) + j", "(V0 - V) * (V0 + V) - j", "tests/motion/test_ensemble.py"),
-    ("flow/layer.py", "share * (1.0 + delta) - 1.0", "share * (1.0 - delta) - 1.0", "tests/motion/test_flow.py"),
+    ("flow/read.py", "(E + layer_value(table, layout.LAYER_ANGLE", "(E - layer_value(table, layout.LAYER_ANGLE", "tests/motion/test_flow.py"),
     ("motion/integrate.py", "Frame(FULL, -frame.direction, -frame.sigma)", "Frame(FULL, -frame.direction, frame.sigma)", _MOTION),
     ("motion/integrate.py", "D, status = D * sigma, max(", "D, status = D, max(", _MOTION),
     ("motion/integrate.py", "if V == 0.0 or abs(slip) >= limit:", "if V == 0.0 or abs(slip) > 1.5 * limit:", _MOTION),

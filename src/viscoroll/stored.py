@@ -7,6 +7,7 @@ import io
 import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -24,10 +25,20 @@ Numbers = Sequence[float] | NDArray[np.float64]
 
 
 def folder(kind: str) -> Path:
-    """Where things of a kind are kept: they are worth no more than the kernels that fill and read them."""
+    """Where things of a kind are kept: they are worth no more than the kernels and modules that fill and read them."""
+    return cache_root() / f"{kind}-{_digest(Path(__file__).parent)}"
+
+
+@lru_cache(maxsize=1)
+def _digest(package: Path) -> str:
+    """Hash of the sources of kernels, materials and motions."""
     from .kernels.compile.cache import sources_digest
 
-    return cache_root() / f"{kind}-{sources_digest()}"
+    digest = hashlib.sha256(sources_digest().encode())
+    for part in ("materials", "motion"):
+        for path in sorted((package / part).rglob("*.py")):
+            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def file_name(numbers: Numbers) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -42,22 +43,25 @@ def random_scenes(count: int, seed: int) -> list[vr.Scene]:
 
 
 def decay_time(scene: vr.Scene) -> float:
-    return (1.0 + scene.j) * scene.alpha / (scene.alpha - 1.0) / scene.gamma
+    T_mean = (scene.alpha - 1.0) / scene.alpha if scene.series is None else scene.series.T_mean
+    return (1.0 + scene.j) / T_mean / scene.gamma
 
 
-def starts(count: int, seed: int, scene: vr.Scene) -> tuple[np.ndarray, np.ndarray]:
+def starts(count: int, seed: int, scene: vr.Scene, top: float = 2.0) -> tuple[np.ndarray, np.ndarray]:
     """Any speeds, a fifth of them inside the stick band or near it, some on the axes."""
     rng = np.random.default_rng(seed)
-    V0, omega0 = rng.uniform(-2.0, 2.0, (2, count))
+    V0, omega0 = rng.uniform(-top, top, (2, count))
     inside = slice(0, count // 5)
     omega0[inside] = V0[inside] * (1.0 + scene.mu / scene.kappa * rng.uniform(-0.6, 0.6, count)[inside])
     V0[-3], omega0[-2] = 0.0, 0.0
     return V0, omega0
 
 
-def compare(scene: vr.Scene, count: int, seed: int, t: np.ndarray) -> tuple[vr.Ensemble, float, float, float]:
+def compare(
+    scene: vr.Scene, count: int, seed: int, t: np.ndarray, top: float = 2.0
+) -> tuple[vr.Ensemble, float, float, float]:
     """(flow's result, largest difference of speeds, path and losses to the integrator's at rtol 1e-11)."""
-    V0, omega0 = starts(count, seed, scene)
+    V0, omega0 = starts(count, seed, scene, top)
     mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
     rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-11, fields=FIELDS)
     speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
@@ -93,6 +97,63 @@ def test_random_scenes_to_their_stated_error():
             built = flow.flow_map(scene, 2.0)
             stated = (built.error, built.path_error, built.loss_error)
             assert all(error < bound for error, bound in zip(errors, stated, strict=True)), (scene, errors, stated)
+
+
+PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0)
+THREE = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
+#: scenes apart from the paper's, and the highest speed
+OTHERS = {
+    "kappa 29": (PAPER.replace(kappa=29.1), 2.0),
+    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0),
+    "alpha 2": (PAPER.replace(alpha=2.0), 2.0),
+    "j 1": (PAPER.replace(j=1.0), 2.0),
+    "j 1.5": (PAPER.replace(j=1.5), 2.0),
+    "rubber": (vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0), 2.0),
+    "pair": (vr.Scene(material=vr.Bodies(THREE, THREE, 0.5), kappa=20.0, mu=0.3, gamma=1.0), 2.0),
+    "slow": (PAPER, 1e-4),
+    "fast": (PAPER, 2000.0),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_other_scenes_to_a_billionth(name):
+    scene, top = OTHERS[name]
+    t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
+    mapped, *errors = compare(scene, 60, 2, t, top)
+    built = flow.flow_map(scene, np.abs(mapped.omega0).max())
+    stated = (built.error, built.path_error, built.loss_error)
+    assert mapped.flow.mean() > 0.9
+    assert built.error < tol.FLOW_SPEED
+    assert built.path_error < tol.FLOW_PATH
+    assert built.loss_error < tol.FLOW_LOSS
+    assert all(error < bound for error, bound in zip(errors, stated, strict=True)), (errors, stated)
+
+
+def test_starts_deep_inside_the_stick_zone_are_served_within_their_layer():
+    """Over 15 octaves of speed, and at outputs from a hundredth of the boundary layer on; half had no table once."""
+    rng = np.random.default_rng(11)
+    V0 = 2.0 ** rng.uniform(-14.0, 1.0, 400) * rng.choice([-1.0, 1.0], 400)
+    found = vr.contact(PAPER, abs(V0), delta=0.0, fields=("delta_star",)).delta_star
+    omega0 = V0 * (1.0 + found * rng.uniform(-1.0, 1.0, 400))
+    t = np.array([1e-2, 1e-1, 1.0, 10.0]) * 2.0**-5 / PAPER.kappa
+    mapped, exact = (
+        vr.ensemble(PAPER, V0, omega0, t, method=method, rtol=rtol, fields=("V", "omega"))
+        for method, rtol in (("flow", 1e-6), ("integrate", 1e-11))
+    )
+    assert mapped.flow.all()
+    size = np.maximum(abs(exact.V), abs(exact.omega))
+    assert close(mapped.V, exact.V, rel=mapped.flow_error, scale=size)
+    assert close(mapped.omega, exact.omega, rel=mapped.flow_error, scale=size)
+
+
+def test_a_map_follows_the_sources_that_fill_it(tmp_path):
+    """Kernels read it, but modules of materials and motions fill it."""
+    package = Path(vr.__file__).parent
+    for part in ("materials", "motion"):
+        shutil.copytree(package / part, tmp_path / part)
+    before = stored._digest.__wrapped__(tmp_path)
+    (tmp_path / "motion/flow_fill.py").write_bytes((tmp_path / "motion/flow_fill.py").read_bytes() + b" ")
+    assert before == stored._digest.__wrapped__(package) != stored._digest.__wrapped__(tmp_path)
 
 
 def test_onset_times():
@@ -190,6 +251,16 @@ def test_rest():
     assert close(mapped.rest_time, rolled.rest_time, rel=tol.FLOW_PATH)
     assert close(mapped.x, rolled.x, rel=tol.FLOW_PATH, scale=5e-8)
     assert close(mapped.angle, rolled.angle, rel=tol.FLOW_PATH, scale=5e-8)
+
+
+def test_any_threshold_of_rest():
+    """One above all speeds of the tables leaves every motion to the integrator."""
+    for rest in (1e-12, 1.0, 1e4, 1e9):
+        mapped, rolled = (
+            vr.ensemble(SCENE, [0.5, 1.5], [1.0, 0.3], T, rest=rest, method=method) for method in ("flow", "integrate")
+        )
+        assert np.array_equal(mapped.status, rolled.status)
+        assert close(mapped.x, rolled.x, rel=tol.FLOW_PATH, scale=5e-8)
 
 
 def test_long_life():

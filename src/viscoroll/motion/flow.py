@@ -10,23 +10,20 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import flattened, run_blocks
-from ..materials.prony import Prony
-from ..scene import Scene, kernel_scene
-from .driven import Drive
+from ..scene import Scene
+from .flow_motions import motions
 from .flow_store import FlowMap, load, path_of, save
-from .rolling import Inputs, rolled
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows
 _MARGIN, _FLOOR = 4.0, np.array([1e-10, 5e-10, 1e-10])
-_SAMPLED, _SAMPLE_TIMES, _SAMPLE_RTOL, _SAMPLE_STEPS, _SAMPLE_ENDS = 100, 40, 1e-11, 1_000_000, 100_000
+_SAMPLED, _SAMPLE_TIMES, _RTOLS = 100, 40, (1e-11,)
 #: V, omega, x, angle, slip_loss, rolling_loss; the losses take the integrator longest
 _MEASURED, _LOSS_EVERY = (0, 1, 2, 3, 6, 7), 4
 #: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
@@ -73,10 +70,11 @@ def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowM
 
 def build(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
     """Build the map for kappa V < 2**octave at stick onset, and measure its error."""
-    from ..kernels.flow.layout import ENTRY_OCTAVES, SIZE
+    from ..kernels.flow.layout import OCTAVES, SIZE
+    from .flow_fill import fill
 
-    made = FlowMap(parameters, octave - ENTRY_OCTAVES, np.zeros(SIZE), math.inf, math.inf, math.inf, "")
-    problem = _fill(made, threads)
+    made = FlowMap(parameters, octave - OCTAVES, np.zeros(SIZE), math.inf, math.inf, math.inf, "")
+    problem = fill(made, threads)
     if problem:
         return replace(made, problem=problem)
     error, path_error, loss_error = _measure(made, octave, threads)
@@ -87,41 +85,8 @@ def kernel_map(made: FlowMap) -> Any:
     """The record that the kernels of a flow map take."""
     from ..kernels.flow.records import Flow
 
-    return Flow(made.table, made.first, kernel_scene(*made.parameters))
-
-
-def _fill(made: FlowMap, threads: int | None) -> str:
-    """Fill the tables; returns what stands against it, or nothing."""
-    from ..kernels.flow.fill import FILLED, HELD, SLIPS, fill_curves
-    from ..kernels.flow.layout import BINS, views
-    from ..kernels.flow.octave import layer_octave
-    from ..kernels.flow.read import CROSS, MINUS, PLUS
-
-    _, _, _, j = made.parameters
-    flow, parts = kernel_map(made), views(made.table)
-    if flow.scene.material.T_mean == 0.0:
-        return "an elastic cylinder never slows down"
-    found = fill_curves(parts, flow.scene)
-    if found != FILLED:
-        return {
-            HELD: "rolling resistance can hold the sliding cylinder at a speed",
-            SLIPS: "full slip returns",
-        }[found]
-    failed: list[int] = []
-
-    def work(family: int, layer: NDArray, entry: NDArray, start: int, stop: int) -> None:
-        own = kernel_map(made)  # of this thread
-        for n in range(start, stop):
-            if not layer_octave(family, n, own, layer, entry):
-                failed.append(n)
-
-    for family, layer, entry in (
-        (CROSS, parts.layer_cross, parts.entry_cross), (PLUS, parts.layer_plus, parts.entry_plus),
-        (MINUS, parts.layer_minus, parts.entry_minus),
-    ):  # fmt: skip
-        if family != CROSS or j != 1.0:  # else none passes delta = 0 on its way to the slow manifold
-            run_blocks(partial(work, family, layer, entry), entry.shape[0] // BINS, 1, threads=threads)
-    return "the stick zone does not always last" if failed else ""
+    _, kappa, mu, j = made.parameters
+    return Flow(made.table, made.first, kappa, mu, j, made.slow_rate)
 
 
 def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
@@ -147,23 +112,22 @@ def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ..
 def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) -> tuple[float, ...]:
     """Largest relative errors of one motion: of the speeds (and the onset time), of distance and angle, of losses."""
     _, _, _, j = made.parameters
-    c = kernel_map(made).scene.material.T_mean
-    start = np.array([V0]), np.array([omega0])
+    decay, start = 1.0 / made.slow_rate, (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> Answer:
         return ask(made, 1.0, 0.0, *start, times, rows)
 
-    at_rest = flow(np.array([0.0, 800.0 * (1.0 + j) / c]))
+    at_rest = flow(np.array([0.0, 800.0 * decay]))
     onset = float(np.fmax(at_rest.onset[0], 0.0))
     stiff_time = _stiff_time(made, max(abs(V0), abs(omega0)))
     layer = np.geomspace(1e-5, 60.0, _SAMPLE_TIMES) * stiff_time
-    late = np.linspace(0.1, 4.0, 6) * (1.0 + j) / c
+    late = np.linspace(0.1, 4.0, 6) * decay
     times = np.sort(np.concatenate([onset * np.array([0.3, 0.9]), onset + layer, onset + late]))
     found = flow(times)
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
-    rolled, true_onset = _rolled(made.parameters, float(V0), float(omega0), times, rows == _MEASURED)
-    out = rolled[list(rows)]
+    exact, how = motions(made.parameters, start, np.ones(1), times, _RTOLS, losses=rows == _MEASURED)
+    out, true_onset = exact[list(rows), 0], how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
     path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
@@ -174,34 +138,13 @@ def _error_of(made: FlowMap, rows: tuple[int, ...], V0: float, omega0: float) ->
     return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
 
 
-def _rolled(
-    parameters: tuple[Any, ...], V0: float, omega0: float, times: NDArray, losses: bool
-) -> tuple[NDArray, float]:
-    """Outputs and onset time of a motion by the kernel that ``roll`` compiles: none is compiled for the map alone."""
-    from ..kernels.motion.losses import ROWS, add_losses, loss_points
-    from ..kernels.motion.output import OUTPUTS
-
-    material, kappa, mu, j = parameters
-    given = {"material": material} if isinstance(material, Prony) else {"alpha": material}
-    scene, switches = Scene(**given, kappa=kappa, mu=mu, gamma=1.0, j=j), np.empty((0, 2))
-    inputs = Inputs(scene, V0, omega0, float(times[-1]), _SAMPLE_RTOL, 0.0, _SAMPLE_STEPS, Drive())
-    out, ends = np.full((ROWS, times.size), np.nan), np.zeros(_SAMPLE_ENDS)
-    _, _, found, info = rolled(inputs, times, (switches, ends))
-    out[:OUTPUTS] = found[:OUTPUTS]
-    if losses:
-        edges, points_at = loss_points(ends, times)
-        _, _, points, _ = rolled(inputs, points_at, (switches, np.empty(0)))
-        add_losses(kernel_scene(*parameters), 1.0, V0, omega0, times, edges, points[:OUTPUTS], out)
-    return out, info[3]
-
-
 def _stiff_time(made: FlowMap, speed: float) -> float:
     """1/k0 for an onset at about this speed, of those in the map."""
-    from ..kernels.flow.layout import BINS, RATE, views
+    from ..kernels.flow.layout import PLUS, views
 
-    rates = views(made.table).entry_plus[:, RATE, 0]
-    bins = BINS * (math.log2(made.parameters[1] * speed) - made.first)
-    return float(1.0 / rates[min(int(bins), rates.size - 1)])
+    rates = views(made.table).entry[PLUS, :, 2]  # the constant of the second of a pair: at the middle of an octave
+    octave = math.floor(math.log2(made.parameters[1] * speed)) - made.first
+    return float(1.0 / rates[min(max(octave, 0), rates.size - 1)])
 
 
 class Answer(NamedTuple):

@@ -38,6 +38,13 @@ class FlowMap:
     loss_error: float
     problem: str
 
+    @property
+    def slow_rate(self) -> float:
+        """At which ln V falls in the end, as gamma t counts time: T_mean/(1 + j)."""
+        material, _, _, j = self.parameters
+        T_mean: float = material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
+        return T_mean / (1.0 + j)
+
     def stated_error(self, *, path: bool, loss: bool) -> float:
         """The largest of the errors of the speeds and, where asked for, of the path and the losses."""
         return max(self.error, self.path_error if path else 0.0, self.loss_error if loss else 0.0)

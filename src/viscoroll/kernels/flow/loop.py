@@ -10,25 +10,23 @@ from ..motion.losses import ROLLING_LOSS, ROWS, SLIP_LOSS, kinetic_energy_lost
 from ..motion.output import OUTPUTS
 from ..motion.records import FULL, PARTIAL, REST
 from .inside import earlier_entry
-from .layout import ENTRY_OCTAVES, LAYER_END
+from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .read import (
     HIGHEST,
     LOSS,
-    MINUS,
     PATH,
-    PLUS,
     SPEEDS,
-    entry_state,
-    has_layer,
+    entry_of,
     lambda_at_rest,
     layer_state,
+    manifold_at,
     manifold_entry,
     manifold_loss,
     manifold_path,
     manifold_speeds,
     onset_of,
+    slide_path,
     slide_to,
-    slides,
     speed_after,
 )
 from .records import Output, Request, Slide, Stick
@@ -55,41 +53,44 @@ def _rest(at, x, angle, loss, out):
 
 
 @kernel(inline=True)
-def _sliding(frame, V, omega, need, flow):
-    """(Its record, its entry into partial slip, whether served) of a motion that slides from V, omega on."""
-    mu, j = flow.scene.mu, flow.scene.j
-    w = V - j * omega
-    T, X = slide_to(V, need, flow)
+def _sliding(frame, V, omega, start, need, flow):
+    """(Its record, its entry into partial slip, whether served) of a motion that slides from V, omega on.
+
+    ``start``: T and X there.
+    """
+    mu, (T, X) = flow.mu, start
+    w = V - flow.j * omega
     V_on, T_on, X_on = onset_of(w - 2.0 * mu * T, need, flow)
-    v = flow.scene.kappa * abs(V_on)
-    served = 2.0**flow.first <= v < 2.0 ** (flow.first + ENTRY_OCTAVES)
-    served = served and flow.scene.kappa * max(abs(V), abs(omega)) <= _MOST_LOST * v
+    v = flow.kappa * abs(V_on)
+    served = 2.0**flow.first <= v < 2.0 ** (flow.first + OCTAVES)
+    served = served and flow.kappa * max(abs(V), abs(omega)) <= _MOST_LOST * v
     tau, x = max(T_on - T, 0.0), X_on - X
-    angle = (x - tau * (w + mu * tau)) / j
+    angle = (x - tau * (w + mu * tau)) / flow.j
     family, frame_on = (PLUS, frame) if V_on > 0.0 else (MINUS, -frame)
     stick = Stick(frame_on, family, v, tau, frame * x, frame * angle, mu * (angle - x))
     return Slide(frame, w, T, X), stick, served
 
 
 @kernel
-def _inside(V0, omega0, need, flow):
+def _inside(V0, omega0, edge, need, flow):
     """(Earlier entry into partial slip, what the map holds of it, whether served) of a start inside the stick zone."""
     frame = 1.0 if V0 > 0.0 else -1.0
-    family, v, E, served = earlier_entry(abs(V0), (omega0 - V0) / V0, flow)
-    entry = manifold_entry(v, flow.table) if E > LAYER_END or not served else entry_state(family, v, need, flow)
-    stick = Stick(frame, family, v, -min(E, 1.1 * LAYER_END) / entry.rate, 0.0, 0.0, 0.0)
-    if not served or E > LAYER_END or E == 0.0 or need < PATH:
+    family, v, E, served = earlier_entry(abs(V0), (omega0 - V0) / V0, edge, flow)
+    if E > LAYER_END or not served:
+        entry = manifold_entry(manifold_at(v, flow.table)[0] if served else 0.0)
+        return Stick(frame, family, v, -LAYER_END / entry.rate, 0.0, 0.0, 0.0), entry, served
+    entry = entry_of(family, v, need, flow)
+    stick = Stick(frame, family, v, -E / entry.rate, 0.0, 0.0, 0.0)
+    if E == 0.0 or need < PATH:
         return stick, entry, served
-    if not has_layer(v, flow):
-        return stick, entry, False
-    _, _, x, angle, loss = layer_state(stick, entry.rate, -stick.tau, need, flow)
+    _, _, x, angle, loss = layer_state(stick, entry, -stick.tau, need, flow)
     return Stick(frame, family, v, stick.tau, -frame * x, -frame * angle, -loss), entry, True
 
 
 @kernel(inline=True)
 def _slide_outputs(at, tau_out, until, slide, need, flow, out):
     """Outputs before stick onset; returns the next column."""
-    mu, per_j = flow.scene.mu, 1.0 / flow.scene.j
+    mu, per_j = flow.mu, 1.0 / flow.j
     frame, w, T0, X0 = slide
     while at < tau_out.size and tau_out[at] < until:
         tau = tau_out[at]
@@ -97,7 +98,7 @@ def _slide_outputs(at, tau_out, until, slide, need, flow, out):
         omega = (V - (w + 2.0 * mu * tau)) * per_j
         x = angle = 0.0
         if need >= PATH:
-            x = slide_to(V, PATH, flow)[1] - X0
+            x = slide_path((T0, X0), tau, flow)
             angle = (x - tau * (w + mu * tau)) * per_j
         delta = (omega - V) / V if V != 0.0 else np.inf
         _write(out, at, Output(frame * V, frame * omega, frame * x, frame * angle, delta, FULL, mu * (angle - x)))
@@ -110,18 +111,18 @@ def _stick_outputs(at, tau_out, until, stick, entry, need, flow, out):
     """Outputs in partial slip up to ``until``; returns the next column."""
     frame = stick.frame
     to_lose = manifold_loss(entry.lam, flow.table) + entry.loss if need >= LOSS else 0.0
-    slow_rate = flow.scene.material.T_mean / (1.0 + flow.scene.j)
     layer_end = stick.tau + LAYER_END / entry.rate
     while at < tau_out.size and tau_out[at] <= until:
         elapsed = tau_out[at] - stick.tau
         x = angle = loss = 0.0
         if tau_out[at] < layer_end:
-            V, delta, x, angle, loss = layer_state(stick, entry.rate, elapsed, need, flow)
+            V, delta, x, angle, loss = layer_state(stick, entry, elapsed, need, flow)
         else:
-            now = entry.lam - slow_rate * elapsed
+            span = flow.slow_rate * elapsed
+            now = entry.lam - span
             V, delta = manifold_speeds(now, flow.table)
             if need >= PATH:
-                x, angle = manifold_path(entry.lam, now, slow_rate, flow.table)
+                x, angle = manifold_path(entry.lam, span, flow.slow_rate, flow.table)
                 x, angle = x + entry.x, angle + entry.angle
             if need >= LOSS:
                 loss = to_lose - manifold_loss(now, flow.table)
@@ -135,18 +136,15 @@ def _stick_outputs(at, tau_out, until, stick, entry, need, flow, out):
 def _stick(at, tau_out, stick, entry, request, flow, out):
     """(Status, rest time) of a motion from its entry into partial slip to the end."""
     layer_end = stick.tau + LAYER_END / entry.rate
-    if at < tau_out.size and tau_out[at] < layer_end and not has_layer(stick.v, flow):
-        return NOT_SERVED, np.nan
-    slow_rate = flow.scene.material.T_mean / (1.0 + flow.scene.j)
     resting, end = np.inf, tau_out[tau_out.size - 1]
     if request.rest > 0.0:
-        resting = stick.tau + (entry.lam - request.rest_lambda) / slow_rate
+        resting = stick.tau + (entry.lam - request.rest_lambda) / flow.slow_rate
         if resting < max(layer_end, 0.0):
             return NOT_SERVED, np.nan
     at = _stick_outputs(at, tau_out, min(resting, end), stick, entry, request.need, flow, out)
     if end <= resting:
         return DONE, np.nan
-    x, angle = manifold_path(entry.lam, request.rest_lambda, slow_rate, flow.table)
+    x, angle = manifold_path(entry.lam, entry.lam - request.rest_lambda, flow.slow_rate, flow.table)
     loss = entry.loss + manifold_loss(entry.lam, flow.table) - manifold_loss(request.rest_lambda, flow.table)
     x, angle = stick.x + stick.frame * (x + entry.x), stick.angle + stick.frame * (angle + entry.angle)
     _rest(at, x, angle, stick.loss + loss, out)
@@ -156,7 +154,7 @@ def _stick(at, tau_out, stick, entry, request, flow, out):
 @kernel(inline=True)
 def flow_motion(V0, omega0, tau_out, request, flow, out):
     """One motion in tau = gamma t: (status, onset, rest time); a time is NaN where there is none."""
-    kappa, need = flow.scene.kappa, request.need
+    kappa, need = flow.kappa, request.need
     if max(abs(V0), abs(omega0)) < request.rest:
         _rest(0, 0.0, 0.0, 0.0, out)
         return RESTED, np.nan, 0.0
@@ -165,11 +163,12 @@ def flow_motion(V0, omega0, tau_out, request, flow, out):
     frame = 1.0 if omega0 >= V0 else -1.0
     V, omega = frame * V0, frame * omega0
     at, first = 0, FULL
-    slides_first = slides(V, omega - V, flow)
+    T, X, limit = slide_to(V, need, flow)
+    slides_first = omega - V >= limit
     if slides_first:
-        slide, stick, served = _sliding(frame, V, omega, need, flow)
+        slide, stick, served = _sliding(frame, V, omega, (T, X), need, flow)
     else:
-        stick, entry, served = _inside(V0, omega0, need, flow)
+        stick, entry, served = _inside(V0, omega0, limit / abs(V), need, flow)
         first = PARTIAL
     if not served or stick.v < 2.0 * kappa * request.rest:
         return NOT_SERVED, np.nan, np.nan
@@ -182,7 +181,7 @@ def flow_motion(V0, omega0, tau_out, request, flow, out):
         if tau_out[tau_out.size - 1] < stick.tau:
             return DONE, np.nan, np.nan
         onset = stick.tau
-        entry = entry_state(stick.family, stick.v, need, flow)
+        entry = entry_of(stick.family, stick.v, need, flow)
     status, resting = _stick(at, tau_out, stick, entry, request, flow, out)
     return status, onset, resting
 
@@ -194,7 +193,7 @@ def flow_loop(flow, gamma, rest, V0, omega0, t, rows, answer, start, stop):
     ``rows`` picks the output quantities, as in :mod:`motion.losses`; distance and angle, and the
     energy lost, are found only if they are among them.
     """
-    one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.scene.j
+    one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j
     need = SPEEDS
     for n in range(rows.size):
         need = max(need, PATH if rows[n] == _X or rows[n] == _ANGLE else LOSS if rows[n] >= SLIP_LOSS else SPEEDS)

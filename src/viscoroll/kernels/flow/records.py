@@ -6,11 +6,17 @@ from typing import Any, NamedTuple
 
 
 class Flow(NamedTuple):
-    """The flow map of a scene: all of :mod:`layout` as one vector, stick onsets from kappa V = 2**first on."""
+    """The flow map of a scene: all of :mod:`layout` as one vector, stick onsets from kappa V = 2**first on.
+
+    slow_rate : at which lambda falls along the slow manifold.
+    """
 
     table: Any
-    first: Any
-    scene: Any
+    first: int
+    kappa: float
+    mu: float
+    j: float
+    slow_rate: float
 
 
 class Request(NamedTuple):
@@ -46,10 +52,11 @@ class Stick(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """What the map holds of an entry: lambda, k0; distance, angle, slip loss gained on the slow manifold."""
+    """What the map holds of an entry: lambda, k0, split; distance, angle, slip loss gained on the slow manifold."""
 
     lam: Any
     rate: Any
+    split: Any
     x: Any
     angle: Any
     loss: Any

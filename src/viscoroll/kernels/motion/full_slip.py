@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..law.length import contact_length
-from ..material.functions import at_slide, generators, moment_factor
+from ..material.functions import at_slide, generators
 
 #: kappa mu from which on M(V) < 2 mu for all alpha and V: the largest kappa M is 0.3091, for alpha -> infinity
 HOLDS = 0.16
@@ -19,26 +19,6 @@ HOLDS = 0.16
 _SEARCH, _DIFFERENCE, _FOUND, _NEAR = 200, 1e-5, 1e-13, 0.1
 #: s beyond which no such speed is looked for
 _FASTEST = 1e30
-
-
-@kernel
-def _moment(V, scene):
-    """M(V), odd in V, without its slope."""
-    material, kappa, _, _ = scene
-    c = material.T_mean
-    if c == 0.0:
-        return 0.0
-    kappa_V = kappa * abs(V)
-    lam, _ = contact_length(kappa_V, material)
-    if kappa_V < 1e-17:
-        return c * V
-    return V * moment_factor(lam / (2.0 * kappa_V), lam, material)
-
-
-@kernel
-def sliding_rate(V, sigma, scene):
-    """V' at V of either sign."""
-    return sigma * scene.mu - 0.5 * _moment(V, scene)
 
 
 @kernel

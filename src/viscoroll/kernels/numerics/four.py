@@ -93,6 +93,18 @@ def _four_of(typing_context, a, b, c, d):
     return _four(*[types.float64] * LANES), lower
 
 
+def _parts(typing_context, four):
+    def lower(context, builder, signature, given):
+        return context.make_tuple(builder, signature.return_type, split(builder, given[0]))
+
+    return types.UniTuple(types.float64, LANES)(four), lower
+
+
+def split(builder: Any, vector: Any) -> list:
+    """Instructions that take a vector apart."""
+    return [builder.extract_element(vector, _INT(n)) for n in range(LANES)]
+
+
 def _pointer(context, builder, kind, array, at):
     """Where the four numbers of an array begin, the first of them number ``at``."""
     data = context.make_array(kind)(context, builder, array).data
@@ -125,9 +137,12 @@ if numba.config.DISABLE_JIT:
     spread = lambda x: np.full(LANES, x)  # noqa: E731
     load = lambda array, at: array[at : at + LANES].copy()  # noqa: E731
     store = _put
+    parts = tuple
 else:
     #: four numbers as one
     four = intrinsic(_four_of)
+    #: and back
+    parts = intrinsic(_parts)
     #: the last of one before the first three of another: a load across two stores would wait for both
     slide = intrinsic(_slide)
     #: a b + c
