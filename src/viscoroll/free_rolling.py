@@ -116,7 +116,7 @@ class Curve:
         return np.maximum(W - math.log(self.alpha) / (8.0 * self.alpha), 0.0)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)  # those that an ensemble's validity looks at; 0.1 MB each
 def curve(material: float | Prony) -> Curve | None:
     """The curve of a material in its own time; None of an elastic one, which rolls for ever."""
     alpha = material.alpha if isinstance(material, Prony) else material
