@@ -57,10 +57,11 @@ bench: setup peer-tools ## run time against error beside the peers, which it ins
 	$(RUN) -m pipeline.bench --config $(CONFIG)
 	$(RUN) -m pipeline.document
 
-numbers: setup ## measure again what README and docs state, and put it there (about 10 minutes)
+numbers: setup ## measure again what README and docs state, and put it there (about half an hour)
 	$(RUN) -m pipeline.measure --config $(CONFIG)
 	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
 	-$(RUN) -m pipeline.measure.outside --config $(CONFIG)
+	-$(RUN) -m pipeline.measure.identification --config $(CONFIG)
 	$(RUN) -m pipeline.document
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(RUN) -m pipeline.figures $$name -o docs/figures/$$name.png; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png

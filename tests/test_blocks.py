@@ -10,8 +10,6 @@ import pytest
 import viscoroll as vr
 from viscoroll.blocks import cores, elements, run_blocks, thread_count
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 GRID = np.arange(60.0).reshape(4, 5, 3)
 ARRAYS = {
     "single": np.array(7.0),
@@ -47,6 +45,7 @@ def test_a_grid_of_two_axes_is_as_the_grid_written_out():
         assert np.array_equal(values, written_out[name], equal_nan=True), name
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 def test_a_number_of_threads_that_is_none(monkeypatch):
     start = (vr.PAPER_SECTION_5, [1.0, 2.0], 0.5, 1e-5)
     for threads in ("2", 1.5, True, 0, -5):

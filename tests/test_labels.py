@@ -10,8 +10,6 @@ from refusals import refused
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 ROLLER = vr.RUBBER_CYLINDER
 V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")
@@ -64,6 +62,7 @@ def test_equilibria(body):
     assert own(force=force).to_xarray()["V"].dims == ("load_force", "equilibrium")
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
 def test_ensembles(body):
     own = body.ensemble if body is ROLLER else lambda *given, **named: vr.ensemble(SCENE, *given, **named)

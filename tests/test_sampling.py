@@ -15,8 +15,6 @@ import viscoroll as vr
 from viscoroll import sampling
 from viscoroll.sampling import DESIGNS, Sample, sample
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 
 @pytest.mark.parametrize("design", DESIGNS)
 def test_sampling_is_reproducible(design):
@@ -55,6 +53,7 @@ def test_sample_follows_its_distribution():
     assert stats.kstest(drawn, stats.norm(2.0, 0.5).cdf).pvalue > tol.KOLMOGOROV
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 def test_a_sample_feeds_an_ensemble():
     drawn = sample(8, seed=5, design="sobol", V0=stats.uniform(0.5, 1.0), omega0=0.5, mu=stats.uniform(0.1, 0.2))
     result = vr.ensemble(vr.PAPER_SECTION_5.replace(mu=drawn["mu"]), drawn["V0"], drawn["omega0"], [0.0, 3e-3])

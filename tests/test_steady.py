@@ -18,8 +18,6 @@ from pipeline.truth.series import functions, rates
 from viscoroll.cli import main
 from viscoroll.equilibria.zeros import zeros
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 #: alpha, kappa V and kappa M at the largest M, from another program

@@ -38,7 +38,8 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     },
     "measure.identification": {
         "identify_learn": identification.learn, "identify_bearing": identification.bearing,
-        "identify_said": identification.said, "identify_numbers": identification.numbers,
+        "identify_said": identification.said, "identify_times": identification.times,
+        "identify_coverage": identification.coverage,
     },
     "prove": {"proofs": tables.proofs},
     "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},

@@ -21,7 +21,7 @@ _DIRECT, _SLICE, _MOTION = (
     "tests/materials/test_material_tables.py",
     "tests/motion/test_motion.py",
 )
-_STEADY, _EACH = "tests/test_steady.py", "tests/test_contact_each.py"
+_STEADY, _BOUND, _EACH = "tests/test_steady.py", "tests/test_bound_law.py", "tests/test_contact_each.py"
 _LENGTH, _LOSSES = "tests/kernels/law/test_length.py", "tests/motion/test_ensemble.py"
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
 
@@ -64,6 +64,11 @@ STRESS = [
     ("printed/law.py", "0.5 * epsilon * (1.0 - lam * lam) + 0.5", "0.5 * epsilon * (1.0 + lam * lam) + 0.5", _DIRECT),
 ]  # fmt: skip
 SLICE = [
+    ("rows/law.py", "return L, m, 1.0\n", "return L * (1.0 + 1e-9), m, 1.0\n", _SLICE),
+    ("rows/contact.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _SLICE),
+    ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", _SLICE),
+    ("rows/law.py", "part * here * at.per + (1.0 - part) * there * near.per", "here * at.per", _SLICE),
+    ("rows/law.py", "(1.0 + shift), shift + part, z", "(1.0 + shift), shift, z", _LAW),
     ("numerics/quartet.py", "ir.Constant(VECTOR, [float(k)] * 4)", "ir.Constant(VECTOR, [float(k * 1.0000001)] * 4)", _SLICE),
     ("material/tabulated.py", "return g, h, dh * offset_slope(z), m", "return g, h, 2.0 * dh * offset_slope(z), m", _MOTION),
     ("material/standard.py", "per_lam_U * (dm - m *", "per_lam_U * (dm + m *", _SLICE),
@@ -110,6 +115,9 @@ SERIES = [
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
     ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),
+    ("rows/law.py", "dL * at.per, m + u * at.per * dm", "dL * at.per, m + at.per * dm", _LAW),
+    ("rows/bound.py", "out[2] = out[3] = 0.5 * out[1]", "out[2] = out[3] = out[1]", _BOUND),
+    ("rows/bound.py", "out[6], out[7] = body_slopes", "out[7], out[6] = body_slopes", _BOUND),
     ("law/steady_loop.py", "turned = -d_share / fall * m", "turned = d_share / fall * m", _STEADY),
     ("law/steady_loop.py", "share * torque - (1.0 - share) * force", "(1.0 - share) * torque - share * force", _STEADY),
     ("law/steady_loop.py", "D + more, rise_F + more * (1.0 + dg)", "D + more, rise_F + more", _STEADY),

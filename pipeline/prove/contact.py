@@ -28,7 +28,7 @@ SLIP = "full_slip: distance from delta_star where wrong, ULP"
 _LEAST = 8 * 5e-324
 
 
-def by_roots(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
+def by_axis(states: list[tuple[float, ...]]) -> vr.rolling_contact.Values:
     """States with an alpha each."""
     alpha, kappa, mu, V, delta = np.array([*states, states[0]]).T  # of one alone its rows would be made
     state = vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
@@ -87,10 +87,10 @@ def relative_error(value: float, exact: Any) -> float:
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     rng = np.random.default_rng(sizes["seed"] + 1)
-    batches = {"one by one": [([chosen_state(rng) for _ in range(sizes["states"])], by_roots)], "slice": []}
+    batches = {"an alpha each": [([chosen_state(rng) for _ in range(sizes["states"])], by_axis)], "one alpha": []}
     alphas = [*EDGE_ALPHAS[1:], *(10.0 ** rng.uniform(0.0, 6.0, sizes["slices"])).tolist()]
     for alpha in alphas[: sizes["slices"]]:
-        batches["slice"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_rows))
+        batches["one alpha"].append(([chosen_state(rng, alpha) for _ in range(sizes["slice_states"])], by_rows))
     result = []
     for way, parts in batches.items():
         tally = Tally(way)

@@ -29,14 +29,14 @@ from ..results import RESULTS, parser, read_sizes
 from ..stage import ROOT, told
 from ..stamps import kernels_digest
 from ..truth import contact_enclosure
-from .contact import by_roots, by_rows, relative_error
+from .contact import by_axis, by_rows, relative_error
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BY_ALPHA = ("lam", "epsilon", "delta_star", "M")
 BY_CREEP = ("Q", "beta")
-WAYS = {"one by one": by_roots, "slice": by_rows}
+WAYS = {"one by one": by_axis, "slice": by_rows}
 #: the figure: half a unit in the last place, and steps of shade in units of it, up to less than 1e-13
 ROUNDING = 2.0**-53
 LEVELS = (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 40.0)
@@ -79,7 +79,7 @@ def over_alpha(sizes: dict[str, Any], rng: np.random.Generator) -> xr.Dataset:
     shape = (rows, across, sizes["states"])
     alpha, V = 1.0 + 10.0 ** within(edges[0], shape, 0, rng), 10.0 ** within(edges[1], shape, 1, rng)
     states = [(a, 1.0, 1.0, v, 0.0) for a, v in zip(alpha.ravel().tolist(), V.ravel().tolist(), strict=True)]
-    errors = errors_of(states, {"one by one": by_roots}, BY_ALPHA)
+    errors = errors_of(states, {"one by one": by_axis}, BY_ALPHA)
     return xr.Dataset(
         {n: (("alpha_cell", "kappa_V_cell"), cells(off, shape), described(n)) for (n, _), off in errors.items()},
         coords={"alpha_less_1_edge": 10.0 ** edges[0], "kappa_V_edge": 10.0 ** edges[1]},

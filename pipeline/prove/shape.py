@@ -23,7 +23,7 @@ from ..truth.check_values import EDGE_ALPHAS
 from .claim import Claim
 
 #: the two ways that contact() takes, and the largest fall allowed: see above
-WAYS = {"one by one": 6.0, "slice": 16.0}
+WAYS = {"an alpha each": 6.0, "one alpha": 6.0}
 CLAIMS = {
     "Q": "Q rises with delta", "beta": "beta falls with delta", "lam": "lam falls with V", "|Q| <= mu": "|Q| <= mu",
 }  # fmt: skip
@@ -50,7 +50,7 @@ def neighbours(x: NDArray) -> NDArray:
 def contact(way: str, alpha: Any, kappa: Any, mu: Any, V: NDArray, delta: NDArray, fields: tuple[str, ...]) -> Any:
     """contact() that way."""
     shape = np.broadcast_shapes(np.shape(V), np.shape(delta))
-    if way == "slice":
+    if way == "one alpha":
         return vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=fields)
     return vr.contact(vr.Scene(np.broadcast_to(alpha, shape), kappa, mu), V, delta=delta, fields=fields)
 
@@ -78,7 +78,7 @@ def random_pairs(way: str, count: int, rng: np.random.Generator) -> Iterator[dic
     while count > 0:
         n = min(count, _CHUNK)
         count -= n
-        alpha = log_uniform(rng, 1.0, 1e6) if way == "slice" else log_uniform(rng, 1.0, 1e6, n, 1)
+        alpha = log_uniform(rng, 1.0, 1e6) if way == "one alpha" else log_uniform(rng, 1.0, 1e6, n, 1)
         kappa, mu = log_uniform(rng, 1e-6, 1e6, n, 1), log_uniform(rng, 1e-6, 1e6, n, 1)
         far = rng.random((n, 1)) < 0.25
         V = np.where(far, log_uniform(rng, 1e-300, 1e300, n, 1), log_uniform(rng, 1e-8, 1e8, n, 1)) / kappa
@@ -99,7 +99,7 @@ def at_edges(way: str, alpha: float, rng: np.random.Generator) -> Iterator[tuple
     """(kappa, mu, V, delta) of neighbouring doubles: V where zeta or kappa V is on an edge, delta where eta or F is."""
     kappa, mu = 2.91, 0.2
     z = np.sort(np.concatenate([edges(), edges() / alpha]))
-    if way == "slice":
+    if way == "one alpha":
         yield 1.0, mu, neighbours(octaves(rng)), np.float64(0.0)  # kappa V itself
         V, v = octaves(rng) * rng.uniform(0.5, 2.0, 3040), octaves(rng)
         v[::2] = 2.0 ** np.ceil(np.log2(2.0 * V[::2] / lengths(way, alpha, mu, V[::2])))  # near the whole contact's

@@ -10,14 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import broadcast_shape, checked, checked_extent
 from .errors import ParameterError, one_of
+from .free_rolling import Free, Strained
 from .materials.bodies import Bodies
 from .materials.bodies_array import BodiesArray
 from .materials.law_table import LawTable
 from .materials.prony import Prony
 from .materials.prony_array import MaterialArray
 from .materials.prony_forms import HIGHEST_ALPHA
-from .steadiness import Free, Strained
-from .validity import Assumption, Steadiness, Validity, judge, unlike_speeds
+from .steadiness import Steadiness
+from .validity import Assumption, Validity, judge, unlike_speeds
 
 
 def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:

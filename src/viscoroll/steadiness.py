@@ -1,256 +1,133 @@
-"""How far a free motion goes by the law of steady rolling: from the term that follows it, M = M(V) + N(V) V'.
-
-N acts as an added mass.  Its share, the unsteadiness g |N(V)| with g = gamma/(1 + j), is about the error of V over V
-in a motion where it was no larger before (docs/may_i.md).  Free rolling depends on u = kappa V, on g and the material:
-u' = -g kappa M(u), over a way of the integral of u du/(g kappa M), in l0.
-"""
+"""Whether the law of steady rolling may drive a motion, and down to which speed: :class:`Steadiness`, in words too."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .contact_table import states_of
-from .materials.law_table import law_table
-from .materials.prony import Prony
+from .free_rolling import Free, Reach, Start
+from .validity import Assumption
 
-Array = NDArray[np.float64]
-
-#: ln u in steps of a sixteenth of an octave, to 20 octaves beyond the times of a material, where it is in its limits
-#: to 1e-6
-_PER_OCTAVE, _MARGIN = 16, 20
-#: of the work of leaving the imprint of a rest, measured with a transient solver: of the length of a mode's memory, and
-#: of the way of a motion that is shorter, at least as far as the contact climbs; half lengths at rest (docs/may_i.md)
-_MEMORY, _SHORT, _CLIMB = 0.681, 4.84, 20.0
-#: kappa |V|, where every contact is at its limits
-_FASTEST = 1e300
-#: share of the energy below which what it costs is proportional to it
-_LITTLE = 1e-7
+#: unsteadiness up to which V is right to some 10 %: measured with a transient solver of many modes (docs/may_i.md)
+STEADY_LIMIT = 0.1
+#: share of its speed, seven tenths of its energy, that a start from rest may lose: beyond, the cylinder was caught
+_CAUGHT = 0.45
+#: a speed that is as good as rest, where a motion ended
+_REST = 1e-300
 
 
-def rolling(material: float | Prony, u: Array, names: tuple[str, ...]) -> Array:
-    """Rows of the law in pure rolling at kappa |V| = u, of one material in its own time; kappa = 1."""
-    one, none = np.ones(1), np.zeros(1)
-    return states_of(law_table(material), [one, one, one, u, none], u.shape, False, names)
+class Steadiness(Assumption):
+    """Whether the law of steady rolling may drive a motion, and how far; everything below is in the units of the call.
 
+    ``value`` is the unsteadiness gamma |N(V)|/(1 + j), of a motion the largest so far; it counts as small up to 0.1,
+    where V is right to some 10 %.  The attributes are of free rolling from each V, by the law.
 
-class Curve:
-    """Free rolling of one material over ln u, g = 1: N, time and way."""
+    Attributes
+    ----------
+    one_percent, ten_percent : the :class:`Reach` within which V is right to about 1 % and 10 %.
+    start : what a :class:`Start` from a contact that rested long costs.
+    whole : the way to rest.
+    share : of that way, or of the way of a motion, what lies where V is not right to 10 %; None where it is not known.
+    """
 
-    def __init__(self, material: float | Prony) -> None:
-        from scipy.interpolate import CubicSpline
+    free: Free
+    #: of a motion, ``share``
+    rolled: Any = None
 
-        self.modes = (
-            (material.J, material.T) if isinstance(material, Prony) else (np.array([1.0 - 1.0 / material]), np.ones(1))
-        )
-        self.alpha = material.alpha if isinstance(material, Prony) else material
-        shortest, longest = (material.tau[-1], material.T[0]) if isinstance(material, Prony) else (1.0 / material, 1.0)
-        octaves = math.ceil(math.log2(longest / shortest)) + 2 * _MARGIN
-        self.s = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
-        self.s -= _MARGIN * math.log(2.0)
-        u = np.exp(self.s)
-        M, self.nodes = rolling(material, u, ("M", "N"))
-        self.low, self.high, self.M_high = float(u[0]), float(u[-1]), float(M[-1])
-        self._N, self._rate = CubicSpline(self.s, self.nodes), CubicSpline(self.s, u * u / M)
-        self._time, self._way = CubicSpline(self.s, u / M).antiderivative(), self._rate.antiderivative()
-        self._rise = self._N(self.s[0], 1)
-        self._first = u[0] ** 2 / M[0]  # the way from u[0] on, where M is proportional to u
+    @classmethod
+    def of(cls, free: Free) -> Assumption:
+        """That of states that are let go."""
+        if free.u.size and not free.u.any():
+            return Assumption(None, None, "at rest there is nothing to say: it is the speed that decides")
+        return cls._made(free.unsteadiness, free)
 
-    def _place(self, u: Array) -> tuple[Array, Array]:
-        """(ln u within the curve, u over the end that it is beyond)."""
-        inside = np.clip(u, self.low, self.high)
-        return np.log(inside), u / inside
+    @classmethod
+    def along(cls, free: Free, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
+        """That of motions over times, the first axis; ``ends``: of each as a whole.
 
-    def N(self, u: Array) -> Array:
-        """Linear in u below the curve, as u^-2 above."""
-        s, beyond = self._place(u)
-        return (self._N(s) + self._rise * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(beyond, 1.0) ** 2
-
-    def M(self, u: Array) -> Array:
-        """kappa M."""
-        s, beyond = self._place(u)
-        return np.exp(2.0 * s) / self._rate(s) * np.where(beyond < 1.0, beyond, 1.0 / beyond)
-
-    def time(self, u: Array) -> Array:
-        """From u to some u below the curve."""
-        s, beyond = self._place(u)
-        return self._time(s) + 0.5 * self.high / self.M_high * (np.maximum(beyond, 1.0) ** 2 - 1.0)
-
-    def way(self, u: Array) -> Array:
-        """From u to rest, in l0."""
-        s, beyond = self._place(u)
-        above = self.high**2 / (3.0 * self.M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
-        return (self._first + self._way(s)) * np.minimum(beyond, 1.0) + above
-
-    def bound(self, u: Array, least: float) -> tuple[Array, NDArray[np.bool_]]:
-        """(u down to which |N| stays below ``least`` on the way from u, or 0; whether it is below at u).
-
-        Where it is not, the next u above from which on it is.
+        rolls : where they do not slip fully, which friction rules.  x : places; NaN where they are not known.
         """
-        size = np.abs(self.nodes)
-        falls = np.flatnonzero((size[:-1] >= least) & (size[1:] < least))
-        roots = self.s[falls] + (size[falls] - least) / (size[falls] - size[falls + 1]) * (self.s[1] - self.s[0])
-        for _ in range(3):
-            N = self._N(roots)
-            roots = roots - (np.abs(N) - least) / (np.sign(N) * self._N(roots, 1))
-            roots = np.clip(roots, self.s[falls], self.s[falls + 1])
-        ends = np.concatenate([[0.0], np.exp(roots), [np.inf]])
-        below = np.abs(self.N(u)) < least
-        if size[-1] >= least:  # where N falls as u^-2
-            ends[-1] = self.high * math.sqrt(size[-1] / least)
-            ends = np.append(ends, np.inf)
-        at = np.searchsorted(ends, u, side="right")
-        return ends[np.where(below, at - 1, np.minimum(at, ends.size - 1))], below
+        free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
+        value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
+        fastest = free.at((np.argmax(free.u, axis=0), *np.indices(free.u.shape[1:])))
+        way, steps = free.whole(), np.abs(np.diff(x, axis=0)) * rolls[1:]
+        slow = np.where(fastest.unsteadiness > STEADY_LIMIT, np.inf, fastest.reach(STEADY_LIMIT).left)
+        # of each step, as in free rolling
+        with np.errstate(invalid="ignore"):
+            below, whole = (np.abs(np.diff(each, axis=0)) for each in (np.minimum(way, slow), way))
+        part = np.divide(below, whole, out=1.0 * (way[1:] < slow), where=(0.0 < whole) & (whole < np.inf))
+        share = (steps * part).sum(axis=0) / np.maximum(np.abs(np.diff(x, axis=0)).sum(axis=0), _REST)
+        return cls._made(value[-1] if ends else value, fastest, share)
 
-    def work(self, u: Array, way: Array) -> Array:
-        """W of leaving the imprint of a long rest: an energy of P l0^2 W/(4 R) in SI units; ``way`` in l0."""
-        longest, W = _SHORT * np.maximum(2.0 * way, _CLIMB), np.zeros(u.shape)
-        for J, T in zip(*self.modes, strict=True):
-            W += 0.5 * J * np.log(np.hypot(1.0, _MEMORY * np.minimum(2.0 * u * T, longest)))
-        return np.maximum(W - math.log(self.alpha) / (8.0 * self.alpha), 0.0)
+    @classmethod
+    def _made(cls, value: Any, free: Free, rolled: Any = None) -> Steadiness:
+        sentence = "no motion"
+        if np.size(value):
+            most = float(np.max(value))
+            worst = free.at(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
+            sentence = _let_go(worst) if rolled is None else _rolled(worst, most, float(np.mean(rolled)))
+        made = cls(value <= STEADY_LIMIT, value, sentence)
+        made.free, made.rolled = free, rolled
+        return made
 
-
-@lru_cache(maxsize=64)
-def curve(material: float | Prony) -> Curve | None:
-    """The curve of a material in its own time; None of an elastic one, which rolls for ever."""
-    alpha = material.alpha if isinstance(material, Prony) else material
-    return Curve(material) if alpha > 1.0 else None
-
-
-class Strained(NamedTuple):
-    """Of the contact at a speed: lam (1 + epsilon)/(2 kappa), epsilon, and lam."""
-
-    reach: Any
-    epsilon: Any
-    lam: Any
-
-
-class Reach(NamedTuple):
-    """Down to where V of a free motion is right to a share of V.
-
-    Attributes
-    ----------
-    speed : down to this one; 0: to rest.  Where it is not right even at V, the next higher speed from which on it is.
-    time, way : until there, from V on; infinite time: to rest.  0 where it is not right at V.
-    left : the way from there to rest.
-    """
-
-    speed: Any
-    time: Any
-    way: Any
-    left: Any
-
-
-class Start(NamedTuple):
-    """What a start at V from a contact that rested long loses first, against one from steady contact.
-
-    Attributes
-    ----------
-    speed, way : lost; all of V where the cylinder is caught in its own imprint.
-    """
-
-    speed: Any
-    way: Any
-
-
-@dataclass(frozen=True, eq=False)
-class Free:
-    """States that roll freely, each of one of the materials, in their own times.
-
-    ``speed``, ``time`` and ``length`` are what 1 of u, of time and of l0 are to the caller, ``words`` their units.
-    """
-
-    materials: Sequence[float | Prony]
-    which: NDArray[np.int64]
-    u: Array
-    g: Array
-    speed: Any
-    time: Any
-    length: Any
-    words: tuple[str, str, str] = ("", "", "")
-
-    def scaled(self, speed: Any, time: Any, length: Any, words: tuple[str, str, str]) -> Free:
+    def scaled(self, speed: Any, time: Any, length: Any, words: tuple[str, str, str]) -> Steadiness:
         """The same in other units."""
-        return replace(self, speed=self.speed * speed, time=self.time * time, length=self.length * length, words=words)
-
-    def at(self, place: tuple[Any, ...]) -> Free:
-        """One of the states."""
-        arrays = ("which", "u", "g", "speed", "time", "length")
-        return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[place] for name in arrays})
-
-    def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
-        """Materials that are there, and where."""
-        if len(self.materials) == 1:
-            yield self.materials[0], slice(None)
-            return
-        order = np.argsort(self.which, axis=None, kind="stable")
-        ordered = self.which.ravel()[order]
-        for part in np.split(order, np.flatnonzero(np.diff(ordered)) + 1):
-            if part.size:
-                yield self.materials[self.which.flat[part[0]]], part
-
-    def strained(self, kappa: Any) -> Strained:
-        """Lengths of the contact."""
-        out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
-        for material, part in self._groups():
-            out[:, part] = rolling(material, u[part], ("lam", "epsilon"))
-        lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
-        return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
-
-    def each(self, of: Callable[[Curve, Array, Array], Sequence[Array]], elastic: Sequence[float]) -> list[Array]:
-        """Numbers of every state; ``elastic``: of those that no law brakes."""
-        out = np.empty((len(elastic), self.u.size))
-        u, g = self.u.ravel(), np.broadcast_to(self.g, self.u.shape).ravel()
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            for material, part in self._groups():
-                known = curve(material)
-                values: Any = elastic if known is None else of(known, u[part], g[part])
-                for row, value in zip(out, values, strict=True):
-                    row[part] = value
-        return [row.reshape(self.u.shape)[()] for row in out]
+        return self._made(self.value, self.free.scaled(speed, time, length, words), self.rolled)
 
     @cached_property
-    def unsteadiness(self) -> Any:
-        """g |N|; 0 at rest."""
-        return self.each(lambda curve, u, g: [np.where(u > 0.0, g * np.abs(curve.N(u)), 0.0)], [0.0])[0]
+    def one_percent(self) -> Reach:
+        return self.free.reach(0.1 * STEADY_LIMIT)
 
-    def whole(self) -> Any:
-        """The way to rest by the law."""
-        return self.each(lambda curve, u, g: [curve.way(u) / g], [np.inf])[0] * self.length
+    @cached_property
+    def ten_percent(self) -> Reach:
+        return self.free.reach(STEADY_LIMIT)
 
-    def reach(self, level: float) -> Reach:
-        """Until the unsteadiness was ``level``."""
-
-        def of(curve: Curve, u: Array, g: Array) -> list[Array]:
-            end, below = np.empty(u.size), np.empty(u.size, bool)
-            several, own = np.unique(g, return_inverse=True)
-            for n, one in enumerate(several):
-                some = own == n if several.size > 1 else slice(None)
-                end[some], below[some] = curve.bound(u[some], level / one)
-            start, left = np.where(below, end, u), curve.way(np.where(below, end, u))
-            time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
-            way = np.where(below, curve.way(u) - left, 0.0)
-            return [end, np.where(below, time, 0.0) / g, way / g, left / g]
-
-        end, time, way, left = self.each(of, [0.0, np.inf, np.inf, 0.0])
-        return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
-
+    @cached_property
     def start(self) -> Start:
-        """What a start from long rest costs."""
+        return self.free.start()
 
-        def of(curve: Curve, u: Array, g: Array) -> list[Array]:
-            way = curve.way(u)
-            W = curve.work(u, way / g)
-            share = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)
-            kept = np.sqrt(1.0 - share)
-            lost = np.where(share > _LITTLE, (way - curve.way(u * kept)) / g, 0.25 * W / curve.M(u))
-            return [u * share / (1.0 + kept), np.where(u > 0.0, lost, 0.0)]
+    @cached_property
+    def whole(self) -> Any:
+        return self.free.whole()
 
-        speed, way = self.each(of, [0.0, 0.0])
-        return Start(speed * self.speed, way * self.length)
+    @cached_property
+    def share(self) -> Any:
+        if self.rolled is not None:
+            return self.rolled
+        left, whole = np.asarray(self.ten_percent.left), np.asarray(self.whole)
+        return np.divide(left, whole, out=np.asarray(self.value > STEADY_LIMIT, np.float64), where=left < whole)[()]
+
+
+def _let_go(free: Free) -> str:
+    """One state that is let go, in words that one can act on."""
+    speed, time, length = (f" {word}".rstrip() for word in free.words)
+    nu, most, whole = float(free.unsteadiness), free.reach(STEADY_LIMIT), free.whole()
+    said = f"unsteadiness {nu:.2g}: "
+    if nu > STEADY_LIMIT:
+        return said + (
+            "too slow for the law of steady rolling to drive a motion (contact states and constant speed are not "
+            f"concerned); faster than {most.speed:.2g}{speed} V is right to 10 %"
+        )
+    if not np.isfinite(whole):
+        return said + "let go here it rolls for ever"
+    fine, start = free.reach(0.1 * STEADY_LIMIT), free.start()
+    said += f"let go here it rolls {whole:.4g}{length} by the law of steady rolling; V is right to "
+    said += ("1 % to the end" if not fine.speed else f"1 % down to {fine.speed:.2g}{speed}, to ") if fine.time else ""
+    if fine.speed:
+        end = f"down to {most.speed:.2g}{speed}, after {most.time:.3g}{time} and {most.left:.2g}{length} before the end"
+        said += f"10 % {end if most.speed else 'to the end'}"
+    if start.speed > _CAUGHT * float(free.u * free.speed):
+        return said + "; a contact that rested long would hold it in its imprint"
+    return said + f"; a contact that rested long would cost {start.speed:.2g}{speed} and {start.way:.2g}{length} of way"
+
+
+def _rolled(free: Free, most: float, share: float) -> str:
+    """A motion, or the worst of several, from its fastest speed."""
+    if most <= STEADY_LIMIT:
+        return f"unsteadiness up to {most:.2g}: by the law of steady rolling V is right to 10 % all along"
+    speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.words[0]}".rstrip()
+    below = "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the way lies below"
+    return f"unsteadiness up to {most:.2g}: by the law of steady rolling V is right to 10 % down to {speed}{below}"

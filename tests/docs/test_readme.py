@@ -68,6 +68,17 @@ def test_howto_blocks_run(tmp_path, monkeypatch):
     assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
 
 
+def test_the_page_of_measurements_runs(monkeypatch, capsys):
+    monkeypatch.chdir(ROOT)
+    session: dict = {}
+    fits, plans = blocks(ROOT / "docs/identify.md", "python")
+    for code in (fits.replace("starts=2", "starts=1").replace("print(fit)", "print(repr(fit))"), plans):
+        exec(compile(code, "identify.md", "exec"), session)
+    shown = capsys.readouterr().out
+    assert "Identification of 7 unknowns from 240 points" in shown
+    assert "planned: what to expect if the cylinder is the truth" in shown
+
+
 def test_howto_scene_files_are_read(tmp_path):
     from viscoroll.config import read_scene
 

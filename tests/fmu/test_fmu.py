@@ -150,7 +150,6 @@ def test_no_contact_no_force(built):
 THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # a motion of bodies unlike, beyond the model
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("throw", THROWS)
 @pytest.mark.parametrize("name", CYLINDERS)
@@ -178,7 +177,6 @@ def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
     assert close(pulled["v"][1:], exact.V, rel=tol.FMU_FROM_REST)
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # a motion of bodies unlike, beyond the model
 @pytest.mark.parametrize("version", [2, 3])
 def test_roller_by_an_integrator_of_the_tool(built, version):
     cylinder, t = CYLINDERS["unlike"], np.linspace(0.0, 0.3, 4)

@@ -18,8 +18,6 @@ from viscoroll.files import seal, write_dataset
 from viscoroll.materials.file import as_toml, read_materials
 from viscoroll.materials.store import as_dataset
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 RUBBER = vr.Material(
     E=2.3e5,
     nu=0.49,
@@ -371,6 +369,7 @@ def test_refused_bands():
     refused(lambda: vr.Material.elastic(1e6, 0.5, thickness=0.0), "thickness = 0.0")
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 def test_damaged_materials(tmp_path):
     """One flipped bit anywhere, a cut file, another file: refused in one line; an edited file too."""
     path = tmp_path / "rubber.nc"

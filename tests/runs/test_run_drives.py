@@ -15,8 +15,6 @@ from viscoroll.runs.evaluate import block_inputs, roll_block
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.store import columns_of
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 SCENE = """
 preset = "paper-section-5"
 [start]
@@ -261,6 +259,7 @@ def test_prescribed_speeds_of_a_run(read, name):
         refused(lambda wrong=wrong: read(wrong), words, error=vr.ConfigError)
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # it starts in full slip
 def test_a_prescribed_speed_of_a_cylinder_in_si_units(read):
     text = CYLINDER[: CYLINDER.index("torque = ")] + "omega = { times = [0.0, 1.0], values = [0.05, 0.2] }\n[run]\n"
     run = read(text.replace("omega0 = 0.05\n", "") + CYLINDER[CYLINDER.index("n = 8") :])

@@ -184,7 +184,7 @@ def test_a_cylinder_is_stored_in_si_units(tmp_path, capsys):
     export_netcdf(store, file)
     expected = {
         "t": "s", "V0": "m s-1", "omega0": "rad s-1", "V": "m s-1", "omega": "rad s-1", "x": "m", "onset_time": "s",
-        "E": "Pa", "T_epsilon": "s",
+        "E": "Pa", "m": "kg/m",
     }  # fmt: skip
     with (
         xr.open_zarr(store, group="motions", chunks=None) as motions,
@@ -192,7 +192,7 @@ def test_a_cylinder_is_stored_in_si_units(tmp_path, capsys):
     ):
         for found in (motions, exported):
             assert {name: found[name].attrs["units"] for name in expected} == expected
-            assert found.t.values.tolist() == [0.0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03]
+            assert found.t.values.tolist() == [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
             assert found.attrs["quantities"] == "in SI units"
     assert main(["plot", str(store), "-o", str(tmp_path / "run.png")]) == 0
     assert verify(store).ok
@@ -309,7 +309,7 @@ def test_committed_figures():
 
 def test_documented_run_file():
     run = read_run(ROOT / "docs/examples/ensemble.toml")
-    assert run.inputs.uncertain == ("E", "T_epsilon", "T_sigma", "mu", "V0", "omega0")
+    assert run.inputs.uncertain == ("m", "mu", "V0", "omega0", "E")
     assert roll_block(run, 0)[1].status.max() == 0
 
 

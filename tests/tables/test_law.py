@@ -131,7 +131,6 @@ def test_sizes(tmp_path, monkeypatch):
 # --- wherever a material stands ---
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("name", ["material", "on steel", "pair"])
 def test_a_cylinder_of_a_law(tmp_path, name):
     vr.tables.save(vr.tables.law(*GIVEN[name]), tmp_path / "law.nc")

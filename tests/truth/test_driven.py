@@ -14,8 +14,6 @@ import viscoroll as vr
 from pipeline.truth import roll_precise
 from pipeline.truth.motion import PATHS
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
 MOTIONS = json.loads((ROOT / "data/reference/check_driven.json").read_text(encoding="utf-8"))["motions"]
 
 
@@ -56,6 +54,7 @@ def test_check_motions_are_found_again(name):
         assert [float(value) for value in getattr(found, field)] == row[field], field
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10, 1e-12])
 def test_roll_has_the_check_motions(rtol):
     """V and omega over the largest speed so far, works and losses over the largest, switches: within 30 rtol."""

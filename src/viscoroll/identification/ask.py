@@ -67,9 +67,10 @@ def identify(
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
     problem = Problem(cylinder, unknowns, records, _priors(prior or {}, unknowns), bool(robust), given)
-    if problem.y.size + len(problem.prior) < len(unknowns):
-        sentence = f"{len(unknowns)} unknowns, but {problem.y.size} points: measure more, or leave unknowns out"
-        raise ParameterError("unknown", len(unknowns), f"at most {problem.y.size}", sentence)
+    points = problem.y.size + len(problem.prior)
+    if points < len(unknowns) + any(one.estimated for one in problem.columns):
+        sentence = f"{len(unknowns)} unknowns, but {points} points: measure more, give sigma, or leave unknowns out"
+        raise ParameterError("unknown", len(unknowns), f"at most {points}", sentence)
     idle = flat(problem)
     problem.live = [i for i, name in enumerate(problem.names) if name not in idle]
     if next(iter(records.values())).planned:

@@ -44,7 +44,7 @@ def _heading(fit: Any) -> str:
         return f"{head}; standard deviation estimated: " + ", ".join(
             f"{name} {fit.sigma[name][0]:.3g}" for name in estimated
         )
-    chance = "" if problem.robust else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
+    chance = "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
 
 

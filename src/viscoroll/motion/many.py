@@ -14,8 +14,9 @@ from ..labels import Labels
 from ..materials.prony_array import MaterialArray
 from ..results import Row, Shown, unit_of
 from ..scene import Scene
+from ..steadiness import Steadiness
 from ..symbols import attributes
-from ..validity import Steadiness, Validity
+from ..validity import Validity
 from .driven import Drive
 
 if TYPE_CHECKING:

@@ -13,8 +13,9 @@ from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..results import Row, Shown, Values, unit_of
 from ..rolling_contact import contact
 from ..scene import Scene
+from ..steadiness import Steadiness
 from ..symbols import attributes
-from ..validity import Steadiness, Validity
+from ..validity import Validity
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS, Drive
 from .rolling import Inputs, rolled

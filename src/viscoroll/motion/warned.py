@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from bisect import bisect
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -11,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import ModelWarning
+from ..free_rolling import curve
 from ..kernels.compile.notice import is_worker
+from ..materials.bodies import Bodies
 from ..materials.prony import Prony
 from ..materials.prony_array import MaterialArray
 from ..scene import PARAMETERS, Scene
-from ..steadiness import Free, curve
-from ..validity import STEADY_LIMIT
+from ..steadiness import STEADY_LIMIT
 
 #: kappa at which the contact at rest reaches half a radius from the axis
 _LEAST_KAPPA = 1.0
@@ -24,9 +26,9 @@ _LEAST_KAPPA = 1.0
 _CREEP, _SHARE = 1.0, 0.1
 #: of kappa M over 1 - 1/alpha at any speed, to a fifth, for one relaxation time (docs/theory.md)
 _LARGEST_M = 0.25
-#: of a motion that is let go: its first unsteadiness, and the share of its way where V is not right to 10 %
-_UNSTEADY, _SLOW_PART = 0.4, 0.1
-#: (kappa V)^2 over gamma (1 - 1/alpha)/(1 + j) from which on neither can be, of any material: (kappa V)^2 |N| is at
+#: of a motion that is let go, the share of its way where V is not right to 10 %: all of it where it starts beyond
+_SLOW_PART = 0.1
+#: (kappa V)^2 over gamma (1 - 1/alpha)/(1 + j) from which on it cannot be more, of any material: (kappa V)^2 |N| is at
 #: most 1.35/16 of 1 - 1/alpha (docs/may_i.md), and the way grows at least as V
 _PLAIN = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
 #: motions of an ensemble that are looked at
@@ -66,9 +68,8 @@ def _faults(scene: Scene, V0: float, omega0: float, driven: bool) -> list[str]:
     # the speed at the start, or that at which it comes to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
     if not driven and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
-        material, unit = scene.in_own_time()
-        places, beyond = _unsteady_starts(material, gamma * unit * unit / (1.0 + j))
-        if beyond[max(bisect(places, u * unit) - 1, 0)]:
+        places, slow = _slow_starts(alpha if scene.material is None else scene.material, gamma, j)
+        if slow[max(bisect(places, u) - 1, 0)]:
             found.append(
                 "it is too slow for the law of steady rolling, whose V is off by more than 10 % over a good part of "
                 "the way"
@@ -101,14 +102,15 @@ def _faults_of_many(scene: Scene, V0: NDArray[np.float64], omega0: NDArray[np.fl
 
 
 @lru_cache(maxsize=64)
-def _unsteady_starts(material: float | Prony, g: float) -> tuple[list[float], list[bool]]:
-    """kappa V, upward, and whether motions that are let go there are beyond the law of steady rolling."""
-    known = curve(material)
-    if known is None:
-        return [], []
-    free = Free([material], np.zeros((), np.int64), np.exp(known.s), np.asarray(g), 1.0, 1.0, 1.0)
+def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
+    """kappa V, upward, and whether a good part of the way of what is let go there is too slow for the law."""
+    given = {"alpha": material} if isinstance(material, float) else {"material": material}
+    free = Scene(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given).freely(0.0)
+    known = curve(free.materials[0])
+    assert known is not None  # an elastic one is never slow
+    free = replace(free, u=np.exp(known.s))
     slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.whole()
-    return np.exp(known.s).tolist(), ((free.unsteadiness > _UNSTEADY) | slow).tolist()
+    return (free.u * free.speed).tolist(), slow.tolist()
 
 
 def outside() -> int:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from ..checks import checked, number
 from ..materials.material import Material
+from ..steadiness import Steadiness
 from ..typed import Numbers
-from ..validity import Assumption, Steadiness, Validity, coupling, inertia, measurement, passage, thickness
+from ..validity import Assumption, Validity, coupling, inertia, measurement, passage, thickness
 from .units import Cylinder
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes

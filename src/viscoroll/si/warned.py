@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import ModelWarning
+from ..free_rolling import rolling
 from ..kernels.compile.notice import is_worker
 from ..materials.measured import Measured
 from ..motion.warned import outside
-from ..steadiness import rolling
 from ..validity import measurement, passage
 from .units import Cylinder
 

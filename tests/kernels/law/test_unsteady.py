@@ -17,7 +17,7 @@ from viscoroll.kernels.law.unsteady import room, unsteady
 from viscoroll.materials.tables import series
 
 DIGITS = 50
-#: about the largest |N|
+#: about the largest |N|, over S_J
 LARGEST = 0.05
 #: N of one mode over kappa V, to the digits printed, from a program of others' making
 SPEEDS = (0.0, 0.02, 0.05, 0.1, 0.15, 0.3, 0.5, 0.684, 1.0, 1.5, 2.5, 4.37, 8.0, 20.0)
@@ -79,6 +79,22 @@ def test_against_its_definition(seed):
         for z in 10.0 ** np.random.default_rng(seed).uniform(np.log10(p.tau[-1]) - 2.0, 2.5, 4):
             truth, found = exact(rates, mp.mpf(z)), unsteady(z, known, work)
             assert abs(found - truth) <= tol.UNSTEADY * (abs(truth) + tol.UNSTEADY_ZERO * largest), z
+
+
+@pytest.mark.parametrize("material", [1.5, 28.0, 1e4, random_series(0)])
+def test_rows_against_its_definition(material):
+    """Over its largest size: N has a zero."""
+    with mp.workdps(DIGITS):
+        known = raw.rates_of(mp, material)
+        slow, fast = (float(1 / rates[end]) for rates, end in ((known.b, 0), (known.a, -1)))
+        found, truth = [], []
+        for z in 10.0 ** np.random.default_rng(4).uniform(np.log10(fast) - 2.0, np.log10(slow) + 3.0, 6):
+            u = 1 / (2 * mp.sqrt(z * z + 2 * z * raw.functions(mp, known, z).h))
+            scene = vr.Scene(kappa=1.0, mu=0.1, **{"alpha" if isinstance(material, float) else "material": material})
+            found.append(vr.contact(scene, float(u), delta=0.0, fields="N").N)
+            truth.append(float(exact(known, mp.mpf(z))))
+        S_J = sum(J / b**2 for J, b in zip(raw.creep_strengths(mp, known), known.b, strict=True))
+    assert close(found, truth, rel=tol.AXIS_UNSTEADY, scale=LARGEST * float(S_J))
 
 
 @pytest.mark.parametrize("alpha", PRINTED)

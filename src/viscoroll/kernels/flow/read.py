@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.fma import fma
 from ..compile.jit import kernel
 from ..material.standard import GAUSS_W, GAUSS_X
-from ..numerics.four import LANES, add, load, multiply, parts, spread
+from ..numerics.four import LANES, fused, load, parts, spread
 from ..rows import lanes
 from ..rows.law import octave
 from . import layout
@@ -186,7 +186,7 @@ def layer_place(family, v, u, flow):
 @kernel(inline=True)
 def _times(a, x, b):
     """a x + b of three vectors."""
-    return add(multiply(a[0], x), b[0]), add(multiply(a[1], x), b[1]), add(multiply(a[2], x), b[2])
+    return fused(a[0], x, b[0]), fused(a[1], x, b[1]), fused(a[2], x, b[2])
 
 
 @kernel(inline=True)
@@ -194,7 +194,7 @@ def _over_t(p, t):
     """The polynomial whose twelve powers are three vectors."""
     square = t * t
     per = spread(square * square)
-    a, b, c, d = parts(add(multiply(add(multiply(p[2], per), p[1]), per), p[0]))
+    a, b, c, d = parts(fused(fused(p[2], per, p[1]), per, p[0]))
     return fma(square, fma(t, d, c), fma(t, b, a))
 
 

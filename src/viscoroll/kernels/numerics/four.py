@@ -141,6 +141,8 @@ if numba.config.DISABLE_JIT:
 else:
     #: four numbers as one
     four = intrinsic(_four_of)
+    #: and back
+    parts = intrinsic(_parts)
     #: the last of one before the first three of another: a load across two stores would wait for both
     slide = intrinsic(_slide)
     #: a b + c

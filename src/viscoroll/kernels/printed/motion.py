@@ -1,6 +1,6 @@
 """Eq. (22) on the printed contact law (:mod:`law`): right-hand sides for an independent integrator.
 
-They share neither the law nor the unknowns with :mod:`motion.full_slip` and :mod:`motion.partial_slip`;
+They share neither the law nor the unknowns with :mod:`motion.rates`;
 they serve to check motions, not to compute them.
 """
 
