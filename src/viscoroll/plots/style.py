@@ -68,8 +68,8 @@ def log_ticks(axis: Any) -> None:
 def caveat(scene: Any, V: float) -> str:
     """A line for the title of a motion that the law of steady rolling may not drive; else nothing."""
     steady = scene.validity(V).steady
-    nu = f"{float(f'{steady.value:.1g}'):g}"
-    return "" if steady.holds else f"\n(nu = {nu}: Eq. (22) solved, not how such a cylinder would move)"
+    much = f"{float(f'{steady.value:.1g}'):g}"
+    return "" if steady.holds else f"\n(unsteadiness {much}: Eq. (22) solved, not how such a cylinder would move)"
 
 
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray, middle: str | None = None) -> None:
