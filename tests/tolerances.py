@@ -4,11 +4,8 @@
 #: Units in the last place of the textbook Bessel ratios; measured 2.7 (I) and 3.6 (K, where Temme's two sums are
 #: divided).
 BESSEL_ULP = 4.0
-#: lam and delta_star of the printed forms against the explicit law: a few roundings each; measured 6.7e-16.
+#: delta_star of the printed forms against the law by rows: a few roundings each; measured 1e-15.
 DIRECT_LENGTH = 2e-15
-#: epsilon, absolute over max(1, epsilon): lam^-2 - 1 rounds at 1e-16 lam^-2 k, which epsilon itself exceeds;
-#: measured 3e-15.
-DIRECT_SHIFT = 1e-14
 #: beta, absolute: the rounding of epsilon (up to 6.9 at alpha = 1e4) enters Eq. (10) undiminished; measured 3.3e-15.
 DIRECT_STICK = 1e-14
 #: Q/mu, absolute: K1/K0 <= 1e3 (kappa V = 1e3) magnifies the rounding of Eq. (15)'s bracket; measured 1.1e-13.

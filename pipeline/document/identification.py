@@ -79,22 +79,11 @@ def times(results: Results) -> str:
 
 
 def coverage(results: Results) -> str:
-    """How often intervals and products hold the truth, and searches arrive."""
-    held = listed(
+    """How often intervals hold the truth."""
+    return listed(
         {"intervals of 95 % that hold the truth": "{experiment}, {sets} data sets", "share": "{shares}"},
         (
             row | {"shares": ", ".join(f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items())}
             for row in _rows(results, "coverage")
         ),
     )
-    (product,) = _rows(results, "product")
-    named = ", ".join(f"{name} ({count} times)" for name, count in product["named"].items())
-    reach = listed(
-        {"starts a factor of ten off": "{experiment}", "arrive": "{share}", "one search": "{s!n} s"},
-        (row | {"share": f"{100.0 * row['reached']:.3g} % of {row['starts']}"} for row in _rows(results, "reach")),
-    )
-    text = (
-        f"M below the hump, {product['sets']} data sets: named was {named}, known to ± "
-        f"{100.0 * product['half_width']:.2g} %; the interval held the truth in {100.0 * product['held']:.3g} %.\n"
-    )
-    return "\n".join([held, text, reach])

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from viscoroll.plots.style import LINES, THIN, describe, new_figure, scaled
+from viscoroll.plots.style import LINES, THIN, new_figure, scaled
 from viscoroll.presets import PAPER_FIGURES_2_3
 from viscoroll.rolling_contact import contact
 from viscoroll.symbols import label
+
+from .title import describe
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from viscoroll.contact_stress import stress
 from viscoroll.motion import Motion, roll
-from viscoroll.plots.style import LINES, THIN, caveat, describe, new_figure, number
+from viscoroll.plots.style import LINES, THIN, new_figure, number
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 from viscoroll.symbols import label
+
+from .title import caveat, describe
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

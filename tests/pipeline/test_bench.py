@@ -124,7 +124,7 @@ def test_first_calls(folder):
     (empty,), (full,) = first["empty"], first["full"]
     assert full["cpu_s"] < empty["cpu_s"]
     assert full["peak_mb"] < empty["peak_mb"]
-    assert full["files"] == empty["files"] == 2  # the rows of the material, and motions
+    assert full["files"] == empty["files"] == 2  # what makes the rows of a law, and motions
     assert 0.0 < full["cache_mb"] == empty["cache_mb"]
 
 

@@ -75,13 +75,14 @@ def test_rates_are_those_of_the_printed_law():
             kappa, mu, j, zero = map(flint.arb, (scene.kappa, scene.mu, scene.j, 0))
             (free,) = pieces_of({}, zero + 1, zero, zero + 1)
             phase = begun(Law(solid_of(scene), kappa, mu, j), free, flint.arb(V), flint.arb(omega))
-            u, (rates, weights), h = phase.unknowns(), phase.rates(phase.unknowns(), zero), flint.arb(10) ** -14
+            u, (rates, weights), h = phase.unknowns(), phase.rates(phase.unknowns(), zero), flint.arb(10) ** -20
             change = [rate / weight for rate, weight in zip(rates, weights, strict=True)]
             ends = [phase.contact([a + d * h * b for a, b in zip(u, change, strict=True)]) for d in (1, -1)]
             found = [(up - down) / (2 * h) for up, down in zip(ends[0][:2], ends[1][:2], strict=True)]
         with mp.workdps(60):
             creep = abs((mp.mpf(omega) - V) / mp.mpf(V))
-            state = printed_state(mp, scene.alpha, mp.mpf(scene.kappa), mp.mpf(scene.mu), abs(mp.mpf(V)), creep)
+            alpha, kappa, mu = map(mp.mpf, (scene.alpha, scene.kappa, scene.mu))
+            state = printed_state(mp, alpha, kappa, mu, abs(mp.mpf(V)), creep)
             Q, M = state["Q"] * mp.sign(omega - V), state["M"] * mp.sign(V)
             for ours, printed in zip(found, (Q - M / 2, -(Q + M / 2) / mp.mpf(scene.j)), strict=True):
                 assert abs(mp.mpf(ours.mid().str(50, radius=False)) / printed - 1) < tol.PRECISE_RATE, (V, omega)

@@ -2,32 +2,15 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import __version__
 from ..checks import number
 from ..errors import ParameterError, TableError
-from ..symbols import PAPER
 from .law_axis import FUNCTIONS, LawAxis
-from .law_store import (
-    AXIS,
-    CHECKSUM,
-    KIND,
-    MEANING_OF_AXIS,
-    OTHERS_OF_AXIS,
-    REMEDY,
-    SCHEMA,
-    VERSION,
-    Content,
-    checksum,
-    content_of,
-)  # fmt: skip
+from .law_store import AXIS, MEANING_OF_AXIS, OTHERS_OF_AXIS, REMEDY, Content, sealed
 from .law_table import LawTable
 from .prony_forms import HIGHEST_ALPHA
 
@@ -55,18 +38,7 @@ def as_dataset(axis: LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
         data[name] = xr.Variable(dims, axis.coefficients[..., n], about | {"largest_relative_error": errors[name]})
     for name, (others, meaning) in OTHERS_OF_AXIS.items():
         data[name] = xr.Variable(others, np.asarray(getattr(axis, name), np.int32), {"long_name": meaning})
-    found = xr.Dataset(
-        data,
-        attrs={
-            "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {low_high}",
-            "summary": "The contact law of one relaxation time as polynomials of speed and of ln alpha: any speed, "
-            "creep, kappa and mu, by two look-ups and no iteration.",
-            "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: AXIS,
-            SCHEMA: np.int32(VERSION), "comment": COMMENT, "references": PAPER, "source": f"viscoroll {__version__}",
-            "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
-        },
-    )  # fmt: skip
-    return found.assign_attrs({CHECKSUM: checksum(content_of(found).numbers, AXIS)})
+    return sealed(data, AXIS, low_high, COMMENT)
 
 
 def axis_of(content: Content, path: Any) -> LawAxis:

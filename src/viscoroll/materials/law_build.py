@@ -31,7 +31,7 @@ _FIRST, _TRIED = 12, 32
 #: what the limit may be off by there, and how many octaves further it is taken: it comes closer by 3.5 an octave
 _NEAR, _FURTHER = 2.0**-44, 5
 #: in the slow row what follows a coefficient below this share of the largest is rounding, which would grow by 5.8^n
-_ROUNDING, _ROUNDING_OF_N = 1e-16, 1e-14
+_ROUNDING, _ROUNDING_OF_N = 1e-16, 3e-15
 #: of Newton's iteration from a thousandth: then 1e-13 is left, whose square is rounding
 _STEPS = 2
 #: octaves from that of the slowest rate of creep down to the first row

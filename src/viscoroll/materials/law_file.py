@@ -2,39 +2,21 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
-from datetime import UTC, datetime
 from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import __version__
 from ..checks import checked
 from ..errors import ConfigError, ParameterError, TableError
-from ..symbols import PAPER
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis_file import alpha_of
-from .law_store import (
-    CHECKSUM,
-    KIND,
-    LAW,
-    MEANING,
-    OTHERS,
-    REMEDY,
-    SCHEMA,
-    VERSION,
-    Content,
-    checksum,
-    content_of,
-    read_law,
-)  # fmt: skip
+from .law_store import KIND, LAW, MEANING, OTHERS, REMEDY, Content, read_law, sealed
 from .law_table import FUNCTIONS, LawTable, law_table
 from .material import Material
 from .pair import Pair
@@ -87,20 +69,9 @@ def as_dataset(table: LawTable, errors: Mapping[str, float]) -> xr.Dataset:
         value = np.int32(table.e0) if name == "e0" else getattr(table, name)
         data[name] = xr.Variable(dims, value, {"long_name": meaning})
     data["T_ref"].attrs["units"] = "s"  # the others have none
-    found = xr.Dataset(
-        data,
-        attrs={
-            "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {name_of(table)}",
-            "summary": "The contact law of one material or pair as polynomials, one an octave of speed: any speed, "
-            "creep, kappa and mu, by two look-ups and no iteration.",
-            "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: LAW,
-            SCHEMA: np.int32(VERSION), "bodies": "unlike" if table.unlike else "alike",
-            "material": described(table.pair or table.material),
-            "comment": COMMENT, "references": PAPER, "source": f"viscoroll {__version__}",
-            "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
-        },
-    )  # fmt: skip
-    return found.assign_attrs({CHECKSUM: checksum(content_of(found).numbers)})
+    bodies = "unlike" if table.unlike else "alike"
+    material = described(table.pair or table.material)
+    return sealed(data, LAW, name_of(table), COMMENT, bodies=bodies, material=material)
 
 
 def name_of(table: LawTable) -> str:

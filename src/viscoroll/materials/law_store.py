@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import io
+import shlex
+import sys
+from datetime import UTC, datetime
 from os import PathLike
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .. import __version__
 from ..errors import TableError
 from ..files import sealed_content
+from ..symbols import PAPER
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Integer attribute of a file: another number where one of this version could not be read any more.
 SCHEMA, VERSION = "law_schema", 1
@@ -63,6 +70,10 @@ OTHERS_OF_AXIS = {
     "rows": (("octave_of_alpha",), "rows of an octave of alpha before the fast limit; what follows is 0"),
     "e0": OTHERS["e0"],
 }
+_SUMMARY = {
+    LAW: "The contact law of one material or pair as polynomials, one an octave of speed: ",
+    AXIS: "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
+}
 VARIABLES = {LAW: (*MEANING, *OTHERS), AXIS: (*MEANING_OF_AXIS, *OTHERS_OF_AXIS)}
 
 
@@ -85,6 +96,24 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     for name in VARIABLES[kind]:
         digest.update(name.encode() + np.ascontiguousarray(numbers[name], "<f8").tobytes())
     return digest.hexdigest()
+
+
+def sealed(data: dict[str, xr.Variable], kind: str, title: str, comment: str, **more: str) -> xr.Dataset:
+    """The dataset of a file: its numbers, what they are and where they come from, and their checksum.
+
+    title : what the law is of.  comment : how the numbers are read.  more : other attributes.
+    """
+    import xarray as xr
+
+    attributes = {
+        "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {title}",
+        "summary": _SUMMARY[kind] + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
+        "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: kind, SCHEMA: np.int32(VERSION),
+        **more, "comment": comment, "references": PAPER, "source": f"viscoroll {__version__}",
+        "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
+    }  # fmt: skip
+    found = xr.Dataset(data, attrs=attributes)
+    return found.assign_attrs({CHECKSUM: checksum(content_of(found).numbers, kind)})
 
 
 def errors_of(found: Any) -> dict[str, float]:

@@ -24,7 +24,6 @@ LINES: tuple[dict[str, Any], ...] = (
     {"color": "#c8642a", "linestyle": "-."},
     {"color": "#6aa84f", "linestyle": (0, (1, 1.2))},
 )
-MARKERS = ("o", "s", "^")
 #: Greys of the regimes in a phase portrait.
 SHADES = {"full slip": "0.87", "partial slip": "1.0"}
 #: Of quantile bands, from the widest.
@@ -65,13 +64,6 @@ def log_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def caveat(scene: Any, V: float) -> str:
-    """A line for the title of a motion that the law of steady rolling may not drive; else nothing."""
-    steady = scene.validity(V).steady
-    nu = f"{float(f'{steady.value:.1g}'):g}"
-    return "" if steady.holds else f"\n(nu = {nu}: Eq. (22) solved, not how such a cylinder would move)"
-
-
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray, middle: str | None = None) -> None:
     """Quantiles over t, a row a level: pairs of them as bands, a middle one as a line with the label ``middle``."""
     for n in range(levels.size // 2):
@@ -84,11 +76,6 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray, midd
     axes.axhline(0.0, **THIN)
     if levels.size:
         axes.legend(frameon=False, fontsize="small")
-
-
-def describe(scene: Any, *names: str) -> str:
-    """The named parameters of a scene, for a title line."""
-    return ", ".join(f"${SYMBOLS[name].latex} = {number(getattr(scene, name))}$" for name in names)
 
 
 def number(value: float, digits: int = 4) -> str:

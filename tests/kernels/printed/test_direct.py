@@ -76,10 +76,10 @@ def assert_methods_agree(alpha, kappa, mu, kappa_V, s) -> None:
     delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
     table, direct = (vr.contact(scene, V, delta=delta, method=method) for method in ("table", "direct"))
     for name, scale, bound in (
-        ("lam", table.lam, tol.DIRECT_LENGTH),
-        ("zeta", table.zeta, tol.DIRECT_LENGTH),
-        ("delta_star", table.delta_star, tol.DIRECT_SHIFT),
-        ("epsilon", np.maximum(1.0, table.epsilon), tol.DIRECT_SHIFT),
+        ("lam", table.lam, tol.CONTACT_LENGTH),
+        ("zeta", table.zeta, tol.CONTACT_LENGTH),
+        ("delta_star", table.delta_star, tol.DIRECT_LENGTH),
+        ("epsilon", np.maximum(1.0, table.epsilon), tol.CONTACT_SHIFT),
         ("beta", 1.0, tol.DIRECT_STICK),
         ("Q", mu, tol.DIRECT_TRACTION),
         ("M", 1.0 / kappa, tol.DIRECT_MOMENT),
