@@ -60,10 +60,10 @@ def starts(count: int, seed: int, scene: vr.Scene, top: float = 2.0) -> tuple[np
 def compare(
     scene: vr.Scene, count: int, seed: int, t: np.ndarray, top: float = 2.0
 ) -> tuple[vr.Ensemble, float, float, float]:
-    """(flow's result, largest difference of speeds, path and losses to the integrator's at rtol 1e-11)."""
+    """(flow's result, largest difference of speeds, path and losses to the integrator's at rtol 1e-12)."""
     V0, omega0 = starts(count, seed, scene, top)
     mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
-    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-11, fields=FIELDS)
+    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
     speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
     moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
     speeds = np.maximum(np.abs(mapped.V - rolled.V), np.abs(mapped.omega - rolled.omega)) / speed

@@ -23,8 +23,6 @@ from .flow_store import FlowMap
 
 Floats = NDArray[np.float64]
 
-#: of the motions that fill a map
-_RTOLS = 1e-12, 1e-10, 1e-8
 _HELD = "rolling resistance can hold the sliding cylinder at a speed"
 _SLIPS = "full slip returns"
 _ENDS = "the stick zone does not always last"
@@ -72,7 +70,7 @@ class Case(NamedTuple):
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):
             raise Unserved(_BEYOND)
         starts = V, V * (1.0 + delta)
-        (V, _, _, _, delta, regime, *_), _ = motions(self.parameters, starts, gamma, t, _RTOLS, threads=self.threads)
+        (V, _, _, _, delta, regime, *_), _ = motions(self.parameters, starts, gamma, t, threads=self.threads)
         if not ((regime == PARTIAL) & (V > 0.0)).all():
             raise Unserved(problem)
         return V, delta

@@ -32,6 +32,9 @@ _ROWS_BELOW = 4
 _CUTTABLE = 1e6
 #: panels solved at most until one ends on the event, and the error over the tolerance given to one that does not
 _CUTS, _HOPELESS = 8, 10.0
+#: v up to which a place in full slip is found anew, on a panel that ends a little behind it: early on interpolants are
+#: off by more beside the time so far
+_EARLY, _BEHIND_IT = 0.5, 1.1
 #: length, over the time so far and to come, of a regime that ends where it begins
 _INSTANT = 1e-14
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
@@ -146,7 +149,9 @@ def _attempt(panel, left, aimed, track, frame, case):
         # partial slip does not go on beyond V = 0, and |V| in the edge and in the speeds of full slip has a kink there
         kinked = behind and (not frame.slips or found == EDGE or found == SLOW)
         if found != NO_EVENT and size <= 1.0 and not kinked and found != TURN:
-            return event, located(event, v, frame, case), panel, size, track
+            if v > _EARLY or not frame.slips:
+                return event, located(event, v, frame, case), panel, size, track
+            v *= _BEHIND_IT
         if found == NO_EVENT:
             v = place_of(event, 0, case.work)
             if v >= NOWHERE:  # nowhere near
