@@ -112,8 +112,7 @@ class MotionStatus(IntEnum):
     RESTED = 1
     STEP_LIMIT = 2
     STEP_TOO_SMALL = 3
-    NOT_CONVERGED = 4
-    UNDECIDED = 5
+    UNDECIDED = 4
 
 
 MOTION_STATUS = {
@@ -121,6 +120,5 @@ MOTION_STATUS = {
     MotionStatus.RESTED: "max(|V|, |omega|) fell below the rest threshold",
     MotionStatus.STEP_LIMIT: "the step limit was reached first: loosen rtol or shorten the motion",
     MotionStatus.STEP_TOO_SMALL: "the step size fell to rounding level: rtol is too tight for this start",
-    MotionStatus.NOT_CONVERGED: "a contact solve did not converge: please report the input",
     MotionStatus.UNDECIDED: "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
 }

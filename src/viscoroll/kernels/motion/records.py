@@ -15,7 +15,7 @@ EVENTS = 6
 #: which speed is prescribed
 NEITHER, OMEGA, SPEED = range(3)
 #: how a motion ends
-DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, NOT_CONVERGED, UNDECIDED = range(6)
+DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, UNDECIDED = range(5)
 
 
 class Scene(NamedTuple):
