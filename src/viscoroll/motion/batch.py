@@ -124,7 +124,7 @@ def ensemble(
     bar = "motions" if progress else None
     answer, chosen, error = None, None, np.nan
     unit = scene.in_own_time()[1] if mapped else 1.0
-    own = flat[5:7] if unit == 1.0 else [speeds * unit for speeds in flat[5:7]]  # no copy of 10^8 for nothing
+    own = (flat[5], flat[6]) if unit == 1.0 else (flat[5] * unit, flat[6] * unit)  # no copy of 10^8 for nothing
     if mapped and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
         chosen = _map_of(scene, *own, speed and speed * unit, threads)
     if chosen is not None:
