@@ -124,14 +124,14 @@ def ensemble(
     bar = "motions" if progress else None
     answer, chosen, error = None, None, np.nan
     unit = scene.in_own_time()[1] if mapped else 1.0
-    own = (flat[5], flat[6]) if unit == 1.0 else (flat[5] * unit, flat[6] * unit)  # no copy of 10^8 for nothing
+    own = flat if unit == 1.0 else [*flat[:5], flat[5] * unit, flat[6] * unit]  # no copy of 10^8 for nothing
     if mapped and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
-        chosen = _map_of(scene, *own, speed and speed * unit, threads)
+        chosen = _map_of(scene, own[5], own[6], speed and speed * unit, threads)
     if chosen is not None:
         error = chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
         if error <= rtol:
             rows = tuple((STATES + LOSSES).index(name) for name in found)
-            given = float(flat[3][0]) * unit * unit, threshold * unit, *own, times / unit
+            given = float(flat[3][0]) * unit * unit, threshold * unit, own[5], own[6], times / unit
             answer = ask(chosen, *given, rows, threads=threads, progress=bar)
             if unit != 1.0:
                 to_unit(answer.out, found, unit)
