@@ -141,7 +141,7 @@ def unresolved(state, frame, clock, case):
 def settled(state, frame, clock, case):
     """(State, frame) once d has relaxed at a time: p stays as it is."""
     load, rates = here(state, frame, clock, case)
-    p, d, low, high = rates.p, 0.0, -1.0, 1.0
+    p, d, low, high = load.per_omega * state.V + load.per_V * rates.omega, 0.0, -1.0, 1.0
     while low < d < high:
         delta = creep_limit(state.V, case.scene) * d
         state = State(p / (load.per_omega + load.per_V * (1.0 + delta)), d)

@@ -16,11 +16,11 @@ from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 V, SECOND, P_RATE, RATE, V_RATE, SPEED, OF_OMEGA, OF_Q, OF_HALF_SPACE, OF_CYLINDER = (WIDE * n for n in range(10))
 P, PER_P, P_SECOND, COUPLED, SLOPE = (WIDE * n for n in range(10, 15))
 #: of Newton's iteration: slopes of the interpolants of p and of the second unknown, right sides and changes of either;
-#: weights of its equation; what both diagonals are less than those of the slopes
+#: weights of its equation; what both diagonals are less than those of the slopes; what a change of d adds to V'
 P_SLOPE, SECOND_SLOPE, RIGHT, SECOND_RIGHT, CHANGE, SECOND_CHANGE = (WIDE * n for n in range(15, 21))
-ONES, WEIGHTS, DIAGONAL, SECOND_DIAGONAL = (WIDE * n for n in range(21, 25))
+ONES, WEIGHTS, DIAGONAL, SECOND_DIAGONAL, FED = (WIDE * n for n in range(21, 26))
 #: integrands of the path: x, angle, work of force and of torque, losses in the brake, in slip and in rolling
-PATH, PATHS = WIDE * 25, 7
+PATH, PATHS = WIDE * 26, 7
 #: functions of events, and the drive
 EVENT = PATH + WIDE * PATHS
 DRIVE = EVENT + WIDE * EVENTS

@@ -9,7 +9,8 @@ Both sides of the last stay finite as V -> 0, where d follows from the right one
 continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
 
 p = per_omega V + per_V omega, as V + j omega, is collocated in place of V: p' holds no Q, and so d only by what feeds
-speeds back.  dp/dd = per_V V k L is small: Newton's matrix falls into one of p and one of d (:mod:`solve`).
+speeds back.  dp/dd = per_V V k L is small: Newton's matrix falls into one of p and one of d (:mod:`solve`).  Where
+friction is so strong that dp/dV may vanish, V stands for p.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from ..compile.rarely import rarely
 from ..rows.law import bodies, body_slopes, place, press_secant, press_slopes, speed_seconds
 from .load import acting
 
+#: k over the least with which dp/dV may vanish at d = -1, from which on V is collocated
+_STRONG = 0.8
 #: d from which on Q, as the difference of 1 and what is left to stick, has digits enough
 _SLIGHT = 1e-4
 
@@ -29,7 +32,7 @@ _SLIGHT = 1e-4
 class Rates(NamedTuple):
     """What the equations say at a state.
 
-    p, p_rate : what is collocated in place of V, V itself in full slip, and p'
+    p, p_rate : what is collocated in place of V, V itself in full slip and under strong friction, and p'
     rate : ``weight`` times the slope of the second unknown
     edge : of the stick zone: positive within the regime
     further : slopes in V and in the second unknown
@@ -48,6 +51,7 @@ class Rates(NamedTuple):
     p_V: float
     p_second: float
     p_rate_V: float
+    p_rate_second: float
     rate_V: float
     rate_second: float
     weight_V: float
@@ -71,6 +75,13 @@ def creep_limit(V, scene):
     """delta_star at V."""
     u = scene.kappa * abs(V)
     return 0.5 * scene.mu / scene.kappa * speed_seconds(place(u, scene.law), u, scene.law)[0]
+
+
+@kernel(inline=True)
+def strong(load, frame, scene):
+    """Whether friction is so strong that V is collocated itself, with Q in its rate."""
+    per_V, k = load.per_V, 0.5 * scene.mu / scene.kappa
+    return not frame.slips and frame.sigma < 0.0 and k * per_V > _STRONG * (per_V + load.per_omega)
 
 
 @kernel(inline=True)
@@ -105,11 +116,13 @@ def stick_rates(V, d, load, frame, scene):
     V_V, V_d = per_V * (Q_V - half_space_rise + force_V), per_V * (Q_d + gains.force_omega * omega_d)
     turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (gains.torque_omega * omega_d - Q_d)
     bend = turn * ((2.0 * dL + u * ddL) * d * V_rate + dL * rate)
+    p, p_V, p_d, p_rate_d = per_omega * V + per_V * omega, per_omega + per_V * omega_V, per_V * omega_d, 0.0
+    p_rate = per_both * (force + torque - M_half_space - M_cylinder) + per_omega * load.V_rate + per_V * load.omega_rate
+    p_rate_V = per_both * (force_V + torque_V - half_space_rise - cylinder_rise)
+    if rarely(strong(load, frame, scene)):
+        p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
     return Rates(
-        omega, Q, M_half_space, M_cylinder, V_rate, per_omega * V + per_V * omega,
-        per_both * (force + torque - M_half_space - M_cylinder) + per_omega * load.V_rate + per_V * load.omega_rate,
-        rate, V, 1.0 - sign * d, per_omega + per_V * omega_V, per_V * omega_d,
-        per_both * (force_V + torque_V - half_space_rise - cylinder_rise),
+        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, 1.0 - sign * d, p_V, p_d, p_rate_V, p_rate_d,
         ((turn_V - V_V) / k - d * spread * V_V - bend) / L, ((turn_d - V_d) / k - spread * (V_rate + d * V_d)) / L, 1.0,
     )  # fmt: skip
 
@@ -126,7 +139,7 @@ def slip_rates(V, omega, load, frame, scene):
     edge = frame.sigma * (omega - V) - 0.5 * scene.mu / scene.kappa * L * abs(V)
     return Rates(
         omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0, edge,
-        1.0, 0.0, load.per_V * (gains.force_V - half_space_rise),
+        1.0, 0.0, load.per_V * (gains.force_V - half_space_rise), 0.0,
         load.per_omega * (gains.torque_V - cylinder_rise), load.per_omega * gains.torque_omega, 0.0,
     )  # fmt: skip
 

@@ -7,6 +7,9 @@ vanishes where a panel ends at V = 0.  At the nodes, with D the slopes of the in
 
 b = V d', c = D d - h b_V, dV = (dp - p_d dd)/p_V: two N x N systems an iteration.  Their factors are kept while
 changes are small.  In full slip p is V, the second unknown omega, and 1 stands for the V that multiplies its equation.
+Where friction is strong p is V too, but d feeds it by F = h dV'/dd: with S the second matrix,
+
+    [D - h diag(dV'/dV) + diag(F) S^-1 diag(c)] dV = h V' - D V + F S^-1 (h b - V (D d))
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from .nodes import (
     CHANGE,
     COUPLED,
     DIAGONAL,
+    FED,
     OF_SECOND,
     OF_V,
     ONES,
@@ -46,7 +50,7 @@ from .nodes import (
     put_node,
     time_at,
 )
-from .rates import rates_at
+from .rates import rates_at, strong
 
 _MOST_ITERATIONS = 12
 #: error per panel is kept at this share of rtol; Newton's iteration stops at this share of that; the least that it can
@@ -104,25 +108,40 @@ def _put_equations(anew, panel, frame, case):
             coupled = per * (rates.weight_V * slope - step * rates.rate_V)
             nodes[PER_P + i], nodes[P_SECOND + i], nodes[COUPLED + i] = per, rates.p_second, coupled
             nodes[WEIGHTS + i], nodes[SLOPE + i] = rates.weight, rates.rate_second / rates.weight
-            nodes[DIAGONAL + i] = step * rates.p_rate_V * per
+            nodes[DIAGONAL + i], nodes[FED + i] = step * rates.p_rate_V * per, step * rates.p_rate_second
             nodes[SECOND_DIAGONAL + i] = step * rates.rate_second + coupled * rates.p_second
     product(SLOPES, P, nodes[P], nodes, P_SLOPE, nodes)
     for i in range(1, WIDE):
         nodes[RIGHT + i] = half * nodes[P_RATE + i] - nodes[P_SLOPE + i]
 
 
+@kernel
+def _feed_matrix(work):
+    """Add what d feeds to the matrix of V."""
+    for k in range(1, WIDE):
+        for i in range(1, WIDE):
+            fed = work.nodes[FED + i] * work.second_matrix[WIDE * k + i]
+            work.matrix[WIDE * k + i] += fed * work.nodes[COUPLED + k]
+
+
 @kernel(inline=True)
-def _newton(anew, panel, frame, case):
+def _newton(anew, fed, panel, frame, case):
     """One iteration; the largest change over what it is measured by."""
     work, nodes = case.work, case.work.nodes
     if anew:
         _put_equations(True, panel, frame, case)
         weighted_slopes(ONES, DIAGONAL, nodes, work.matrix)
         weighted_slopes(WEIGHTS, SECOND_DIAGONAL, nodes, work.second_matrix)
-        invert(work.matrix)
         invert(work.second_matrix)
+        if fed:
+            _feed_matrix(work)
+        invert(work.matrix)
     else:
         _put_equations(False, panel, frame, case)
+    if fed:
+        product(work.second_matrix, SECOND_RIGHT, 0.0, nodes, CHANGE, nodes)
+        for i in range(1, WIDE):
+            nodes[RIGHT + i] += nodes[FED + i] * nodes[CHANGE + i]
     product(work.matrix, RIGHT, 0.0, nodes, CHANGE, nodes)
     for i in range(1, WIDE):
         nodes[SECOND_RIGHT + i] -= nodes[COUPLED + i] * nodes[CHANGE + i]
@@ -149,9 +168,9 @@ def solve(panel, slope, track, frame, case):
     left = max(_NEWTON * tolerance, _LEAST)
     put_drive(panel, case)
     guess(panel, slope, track, frame, case)
-    before, anew = np.inf, True
+    before, anew, fed = np.inf, True, strong(load_there(0, frame, case), frame, case.scene)
     for n in range(_MOST_ITERATIONS):
-        change = _newton(anew, panel, frame, case)
+        change = _newton(anew, fed, panel, frame, case)
         gain = _FIRST_GAIN if n == 0 else change / before
         if not (change < 1e6 and gain < 2.0):
             return False
