@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from viscoroll.si.units import QUANTITIES
-from viscoroll.symbols import SYMBOLS
+from viscoroll.scale import DIMENSIONS, si_unit
+from viscoroll.symbols import SYMBOLS, meaning
 
 from ..results import Results, table
 
@@ -20,8 +20,8 @@ def symbols(results: Results) -> str:
     """One row a symbol; nothing is measured."""
     rows = []
     for name, symbol in SYMBOLS.items():
-        si = QUANTITIES[name].units.translate(_POWERS) if name in QUANTITIES else ""
-        texts = (symbol.long_name, symbol.range, symbol.equation)
-        meaning, allowed, equation = (text.replace("|", "\\|") for text in texts)
-        rows.append((f"`{name}`", _GREEK.get(name, ""), meaning, allowed, si, equation))
+        si = si_unit(name).translate(_POWERS) if name in DIMENSIONS else ""
+        texts = (meaning(name), symbol.range, symbol.equation)
+        about, allowed, equation = (text.replace("|", "\\|") for text in texts)
+        rows.append((f"`{name}`", _GREEK.get(name, ""), about, allowed, si, equation))
     return table(("in code", "symbol", "what it is, of a scene", "range", "of a cylinder", "equation"), rows)

@@ -23,7 +23,7 @@ from tqdm import tqdm
 
 from viscoroll.files import write_dataset
 from viscoroll.plots.style import new_figure, save
-from viscoroll.symbols import SYMBOLS, label
+from viscoroll.symbols import SYMBOLS, label, meaning
 
 from ..results import RESULTS, parser, read_sizes
 from ..stage import ROOT, told
@@ -110,7 +110,7 @@ def variable(name: str, way: str) -> str:
 
 
 def described(name: str) -> dict[str, str]:
-    return {"long_name": f"largest relative error in a cell of: {SYMBOLS[name].long_name}", "units": "1"}
+    return {"long_name": f"largest relative error in a cell of: {meaning(name)}", "units": "1"}
 
 
 def drawn(maps: xr.Dataset) -> Figure:

@@ -13,13 +13,12 @@ from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
 from .materials.tables import unsteadiness
+from .scale import OF_TIME
 
 #: states of a block, where each has a material of its own, which takes some kilobytes, and where not
 _BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
 #: states of one law that a kernel works on side by side
 _TOGETHER = 64
-#: fields over a speed, which follows the unit of time
-_PER_SPEED = {"zeta", "dQ_dV", "dQ_domega", "dM_dV", *SLOPES_OF_BODIES}
 
 
 def states_of(
@@ -72,8 +71,8 @@ def states_of(
                 out[N, start:stop] = unsteadiness(each, out[N, start:stop])
         if unit is not None:
             for row, name in enumerate(names):
-                if name in _PER_SPEED:
-                    out[row, start:stop] *= unit
+                if name in OF_TIME and name != UNSTEADY:
+                    out[row, start:stop] *= unit ** OF_TIME[name]
 
     run_blocks(work, count, _BLOCK_EACH if isinstance(given, MaterialArray) else _BLOCK)
     return out

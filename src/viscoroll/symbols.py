@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .scale import DIMENSIONS, KINDS, si_unit
+
 PAPER = (
     "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic half-space, "
     "Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
@@ -24,7 +26,6 @@ class Symbol(NamedTuple):
     range: str = ""
     equation: str = ""
     computed: str = ""
-    units: str = "1"
 
 
 SYMBOLS = {
@@ -37,13 +38,11 @@ SYMBOLS = {
     "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
     "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)", "scene.py"),
     "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)", "scene.py"),
-    "V": Symbol("V", "velocity of the axis times T_epsilon/R", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
-    "omega": Symbol(
-        r"\omega", "angular velocity times T_epsilon", "finite", "Sect. 3.1", "kernels/motion/integrate.py"
-    ),
-    "t": Symbol("t", "time over T_epsilon", ">= 0", "Sect. 4"),
-    "x": Symbol("x", "distance travelled over R", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
-    "angle": Symbol(r"\theta", "angle turned, radians", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
+    "V": Symbol("V", "velocity of the axis", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "omega": Symbol(r"\omega", "angular velocity", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "t": Symbol("t", "time", ">= 0", "Sect. 4"),
+    "x": Symbol("x", "distance travelled", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
+    "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
     "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/law/state.py"),
     "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/law/state.py"),
     "lam": Symbol(
@@ -56,14 +55,12 @@ SYMBOLS = {
     "epsilon": Symbol(
         r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)", "kernels/law/state.py"
     ),
-    "zeta": Symbol(
-        r"\zeta", "time to travel half the contact over T_epsilon", "> 0", "Eq. (7)", "kernels/law/length.py"
-    ),
+    "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)", "kernels/law/length.py"),
     "beta": Symbol(
         r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/law/stick.py"
     ),
-    "Q": Symbol("Q", "traction over load", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
-    "M": Symbol("M", "rolling resistance moment over P R", "finite", "Eqs. (16), (18)", "kernels/material/standard.py"),
+    "Q": Symbol("Q", "traction", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
+    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)", "kernels/material/standard.py"),
     "C_rr": Symbol(
         r"C_\mathrm{rr}",
         "coefficient of rolling resistance M/(P R); M of a scene is this",
@@ -71,22 +68,22 @@ SYMBOLS = {
         "Eq. (16)",
         "si/contact.py",
     ),
-    "force": Symbol("f", "force along V over load", "finite", "", "kernels/motion/load.py"),
-    "torque": Symbol("q", "torque along omega over load times radius", "finite", "", "kernels/motion/load.py"),
-    "brake": Symbol("B", "most torque that a brake takes over load times radius", ">= 0", "", "kernels/motion/load.py"),
-    "slope": Symbol(r"\vartheta", "angle of the slope, radians", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
+    "force": Symbol("f", "force along V", "finite", "", "kernels/motion/load.py"),
+    "torque": Symbol("q", "torque along omega", "finite", "", "kernels/motion/load.py"),
+    "brake": Symbol("B", "most torque that a brake takes", ">= 0", "", "kernels/motion/load.py"),
+    "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
     "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "equilibria/result.py"),
     "rate_fast": Symbol(
-        r"\lambda_1", "rate of the faster small disturbance over gamma", "finite", "Eq. (22)", "equilibria/result.py"
+        r"\lambda_1", "rate of the faster small disturbance", "finite", "Eq. (22)", "equilibria/result.py"
     ),
     "rate_slow": Symbol(
-        r"\lambda_2", "rate of the slower small disturbance over gamma", "finite", "Eq. (22)", "equilibria/result.py"
+        r"\lambda_2", "rate of the slower small disturbance", "finite", "Eq. (22)", "equilibria/result.py"
     ),
-    "M_half_space": Symbol("M_h", "part of M in the half-space, over P R", "finite", "", "kernels/material/pair.py"),
-    "M_cylinder": Symbol("M_c", "part of M in the cylinder, over P R", "finite", "", "kernels/material/pair.py"),
+    "M_half_space": Symbol("M_h", "part of M in the half-space", "finite", "", "kernels/material/pair.py"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder", "finite", "", "kernels/material/pair.py"),
     "N": Symbol(
         "N",
-        "moment over P R for each unit of V', M = M(V) + N V' in slow changes",
+        "moment for each unit of V', M = M(V) + N V' in slow changes",
         "finite",
         "",
         "kernels/law/unsteady.py",
@@ -101,33 +98,29 @@ SYMBOLS = {
         "Eq. (16)",
         "kernels/material/standard.py",
     ),
-    "p": Symbol("p/E'", "contact pressure over E'", ">= 0", "Eq. (11)", "kernels/law/stress.py"),
+    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)", "kernels/law/stress.py"),
     "tau": Symbol(
-        r"\tau/E'", "shear stress on the cylinder over E'", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/law/stress.py"
+        r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/law/stress.py"
     ),
     "slip_loss": Symbol(
         r"E_\mathrm{slip}",
-        "energy lost in slip since t = 0 over m (R/T_epsilon)^2",
+        "energy lost in slip since t = 0",
         ">= 0",
         "Eq. (22)",
         "kernels/motion/nodes.py",
     ),
     "rolling_loss": Symbol(
         r"E_\mathrm{roll}",
-        "energy lost in rolling since t = 0 over m (R/T_epsilon)^2",
+        "energy lost in rolling since t = 0",
         "finite",
         "Eq. (22)",
         "kernels/motion/nodes.py",
     ),
-    "work_force": Symbol(
-        r"W_f", "work of the force since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/motion/rates.py"
-    ),
-    "work_torque": Symbol(
-        r"W_q", "work of the torque since t = 0 over m (R/T_epsilon)^2", "finite", "Eq. (22)", "kernels/motion/rates.py"
-    ),
+    "work_force": Symbol(r"W_f", "work of the force since t = 0", "finite", "Eq. (22)", "kernels/motion/rates.py"),
+    "work_torque": Symbol(r"W_q", "work of the torque since t = 0", "finite", "Eq. (22)", "kernels/motion/rates.py"),
     "brake_loss": Symbol(
         r"E_\mathrm{brake}",
-        "energy lost in the brake since t = 0 over m (R/T_epsilon)^2",
+        "energy lost in the brake since t = 0",
         ">= 0",
         "Eq. (22)",
         "kernels/motion/rates.py",
@@ -142,26 +135,32 @@ SYMBOLS = {
 _MEANINGS = {
     "full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die",
     "rest_time": "time at which the rest threshold was crossed", "loss_slip": "power lost: slip",
-    "loss_half_space": "power lost: half space", "loss_cylinder": "power lost: cylinder",
+    "loss_half_space": "power lost: half space", "loss_cylinder": "power lost: cylinder", "length": "contact length",
+    "V0": "initial velocity of the axis", "omega0": "initial angular velocity",
 }  # fmt: skip
 
 
-def attributes(name: str) -> dict[str, str]:
-    """long_name, units, symbol and equation of a quantity; of a partial derivative its meaning."""
-    if name not in SYMBOLS:
-        return {"long_name": meaning(name), "units": "1"}
-    symbol = SYMBOLS[name]
-    return {"long_name": symbol.long_name, "units": symbol.units, "symbol": symbol.latex, "equation": symbol.equation}
+def attributes(name: str, si: bool = False) -> dict[str, str]:
+    """long_name, units, symbol and equation of a quantity, without dimension or in SI units."""
+    found = {"long_name": meaning(name, si), "units": si_unit(name) if si else "1"}
+    if name in SYMBOLS and not (si and name in DIMENSIONS):
+        found |= {"symbol": SYMBOLS[name].latex, "equation": SYMBOLS[name].equation}
+    return found
 
 
-def meaning(name: str) -> str:
+def meaning(name: str, si: bool = False) -> str:
     """What a quantity is, in words."""
     if name in SYMBOLS:
-        return SYMBOLS[name].long_name
-    if name.startswith("d") and "_d" in name:
+        text = SYMBOLS[name].long_name
+    elif name.startswith("d") and "_d" in name:
         upper, _, lower = name[1:].partition("_d")
-        return f"partial derivative of {upper} with respect to {lower}"
-    return _MEANINGS.get(name, "")
+        text = f"partial derivative of {upper} with respect to {lower}"
+    else:
+        text = _MEANINGS.get(name, "")
+    if not text or name not in DIMENSIONS:
+        return text
+    unit, over = KINDS[DIMENSIONS[name]]
+    return text + (", per length of the cylinder" * unit.endswith(" m-1") if si else over)
 
 
 def label(name: str) -> str:

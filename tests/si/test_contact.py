@@ -26,7 +26,7 @@ def test_the_state_in_other_units(cylinder):
     V, omega = np.array([-0.2, 0.05, 0.3]), np.array([-2.05 * 0.97, 0.5, 3.1])
     found = cylinder.contact(V, omega, slopes=True)
     bare = vr.contact(cylinder.scene(), V * T / R, omega=omega * T, slopes=True)
-    units = {"Q": P, "M": P * R, "dQ_domega": P * T, "dQ_dV": P * T / R, "dQ_ddelta": P, "dM_dV": P * T}
+    units = {"zeta": T, "Q": P, "M": P * R, "dQ_domega": P * T, "dQ_dV": P * T / R, "dQ_ddelta": P, "dM_dV": P * T}
     for name, value in bare.as_dict().items():
         if not name.endswith("_dV") or name in units:
             expected = value * units.get(name, P * R if name.startswith("M_") else 1.0)

@@ -15,8 +15,8 @@ from ..config import read_body
 from ..cylinder import Cylinder
 from ..errors import ConfigError, ParameterError, TableError
 from ..materials.file import shifts_of
+from ..scale import refuse_other_unit
 from ..sections import as_struct, fault, hint, read
-from ..si.units import refuse_other_unit
 from .motions import Coastdown
 from .records import Record, Resistance, Traction
 

@@ -17,7 +17,7 @@ from ..checks import broadcast_shape, checked, number
 from ..cylinder import Cylinder
 from ..errors import ParameterError, one_of, unknown
 from ..labels import Labels, unlabelled
-from ..si.units import QUANTITIES, refuse_other_unit
+from ..scale import refuse_other_unit, si_unit
 from ..typed import Numbers
 
 #: quantity -> what it is called where units are
@@ -64,7 +64,7 @@ class Record:
     def unit(name: str) -> str:
         """SI unit of a place or quantity; a creep has none."""
         name = _CALLED.get(name, name)
-        return QUANTITIES[name].units if name in QUANTITIES else "1"
+        return si_unit(name)
 
     def _set(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)

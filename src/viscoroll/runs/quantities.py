@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.many import Ensemble
-from ..si.units import attributes
+from ..scale import si_unit
 
 
 class Quantity(NamedTuple):
@@ -31,7 +31,7 @@ class Quantity(NamedTuple):
 
     def units(self, si: bool) -> str:
         """Its unit."""
-        return str(attributes(self.like)["units"]) if si and self.like else "1"
+        return si_unit(self.like) if si and self.like else "1"
 
 
 def _field(name: str) -> Callable[[Ensemble, int], NDArray]:

@@ -13,9 +13,10 @@ from ..errors import unknown
 from ..labels import Labels, unlabelled
 from ..results import Values
 from ..rolling_contact import contact
+from ..scale import DIMENSIONS, Scale, si_unit
 from ..symbols import MEASURED
 from ..typed import Numbers
-from .units import QUANTITIES, Cylinder, Units, over, to_si, units_of
+from .units import Cylinder, over, units_of
 from .warned import look
 
 #: what a cylinder has beside the fields of a scene, and of which of these it is made
@@ -36,7 +37,7 @@ def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Num
         asked = tuple(dict.fromkeys(OWN.get(name, name) for name in asked))
     V, extent = checked_extent("V", V)
     look(cylinder, V, extent)
-    speeds = {"V": V / one.speed, "omega": over("omega", omega, one), "delta": delta}
+    speeds = {"V": V / one["V"], "omega": over("omega", omega, one), "delta": delta}
     found = contact(cylinder.scene(), **speeds, fields=asked, **options).as_dict()
     names = list(found) if fields is None else [fields] if isinstance(fields, str) else list(fields)
     if fields is None:
@@ -49,8 +50,8 @@ def contact_of(cylinder: Cylinder, V: Numbers, omega: Numbers | None, delta: Num
         names += [name for name in found if name not in names and name not in OWN.values()]
     given = {"V": V} | ({"omega": omega} if delta is None else {"delta": delta})
     about = {}
-    if cylinder._held is not None and not np.ndim(one.l0):
-        about[MEASURED] = [rate * one.l0 for rate in cylinder._held]
+    if cylinder._held is not None and not np.ndim(one["length"]):
+        about[MEASURED] = [rate * one["length"] for rate in cylinder._held]
     values = {name: found[OWN.get(name, name)] for name in names}
     return in_si(values, one, given, labels=labels, about=about)
 
@@ -62,17 +63,21 @@ def stress_of(cylinder: Cylinder, x: Numbers, V: Numbers, omega: Numbers | None,
     x, V, omega, delta = plain.values()
     look(cylinder, checked("V", V))
     found = stress(
-        cylinder.scene(), checked("x", x) / one.l0, over("V", V, one), omega=over("omega", omega, one), delta=delta
-    ).as_dict()
+        cylinder.scene(),
+        checked("x", x) / one["length"],
+        over("V", V, one),
+        omega=over("omega", omega, one),
+        delta=delta,
+    ).as_dict()  # fmt: skip
     given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
     return in_si(found, one, given, "Stresses in the contact of a cylinder, SI units", labels)
 
 
 def in_si(
-    found: dict[str, Any], one: Units, given: dict[str, Any], title: str = "Contact of a cylinder, SI units",
+    found: dict[str, Any], one: Scale, given: dict[str, Any], title: str = "Contact of a cylinder, SI units",
     labels: Labels | None = None, about: dict[str, Any] | None = None,
 ) -> Values:  # fmt: skip
     """Dimensionless results by name in SI units; ``given``: what they are over, in SI units already."""
-    values = {name: to_si(name, value, one) for name, value in found.items()}
-    units = {name: QUANTITIES[name].units for name in (*values, *given) if name in QUANTITIES}
+    values = {name: one.of(name, value) for name, value in found.items()}
+    units = {name: si_unit(name) for name in (*values, *given) if name in DIMENSIONS}
     return Values(values, given, units, title, labels, about)

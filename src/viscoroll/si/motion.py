@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,11 +21,13 @@ from ..motion.one import Motion, Switch, card_of
 from ..motion.single import roll
 from ..motion.warned import say
 from ..results import Row, Shown, Values
+from ..scale import Scale
 from ..scene import Scene
+from ..symbols import attributes
 from ..typed import Numbers
 from ..validity import WAVE_LIMIT, Validity
 from .contact import in_si as contact_in_si
-from .units import Cylinder, Units, attributes, in_words, over, to_si, units_of
+from .units import Cylinder, in_words, over, units_of
 from .validity import steadily
 from .warned import look_at_motion
 
@@ -106,12 +109,12 @@ class MotionSI(Shown):
     @property
     def slip_loss(self) -> NDArray[np.float64]:
         """Energy lost in slip since t = 0, J/m."""
-        return to_si("slip_loss", self.motion.slip_loss, self._units)
+        return self._units.of("slip_loss", self.motion.slip_loss)
 
     @property
     def rolling_loss(self) -> NDArray[np.float64]:
         """Energy lost in rolling since t = 0, J/m."""
-        return to_si("rolling_loss", self.motion.rolling_loss, self._units)
+        return self._units.of("rolling_loss", self.motion.rolling_loss)
 
     @property
     def power_force(self) -> NDArray[np.float64]:
@@ -124,7 +127,7 @@ class MotionSI(Shown):
         return self.torque * self.omega
 
     @property
-    def _units(self) -> Units:
+    def _units(self) -> Scale:
         return units_of(self.cylinder, self.drive.slope)
 
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
@@ -142,13 +145,13 @@ class MotionSI(Shown):
         return in_si(self.cylinder, self.drive, self.motion.at(times / self.cylinder.T_ref), times)
 
     def _card(self) -> tuple[str, list[Row]]:
-        return card_of(self, attributes)
+        return card_of(self, partial(attributes, si=True))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t as of :meth:`Motion.to_xarray`, in SI units; cylinder and scene are attributes."""
         from ..motion.export import motion_dataset
 
-        return motion_dataset(self, attributes).assign_attrs(_about(self.cylinder))
+        return motion_dataset(self, partial(attributes, si=True)).assign_attrs(_about(self.cylinder))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -178,7 +181,7 @@ class EnsembleSI(Shown):
         if value is None or name not in _SCALED:
             return value
         # over (n, times), where units may be (n,)
-        return to_si(name, value.T, units_of(self.cylinder, self.drive.slope)).T
+        return units_of(self.cylinder, self.drive.slope).of(name, value.T).T
 
     def __dir__(self) -> Iterable[str]:
         return sorted({*super().__dir__(), *Ensemble.__dataclass_fields__})
@@ -204,16 +207,16 @@ class EnsembleSI(Shown):
         """Mean, standard deviation and quantiles over the motions, as :meth:`Ensemble.summary`, in SI units."""
         from ..motion.export import summary_dataset
 
-        return summary_dataset(self, tuple(quantiles), attributes)
+        return summary_dataset(self, tuple(quantiles), partial(attributes, si=True))
 
     def _card(self) -> tuple[str, list[Row]]:
-        return ensemble_card(self, attributes)
+        return ensemble_card(self, partial(attributes, si=True))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over (motion, t) as of :meth:`Ensemble.to_xarray`, in SI units."""
         from ..motion.export import ensemble_dataset
 
-        return ensemble_dataset(self, attributes).assign_attrs(_about(self.cylinder))
+        return ensemble_dataset(self, partial(attributes, si=True)).assign_attrs(_about(self.cylinder))
 
 
 def _about(cylinder: Cylinder) -> dict[str, Any]:
@@ -221,7 +224,7 @@ def _about(cylinder: Cylinder) -> dict[str, Any]:
     return {name: getattr(cylinder, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
 
 
-def _asked(cylinder: Cylinder, t: Numbers, drive: Drive) -> tuple[Scene, Units, NDArray[np.float64], dict[str, Any]]:
+def _asked(cylinder: Cylinder, t: Numbers, drive: Drive) -> tuple[Scene, Scale, NDArray[np.float64], dict[str, Any]]:
     """(scene, units, output times in s, the drive's arguments without dimension)."""
     one = units_of(cylinder, drive.slope)
     times = output_times(t) if np.ndim(t) else np.array([number("t", t, low=0.0)])
@@ -248,13 +251,13 @@ def roll_of(
     _look_at_waves(cylinder, start)
     try:
         motion = roll(
-            scene, V0, omega0, (times if np.ndim(t) else times[0]) / one.T, rtol, rest=rest, max_steps=max_steps,
+            scene, V0, omega0, (times if np.ndim(t) else times[0]) / one["t"], rtol, rest=rest, max_steps=max_steps,
             **given,
         )  # fmt: skip
     except ParameterError as error:
         raise in_words(error, one) from error
-    look_at_motion(cylinder, start[0], motion.V, one.speed)
-    return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one.T, times))
+    look_at_motion(cylinder, start[0], motion.V, one["V"])
+    return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one["t"], times))
 
 
 def _look_at_waves(cylinder: Cylinder, start: tuple[Any, Any]) -> None:
@@ -274,10 +277,11 @@ def _look_at_waves(cylinder: Cylinder, start: tuple[Any, Any]) -> None:
 def in_si(cylinder: Cylinder, drive: Drive, motion: Motion, times: NDArray[np.float64]) -> MotionSI:
     """A dimensionless motion of a cylinder in SI units, at ``times`` in s."""
     one = units_of(cylinder, drive.slope)
-    rows = {name: to_si(name, getattr(motion, name), one) for name in _ROWS}
+    rows = {name: one.of(name, getattr(motion, name)) for name in _ROWS}
+    T = one["t"]
     return MotionSI(
-        cylinder, drive, motion, times, **rows, switches=tuple(Switch(s.t * one.T, s.regime) for s in motion.switches),
-        reversals=motion.reversals * one.T, onset_time=motion.onset_time * one.T, rest_time=motion.rest_time * one.T,
+        cylinder, drive, motion, times, **rows, switches=tuple(Switch(s.t * T, s.regime) for s in motion.switches),
+        reversals=motion.reversals * T, onset_time=motion.onset_time * T, rest_time=motion.rest_time * T,
     )  # fmt: skip
 
 
@@ -288,15 +292,15 @@ def ensemble_of(
     start, drive, labels = bare(start, drive)
     scene, one, times, given = _asked(cylinder, t, drive)
     V0, omega0 = (over(name, speed, one) for name, speed in zip(("V0", "omega0"), start, strict=True))
-    if rest is not None and np.ndim(one.speed):
+    if rest is not None and np.ndim(one["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
     rest = None if rest is None else over("V", number("rest", rest, low=0.0, strict=True), one)
     _look_at_waves(cylinder, start)
     if options.get("speed") is not None:
         options["speed"] = over("V", number("speed", options["speed"], low=0.0, strict=True), one)
     try:
-        found = ensemble(scene, V0, omega0, times / one.T, rest=rest, **given, **options)
+        found = ensemble(scene, V0, omega0, times / one["t"], rest=rest, **given, **options)
     except ParameterError as error:
         raise in_words(error, one) from error
-    look_at_motion(cylinder, start[0], found.V, one.speed)
+    look_at_motion(cylinder, start[0], found.V, one["V"])
     return EnsembleSI(cylinder, drive, replace(found, labels=labels), times)

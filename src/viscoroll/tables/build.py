@@ -16,6 +16,7 @@ from ..materials.law_file import described, law_of
 from ..materials.law_store import content_of
 from ..materials.law_table import LawTable
 from ..rolling_contact import contact
+from ..scale import si_unit
 from ..scene import HIGHEST_ALPHA, Scene
 from . import schema
 from .interpolate import Interpolant
@@ -181,9 +182,7 @@ def _between(nodes: NDArray, random: np.random.Generator) -> NDArray[np.float64]
 def _units(what: Scene | Cylinder) -> dict[str, str]:
     if isinstance(what, Scene):
         return {}
-    from ..si.units import QUANTITIES
-
-    return {name: QUANTITIES[name].units for name in ("V", "Q", "M", *OF_BODIES)}
+    return {name: si_unit(name) for name in ("V", "Q", "M", *OF_BODIES)}
 
 
 def _title(what: Scene | Cylinder) -> str:

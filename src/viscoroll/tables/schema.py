@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..errors import TableError
-from ..symbols import PAPER, SYMBOLS
+from ..symbols import PAPER, SYMBOLS, meaning
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,7 +57,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, units: str = "1", **
 
     symbol = SYMBOLS[name]
     attributes = {
-        "long_name": symbol.long_name, "units": units, "symbol": symbol.latex, "range": symbol.range,
+        "long_name": meaning(name, units != "1"), "units": units, "symbol": symbol.latex, "range": symbol.range,
         "equation": symbol.equation, "reference": PAPER,
     }  # fmt: skip
     return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes | extra)

@@ -16,7 +16,7 @@ from ...errors import ParameterError
 from ...motion.schedule import curve
 from .ranges import DRIVE, TIME
 from .solids import median, spread
-from .units import are_si, load_of, unit_of_time
+from .units import scale_of
 
 if TYPE_CHECKING:
     from .ranges import Range
@@ -137,9 +137,8 @@ def lasts(inputs: Inputs) -> bool:
 
 def drive_of(values: Mapping[str, Any]) -> dict[str, Any]:
     """What drives a block's motions, as keywords of ``ensemble``: over load and radius, times as they are given."""
-    load, R, time = (load_of(values), values["R"], unit_of_time(values)) if are_si(values) else (1.0, 1.0, 1.0)
-    units = {"force": load, "torque": load * R, "brake": load * R, "slope": 1.0, "V": R / time, "omega": 1.0 / time}
-    found = {name: (values[PREFIX + name], unit) for name, unit in units.items() if PREFIX + name in values}
+    scale = scale_of(values)
+    found = {name: (values[PREFIX + name], scale[name]) for name in DRIVE if PREFIX + name in values}
     return {
         name: given.of(values, unit) if isinstance(given, Course) else given / unit
         for name, (given, unit) in found.items()

@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 
 from ...motion import export
-from ...si.units import QUANTITIES
-from ...si.units import attributes as si_attributes
+from ...motion.driven import ROWS
+from ...scale import DIMENSIONLESS, DIMENSIONS, Scale
 from ...symbols import SYMBOLS
+from ...symbols import attributes as symbol_attributes
 from .ranges import CYLINDER, PREFIXES
-
-_ENERGIES = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
 def are_si(values: Mapping[str, Any]) -> bool:
@@ -37,25 +36,24 @@ def load_of(values: Mapping[str, Any]) -> Any:
     return load * np.cos(values["drive_slope"]) if "drive_slope" in values else load
 
 
+def scale_of(values: Mapping[str, Any]) -> Scale:
+    """What 1 of each quantity is, from inputs; numbers or one a motion."""
+    if not are_si(values):
+        return DIMENSIONLESS
+    return Scale(values["R"], unit_of_time(values), load_of(values), values["m"])
+
+
 def scales(values: Mapping[str, Any]) -> dict[str, Any]:
     """Column -> what it is multiplied by to be in SI units; numbers or one a motion; nothing for a scene."""
-    if not are_si(values):
-        return {}
-    speed, spin = values["R"] / unit_of_time(values), 1.0 / unit_of_time(values)
-    energy = values["m"] * speed**2
-    load = load_of(values)
+    scale = scale_of(values)
     # the integrals over time are over seconds already
-    return {
-        "V": speed, "omega": spin, "x": speed, "angle": spin, "force": load, "torque": load * values["R"],
-        **dict.fromkeys(_ENERGIES, energy),
-    }  # fmt: skip
+    rates = {"x": "V", "angle": "omega"}
+    return {name: scale[rates.get(name, name)] for name in ROWS if name in DIMENSIONS} if scale.si else {}
 
 
 def dimensionless(values: Mapping[str, Any], name: str) -> Any:
     """A start speed, or the rest threshold, from inputs in either units."""
-    if not are_si(values):
-        return values[name]
-    return values[name] * (unit_of_time(values) if name == "omega0" else unit_of_time(values) / values["R"])
+    return values[name] / scale_of(values)[name]
 
 
 _MODES = {
@@ -76,8 +74,8 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     if name.startswith(PREFIXES["base"]):
         about = attributes(name.removeprefix(PREFIXES["base"]), si)
         return about | {"long_name": f"base: {about['long_name']}"}
-    if si and name in QUANTITIES:
-        return si_attributes(name)
+    if si and name in DIMENSIONS:
+        return dict(symbol_attributes(name, si))
     kind, _, number = name.partition("_")
     if kind in _MODES and number.isdecimal():
         return {"long_name": _MODES[kind].format(number), "units": "1"}

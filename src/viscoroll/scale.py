@@ -1,0 +1,123 @@
+"""What each quantity is counted in: the one table of dimensions, and the units of what rolls (:class:`Scale`).
+
+A scene's numbers are over its units, a cylinder's are in SI units, and a material may count time in its own.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+
+from .errors import ParameterError
+
+#: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
+#: what is not here is a ratio
+DIMENSIONS = {
+    **dict.fromkeys(("t", "onset_time", "rest_time", "zeta"), "T"),
+    **dict.fromkeys(("V", "V0", "rest", "speed"), "R/T"),
+    **dict.fromkeys(("omega", "omega0"), "rad/T"),
+    **dict.fromkeys(("angle", "slope"), "rad"),
+    "x": "R",
+    "length": "l0",
+    **dict.fromkeys(("p", "tau"), "E_prime"),
+    **dict.fromkeys(("force", "Q", "dQ_ddelta"), "P"),
+    **dict.fromkeys(("torque", "brake", "M", "M_half_space", "M_cylinder"), "P R"),
+    **dict.fromkeys(("dM_dV", "dM_half_space_dV", "dM_cylinder_dV", "dQ_domega"), "P T"),
+    "dQ_dV": "P T/R",
+    "N": "P T2",
+    **dict.fromkeys(("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"), "m R2/T2"),
+    **dict.fromkeys(("loss_slip", "loss_half_space", "loss_cylinder"), "P R/T"),
+    **dict.fromkeys(("rate_fast", "rate_slow"), "P T/m R"),
+}
+#: dimension -> its SI unit, and the words for a number without dimension
+KINDS = {
+    "T": ("s", " over T_epsilon"),
+    "R/T": ("m s-1", " times T_epsilon/R"),
+    "rad/T": ("rad s-1", " times T_epsilon"),
+    "rad": ("rad", ", radians"),
+    "R": ("m", " over R"),
+    "l0": ("m", " over l0"),
+    "E_prime": ("Pa", " over E'"),
+    "P": ("N m-1", " over load"),
+    "P R": ("N m m-1", " over load times radius"),
+    "P T": ("N s m-1", " over P T_epsilon"),
+    "P T/R": ("N s m-2", " over P T_epsilon/R"),
+    "P T2": ("N s2 m-1", " over P T_epsilon^2"),
+    "m R2/T2": ("J m-1", " over m (R/T_epsilon)^2"),
+    "P R/T": ("W m-1", " over P R/T_epsilon"),
+    "P T/m R": ("s-1", " over gamma"),
+}
+
+
+def _powers(dimension: str) -> dict[str, int]:
+    """Powers of what a dimension, or a unit as "N m/m" or "N m m-1", is made of."""
+    found: dict[str, int] = {}
+    for n, part in enumerate(dimension.split("/")):
+        for symbol, power in re.findall(r"([^\W\d]+0?|%)\^?(-?\d+)?", part):
+            found[symbol] = found.get(symbol, 0) + (-1 if n else 1) * int(power or 1)
+    return {symbol: power for symbol, power in found.items() if power}
+
+
+#: what each dimension is made of
+_PARTS = {dimension: _powers(dimension) for dimension in KINDS}
+#: quantity -> the power of time in it
+OF_TIME = {name: power for name, dimension in DIMENSIONS.items() if (power := _PARTS[dimension].get("T", 0))}
+
+
+class Scale(dict[str, Any]):
+    """What 1 of each quantity is to who asked, by name: ``scale["V"]`` in m/s of a cylinder, 1 of a scene.
+
+    Parameters
+    ----------
+    R, T, P, m, l0, E_prime : radius (m), time (s), load (N/m), mass (kg/m), contact length at rest (m) and modulus
+        (Pa); numbers, or arrays of many cylinders.
+    si : whether these are SI units.
+    """
+
+    si: bool
+
+    def __init__(
+        self, R: Any = 1.0, T: Any = 1.0, P: Any = 1.0, m: Any = 1.0, l0: Any = 1.0, E_prime: Any = 1.0,
+        *, si: bool = True,
+    ) -> None:  # fmt: skip
+        super().__init__(R=R, T=T, P=P, m=m, l0=l0, E_prime=E_prime, rad=1.0)
+        self.si = si
+
+    def __missing__(self, name: str) -> Any:
+        above, below = 1.0, 1.0
+        for part, power in _PARTS.get(DIMENSIONS.get(name, ""), {}).items():
+            if power > 0:
+                above = above * self[part] ** power
+            else:
+                below = below * self[part] ** -power
+        self[name] = found = above / below
+        return found
+
+    def of(self, name: str, value: Any) -> Any:
+        """A number without dimension, in these units; a ratio as it is."""
+        if not self.si or name not in DIMENSIONS:
+            return value
+        found = np.asarray(value) * self[name]
+        return found if found.ndim else float(found)
+
+    def unit(self, name: str) -> str:
+        """The unit of a quantity, as "m s-1"; "1" of a ratio, and of all of a scene."""
+        return si_unit(name) if self.si else "1"
+
+
+#: of a scene
+DIMENSIONLESS = Scale(si=False)
+
+
+def si_unit(name: str) -> str:
+    """The SI unit of a quantity, as "m s-1"; "1" of a ratio."""
+    return KINDS[DIMENSIONS[name]][0] if name in DIMENSIONS else "1"
+
+
+def refuse_other_unit(name: str, value: Any, unit: str) -> None:
+    """Raise ParameterError for another unit, or an array of xarray or pandas that says it has one; "m/s" is "m s-1"."""
+    given = value if isinstance(value, str) else getattr(value, "attrs", {}).get("units")
+    if given is not None and _powers(str(given)) != _powers(unit):
+        raise ParameterError(name, f"in {given!s:.40}", f"in {unit}")
