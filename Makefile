@@ -8,7 +8,7 @@ STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove same test fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
+.PHONY: help setup demo tables validate figures bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -80,8 +80,11 @@ BASE ?= HEAD
 same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
 	$(RUN) -m pipeline.same --base $(BASE)
 
-test: setup ## the whole test suite
-	$(BIN)/pytest -n 2 --dist worksteal $(TEST)
+test: setup ## the test suite: what users meet
+	$(BIN)/pytest -n 2 --dist worksteal --ignore tests/evidence $(TEST)
+
+evidence: setup ## tests of what a release rests on: pipeline stages at small sizes, clusters, results that are kept
+	$(BIN)/pytest -n 2 --dist worksteal tests/evidence
 
 SUDO := $(shell test $$(id -u) = 0 || echo sudo -n)
 debian-lists:

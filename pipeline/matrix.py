@@ -1,7 +1,7 @@
 """The package as pip installs it: wheel and sdist, every Python, the newest and the lowest dependencies.
 
     python -m pipeline.matrix            all of them; the whole suite once, on the newest Python
-    python -m pipeline.matrix --quick    newest dependencies on the newest Python, lowest on the oldest; no suite
+    python -m pipeline.matrix --quick    newest dependencies on the newest Python, from the wheel; no suite
 
 A case is a fresh environment outside the tree.  The newest dependencies come with the wheel, the lowest, which
 the metadata declare for this Python, with the sdist.  There the program answers once, and tests of the unpacked
@@ -38,7 +38,7 @@ SAMPLE = (
     "tests/docs/test_readme.py::test_readme_block_runs",
     "tests/docs/test_readme.py::test_howto_blocks_run",
     "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
-    "tests/pipeline/test_prove.py::test_contact_has_the_check_values",
+    "tests/truth/test_enclosures.py::test_contact_has_the_check_values",
     "tests/truth/test_motions.py::test_roll_has_the_check_motions",
     "tests/truth/test_motions.py::test_flow_map_has_the_check_motions",
 )
@@ -77,8 +77,8 @@ def main() -> int:
             print(f"matrix: no Python {version} was found: it is not tried", flush=True)
     if not found:
         return 1
-    newest, oldest = list(found)[-1], next(iter(found))
-    chosen = [(newest, False), (oldest, True)] if quick else [(each, low) for each in found for low in (False, True)]
+    newest = list(found)[-1]
+    chosen = [(newest, False)] if quick else [(each, low) for each in found for low in (False, True)]
     cases = [
         Case(version, found[version], low, suite=not quick and (version, low) == (newest, False))
         for version, low in chosen

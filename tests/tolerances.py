@@ -540,13 +540,13 @@ EXAMPLE_TRAIN = 1e-4
 #: Slopes against central differences of 1e-6.
 EXAMPLE_JACOBIAN = 1e-4
 
-# --- a transient solver (pipeline/test_transient.py) ---
+# --- a transient solver (evidence/test_transient.py) ---
 #: Rolling moment on cells of 0.04 of half a contact; measured 6.6e-4.
 TRANSIENT_M = 2e-3
 #: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
 TRANSIENT_ERROR = 6e-3
 
-# --- a layer on something rigid (pipeline/test_layer.py) ---
+# --- a layer on something rigid (evidence/test_layer.py) ---
 #: L by four equations of Airy's function; measured 3e-13, where cosh and sinh of 5 cancel.
 LAYER_KERNEL = 1e-11
 #: f - 1 at h = 100 half-widths against its first term, c/(2 h^2): the next is of h^-4.

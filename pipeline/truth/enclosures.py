@@ -5,7 +5,7 @@ the Bessel functions and the error bounds of Arb (python-flint).  A root is a ba
 the enclosed function, which rises strictly, lies certainly below and certainly above.  Digits
 that cancel show as a wide ball, and the whole is done again with more.
 
-:mod:`precise` solves the equations as printed; ``tests/pipeline/test_prove.py`` holds the two together.
+:mod:`precise` solves the equations as printed; ``tests/truth/test_enclosures.py`` holds the two together.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
     Notes
     -----
     Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
-    most 2^-``bits`` of it (``tests/pipeline/test_prove.py``).
+    most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
     """
     scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
     speed, creep = checked("V", V), checked("delta", delta)

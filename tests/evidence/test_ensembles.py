@@ -1,0 +1,55 @@
+"""Runs on a cluster, and the stages that docs/ensembles.md has its numbers of."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+import tomllib
+
+import pytest
+from places import DOCS, PIPELINE, RESULTS
+from processes import made
+
+from viscoroll.runs import read_run, run_ensemble
+
+
+def test_a_cluster_gives_the_same_files(tmp_path):
+    """Also where a worker is killed."""
+    pytest.importorskip("distributed")
+    import psutil
+
+    text = (DOCS / "examples/ensemble.toml").read_text(encoding="utf-8").replace("20_000", "1_200\nblock = 100")
+    (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+    alone, store = tmp_path / "alone.zarr", tmp_path / "store.zarr"
+    run_ensemble(read_run(tmp_path / "run.toml"), alone)
+    options = ["--cluster", "local", "--threads", "2"]
+    command = [sys.executable, "-m", "viscoroll", "ensemble", tmp_path / "run.toml", "-o", store, *options]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while process.poll() is None and len(list(store.glob("records/0*"))) < 2:
+        time.sleep(0.01)
+    workers = [p for p in psutil.Process(process.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
+    workers[-1].kill()
+    assert process.wait(timeout=120) == 0
+    files = {path.relative_to(alone) for path in alone.rglob("*") if path.is_file()}
+    assert files == {path.relative_to(store) for path in store.rglob("*") if path.is_file()}
+    assert all((store / file).read_bytes() == (alone / file).read_bytes() for file in files)
+
+
+@pytest.mark.parametrize(("name", "key"), [("measure.ensembles", "rows"), ("torture", "parts")])
+def test_stages_run(tmp_path, name, key):
+    options = ["--only", "ensembles"] if name == "torture" else []
+    made(name, *options, "--quick", "-o", tmp_path / "results.json")
+    assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))[key]
+
+
+def test_committed_figures():
+    """10^8 motions of a scene, and 10^6 with seven uncertain inputs, in a minute of two free cores and 1 GB."""
+    committed = json.loads((RESULTS / "ensembles.json").read_text(encoding="utf-8"))
+    section = tomllib.loads((PIPELINE / "config/production.toml").read_text(encoding="utf-8"))["ensembles"]
+    del section["quick"]
+    assert committed["sizes"] == section
+    for name in ("100000000 motions of a scene", "1000000 motions, seven uncertain inputs"):
+        assert committed["rows"][name]["cpu_s"] / committed["threads"] < 60.0
+        assert committed["rows"][name]["peak_mb"] < 1000.0
