@@ -235,6 +235,8 @@ BENCH_LAW = 1e-9
 BENCH_COARSE_ATLAS = 0.05
 #: A ratio in two digits, of times in three: rounded by 5 % and twice 0.5 % at most.
 TWO_DIGITS = 0.06
+#: A number in six digits, and what depends on such a one.
+SIX_DIGITS = 1e-5
 #: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.
 BENCH_NOT_IN_MAP = 0.01
 

@@ -118,7 +118,7 @@ class MotionStatus(IntEnum):
 MOTION_STATUS = {
     MotionStatus.DONE: "reached the last output time",
     MotionStatus.RESTED: "max(|V|, |omega|) fell below the rest threshold",
-    MotionStatus.STEP_LIMIT: "the step limit was reached first: loosen rtol or shorten the motion",
+    MotionStatus.STEP_LIMIT: "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
     MotionStatus.STEP_TOO_SMALL: "the step size fell to rounding level: rtol is too tight for this start",
     MotionStatus.UNDECIDED: "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
 }

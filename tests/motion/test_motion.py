@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+import re
 import tracemalloc
 from functools import partial
 
@@ -546,12 +547,29 @@ def test_step_limit_is_reported():
     with pytest.warns(RuntimeWarning, match="the step limit was reached"):
         motion = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 1.0], max_steps=5)
     assert motion.status == vr.MotionStatus.STEP_LIMIT
-    assert motion.message == vr.MOTION_STATUS[motion.status]
     assert math.isfinite(motion.V[0])
     assert math.isnan(motion.V[1])
     assert motion.regime[1] == -1
     with pytest.warns(RuntimeWarning, match="the step limit was reached"):
         assert "not reached" in str(vr.roll(ROUNDED, 1.5, 0.5, [1.0], max_steps=5))
+
+
+def test_a_motion_that_is_given_up_says_where_it_stood():
+    """In the units that it is asked in, with what to try."""
+    words = re.compile(
+        r"the step limit was reached first: loosen rtol, raise max_steps or shorten the motion; it stood at "
+        r"t = (\S+)( s)? in partial slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
+    )
+    with pytest.warns(RuntimeWarning, match="says where it stood"):
+        cut = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 1.0], max_steps=20)
+    t, V, omega = (float(value) for value in words.match(cut.message).group(1, 3, 5))
+    there = vr.roll(ROUNDED, 1.5, 0.5, [t])
+    assert 1e-6 < t < 1.0
+    assert close([V, omega], [there.V[0], there.omega[0]], rel=tol.SIX_DIGITS)
+    with pytest.warns(RuntimeWarning, match="says where it stood"):
+        cut = vr.RUBBER_CYLINDER.roll(2.0, 20.0, 3.0, max_steps=5)
+    units = words.match(cut.message).group(2, 4, 6)
+    assert units == (" s", " m s-1", " rad s-1")
 
 
 @pytest.mark.filterwarnings("ignore:roll")

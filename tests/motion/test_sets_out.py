@@ -90,6 +90,38 @@ def test_turns_where_friction_is_strong(prescribed):
         assert close(m.omega, best.omega, rel=30e-6, scale=so_far)
 
 
+@pytest.mark.filterwarnings("ignore:roll")
+def test_to_and_fro_where_friction_is_strong():
+    """Jumps of force and torque take V to 0 while d relaxes from nowhere: a tenth ended in steps too small."""
+    scene, draw, n, jumps = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8), np.random.default_rng(5), 60, 20
+    times, t = np.repeat(np.arange(jumps + 1.0), 2)[1:-1], np.linspace(0.0, jumps, 61)
+    sign = (-1.0) ** np.arange(jumps)
+    force, torque = (np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1) for _ in range(2))
+    found, best = (
+        vr.ensemble(scene, 0.0, 0.0, t, force=(times, force), torque=(times, torque), rtol=rtol, fields=("V", "omega"))
+        for rtol in (1e-6, 1e-10)
+    )
+    # where the law leaves two ways on it is said so
+    ends = {vr.MotionStatus.DONE, vr.MotionStatus.UNDECIDED}
+    assert ends >= set(found.status) == set(best.status)
+    assert (best.status == vr.MotionStatus.DONE).mean() > 0.9
+    done = (found.status == vr.MotionStatus.DONE) & (best.status == vr.MotionStatus.DONE)
+    so_far = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)), axis=1)[done]
+    assert close(found.V[done], best.V[done], rel=30e-6, scale=so_far)
+    assert close(found.omega[done], best.omega[done], rel=30e-6, scale=so_far)
+
+
+def test_omega_between_the_nodes_from_rest():
+    """A light cylinder: omega follows creep that the panel before had not resolved between its nodes, 90 rtol off."""
+    scene = vr.Scene(alpha=121964.60683820216, kappa=0.33310311053126856, mu=0.03509131038798789, gamma=1.0, j=2.6e-3)
+    drive, t = {"force": 0.01, "torque": 0.0305}, np.linspace(0.0, 18.0, 31)[1:]
+    best = vr.roll(scene, 0.0, 0.0, t, 1e-12, **drive)
+    so_far = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)))
+    for rtol in (1e-6, 1e-8, 1e-10):
+        m = vr.roll(scene, 0.0, 0.0, t, rtol, **drive)
+        assert close(m.omega, best.omega, rel=10.0 * rtol, scale=so_far)
+
+
 def test_infinite_inertia_where_friction_is_strong():
     """The same motion by a torque on an inertia of 10^9."""
     scene = vr.Scene(alpha=11.0, kappa=1.5, mu=3.1, gamma=20.0, j=0.3)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
 from ..results import Row, Shown, Values, unit_of
 from ..rolling_contact import contact
+from ..scale import DIMENSIONLESS, Scale
 from ..scene import Scene
 from ..steadiness import Steadiness
 from ..symbols import attributes
@@ -56,7 +58,8 @@ class Motion(Shown):
     drive_error : the largest difference seen between a callable and the polynomials it was fitted by.
     onset_time : first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
-    status, message : how the motion ended; outputs it did not reach are NaN.
+    status, message : how the motion ended, and where it stood if that was not its end; outputs it did not reach are
+        NaN.
     steps : integration steps taken, rejected ones included.
     """
 
@@ -91,8 +94,16 @@ class Motion(Shown):
 
     @property
     def message(self) -> str:
-        """The status in words."""
-        return MOTION_STATUS[self.status]
+        """The status in words; of a motion that was given up also where it stood."""
+        return message_of(self, DIMENSIONLESS)
+
+    @cached_property
+    def _stood(self) -> Motion:
+        """The motion up to where it was given up."""
+        ends = np.full(self.steps + 1, np.nan)
+        rolled(self._inputs, np.array([self._inputs.end]), (np.empty((0, 2)), ends))
+        reached = float(np.nanmax(np.append(ends, 0.0)))
+        return integrated(self._inputs._replace(end=reached), np.array([reached]))
 
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
         """Contact state (:func:`viscoroll.contact`) along the motion.
@@ -183,6 +194,19 @@ def integrated(inputs: Inputs, times: NDArray) -> Motion:
         status=MotionStatus(int(status)), steps=int(steps), reversals=noted[noted[:, 1] < 0.0, 0],
         drive_error=error, _inputs=inputs,
     )  # fmt: skip
+
+
+def message_of(motion: Motion, scale: Scale) -> str:
+    """How a motion ended, in these units."""
+    words = MOTION_STATUS[motion.status]
+    if motion.status <= MotionStatus.RESTED:
+        return words
+    stood = motion._stood
+    t, V, omega = (
+        f"{name} = {scale.of(name, float(getattr(stood, name)[0])):.6g} {unit_of({'units': scale.unit(name)})}".rstrip()
+        for name in ("t", "V", "omega")
+    )
+    return f"{words}; it stood at {t} in {REGIMES[stood.regime[0]]}, {V}, {omega}"
 
 
 def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..drive import Feedback
-from ..errors import MotionStatus
+from ..errors import MOTION_STATUS, MotionStatus
 from ..scene import Scene, checked_scene
 from ..typed import Numbers
 from .checks import controls, output_times, refuse_many, start_speeds
@@ -120,7 +120,8 @@ def roll(
         times = _step_times(inputs)
     motion = integrated(inputs, times)
     if motion.status > MotionStatus.RESTED:
-        warnings.warn(f"roll: {motion.message}; outputs not reached are NaN", RuntimeWarning, stacklevel=2)
+        words = f"roll: {MOTION_STATUS[motion.status]}; outputs not reached are NaN, and `message` says where it stood"
+        warnings.warn(words, RuntimeWarning, stacklevel=2)
     return motion
 
 

@@ -17,7 +17,7 @@ from ..motion.checks import output_times, refuse_many
 from ..motion.driven import Drive, bare
 from ..motion.many import Ensemble
 from ..motion.many import card_of as ensemble_card
-from ..motion.one import Motion, Switch, card_of
+from ..motion.one import Motion, Switch, card_of, message_of
 from ..motion.single import roll
 from ..motion.warned import say
 from ..results import Row, Shown, Values
@@ -94,7 +94,7 @@ class MotionSI(Shown):
     @property
     def message(self) -> str:
         """The status in words."""
-        return self.motion.message
+        return message_of(self.motion, self._units)
 
     @property
     def steps(self) -> int:

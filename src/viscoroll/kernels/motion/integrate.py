@@ -138,6 +138,14 @@ def unresolved(state, frame, clock, case):
 
 
 @kernel
+def vanishes(state, frame, clock, case):
+    """Whether V falls to 0 within the rounding of time, or stands for 0 where something drives."""
+    if state.V <= _STILL and not undriven(clock.piece, case.drive):
+        return True
+    return state.V < -_ROUNDING * clock.tau * here(state, frame, clock, case)[1].V_rate
+
+
+@kernel
 def settled(state, frame, clock, case):
     """(State, frame) once d has relaxed at a time: p stays as it is."""
     load, rates = here(state, frame, clock, case)
@@ -190,7 +198,7 @@ def follow(moving, fresh, state, frame, clock, case):
             event, state, frame, clock = phase(fresh, state, frame, clock, case)
         fresh = event == EDGE and frame.slips
         if event == STUCK and clock.tau > settled_at and unresolved(state, frame, clock, case):
-            settled_at, moving = clock.tau, state.V > _STILL or undriven(clock.piece, case.drive)
+            settled_at, moving = clock.tau, not vanishes(state, frame, clock, case)
             if moving:
                 state, frame = settled(state, frame, clock, case)
                 clock = clock_at(_SETTLING * clock.tau, clock)

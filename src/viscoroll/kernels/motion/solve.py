@@ -233,4 +233,6 @@ def panel_error(panel, frame, case):
             off -= TO_START[i] * nodes[SECOND_SLOPE + i + 1]
             slowest = min(slowest, abs(nodes[SLOPE + i + 1]))
         error = max(error, 2.0 * abs(off) / ((1.0 + panel.length * slowest) * of_second))
+    if not frame.slips:  # between the nodes
+        error = max(error, _LAST * abs(case.work.powers[OF_SECOND + N - 1]) / of_second)
     return _OVERSTATED * error / (SHARE * case.limits.rtol)
