@@ -1,0 +1,69 @@
+"""Arrays of materials, one for each state or motion: of both forms, with modes that fall away, and of two bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+import viscoroll as vr
+
+#: materials of an array of pairs
+COUNT = 12
+
+
+def rubbers(draw: np.random.Generator, modes: int, creep: bool = False, count: int = COUNT) -> vr.Prony:
+    """Random ones; some with a mode less, of strength 0 or of equal times, and one elastic."""
+    times, strengths = 10.0 ** draw.uniform(-4.0, 1.0, (count, modes)), 10.0 ** draw.uniform(-1.0, 1.0, (count, modes))
+    if creep:
+        strengths *= 0.9 / strengths.sum(axis=1, keepdims=True)
+    if modes > 2:
+        strengths[1, 2], times[4, 1], strengths[5] = 0.0, times[4, 0], 0.0
+    return (vr.Prony.creep if creep else vr.Prony)(strengths, times)
+
+
+def series(seed: int, modes: int, decades: float, count: int) -> vr.Prony:
+    draw = np.random.default_rng(seed)
+    return vr.Prony(
+        10.0 ** draw.uniform(-1.5, 1.5, (count, modes)), 10.0 ** draw.uniform(-decades, 0.0, (count, modes))
+    )
+
+
+def of_alphas() -> vr.Prony:
+    alpha = np.array([1.0 + 1e-9, 1.01, 3.0, 11.0, 27.0, 300.0, 1e4, 1e6, 1e9, 1e12])
+    return vr.Prony.creep(((alpha - 1.0) / alpha)[:, None], np.ones((alpha.size, 1)), alpha=alpha)
+
+
+def pairs(kind: str) -> vr.Bodies:
+    """Of both forms, of one body for all, of rigid and elastic bodies, of like series with a share each."""
+    draw = np.random.default_rng(len(kind))
+    share, one = draw.uniform(0.0, 1.0, COUNT), vr.Prony([2.0, 1.0], [1.0, 1e-2])
+    first, elastic = rubbers(draw, 3), vr.Prony.elastic()
+    return {
+        "each": lambda: vr.Bodies(first, rubbers(draw, 3), share),
+        "creep": lambda: vr.Bodies(rubbers(draw, 2, True), rubbers(draw, 3), 0.3),
+        "one base": lambda: vr.Bodies(first, one, 0.6),
+        "a share each": lambda: vr.Bodies(one, vr.Prony([0.5], [0.1]), share),
+        "elastic base": lambda: vr.Bodies(first, elastic, share),
+        "both elastic": lambda: vr.Bodies(elastic, elastic, share),
+        "some rigid": lambda: vr.Bodies(first, rubbers(draw, 2), np.where(np.arange(COUNT) % 2, 1.0, 0.0)),
+        "rigid cylinder": lambda: vr.Bodies(elastic, first, 0.0),
+        "of one series": lambda: vr.Bodies(first, first, share),
+        "of equal times": lambda: vr.Bodies(
+            vr.Prony.creep(0.4 * draw.uniform(size=(COUNT, 2)), [1.0, 0.1]),
+            vr.Prony.creep(0.4 * draw.uniform(size=(COUNT, 2)), [1.0, 1e-3]), share,
+        ),
+    }[kind]()  # fmt: skip
+
+
+PAIRS = (
+    "each", "creep", "one base", "a share each", "elastic base", "both elastic", "some rigid", "rigid cylinder",
+    "of one series", "of equal times",
+)  # fmt: skip
+MATERIALS: dict[str, Callable[[], vr.Prony | vr.Bodies]] = {
+    "one mode": of_alphas,
+    "3 modes": lambda: rubbers(np.random.default_rng(3), 3),
+    "3 modes, creep": lambda: rubbers(np.random.default_rng(3), 3, True),
+    "6 modes over 14 decades": lambda: series(2, 6, 14.0, 6),
+    "16 modes": lambda: series(3, 16, 10.0, 4),
+} | {kind: lambda kind=kind: pairs(kind) for kind in PAIRS}

@@ -1,0 +1,178 @@
+"""A material or a pair of bodies for each motion: as one after the other, whatever their company."""
+
+from __future__ import annotations
+
+import memory
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from many import COUNT, MATERIALS, pairs, rubbers
+from refusals import refused
+
+import viscoroll as vr
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
+SCENE = {"kappa": 2.91, "mu": 0.2, "gamma": 700.0}
+T = np.linspace(0.0, 3e-2, 9)
+KEPT = ("onset_time", "rest_time", "status", "steps")
+of_both = pytest.mark.parametrize("name", ["3 modes", "each"])
+
+
+def scene_of(material, **changes) -> vr.Scene:
+    return vr.Scene(material=material, **SCENE | changes)
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_an_ensemble_is_its_motions(name):
+    """To what rounding of its rows moves each; and to the bit in blocks and on threads that are cut elsewhere."""
+    many, draw = MATERIALS[name](), np.random.default_rng(5)
+    start, mu = draw.uniform(-2.0, 2.0, (2, len(many))), draw.uniform(0.1, 0.3, len(many))
+    fields = ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
+    asked = {"rtol": 1e-6, "rest": 1e-3, "fields": fields, "method": "integrate"}
+    found = vr.ensemble(scene_of(many, mu=mu), *start, T, **asked, threads=1)
+    for i in range(len(many)):
+        motion = vr.roll(scene_of(many[i], mu=mu[i]), *start[:, i], T, 1e-6, rest=1e-3)
+        for field in fields:
+            exact = getattr(motion, field)
+            scale = max(np.nanmax(np.abs(exact)), float(field.endswith("loss")))
+            assert close(getattr(found, field)[i], exact, rel=tol.MOTION_EACH, scale=scale, what=(field, i))
+        times = motion.onset_time, motion.rest_time
+        assert close((found.onset_time[i], found.rest_time[i]), times, rel=tol.MOTION_EACH)
+    some = slice(1, len(many) - 1)
+    again = vr.ensemble(scene_of(many[some], mu=mu[some]), *start[:, some], T, **asked, threads=3)
+    for field in (*fields, *KEPT):
+        assert np.array_equal(getattr(found, field)[some], getattr(again, field), equal_nan=True), field
+    kept = 0.5 * (found.V**2 + 0.5 * found.omega**2) + found.slip_loss + found.rolling_loss
+    assert close(kept, np.broadcast_to(kept[:, :1], kept.shape), rel=tol.ENERGY_OF_PAIRS)
+
+
+@of_both
+@pytest.mark.parametrize("drive", [{"force": 0.02, "torque": [0.1] * COUNT}, {"slope": -0.02, "brake": 0.01}])
+def test_driven(name, drive):
+    many = MATERIALS[name]()
+    found = vr.ensemble(scene_of(many), 0.5, 0.4, T, **drive, rtol=1e-6, fields=("V", "work_force"))
+    single = {name: value[0] if isinstance(value, list) else value for name, value in drive.items()}
+    for i, one in enumerate(many):
+        motion = vr.roll(scene_of(one), 0.5, 0.4, T, 1e-6, **single)
+        assert close(found.V[i], motion.V, rel=tol.MOTION_EACH)
+        assert close(found.work_force[i], motion.work_force, rel=tol.MOTION_EACH)
+
+
+@of_both
+def test_stress(name):
+    many, x = MATERIALS[name](), np.linspace(-0.6, 0.9, 7)[:, None]
+    found = vr.stress(scene_of(many), x, 0.3, delta=1e-3)
+    for i, one in enumerate(many):
+        alone = vr.stress(scene_of(one), x[:, 0], 0.3, delta=1e-3)
+        for field in ("p", "tau"):
+            pair = getattr(found, field)[:, i], getattr(alone, field)
+            assert close(*pair, rel=tol.SERIES_STATES, scale=alone.p.max(), what=(field, i))
+
+
+@of_both
+def test_validity(name):
+    """As of single ones, of scenes and of ensembles."""
+    many = MATERIALS[name]()
+    scene = scene_of(many)
+    found = scene.validity(0.3, omega=0.1)
+    for n, material in enumerate(many):
+        one = scene.replace(material=material).validity(0.3, omega=0.1)
+        for field in ("small_contact", "under_axis", "steady", "creep"):
+            assert close(getattr(found, field).value[n], getattr(one, field).value, rel=tol.UNIT, what=(field, n))
+            assert getattr(found, field).holds[n] == getattr(one, field).holds
+    fastest = vr.ensemble(scene, 0.3, 0.1, 1e-3, fields=("x",)).validity()
+    assert close(fastest.small_contact.value, found.small_contact.value, rel=tol.UNIT)
+
+
+def test_like_bodies_are_one_series():
+    """Given as a pair they are the array of their series; with other shares the sum of both."""
+    one = rubbers(np.random.default_rng(1), 3)
+    for pair in (vr.Bodies(one, one), vr.Bodies(one, vr.Prony(*one.given), np.full(COUNT, 0.5))):
+        assert pair.like
+        for call in (
+            lambda scene: vr.ensemble(scene, 1.0, 0.2, T, rtol=1e-6).V,
+            lambda scene: vr.contact(scene, 0.3, delta=1e-3, fields=("Q", "M_half_space")).M_half_space,
+            lambda scene: vr.stress(scene, 0.1, 0.3, delta=1e-3).tau,
+        ):
+            assert np.array_equal(call(scene_of(pair)), call(scene_of(one)))
+
+
+def test_memory_is_bounded_by_a_block():
+    """Beside input and result four times as many motions take no more."""
+
+    def beside(count: int) -> int:
+        draw = np.random.default_rng(2)
+        scene = scene_of(vr.Bodies(rubbers(draw, 3, count=count), rubbers(draw, 3, count=count), 0.4))
+        return memory.taken_beside(lambda: vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1))
+
+    beside(64)
+    assert beside(1024) - beside(256) <= tol.MEMORY_SLACK / 10
+
+
+def test_exported():
+    many = MATERIALS["3 modes"]()
+    stored = vr.ensemble(scene_of(many), 1.0, 0.0, T[:3]).to_xarray()
+    assert np.array_equal(stored.relaxation_times, many.given[1])
+    assert stored.relaxation_strengths.dims == ("motion", "mode")
+    stored = vr.ensemble(scene_of(pairs("one base")), 1.0, 0.0, T[:3]).to_xarray()
+    assert stored.cylinder_relaxation_times.dims == ("motion", "cylinder_mode")
+    assert stored.half_space_relaxation_times.shape == (COUNT, 2)
+    assert stored.share.values.tolist() == [0.6] * COUNT
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_an_array_is_its_members(name):
+    many = MATERIALS[name]()
+    for i, one in enumerate(many):
+        assert one == many[i] == many[i : i + 2][0]
+        assert many.alpha[i] == one.alpha
+    with pytest.raises(ValueError, match="read-only"):
+        many.alpha[0] = 1.0
+
+
+def test_one_of_the_two_may_be_shared():
+    shared = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
+    assert (len(shared), shared.shape) == (2, (2,))
+    assert shared == vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
+    assert hash(shared) == hash(vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]))
+    assert vr.Prony([1.0, 2.0], [[1.0, 0.1], [2.0, 0.1]])[1] == vr.Prony([1.0, 2.0], [2.0, 0.1])
+    near = vr.Prony.creep([[0.3, 0.6], [0.2, 0.7]], [1.0, 0.1], alpha=[10.0, 1.0 / (1.0 - 0.9)])
+    assert near.alpha.tolist() == [10.0, 1.0 / (1.0 - 0.9)]
+    assert np.array_equal(shared.slower(2.0).alpha, shared.alpha)
+    assert vr.Scene(material=shared, kappa=[[1.0], [2.0], [3.0]], mu=0.1).shape == (3, 2)
+    assert "2 series of 2 modes" in repr(shared)
+
+
+def test_refused():
+    many, few = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), vr.Prony([[1.0]] * 3, [1.0])
+    scene, pair = scene_of(many), scene_of(vr.Bodies(many, many, 0.4))
+    wide = vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0))
+    for call, *words in (
+        (lambda: vr.Prony([[1.0, -2.0]], [1.0, 0.1]), "E = -2.0", ">= 0"),
+        (lambda: vr.Prony([[1.0, 2.0]], [[1.0, 0.0]]), "tau = 0.0", "> 0"),
+        (lambda: vr.Prony([[1.0, 2.0]], [1.0, 0.1, 0.2]), "E (1, 2), tau (3,)", "broadcast"),
+        (lambda: vr.Prony([[[1.0]]], [1.0]), "E, tau", "(materials, modes)"),
+        (lambda: vr.Prony(np.ones((2, 65)), np.arange(1.0, 66.0)), "at most 64"),
+        (lambda: vr.Prony([[1.0, 1.0]], [1e-20, 1e20]), "from 1e-20 to 1e+20", "within a factor"),
+        (lambda: vr.Prony([[1.0], [2e12]], [1.0]), "E = of a sum of 2e+12", "1e+12"),
+        (lambda: vr.Prony.creep([[0.5], [1.0]], [1.0]), "J", "of a sum below 1"),
+        (lambda: vr.Prony.creep([[0.5], [0.6]], [1.0], alpha=2.0), "alpha = 2.0", "2.5"),
+        (lambda: vr.Prony.creep([[0.5], [0.6]], [1.0], alpha=[1.0, 2.0, 3.0]), "alpha", "one a material"),
+        (lambda: many.slower(-1.0), "factor"),
+        (lambda: vr.Scene(material=many, kappa=[1.0, 2.0, 3.0], mu=0.1), "shapes", "alpha (2,), kappa (3,)"),
+        (lambda: scene.validity([0.3, 0.2, 0.1]), "shapes", "broadcast"),
+        (lambda: vr.roll(scene, 1.0, 1.0, T), "scene", "one motion"),
+        (lambda: vr.ensemble(pair, 1.0, 1.0, T, method="flow"), "method = 'flow'"),
+        (lambda: vr.contact(scene, 1.0, delta=0.0, method="direct"), "method = 'direct'"),
+        (lambda: vr.Material(1e6, 0.5, many), "prony", "a Prony series"),
+        (lambda: vr.Bodies(many, few), "shapes", "cylinder (2,), half_space (3,)"),
+        (lambda: vr.Bodies(many, many, [0.1, 1.5]), "share = 1.5 at row 1", "<= 1"),
+        (lambda: vr.Bodies(wide, wide, 0.1), "of 80 modes together", "at most 64"),
+        (lambda: vr.Bodies(many, 11.0), "half_space = 11.0", "a Prony series"),
+        (lambda: vr.Bodies(many, many, [[0.1, 0.5]]), "share", "one for each pair"),
+        (lambda: vr.law(pair), "material = <2 pairs", "one material"),
+        (lambda: vr.contact(pair, 1.0, delta=0.0, fields="N"), "fields = 'N'", "one material"),
+    ):
+        refused(call, *words)
