@@ -113,6 +113,8 @@ class MotionStatus(IntEnum):
     STEP_LIMIT = 2
     STEP_TOO_SMALL = 3
     UNDECIDED = 4
+    UNSTEADY = 5
+    CAUGHT = 6
 
 
 MOTION_STATUS = {
@@ -121,4 +123,6 @@ MOTION_STATUS = {
     MotionStatus.STEP_LIMIT: "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
     MotionStatus.STEP_TOO_SMALL: "the step size fell to rounding level: rtol is too tight for this start",
     MotionStatus.UNDECIDED: "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
+    MotionStatus.UNSTEADY: "too slow for the added mass, which came to 1 + j or to half of that below 0",
+    MotionStatus.CAUGHT: "caught in the imprint of its rest, which takes seven tenths of its energy",
 }

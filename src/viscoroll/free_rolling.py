@@ -108,12 +108,14 @@ class Curve:
         at = np.searchsorted(ends, u, side="right")
         return ends[np.where(below, at - 1, np.minimum(at, ends.size - 1))], below
 
-    def work(self, u: Array, way: Array) -> Array:
-        """W of leaving the imprint of a long rest: an energy of P l0^2 W/(4 R) in SI units; ``way`` in l0."""
+    def work(self, u: Array, way: Array, rested: Array) -> Array:
+        """W of leaving the imprint of a rest: an energy of P l0^2 W/(4 R) in SI units; ``way`` in l0."""
         longest, W = _SHORT * np.maximum(2.0 * way, _CLIMB), np.zeros(u.shape)
         for J, T in zip(*self.modes, strict=True):
-            W += 0.5 * J * np.log(np.hypot(1.0, _MEMORY * np.minimum(2.0 * u * T, longest)))
-        return np.maximum(W - math.log(self.alpha) / (8.0 * self.alpha), 0.0)
+            L, fresh = np.minimum(2.0 * u * T, longest), np.exp(-rested / T)
+            W += 0.5 * J * ((1.0 - fresh) * np.log(np.hypot(1.0, _MEMORY * L)) - fresh / (1.0 + 2.0 / L))
+        old = -np.expm1(-rested / self.modes[1][0])
+        return np.maximum(W - old * math.log(self.alpha) / (8.0 * self.alpha), 0.0)
 
 
 @lru_cache(maxsize=256)  # those that an ensemble's validity looks at; 0.1 MB each
@@ -203,14 +205,14 @@ class Free:
         lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
         return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
 
-    def each(self, of: Callable[[Curve, Array, Array], Sequence[Array]], elastic: Sequence[float]) -> list[Array]:
-        """Numbers of every state; ``elastic``: of those that no law brakes."""
+    def each(self, of: Callable[..., Sequence[Array]], elastic: Sequence[float], *more: Any) -> list[Array]:
+        """Numbers of every state, by u, g and ``more``; ``elastic``: of those that no law brakes."""
         out = np.empty((len(elastic), self.u.size))
-        u, g = self.u.ravel(), np.broadcast_to(self.g, self.u.shape).ravel()
+        given = [np.broadcast_to(each, self.u.shape).ravel() for each in (self.u, self.g, *more)]
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             for material, part in self._groups():
                 known = curve(material)
-                values: Any = elastic if known is None else of(known, u[part], g[part])
+                values: Any = elastic if known is None else of(known, *(each[part] for each in given))
                 for row, value in zip(out, values, strict=True):
                     row[part] = value
         return [row.reshape(self.u.shape)[()] for row in out]
@@ -241,16 +243,16 @@ class Free:
         end, time, way, left = self.each(of, [0.0, np.inf, np.inf, 0.0])
         return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
 
-    def start(self) -> Start:
-        """What a start from long rest costs."""
+    def start(self, rested: float = math.inf) -> Start:
+        """What a start from a rest of this time, as the caller counts it, costs."""
 
-        def of(curve: Curve, u: Array, g: Array) -> list[Array]:
+        def of(curve: Curve, u: Array, g: Array, rested: Array) -> list[Array]:
             way = curve.way(u)
-            W = curve.work(u, way / g)
+            W = curve.work(u, way / g, rested)
             share = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)
             kept = np.sqrt(1.0 - share)
             lost = np.where(share > _LITTLE, (way - curve.way(u * kept)) / g, 0.25 * W / curve.M(u))
             return [u * share / (1.0 + kept), np.where(u > 0.0, lost, 0.0)]
 
-        speed, way = self.each(of, [0.0, 0.0])
+        speed, way = self.each(of, [0.0, 0.0], rested / self.time)
         return Start(speed * self.speed, way * self.length)

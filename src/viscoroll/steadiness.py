@@ -14,7 +14,7 @@ from .validity import Assumption
 #: unsteadiness up to which V is right to some 10 %: measured with a transient solver of many modes (docs/may_i.md)
 STEADY_LIMIT = 0.1
 #: share of its speed, seven tenths of its energy, that a start from rest may lose: beyond, the cylinder was caught
-_CAUGHT = 0.45
+CAUGHT = 0.45
 #: a speed that is as good as rest, where a motion ended
 _REST = 1e-300
 
@@ -119,7 +119,7 @@ def _let_go(free: Free) -> str:
     if fine.speed:
         end = f"down to {most.speed:.2g}{speed}, after {most.time:.3g}{time} and {most.left:.2g}{length} before the end"
         said += f"10 % {end if most.speed else 'to the end'}"
-    if start.speed > _CAUGHT * float(free.u * free.speed):
+    if start.speed > CAUGHT * float(free.u * free.speed):
         return said + "; a contact that rested long would hold it in its imprint"
     return said + f"; a contact that rested long would cost {start.speed:.2g}{speed} and {start.way:.2g}{length} of way"
 

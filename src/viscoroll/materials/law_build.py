@@ -248,6 +248,25 @@ def with_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) 
     return whole
 
 
+def added(N: Floats, e0: int, alpha: float) -> Floats:
+    """What kernels read of N; ``N``: its powers, [row, power].
+
+    Rows of N and of its integral over u from where t is 0; then that until there from infinity down, of every row and
+    beyond, and likewise from u = 0 up.
+    """
+    step, whole = np.ldexp(0.25, e0 + np.arange(len(N))), np.zeros_like(N)
+    step[0] = math.ldexp(1.0, e0)  # of u over t
+    whole[:, 1:] = step[:, None] * N[:, :-1] / np.arange(1.0, TERMS)
+    up, down = whole.sum(axis=1), whole @ (-1.0) ** np.arange(TERMS)
+    down[0] = 0.0  # there the first row begins
+    beyond = (alpha - 1.0) / (16.0 * alpha * math.ldexp(1.0, e0 + len(N) - 1))
+    parts = np.append(up - down, beyond)
+    from_top, from_rest = -np.cumsum(parts[::-1])[::-1] - np.append(down, 0.0), np.append(0.0, np.cumsum(parts))
+    from_top[-1], from_rest[:-2] = 0.0, from_rest[:-2] - down
+    pairs = np.stack([N, whole], axis=1).reshape(len(N), 2, -1, 2).swapaxes(1, 2)
+    return np.concatenate([pairs.ravel(), from_top, np.delete(from_rest, -2)])
+
+
 def arranged(table: Floats, e0: int, alpha: float, fast: Floats) -> Floats:
     """The rows that kernels read (:mod:`..kernels.rows.law`): functions side by side, and L = lam (1 + epsilon).
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from .bodies import Bodies
-from .law_build import FUNCTIONS, TERMS, Floats, Limits, arranged, build, first_octave, with_unsteady
+from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
 from .pair import Pair
 from .prony import Prony
 from .prony_forms import Modes
@@ -82,6 +82,14 @@ class LawTable:
         rows[WIDTH:] = arranged(self.given_coefficients, self.e0, self.alpha, self.fast_limit[0]).ravel()
         marks[[COUNT, E0]] = count, self.e0
         return Law(_read_only(rows), _read_only(marks), 0, 0, 0)
+
+    @cached_property
+    def unsteady_record(self) -> Any:
+        """As :attr:`record`, with N."""
+        from ..kernels.rows.record import UnsteadyLaw
+
+        N = self.coefficients[:, :, FUNCTIONS.index("N")]
+        return UnsteadyLaw(**self.record._asdict(), added=_read_only(added(N, self.e0, self.alpha)))
 
     @cached_property
     def unsteady_rows(self) -> Floats:

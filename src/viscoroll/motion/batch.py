@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from ..blocks import flattened, run_blocks
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback
-from ..errors import ParameterError, unknown
+from ..errors import MotionStatus, ParameterError, unknown
 from ..materials.bodies_array import BodiesArray
 from ..materials.law_each import law_of_alphas, law_of_materials
+from ..materials.law_table import law_table
 from ..materials.prony_array import MaterialArray
 from ..scene import PARAMETERS, Scene, checked_scene
 from ..typed import Driving, Numbers
@@ -23,6 +24,7 @@ from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
 from .rolling import NO_UNIT, law_of
+from .unsteady import checked_unsteady, climbed
 from .warned import look
 
 FIELDS = ROWS
@@ -48,6 +50,8 @@ def ensemble(
     method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,
+    unsteady: bool = False,
+    rested: bool | float = False,
     fields: Iterable[str] = ("V", "omega", "x"),
     max_steps: int = 100_000,
     speed: float | None = None,
@@ -70,7 +74,8 @@ def ensemble(
         where its stated error is at most ``rtol``, and only for the motions that it holds;
         all others are integrated.  The result says which, and the map's error.  Driven motions, and
         those of bodies that differ, are integrated: "flow" is refused.
-    rtol, rest, max_steps : as for :func:`roll`.
+    rtol, rest, unsteady, rested, max_steps : as for :func:`roll`; ``V0`` and ``omega0`` of the result are what a rest
+        left of them.
     fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
         work_torque brake_loss``; only these are kept in memory.  Without a drive a loss takes an
         integrated motion a second pass, to some rtol of the energy.
@@ -110,14 +115,15 @@ def ensemble(
     (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
     ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
     refuse_rest(threshold, ready)
+    ready, caught = climbed(ready, checked_unsteady(ready.scene, unsteady, rested))
     scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
-    mapped = not (drive.acts or scene.shape) and scene.like_bodies
+    mapped = not (drive.acts or scene.shape or unsteady) and scene.like_bodies
     if method == "flow" and not mapped:
-        alike = drive.acts or not scene.like_bodies
-        what = "motions are driven, or bodies differ" if alike else "motions have scenes of their own"
+        alike = drive.acts or unsteady or not scene.like_bodies
+        what = "motions are driven or unsteady, or bodies differ" if alike else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
     arrays, count = _inputs(scene, (V0, omega0), drive, ready)
-    look(scene, arrays["V0"], arrays["omega0"], driven=drive.acts)
+    look(scene, arrays["V0"], arrays["omega0"], driven=drive.acts or unsteady)
     flat = [flattened(array, (count,)) for array in arrays.values()]
     # without a drive nothing acts
     found = names if drive.acts else tuple(name for name in names if name not in ACTING)
@@ -139,8 +145,10 @@ def ensemble(
     if answer is None:
         answer = Answer.empty(len(found), count, times.size)
     flow = answer.status >= 0
+    if caught.any():
+        _keep_caught(answer, np.broadcast_to(caught, (count,)))
     limits = rtol, threshold, max_steps
-    steps = _integrate_others(answer, flat, (scene, ready), times, limits, found, threads, bar)
+    steps = _integrate_others(answer, flat, (scene, ready, unsteady), times, limits, found, threads, bar)
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
     kept |= dict(zip(found, answer.out, strict=True))
     return Ensemble(
@@ -149,6 +157,12 @@ def ensemble(
         steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
         drive_error=ready.error, drive=drive, labels=labels,
     )  # fmt: skip
+
+
+def _keep_caught(answer: Answer, caught: NDArray[np.bool_]) -> None:
+    """Motions that never leave the imprint of their rest."""
+    answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
+    answer.status[caught] = MotionStatus.CAUGHT
 
 
 def _names(fields: Iterable[str]) -> tuple[str, ...]:
@@ -181,15 +195,15 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
 
 
 def _integrate_others(
-    answer: Answer, flat: list[NDArray], by: tuple[Scene, Prepared], times: NDArray,
+    answer: Answer, flat: list[NDArray], by: tuple[Scene, Prepared, bool], times: NDArray,
     limits: tuple[float, float, int], names: tuple[str, ...], threads: int | None, bar: str | None,
 ) -> NDArray[np.int64]:  # fmt: skip
     """Integrate the motions without an answer; returns the steps of each.
 
-    ``by`` : their scene, or scenes, and what drives them.
+    ``by`` : their scene, or scenes, what drives them, and whether N adds to the mass.
     """
-    scene, ready = by
-    law = _law_of(scene)
+    scene, ready, unsteady = by
+    law = _law_of(scene, unsteady)
     steps, rows = np.zeros(answer.status.size, dtype=np.int64), np.array([ROWS.index(name) for name in names], np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -206,25 +220,37 @@ def _integrate_others(
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = answer.status.max(initial=-1) >= 0
-    run_blocks(work, steps.size, _MAPPED_BLOCK if mapped else _BLOCK, threads=threads, progress=bar)
+    block = _MAPPED_BLOCK if mapped else 1 if unsteady and _many_materials(scene) else _BLOCK
+    run_blocks(work, steps.size, block, threads=threads, progress=bar)
     return steps
 
 
-def _law_of(scene: Scene) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, NDArray, bool]]:
+def _many_materials(scene: Scene) -> bool:
+    return isinstance(scene.material, MaterialArray) or np.ndim(scene.alpha) > 0
+
+
+def _law_of(scene: Scene, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, NDArray, bool]]:
     """(alphas of motions, which they are) -> the law that they share, or that of each in turn; what it counts times in;
-    whether bodies differ."""
+    whether bodies differ.  ``unsteady``: of one motion, with N."""
     material = scene.in_own_time()[0]
 
     def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
         found, unit = law_of_materials(material, np.minimum(which, len(material) - 1))
         return found, flattened(unit, unit.shape), isinstance(material, BodiesArray)
 
+    def own(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
+        given: Any = scene.material
+        one = law_table(alpha.item() if given is None else given[min(which.item(), len(given) - 1)])
+        return one.unsteady_record, NO_UNIT, False
+
+    if unsteady and _many_materials(scene):
+        return own
     if isinstance(material, MaterialArray):
         return each
     if scene.material is None and np.ndim(scene.alpha):
         return lambda alpha, which: (law_of_alphas(alpha), NO_UNIT, False)
     one = law_of(scene)
-    return lambda alpha, which: (one.record, NO_UNIT, one.unlike)
+    return lambda alpha, which: (one.unsteady_record if unsteady else one.record, NO_UNIT, one.unlike)
 
 
 def _among(names: tuple[str, ...], *some: str) -> bool:

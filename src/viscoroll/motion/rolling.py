@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
+from ..errors import MotionStatus, ParameterError
 from ..materials.law_table import LawTable, law_table
 from ..scene import Scene
 from .driven import ROWS, Drive, prepared, refuse_rest
+from .unsteady import climbed
 
 #: of a law that counts times in T_ref
 NO_UNIT = np.ones(1)
@@ -28,6 +29,8 @@ class Inputs(NamedTuple):
     rest: float
     max_steps: int
     drive: Drive
+    unsteady: bool
+    rested: float
 
 
 def law_of(scene: Scene) -> LawTable:
@@ -49,11 +52,19 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, 
     refuse_rest(inputs.rest, ready)
     if (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
+    ready, caught = climbed(ready, inputs.rested)
+    if caught:
+        return (
+            ready.scene,
+            ready.error,
+            np.full((len(ROWS), times.size), np.nan),
+            [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan],
+        )
     scene, law = ready.scene, law_of(ready.scene)
     one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     limits = inputs.rtol, inputs.rest, inputs.max_steps
     out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
-    batch = law.record, NO_UNIT, law.unlike, *one
+    batch = law.unsteady_record if inputs.unsteady else law.record, NO_UNIT, law.unlike, *one
     motion_loop(batch, ready.for_kernel(), times, limits, np.arange(len(ROWS)), out, info, notes)
     return scene, ready.error, out[:, 0], info[0].tolist()

@@ -16,6 +16,7 @@ from .checks import controls, output_times, refuse_many, start_speeds
 from .driven import Drive
 from .one import Motion, integrated
 from .rolling import Inputs, rolled
+from .unsteady import checked_unsteady
 from .warned import look
 
 #: room for the ends of steps at first
@@ -40,6 +41,8 @@ def roll(
     omega: Schedule | None = None,
     V: Schedule | None = None,
     rest: float | None = None,
+    unsteady: bool = False,
+    rested: bool | float = False,
     max_steps: int = 100_000,
 ) -> Motion:
     """Motion of the cylinder from (V0, omega0), Eq. (22), through all regimes.
@@ -71,6 +74,14 @@ def roll(
         something drives to the end.  Nothing stops in finite time: at small V the speed decays like
         exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.
         From there on V = omega = 0 and x, angle stay; the distance so left out is close to (1 + j) V/(gamma c).
+    unsteady : in partial slip take M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
+        creep is slow.  Errors of V that the law of steady rolling makes become some five times smaller
+        (docs/may_i.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2: below that speed the contact comes to
+        stand in its own imprint.  A drive may jump; V' does too then, which the contact in truth follows late.
+        Refused where bodies differ.
+    rested : whether the contact had rested long before it starts to roll, or the time that it had, over T_ref.
+        Leaving its imprint takes energy (``validity(V0).steady.start``): V0 and omega0 become what is left of them; a
+        motion that would lose seven tenths is caught there.  It tells of free rolling: with a force it is near.
     max_steps : step limit, at most 10^7.
 
     Returns
@@ -82,7 +93,8 @@ def roll(
     ParameterError
         NaN, infinite or oversized input, unsorted times, an array where one number belongs; both speeds prescribed,
         a prescribed speed that jumps or does not match its start, a callable that
-        no polynomials follow.
+        no polynomials follow; ``unsteady`` with bodies that differ; ``rested`` below 0, with a prescribed speed, or at
+        a start in full slip.
 
     Notes
     -----
@@ -113,9 +125,10 @@ def roll(
     for name, value in {"V0": speeds[0], "omega0": speeds[1], **drive.numbers}.items():
         refuse_many(name, value.shape)
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
+    rested = checked_unsteady(scene, unsteady, rested)
     V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
-    look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts)
-    inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive)
+    look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts or unsteady)
+    inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive, unsteady, rested)
     if np.ndim(t) == 0:
         times = _step_times(inputs)
     motion = integrated(inputs, times)

@@ -8,13 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..rows.added import added_mass
 from .collocation import WIDE
 from .load import brakes, goes_on, piece_end, threshold, undriven
 from .nodes import INTERPOLANTS, NUMBERS, ONES, PATHS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
-from .output import coast, put_still, put_to_end, regime_of, speeds
+from .output import coast, put_here, put_still, regime_of, speeds
 from .phase import creeps, phase
-from .rates import creep_limit
+from .rates import creep_limit, room
 from .records import (
     DONE,
     EDGE,
@@ -30,6 +31,7 @@ from .records import (
     STEP_TOO_SMALL,
     STUCK,
     UNDECIDED,
+    UNSTEADY,
     Case,
     Clock,
     Frame,
@@ -146,13 +148,22 @@ def vanishes(state, frame, clock, case):
 
 
 @kernel
+def spent(state, frame, case):
+    """Whether the added mass is beyond its range, or at its end."""
+    n = added_mass(case.scene.law, state.V, case.scene.kappa, case.scene.gamma)[0]
+    return not frame.slips and room(n, case.scene.j) <= min(1.0 - frame.sigma * state.second, case.limits.rtol)
+
+
+@kernel
 def settled(state, frame, clock, case):
     """(State, frame) once d has relaxed at a time: p stays as it is."""
     load, rates = here(state, frame, clock, case)
-    p, d, low, high = load.per_omega * state.V + load.per_V * rates.omega, 0.0, -1.0, 1.0
+    n = added_mass(case.scene.law, state.V, case.scene.kappa, case.scene.gamma)[0]
+    inertia = load.per_omega + load.per_V * load.per_omega * n
+    p, d, low, high = inertia * state.V + load.per_V * rates.omega, 0.0, -1.0, 1.0
     while low < d < high:
         delta = creep_limit(state.V, case.scene) * d
-        state = State(p / (load.per_omega + load.per_V * (1.0 + delta)), d)
+        state = State(p / (inertia + load.per_V * (1.0 + delta)), d)
         frame = Frame(False, frame.direction, 1.0 if d >= 0.0 else -1.0, frame.spin, frame.locked)
         if here(state, frame, clock, case)[1].rate > 0.0:
             low = d
@@ -180,11 +191,13 @@ def follow(moving, fresh, state, frame, clock, case):
             if moving:
                 state, frame = at_new_piece(state, frame, clock, case)
                 moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+        if moving and spent(state, frame, case):
+            return UNSTEADY, put_here(state, frame, clock, case), turns, onset_time, np.nan
         event, direction, before = NO_EVENT, frame.direction, clock
         if rests(moving, state, frame, clock, case):
             event = SLOW
         elif moving and clock.tau >= end:
-            clock = put_to_end(state, frame, clock, case)
+            clock = put_here(state, frame, clock, case)
         elif not moving:
             kind, state, frame, clock = stay(clock, case)
             if kind == EITHER:
@@ -211,7 +224,7 @@ def follow(moving, fresh, state, frame, clock, case):
             rest_time, omega = clock.tau / case.pace, speeds(state, frame, case.scene)[0]
             case.work.totals[PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
             return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
-        if event != NO_EVENT:
+        if event != NO_EVENT and not spent(state, frame, case):
             state, frame, still = switch(event, state, frame, clock, case)
             moving = not still
             clock = clock_at(_PAST * clock.length if event == KINK else 0.0, clock)

@@ -60,9 +60,15 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
         for row in one:
             fill(np.nan, row)
         hold(motions.law, i)
-        scene = Scene(motions.law, motions.unlike, _own(motions.kappa, i), _own(motions.mu, i), _own(motions.j, i))
+        kappa, mu, gamma, j = (
+            _own(motions.kappa, i),
+            _own(motions.mu, i),
+            _own(motions.gamma, i),
+            _own(motions.j, i),
+        )
+        scene = Scene(motions.law, motions.unlike, kappa, mu, gamma, j)
         unit = _own(motions.unit, i)
-        pace, V0, omega0 = _own(motions.gamma, i) * unit, _own(motions.V0, i) * unit, _own(motions.omega0, i) * unit
+        pace, V0, omega0 = gamma * unit, _own(motions.V0, i) * unit, _own(motions.omega0, i) * unit
         drive = Drive(pieces, _drive_of(drives, pace, unit, i, pieces), drives.prescribed)
         own = Limits(limits.rtol, limits.rest * unit, limits.max_steps)
         result = integrate(scene, drive, (pace, unit), V0, omega0, t, own, (one, asked, switches, ends))

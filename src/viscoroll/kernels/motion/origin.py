@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..rows.added import added_mass
 from .load import FIRST, FUNCTIONS, brakes, load_at, piece_end, terms_of
 from .records import Frame, Load
 
@@ -49,9 +50,20 @@ def _under_brake(load, spin):
 
 
 @kernel
+def _burdened(load, scene):
+    """The load that has the same V' and omega' follow from Q at V = 0 without the added mass."""
+    force, torque, V_rate, omega_rate, brake, per_V, per_omega, gains = load
+    half = 0.5 * added_mass(scene.law, 0.0, scene.kappa, scene.gamma)[0]
+    light = 1.0 / (1.0 + half * per_V)
+    share = 1.0 + half * light * per_V
+    torque = (torque - half * (light * per_V * force + V_rate)) / share
+    return Load(force, torque, V_rate, omega_rate, brake, per_V * light, per_omega * share, gains)
+
+
+@kernel
 def departing(load, spin, scene):
     """(Whether the cylinder may roll off sticking with V > 0, d then), against a brake where ``spin`` is 1."""
-    load, low, high = _under_brake(load, spin), -1.0, 1.0
+    load, low, high = _burdened(_under_brake(load, spin), scene), -1.0, 1.0
     turning = (
         -2.0 * scene.kappa / scene.mu
     )  # d at which omega stays 0: from there on the left less the right side falls

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
+from ..rows.added import added_mass
 from ..rows.law import bodies, place, speed
 from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed
@@ -15,6 +16,7 @@ from .records import FULL, LOCKED, PARTIAL, REST, Asked, Clock, Frame, State
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
 PATH_FROM, FORCE, WORK = 2, 6, 8
+_NOW = 1.0 + 1e-15
 
 
 @kernel
@@ -93,13 +95,15 @@ def _put_state(column, state, piece, frame, case):
 
 
 @kernel
-def put_to_end(state, frame, clock, case):
-    """All outputs that are left, of a motion that is where it ends; the clock then."""
-    for column in range(clock.at, case.tau.size):
-        _put_state(column, state, clock.piece, frame, case)
+def put_here(state, frame, clock, case):
+    """The outputs at the time that it is, to rounding; the clock then."""
+    at = clock.at
+    while at < case.tau.size and case.tau[at] <= clock.tau * _NOW:
+        _put_state(at, state, clock.piece, frame, case)
         for n in range(PATHS):
-            _put_path(column, n, case.work.totals[n], case)
-    return Clock(clock.tau, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
+            _put_path(at, n, case.work.totals[n], case)
+        at += 1
+    return Clock(clock.tau, at, clock.piece, clock.steps, clock.ends, 0.0)
 
 
 @kernel(inline=True)
@@ -159,17 +163,18 @@ def _slow_moments(scene):
 
 
 @kernel
-def _slow_creep(V, half_space, cylinder, scene):
+def _slow_creep(V, half_space, cylinder, inertia, scene):
     """delta where V and omega fall together: Q = 4 kappa delta takes what the moments differ by."""
-    return V * (scene.j * half_space - cylinder) / (4.0 * scene.kappa * (1.0 + scene.j))
+    return V * (scene.j * half_space - cylinder) / (4.0 * scene.kappa * inertia)
 
 
 @kernel
 def coast(state, frame, clock, case):
-    """Outputs of the last decay, V' = -T_mean V/(1 + j) with delta/V constant: (clock, time of rest or NaN)."""
+    """Outputs of the last decay, (1 + j + gamma N) V' = -T_mean V with delta/V constant: (clock, time of rest)."""
     scene, out, direction, totals = case.scene, case.out, frame.direction, case.work.totals
     half_space, cylinder = _slow_moments(scene)
-    rate, creep = (half_space + cylinder) / (1.0 + scene.j), _slow_creep(state.V, half_space, cylinder, scene)
+    inertia = 1.0 + scene.j + added_mass(scene.law, 0.0, scene.kappa, scene.gamma)[0]
+    rate, creep = (half_space + cylinder) / inertia, _slow_creep(state.V, half_space, cylinder, inertia, scene)
     fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), case.limits.rest, np.inf
     if rest > 0.0:
         end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)

@@ -8,6 +8,12 @@ law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w 
 Both sides of the last stay finite as V -> 0, where d follows from the right one being 0.  For |d| > 1 the law is
 continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
 
+In partial slip a law may add N V' to M, half of it in either body: with n = gamma N the equations are
+
+    (1 + n/2) V' = Q - M/2 + f      j omega' = -Q - M/2 - n V'/2 + q
+
+and the integral of n over V goes into p, so that p' stays what it is.
+
 p = per_omega V + per_V omega, as V + j omega, is collocated in place of V: p' holds no Q, and so d only by what feeds
 speeds back.  dp/dd = per_V V k L is small: Newton's matrix falls into one of p and one of d (:mod:`solve`).  Where
 friction is so strong that dp/dV may vanish, V stands for p.
@@ -20,6 +26,7 @@ from typing import NamedTuple
 
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
+from ..rows.added import added_mass
 from ..rows.law import bodies, body_slopes, place, press_secant, press_slopes, speed_seconds
 from .load import acting
 
@@ -34,7 +41,7 @@ class Rates(NamedTuple):
 
     p, p_rate : what is collocated in place of V, V itself in full slip and under strong friction, and p'
     rate : ``weight`` times the slope of the second unknown
-    edge : of the stick zone: positive within the regime
+    edge : of the stick zone, and of the range of the added mass: positive within the regime
     further : slopes in V and in the second unknown
     """
 
@@ -85,6 +92,13 @@ def strong(load, frame, scene):
 
 
 @kernel(inline=True)
+def room(n, j):
+    """Positive where the added mass is below 1 + j and leaves half of it; 1 where there is none."""
+    share = n / (1.0 + j)
+    return (1.0 - share) * (1.0 + 2.0 * share)
+
+
+@kernel(inline=True)
 def stick_rates(V, d, load, frame, scene):
     """Partial slip."""
     law, mu, sign, k = scene.law, scene.mu, frame.sigma, 0.5 * scene.mu / scene.kappa
@@ -109,20 +123,29 @@ def stick_rates(V, d, load, frame, scene):
     force, _, torque = acting(V, omega, load, frame)
     M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
     per_V, per_omega, per_both = load.per_V, load.per_omega, load.per_V * load.per_omega
-    V_rate = per_V * (Q - M_half_space + force) + load.V_rate
-    omega_rate = per_omega * (torque - Q - M_cylinder) + load.omega_rate
-    rate = ((omega_rate - V_rate) / k - d * spread * V_rate) / L
     force_V, torque_V = gains.force_V + gains.force_omega * omega_V, gains.torque_V + gains.torque_omega * omega_V
-    V_V, V_d = per_V * (Q_V - half_space_rise + force_V), per_V * (Q_d + gains.force_omega * omega_d)
-    turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (gains.torque_omega * omega_d - Q_d)
-    bend = turn * ((2.0 * dL + u * ddL) * d * V_rate + dL * rate)
     p, p_V, p_d, p_rate_d = per_omega * V + per_V * omega, per_omega + per_V * omega_V, per_V * omega_d, 0.0
     p_rate = per_both * (force + torque - M_half_space - M_cylinder) + per_omega * load.V_rate + per_V * load.omega_rate
     p_rate_V = per_both * (force_V + torque_V - half_space_rise - cylinder_rise)
+    V_rate = per_V * (Q - M_half_space + force) + load.V_rate
+    V_V, V_d = per_V * (Q_V - half_space_rise + force_V), per_V * (Q_d + gains.force_omega * omega_d)
+    torque_d, edge = gains.torque_omega * omega_d, 1.0 - sign * d
+    n, n_V, whole = added_mass(law, V, scene.kappa, scene.gamma)
+    if n != 0.0:
+        light = 1.0 / (1.0 + 0.5 * per_V * n)
+        V_rate *= light
+        V_V, V_d, drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.5 * n * V_rate
+        M_half_space, M_cylinder = M_half_space + drag, M_cylinder + drag
+        torque_V, torque_d = torque_V - 0.5 * (n_V * V_rate + n * V_V), torque_d - 0.5 * n * V_d
+        p, p_V, edge = p + per_both * whole, p_V + per_both * n, edge * room(n, scene.j)
+    omega_rate = per_omega * (torque - Q - M_cylinder) + load.omega_rate
+    rate = ((omega_rate - V_rate) / k - d * spread * V_rate) / L
+    turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (torque_d - Q_d)
+    bend = turn * ((2.0 * dL + u * ddL) * d * V_rate + dL * rate)
     if rarely(strong(load, frame, scene)):
         p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
     return Rates(
-        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, 1.0 - sign * d, p_V, p_d, p_rate_V, p_rate_d,
+        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, edge, p_V, p_d, p_rate_V, p_rate_d,
         ((turn_V - V_V) / k - d * spread * V_V - bend) / L, ((turn_d - V_d) / k - spread * (V_rate + d * V_d)) / L, 1.0,
     )  # fmt: skip
 

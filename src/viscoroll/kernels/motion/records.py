@@ -15,19 +15,21 @@ EVENTS = 6
 #: which speed is prescribed
 NEITHER, OMEGA, SPEED = range(3)
 #: how a motion ends
-DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, UNDECIDED = range(5)
+DONE, RESTED, STEP_LIMIT, STEP_TOO_SMALL, UNDECIDED, UNSTEADY = range(6)
 
 
 class Scene(NamedTuple):
-    """What Eq. (22) asks of a scene beside gamma, which only scales time.
+    """What Eq. (22) asks of a scene.
 
-    law : its rows (:mod:`..rows.law`); unlike : whether half-space and cylinder do not take half of M each
+    law : its rows (:mod:`..rows.law`); gamma : scales time, and what N adds to the mass
+    unlike : whether half-space and cylinder do not take half of M each
     """
 
     law: Any
     unlike: bool
     kappa: float
     mu: float
+    gamma: float
     j: float
 
 

@@ -45,6 +45,20 @@ class Law(NamedTuple):
     source: int
 
 
+class UnsteadyLaw(NamedTuple):
+    """A law of one material with the term that follows it, M(V) + N(V) V'.
+
+    added : rows of N and of its integral (:func:`...materials.law_build.added`)
+    """
+
+    rows: Any
+    marks: Any
+    hold: int
+    make: int
+    source: int
+    added: Any
+
+
 @kernel(inline=True)
 def hold(law, n):
     """Have the law be that of state or motion n: nothing where all have one, or n the one that is held."""

@@ -1,0 +1,202 @@
+"""Motions with the added mass, ``unsteady=True``, and from a contact that rested, ``rested=``."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from scipy.integrate import solve_ivp
+
+import viscoroll as vr
+
+DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
+#: a roller of 0.1 m, T_ref 3 s: V = 30 is 1 m/s
+ROLLER = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
+RUBBER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=18.0, j=0.5)
+#: nowhere more unsteady than 0.22: it may pass V = 0
+GENTLE = vr.Scene(alpha=3.0, kappa=5.0, mu=0.5, gamma=1.5, j=0.8)
+T = np.linspace(0.0, 8.0, 17)
+
+
+def second_method(scene, V0, omega0, t, rtol=1e-11, **drive):
+    """V and omega by Radau's method on the equations of partial slip, from states of the contact and N."""
+
+    def rates(_, speeds):
+        V, omega = speeds
+        state = vr.contact(scene, V, omega=omega, fields=("Q", "M", "N"))
+        V_rate = scene.gamma * (state.Q - 0.5 * state.M + drive.get("force", 0.0)) / (1.0 + 0.5 * scene.gamma * state.N)
+        moment = 0.5 * (state.M + state.N * V_rate)
+        return V_rate, scene.gamma * (drive.get("torque", 0.0) - state.Q - moment) / scene.j
+
+    return solve_ivp(rates, (t[0], t[-1]), (V0, omega0), "Radau", t, rtol=rtol, atol=1e-14).y
+
+
+def share(scene, V):
+    """gamma N over 1 + j."""
+    return scene.gamma * vr.contact(scene, V, delta=0.0, fields="N").N / (1.0 + scene.j)
+
+
+@pytest.mark.parametrize(
+    ("scene", "start", "t", "drive"),
+    [
+        (RUBBER, (1.0, 1.0), T, {}),
+        (ROLLER, (30.0, 29.9), T, {}),
+        (RUBBER, (1.0, 0.999), T, {"force": 0.004, "torque": 0.01}),
+        (GENTLE, (0.3, 0.3), 0.1 * T, {"force": -0.05}),
+    ],
+)
+def test_beside_a_second_method(scene, start, t, drive):
+    exact = second_method(scene, *start, t, **drive)
+    for rtol in (1e-6, 1e-9):
+        m = vr.roll(scene, *start, t, rtol, unsteady=True, **drive)
+        assert m.status == vr.MotionStatus.DONE
+        assert close((m.V, m.omega), exact, rel=tol.MOTION_RTOL * rtol, scale=max(start))
+    steady = vr.roll(scene, *start, t, **drive)
+    assert np.abs(steady.V / m.V - 1.0).max() > 3e-4  # N is what this is about
+
+
+def test_on_the_slow_manifold():
+    """(1 + j + gamma N) V' = -gamma M: speeds and times, by quadrature, but for creep, which is of order 1/kappa."""
+    scene = ROLLER.replace(kappa=1.06e5)
+    V = np.geomspace(3e-3, 3e-4, 4001)
+    c = vr.contact(scene, V, delta=0.0, fields=("M", "N"))
+    slope = -(1.0 + scene.j + scene.gamma * c.N) / (scene.gamma * c.M) * V
+    h = np.log(V[1] / V[0])
+    times = h / 3.0 * np.cumsum(slope[:-2:2] + 4.0 * slope[1::2] + slope[2::2])
+    m = vr.roll(scene, V[0], V[0], times, unsteady=True)
+    assert close(m.V, V[2::2], rel=1e-4)
+
+
+def test_sliding_is_as_before():
+    """Full slip to the onset of stick: the same motion, to the last bit."""
+    plain, unsteady = (vr.roll(RUBBER, 3.0, 0.0, 0.1 * T, unsteady=each) for each in (False, True))
+    slides = plain.t < plain.onset_time
+    assert slides.sum() > 2
+    assert plain.onset_time == unsteady.onset_time
+    assert np.array_equal(plain.V[slides], unsteady.V[slides])
+    assert (plain.V[~slides] != unsteady.V[~slides]).all()
+
+
+def test_works_and_losses_add_up():
+    """What N takes and gives back of the energy counts as lost in rolling."""
+    m = vr.roll(GENTLE, 0.2, 0.1, T, force=-0.05, torque=0.01, unsteady=True)
+    assert m.status == vr.MotionStatus.DONE
+    assert m.V[-1] < 0.0 < m.V[0]
+    assert "rest" not in {s.regime for s in m.switches}
+    energy = 0.5 * (m.V**2 + GENTLE.j * m.omega**2)
+    lost = m.slip_loss + m.rolling_loss + m.brake_loss
+    assert close(energy - energy[0] + lost, m.work_force + m.work_torque, rel=tol.ENERGY, scale=energy.max())
+
+
+def test_from_rest_and_to_it():
+    """At V = 0 the mass is 1 + j + gamma N(0), but for creep: from there on, and at the end of a decay."""
+    mass = 1.0 + GENTLE.j + GENTLE.gamma * vr.contact(GENTLE, 0.0, delta=0.0, fields="N").N
+    early = vr.roll(GENTLE, 0.0, 0.0, [1e-6], force=0.02, unsteady=True)
+    assert close(early.V[0], 1e-6 * GENTLE.gamma * 0.02 / mass, rel=1e-3)
+    late = vr.roll(GENTLE, 1e-9, 1e-9, [10.0, 20.0], unsteady=True)
+    rate = GENTLE.gamma * (2.0 / 3.0) / mass
+    assert close(np.log(late.V[0] / late.V[1]), 10.0 * rate, rel=1e-6)
+    held = vr.roll(GENTLE, None, 0.1, T[:5], V=([0.0, 4.0], [0.1, 0.3]), unsteady=True)
+    M = vr.contact(GENTLE, held.V, omega=held.omega, fields=("Q", "M", "N"))
+    assert close(held.force, 0.05 / GENTLE.gamma - M.Q + 0.5 * (M.M + 0.05 * M.N), rel=1e-6, scale=0.01)
+
+
+@pytest.mark.parametrize(("scene", "V0", "level"), [(RUBBER, 1.0, -0.5), (ROLLER, 30.0, 1.0)])
+def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
+    with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
+        m = vr.roll(scene, V0, V0, 100.0, unsteady=True)
+    assert m.status == vr.MotionStatus.UNSTEADY
+    reached = m.regime >= 0
+    assert reached.tolist() == [True] * (m.t.size - 1) + [False]
+    assert close(share(scene, m.V[reached][-1]), level, rel=1e-6)
+    with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
+        slower = vr.roll(scene, 0.9 * m.V[reached][-1], 0.9 * m.V[reached][-1], T, unsteady=True)
+    assert slower.status == vr.MotionStatus.UNSTEADY
+    assert (slower.regime[0], slower.regime[1]) == (1, -1)
+
+
+def test_elastic_bodies_have_none():
+    scene = RUBBER.replace(alpha=1.0)
+    plain, unsteady = (vr.roll(scene, 1.0, 0.2, T, unsteady=each) for each in (False, True))
+    assert np.array_equal(plain.V, unsteady.V)
+
+
+def test_a_rest_costs_speed():
+    """V0 and omega0 less what leaving the imprint takes; a rest of no time nothing, a longer one more."""
+    V0 = 30.0
+    start = ROLLER.validity(V0).steady.start.speed
+    long, none = (vr.roll(ROLLER, V0, 29.99, T, rested=each, unsteady=True) for each in (True, 0.0))
+    assert close(long.V[0], V0 - start, rel=1e-14)
+    assert close(long.delta[0], none.delta[0], rel=1e-6)
+    assert none.V[0] == V0
+    V = [vr.roll(ROLLER, V0, V0, T, rested=rested).V[0] for rested in (1e-9, 0.1, 1.0, 1e3)]
+    assert V[0] == V0
+    assert (np.diff(V) < 0.0).all()
+    assert close(V[-1], V0 - start, rel=1e-6)
+    assert vr.roll(ROLLER, 0.0, 0.0, T, rested=True).V[-1] == 0.0
+
+
+def test_caught_in_the_imprint():
+    """V = 1.3 is 4.3 cm/s, of which validity says it too."""
+    with pytest.warns(RuntimeWarning, match="caught in the imprint of its rest"):
+        m = vr.roll(ROLLER, 1.3, 1.3, T, rested=True, unsteady=True)
+    assert m.status == vr.MotionStatus.CAUGHT
+    assert np.isnan(m.V).all()
+    V0 = np.array([1.3, 30.0, -1.3])
+    e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, unsteady=True, method="auto")
+    assert e.status.tolist() == [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE, vr.MotionStatus.CAUGHT]
+    assert np.isnan([e.V[::2, 0], e.onset_time[::2]]).all()
+    assert not e.flow.any()
+    one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
+    assert np.array_equal(e.V[1], one.V)
+
+
+def test_ensembles_are_rolls():
+    """One material, an alpha each, a series each: the same bits."""
+    n, V0 = 3, np.array([1.0, -1.2, 1.4])
+    soft = [vr.Prony([1.0, each], [1.0, 0.1]) for each in (2.0, 3.0, 4.0)]
+    series = vr.Prony([[1.0, each] for each in (2.0, 3.0, 4.0)], [[1.0, 0.1]] * n)
+    scenes = (
+        [RUBBER] * n,
+        [RUBBER.replace(alpha=each) for each in (5.0, 7.0, 9.0)],
+        [RUBBER.replace(material=s) for s in soft],
+    )
+    for many, ones in zip(
+        (RUBBER, RUBBER.replace(alpha=[5.0, 7.0, 9.0]), RUBBER.replace(material=series)), scenes, strict=True
+    ):
+        e = vr.ensemble(many, V0, 0.0, T[:8], unsteady=True, threads=2)
+        for i in range(n):
+            assert np.array_equal(e.V[i], vr.roll(ones[i], V0[i], 0.0, T[:8], unsteady=True).V)
+
+
+def test_at_other_times():
+    m = vr.roll(RUBBER, 1.0, 1.0, T, unsteady=True, rested=5.0)
+    again = vr.roll(RUBBER, 1.0, 1.0, [3.3, T[-1]], unsteady=True, rested=5.0)
+    assert np.array_equal(m.at([3.3]).V, again.V[:1])
+
+
+PAIR = vr.Bodies(cylinder=DMA, half_space=vr.Prony([1.0], [1.0]), share=0.7)
+
+
+@pytest.mark.parametrize("rolled", [vr.roll, vr.ensemble])
+@pytest.mark.parametrize(
+    ("scene", "start", "options", "words"),
+    [
+        (ROLLER.replace(material=PAIR), (30.0, 30.0), {"unsteady": True}, "the bodies differ"),
+        (vr.Scene(alpha=11.0, kappa=10.0, mu=0.3), (1.0, 1.0), {"unsteady": True}, "needs the scene's gamma"),
+        (ROLLER, (30.0, 30.0), {"rested": -1.0}, "rested = -1.0: must be finite and >= 0"),
+        (ROLLER, (30.0, 30.0), {"rested": [1.0, 2.0]}, "one time >= 0, or True"),
+        (ROLLER, (30.0, 0.0), {"rested": True}, "it starts in full slip"),
+        (ROLLER, (30.0, None), {"rested": True, "omega": 30.0}, "a speed is prescribed"),
+    ],
+)  # fmt: skip
+def test_refused(rolled, scene, start, options, words):
+    with pytest.raises(vr.ParameterError, match=words) as refused:
+        rolled(scene, *start, T, **options)
+    assert "\n" not in str(refused.value)
+
+
+def test_no_flow_map_has_an_added_mass():
+    with pytest.raises(vr.ParameterError, match="'auto' or 'integrate' where motions are driven or unsteady"):
+        vr.ensemble(RUBBER, 1.0, 0.0, T, method="flow", unsteady=True)
