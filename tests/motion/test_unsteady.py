@@ -200,3 +200,31 @@ def test_refused(rolled, scene, start, options, words):
 def test_no_flow_map_has_an_added_mass():
     with pytest.raises(vr.ParameterError, match="'auto' or 'integrate' where motions are driven or unsteady"):
         vr.ensemble(RUBBER, 1.0, 0.0, T, method="flow", unsteady=True)
+
+
+def test_in_si_units():
+    """A rest in s: the dimensionless motion in other units; ensembles likewise."""
+    roller, times = vr.RUBBER_CYLINDER, np.linspace(0.0, 3.0, 5)
+    T_ref, speed = roller.T_ref, roller.R / roller.T_ref
+    for rested in (True, 60.0):
+        m = roller.roll(1.0, 1.0 / roller.R, times, unsteady=True, rested=rested)
+        over = rested if rested is True else rested / T_ref
+        own = vr.roll(roller.scene(), 1.0 / speed, 1.0 / speed, times / T_ref, unsteady=True, rested=over)
+        assert close(m.V, own.V * speed, rel=tol.SI_MOTION, scale=1.0)
+        e = roller.ensemble([1.0, 2.0], np.array([1.0, 2.0]) / roller.R, times, unsteady=True, rested=rested)
+        assert close(e.V[0], m.V, rel=tol.SI_MOTION, scale=1.0)
+    for call in (roller.roll, roller.ensemble):
+        with pytest.raises(vr.ParameterError, match=r"rested = -1.0: must be finite and >= 0"):
+            call(1.0, 10.0, times, rested=-1.0)
+
+
+def test_on_the_command_line(capsys):
+    from viscoroll.cli import main
+
+    start = 1.0 * vr.RUBBER_CYLINDER.T_ref / vr.RUBBER_CYLINDER.R
+    command = ["roll", "rubber-roller", "--V0", repr(start), "--omega0", repr(start), "--t", "0:3:5", "--unsteady"]
+    for time, rested in ((["--rested"], True), (["--rested", "60"], 60.0)):
+        assert main([*command, *time]) == 0
+        m = vr.roll(vr.RUBBER_ROLLER, start, start, np.linspace(0.0, 3.0, 5), unsteady=True, rested=rested)
+        assert capsys.readouterr().out.startswith(str(m))
+    assert main([*command, "--rested", "-1"]) == 2

@@ -23,6 +23,11 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--omega0", type=number, required=True, help="start angular velocity")
     parser.add_argument("--t", type=numbers, required=True, help=f"one end time, or output times: {NUMBERS}")
     parser.add_argument("--rtol", type=number, default=1e-8, help="relative tolerance in [1e-12, 1e-2] (default 1e-8)")
+    parser.add_argument("--unsteady", action="store_true", help="with the added mass of rolling that is not steady")
+    parser.add_argument(
+        "--rested", type=number, nargs="?", const=True, default=False, metavar="TIME",
+        help="start from a contact that rested: for so long, or, without a time, long",
+    )  # fmt: skip
     add_output_option(parser, *FORMATS)
     parser.set_defaults(run=_roll)
 
@@ -33,7 +38,8 @@ def _roll(arguments: Namespace) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
         start = (arguments.V0, arguments.omega0, arguments.t, arguments.rtol)
-        motion = call("roll", body_of(arguments.scene), *start)
+        options = {"unsteady": arguments.unsteady, "rested": arguments.rested}
+        motion = call("roll", body_of(arguments.scene), *start, **options)
     deliver(arguments, motion, str(motion).splitlines())
     if arguments.output is not None:
         print(motion)

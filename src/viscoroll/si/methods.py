@@ -153,6 +153,8 @@ class InSI:
         omega: Schedule | None = None,
         V: Schedule | None = None,
         rest: float | None = None,
+        unsteady: bool = False,
+        rested: bool | float = False,
         max_steps: int = 100_000,
     ) -> MotionSI:
         """Motion as :func:`viscoroll.roll`, in SI units, per m of length.
@@ -161,13 +163,14 @@ class InSI:
         ----------
         V0, omega0 : start speeds, m/s and rad/s.
         t : output times, s, or one end time.
-        rtol, max_steps : as there.
+        rtol, unsteady, max_steps : as there.
         force, torque : N and N m per m: a number; (times in s, values); a callable of t in s; or a :class:`Feedback`
             of any of these with gains over m/s and rad/s.
         slope : rad, > 0 pushes along +V; the load is then P cos(slope), and P sin(slope) adds to ``force``.
         brake : most torque that a brake takes, N m per m, as for ``force``.
         omega, V : prescribed speed, rad/s of the motor or m/s of the axis, likewise.
         rest : end the motion where both |V| and R |omega| fall below this, m/s.
+        rested : whether the contact had rested long before it starts to roll, or for how long, s.
 
         Returns
         -------
@@ -199,7 +202,8 @@ class InSI:
         from .motion import roll_of
 
         drive = Drive(force, torque, slope, brake, omega, V)
-        return roll_of(self, (V0, omega0), t, drive, rtol, rest, max_steps)
+        options = {"rtol": rtol, "unsteady": unsteady, "max_steps": max_steps}
+        return roll_of(self, (V0, omega0), t, drive, rest, rested, **options)
 
     def ensemble(
         self,
@@ -214,6 +218,7 @@ class InSI:
         omega: Driving | None = None,
         V: Driving | None = None,
         rest: float | None = None,
+        rested: bool | float = False,
         **options: Any,
     ) -> EnsembleSI:
         """Roll n motions as :func:`viscoroll.ensemble`, in SI units, per m of length.
@@ -225,8 +230,8 @@ class InSI:
         t : output times, s, common to all; one number: the final state only.
         force, torque, slope, brake, omega, V : as for :meth:`roll`; numbers may be arrays of n, values of
             (times, values) of shape (n, k).
-        rest : m/s, as for :meth:`roll`.
-        **options : method, rtol, fields, max_steps, speed (m/s), threads, progress, as there.
+        rest, rested : m/s and s, as for :meth:`roll`.
+        **options : method, rtol, unsteady, fields, max_steps, speed (m/s), threads, progress, as there.
 
         Returns
         -------
@@ -251,4 +256,5 @@ class InSI:
         from ..motion.driven import Drive
         from .motion import ensemble_of
 
-        return ensemble_of(self, (V0, omega0), t, Drive(force, torque, slope, brake, omega, V), rest, **options)
+        drive = Drive(force, torque, slope, brake, omega, V)
+        return ensemble_of(self, (V0, omega0), t, drive, rest, rested, **options)

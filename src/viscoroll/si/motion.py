@@ -233,8 +233,8 @@ def _asked(cylinder: Cylinder, t: Numbers, drive: Drive) -> tuple[Scene, Scale, 
 
 
 def roll_of(
-    cylinder: Cylinder, start: tuple[float | None, float | None], t: Numbers, drive: Drive, rtol: float,
-    rest: float | None, max_steps: int,
+    cylinder: Cylinder, start: tuple[float | None, float | None], t: Numbers, drive: Drive, rest: float | None,
+    rested: bool | float, **options: Any,
 ) -> MotionSI:  # fmt: skip
     """``Cylinder.roll``."""
     for name in ("R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "load"):
@@ -251,13 +251,18 @@ def roll_of(
     _look_at_waves(cylinder, start)
     try:
         motion = roll(
-            scene, V0, omega0, (times if np.ndim(t) else times[0]) / one["t"], rtol, rest=rest, max_steps=max_steps,
-            **given,
+            scene, V0, omega0, (times if np.ndim(t) else times[0]) / one["t"], rest=rest, rested=_over_t(rested, one),
+            **given, **options,
         )  # fmt: skip
     except ParameterError as error:
         raise in_words(error, one) from error
     look_at_motion(cylinder, start[0], motion.V, one["V"])
     return in_si(cylinder, drive, motion, times if np.ndim(t) else np.append(motion.t[:-1] * one["t"], times))
+
+
+def _over_t(rested: bool | float, one: Scale) -> bool | float:
+    """A rest without dimension."""
+    return rested if isinstance(rested, bool) else number("rested", rested, low=0.0) / one["t"]
 
 
 def _look_at_waves(cylinder: Cylinder, start: tuple[Any, Any]) -> None:
@@ -286,8 +291,9 @@ def in_si(cylinder: Cylinder, drive: Drive, motion: Motion, times: NDArray[np.fl
 
 
 def ensemble_of(
-    cylinder: Cylinder, start: tuple[Any, Any], t: Numbers, drive: Drive, rest: float | None, **options: Any
-) -> EnsembleSI:
+    cylinder: Cylinder, start: tuple[Any, Any], t: Numbers, drive: Drive, rest: float | None, rested: bool | float,
+    **options: Any,
+) -> EnsembleSI:  # fmt: skip
     """``Cylinder.ensemble``."""
     start, drive, labels = bare(start, drive)
     scene, one, times, given = _asked(cylinder, t, drive)
@@ -299,7 +305,9 @@ def ensemble_of(
     if options.get("speed") is not None:
         options["speed"] = over("V", number("speed", options["speed"], low=0.0, strict=True), one)
     try:
-        found = ensemble(scene, V0, omega0, times / one["t"], rest=rest, **given, **options)
+        found = ensemble(
+            scene, V0, omega0, times / one["t"], rest=rest, rested=_over_t(rested, one), **given, **options
+        )
     except ParameterError as error:
         raise in_words(error, one) from error
     look_at_motion(cylinder, start[0], found.V, one["V"])
