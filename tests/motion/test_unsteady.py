@@ -110,6 +110,7 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     reached = m.regime >= 0
     assert reached.tolist() == [True] * (m.t.size - 1) + [False]
     assert close(share(scene, m.V[reached][-1]), level, rel=1e-6)
+    assert f"it stood at t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
     with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
         slower = vr.roll(scene, 0.9 * m.V[reached][-1], 0.9 * m.V[reached][-1], T, unsteady=True)
     assert slower.status == vr.MotionStatus.UNSTEADY
@@ -142,6 +143,7 @@ def test_caught_in_the_imprint():
     with pytest.warns(RuntimeWarning, match="caught in the imprint of its rest"):
         m = vr.roll(ROLLER, 1.3, 1.3, T, rested=True, unsteady=True)
     assert m.status == vr.MotionStatus.CAUGHT
+    assert m.message.endswith("seven tenths of its energy")
     assert np.isnan(m.V).all()
     V0 = np.array([1.3, 30.0, -1.3])
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, unsteady=True, method="auto")

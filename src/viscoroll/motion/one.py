@@ -199,7 +199,7 @@ def integrated(inputs: Inputs, times: NDArray) -> Motion:
 def message_of(motion: Motion, scale: Scale) -> str:
     """How a motion ended, in these units."""
     words = MOTION_STATUS[motion.status]
-    if motion.status <= MotionStatus.RESTED:
+    if motion.status <= MotionStatus.RESTED or motion.status == MotionStatus.CAUGHT:
         return words
     stood = motion._stood
     t, V, omega = (

@@ -16,7 +16,6 @@ from .records import FULL, LOCKED, PARTIAL, REST, Asked, Clock, Frame, State
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
 PATH_FROM, FORCE, WORK = 2, 6, 8
-_NOW = 1.0 + 1e-15
 
 
 @kernel
@@ -96,9 +95,9 @@ def _put_state(column, state, piece, frame, case):
 
 @kernel
 def put_here(state, frame, clock, case):
-    """The outputs at the time that it is, to rounding; the clock then."""
+    """The outputs at the time that it is, to the tolerance; the clock then."""
     at = clock.at
-    while at < case.tau.size and case.tau[at] <= clock.tau * _NOW:
+    while at < case.tau.size and case.tau[at] <= clock.tau * (1.0 + case.limits.rtol):
         _put_state(at, state, clock.piece, frame, case)
         for n in range(PATHS):
             _put_path(at, n, case.work.totals[n], case)
