@@ -36,15 +36,6 @@ def test_elements_are_those_of_the_broadcast_array():
         assert np.shares_memory(of(0, 60), array) == (name in ("single", "one", "whole")), name
 
 
-def test_a_grid_of_two_axes_is_as_the_grid_written_out():
-    """Bit for bit, across the edges of blocks."""
-    scene, V, delta = vr.PAPER_SECTION_5, np.linspace(-1.0, 2.0, 301), np.linspace(-0.04, 0.04, 333)
-    axes = vr.contact(scene, V[:, None], delta=delta).as_dict()
-    written_out = vr.contact(scene, *np.meshgrid(V, delta, indexing="ij")).as_dict()
-    for name, values in axes.items():
-        assert np.array_equal(values, written_out[name], equal_nan=True), name
-
-
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 def test_a_number_of_threads_that_is_none(monkeypatch):
     start = (vr.PAPER_SECTION_5, [1.0, 2.0], 0.5, 1e-5)
@@ -86,12 +77,3 @@ def test_blocks_cover_the_work_once(monkeypatch):
     monkeypatch.setenv("VISCOROLL_THREADS", "3")
     assert thread_count() == 3
     assert thread_count(1) == 1
-
-
-def test_a_failing_block_is_not_swallowed():
-    def work(start: int, stop: int) -> None:
-        if start == 64:
-            raise RuntimeError("block 1")
-
-    with pytest.raises(RuntimeError, match="block 1"):
-        run_blocks(work, 200, 64, threads=2)

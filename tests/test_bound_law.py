@@ -69,12 +69,6 @@ def test_law_is_contact_to_the_bit(law):
     assert len(called.signatures) == 1  # a user's function is compiled once for all laws
 
 
-def test_M_has_the_same_bits_with_slopes_and_without(law):
-    for V, omega in states(law.scene):
-        plain, sloped = (vr.contact(law.scene, V, omega=omega, slopes=slopes, fields=("Q", "M")) for slopes in (0, 1))
-        assert bits([plain.Q, plain.M]) == bits([sloped.Q, sloped.M])
-
-
 def test_arrays_are_those_of_contact(law):
     V, omega = np.array(states(law.scene)).T
     found = law(V, omega, slopes=True)

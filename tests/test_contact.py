@@ -18,15 +18,12 @@ from refusals import refused
 import viscoroll as vr
 from pipeline.truth import contact_enclosure
 from viscoroll.contact_fields import FIELDS, SLOPES
-from viscoroll.kernels.law.stick import differences
-from viscoroll.kernels.material.functions import standard
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
-#: ln of alpha, kappa V, kappa, mu, and s, for hypothesis
+#: alpha and kappa V, for hypothesis
 ALPHAS = st.floats(0.0, math.log(1e4)).map(math.exp)
 KAPPA_VS = st.floats(math.log(1e-7), math.log(1e5)).map(math.exp)
-SHARES = st.floats(1e-8, 1.0 - 1e-6)
 #: relative errors of a state by its rows
 BOUNDS = {"lam": tol.CONTACT_LENGTH, "zeta": tol.CONTACT_LENGTH, "epsilon": tol.CONTACT_SHIFT} | dict.fromkeys(
     ("delta_star", "Q", "M"), tol.CONTACT
@@ -70,12 +67,6 @@ def check_against_precise(alpha: float, kappa: float, mu: float, kappa_V: float,
 def test_table_law_against_50_digits():
     for state in random_states(72, seed=5):
         check_against_precise(*state)
-
-
-@settings(max_examples=15, deadline=None)
-@given(ALPHAS, KAPPA_VS, SHARES)
-def test_table_law_against_50_digits_anywhere(alpha, kappa_V, s):
-    check_against_precise(alpha, KAPPA, MU, kappa_V, s)
 
 
 # --- limits and continuity ---
@@ -150,55 +141,36 @@ def test_bounds_and_shape(alpha, kappa_V):
     state = vr.contact(scene, V, delta=np.sort(s) * delta_star(scene, V))
     assert state.Q[0] == 0.0
     assert np.all(np.diff(state.Q) >= -tol.SHAPE_ULP * np.spacing(MU))
-    assert np.all(state.Q <= MU + tol.SHAPE_ULP * np.spacing(MU))
+    assert np.all(state.Q <= MU)  # by not one unit in the last place more
     assert state.beta[0] == 1.0
     assert np.all(np.diff(state.beta) <= tol.SHAPE_ULP * np.spacing(1.0))
     lam = vr.contact(scene, V * np.geomspace(1.0, 2.0, 50), delta=0.0, fields="lam").lam
     assert np.all(np.diff(lam) <= tol.SHAPE_ULP * np.spacing(lam[1:]))
 
 
-def test_friction_bound_holds_exactly():
-    """|Q| <= mu, by not one unit in the last place more."""
-    kappa_V = np.geomspace(1e-7, 1e5, 400)
-    for alpha in (1.5, 11.6, 1e3):
-        scene = vr.Scene(alpha, KAPPA, MU)
-        star = vr.contact(scene, kappa_V / KAPPA, delta=0.0, fields="delta_star").delta_star
-        for gap in (1e-15, 1e-13, 1e-11, 1e-9):
-            assert vr.contact(scene, kappa_V / KAPPA, delta=star * (1.0 - gap), fields="Q").Q.max() <= MU
-
-
 # --- signs and V = 0 ---
-
-
-@settings(max_examples=60, deadline=None)
-@given(ALPHAS, st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
-def test_signs_mirror_bit_for_bit(alpha, V, omega):
-    """Eqs. (17), (18): V alone carries M, omega - V carries Q."""
-    scene = vr.Scene(alpha, KAPPA, MU)
-    here, mirror = vr.contact(scene, V, omega=omega), vr.contact(scene, -V, omega=-omega)
-    assert (mirror.Q, mirror.M) == (-here.Q, -here.M)
-    for name in ("lam", "zeta", "epsilon", "delta_star", "beta", "full_slip"):
-        assert getattr(mirror, name) == getattr(here, name)
-    if V != 0.0:
-        assert mirror.delta == here.delta
-    assert np.sign(here.Q) in (0.0, np.sign(omega - V))
-    if abs(V) > np.finfo(float).tiny / MU or V == 0.0:  # below, M may round to 0
-        assert np.sign(here.M) == (np.sign(V) if alpha > 1.0 else 0.0)
 
 
 @settings(max_examples=60, deadline=None)
 @given(ALPHAS, KAPPA_VS, st.floats(0.0, 1.5))
 def test_all_four_signs_of_V_and_delta(alpha, kappa_V, s):
+    """Eqs. (17), (18), to the bit: V alone carries M, omega - V carries Q; slopes by V and omega are even, but for
+    the sign of Q at one V."""
     scene = vr.Scene(alpha, KAPPA, MU)
     V = kappa_V / KAPPA
     delta = s * delta_star(scene, V)
-    base = vr.contact(scene, V, delta=delta)
+    base = vr.contact(scene, V, delta=delta, slopes=True)
+    assert np.sign(base.Q) == np.sign(delta)
+    assert np.sign(base.M) == (alpha > 1.0)
     for sign_V in (1.0, -1.0):
         for sign_delta in (1.0, -1.0):
-            state = vr.contact(scene, sign_V * V, delta=sign_delta * delta)
+            state = vr.contact(scene, sign_V * V, delta=sign_delta * delta, slopes=True)
             assert state.Q == sign_V * sign_delta * base.Q
             assert state.M == sign_V * base.M
-            assert (state.beta, state.lam, state.full_slip) == (base.beta, base.lam, base.full_slip)
+            for name in ("lam", "zeta", "epsilon", "delta_star", "beta", "full_slip", "dM_dV", "dQ_domega"):
+                assert getattr(state, name) == (getattr(base, name)), name
+            assert state.dQ_dV == sign_delta * base.dQ_dV
+            assert state.dQ_ddelta == sign_V * base.dQ_ddelta
 
 
 def test_delta_and_omega_are_the_same_question():
@@ -291,21 +263,6 @@ def test_slope_by_V_at_slight_creep():
         assert close(slope, float(exact), rel=tol.SLOPE_SLIGHT, what=s)
 
 
-@settings(max_examples=40, deadline=None)
-@given(ALPHAS, st.floats(-4.6, 4.6).map(math.exp), st.floats(0.05, 0.9), st.sampled_from([-1.0, 1.0]))
-def test_slopes_against_differences(alpha, kappa_V, s, sign):
-    """All signs, and omega given: central differences in double precision."""
-    scene = vr.Scene(alpha, KAPPA, MU)
-    V = sign * kappa_V / KAPPA
-    omega = V * (1.0 + s * delta_star(scene, V))
-    state = vr.contact(scene, V, omega=omega, slopes=True)
-    h = 1e-3 * (1.0 - s) * s * abs(state.delta_star * V)
-    around = vr.contact(scene, [V + h, V - h, V, V], omega=[omega, omega, omega + h, omega - h])
-    numeric = np.diff(around.Q.reshape(2, 2))[:, 0] / (-2.0 * h)
-    assert close(numeric[0], state.dQ_dV, rel=tol.SLOPE_DIFFERENCE)
-    assert close(numeric[1], state.dQ_domega, rel=tol.SLOPE_DIFFERENCE)
-
-
 def test_slopes_of_full_slip_and_rest():
     slip = vr.contact(SCENE, [1.0, -1.0], delta=[1.0, -1.0], slopes=True)
     for name in ("dQ_dV", "dQ_ddelta", "dQ_domega"):
@@ -331,26 +288,6 @@ def test_fields_asked_for_and_no_others():
     with pytest.raises(AttributeError):
         _ = whole.dQ_dV
     assert set(vr.contact(SCENE, 1.0, delta=0.01, fields=(), slopes=True).as_dict()) == set(SLOPES)
-
-
-def test_one_field_alone_is_the_same_bit_for_bit():
-    V, delta = np.array([0.3, -2.0, 1e-4, 0.0]), np.array([0.01, -0.005, 1.0, 1e-3])
-    for name in FIELDS + SLOPES:
-        alone = getattr(vr.contact(SCENE, V, delta=delta, fields=name), name)
-        together = getattr(vr.contact(SCENE, V, delta=delta, slopes=name in SLOPES), name)
-        assert np.array_equal(alone, together), name
-
-
-@pytest.mark.parametrize("method", ["table", "direct"])
-def test_scalar_equals_array_bit_for_bit(method):
-    rng = np.random.default_rng(3)
-    V, omega = rng.uniform(-2, 2, 40), rng.uniform(-2, 2, 40)
-    omega[::2] = V[::2] * (1.0 + rng.uniform(-0.02, 0.02, 20))
-    many = vr.contact(SCENE, V, omega=omega, method=method)
-    for i in range(V.size):
-        one = vr.contact(SCENE, V[i], omega=omega[i], method=method)
-        for name in FIELDS:
-            assert getattr(one, name) == getattr(many, name)[i]
 
 
 def test_types_of_scalar_results():
@@ -398,20 +335,6 @@ def test_bad_input():
     assert issubclass(vr.ParameterError, ValueError)
 
 
-def test_a_state_is_the_same_bits_in_any_company():
-    """300 states with an alpha each over all speeds, alpha = 1 among them, solved side by side and one by one."""
-    rng = np.random.default_rng(5)
-    alpha, V = 1.0 + 10.0 ** rng.uniform(-8, 6, 300), 10.0 ** rng.uniform(-4, 4, 300) * rng.choice([-1.0, 1.0], 300)
-    alpha[::50], V[::7], V[7] = 1.0, 10.0 ** rng.uniform(-30, 30, 43), 0.0
-    scene = vr.Scene(alpha, 10.0 ** rng.uniform(-2, 2, 300), 0.3)
-    s = np.where(rng.uniform(size=300) < 0.3, 10.0 ** rng.uniform(-20, 0, 300), rng.uniform(0.0, 1.05, 300))
-    delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
-    together = vr.contact(scene, V, delta=delta)
-    for i in range(300):
-        alone = vr.contact(vr.Scene([alpha[i], 2.0], scene.kappa[i], 0.3), V[i], delta=delta[i])
-        assert all(getattr(together, name)[i] == getattr(alone, name)[0] for name in FIELDS), i
-
-
 def test_a_stick_zone_that_rounds_to_nothing():
     """One rounding below delta_star, where L - D may round to 0: slip is not full, and there is no beta below 0."""
     draw = np.random.default_rng(6)
@@ -422,15 +345,6 @@ def test_a_stick_zone_that_rounds_to_nothing():
         assert not state.full_slip.any()
         assert ((state.beta >= 0.0) & (state.beta < tol.CONTACT)).all()
         assert close(state.Q, mu, rel=tol.CONTACT)
-
-
-def test_differences_of_an_elastic_contact():
-    """alpha = 1: F(z) = z, H(z) = z^2, of neighbours too."""
-    for zeta, share in ((3.0, 0.5), (1e-3, 1e-6), (1e8, 1e-12)):
-        D = share * zeta
-        rise_F, rise_H = differences(zeta, zeta - D, D, standard(1.0))
-        assert rise_F == D
-        assert close(rise_H, (2.0 - share) * D, rel=tol.CONTACT)
 
 
 def test_printed_traction_is_refused_where_it_has_no_digits():

@@ -90,19 +90,6 @@ def test_any_speed():
     assert (rest.Q.tolist(), rest.M.tolist(), rest.lam.tolist()) == ([0.0, 0.2], [0.0, 0.0], [1.0, 1.0])
 
 
-def test_the_same_bits_in_any_company():
-    alpha, kappa, mu, V, s = states(300, 3)
-    found, delta = solved(alpha, kappa, mu, V, s, slopes=True)
-    order = np.random.default_rng(4).permutation(alpha.size)
-    sorted_by = np.argsort(alpha)
-    for picked in (order, sorted_by, order[:7]):
-        again = vr.contact(
-            vr.Scene(alpha[picked], kappa[picked], mu[picked]), V[picked], delta=delta[picked], slopes=True
-        )
-        for name, value in again.as_dict().items():
-            assert np.array_equal(value, getattr(found, name)[picked], equal_nan=True), name
-
-
 def test_an_alpha_each_is_that_alpha_alone():
     """Rows of the axis and those of a table of its own: both to rounding."""
     alpha, kappa, mu, V, s = states(60, 5)
@@ -196,20 +183,6 @@ def test_a_material_each_is_that_material_alone(name):
             rel = rel / near if field == "beta" or field.startswith("dQ") else rel
             pair = getattr(found, field)[:, n], getattr(alone, field)
             assert close(*pair, rel=rel, scale=scales.get(field, 0.0), what=(field, n))
-
-
-@pytest.mark.parametrize("name", ["3 modes", "each"])
-def test_materials_have_the_same_bits_in_any_company(name):
-    many = MATERIALS[name]()
-    V, delta = np.geomspace(1e-4, 1e6, len(many)), 1e-3
-    found = vr.contact(vr.Scene(material=many, kappa=2.91, mu=0.2), V, delta=delta, slopes=True)
-    for some in (slice(0, 3), slice(2, None)):
-        again = vr.contact(vr.Scene(material=many[some], kappa=2.91, mu=0.2), V[some], delta=delta, slopes=True)
-        for field, value in again.as_dict().items():
-            assert np.array_equal(value, getattr(found, field)[some]), field
-    crossed = vr.contact(vr.Scene(material=many, kappa=2.91, mu=0.2), V[:, None], delta=delta)
-    for field, value in crossed.as_dict().items():
-        assert np.array_equal(np.diagonal(value), getattr(found, field)), field
 
 
 def test_one_material_in_an_array_at_many_speeds():

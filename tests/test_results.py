@@ -10,7 +10,6 @@ import tolerances as tol
 from closeness import close
 from matplotlib.figure import Figure
 from places import ROOT
-from processes import printed
 from refusals import refused
 
 import viscoroll as vr
@@ -67,13 +66,6 @@ def test_each_is_equal_to_itself_alone(results):
             assert result != other
 
 
-def test_si_units_are_on_the_axes_and_in_the_text(results):
-    assert "m/s" in repr(ROLLER) or "Pa" in repr(ROLLER)
-    assert "m s-1" in repr(results["motion in SI"])
-    assert any("m s$^{-1}$" in axes.get_ylabel() for axes in results["motion in SI"].plot().axes)
-    assert results["contact in SI"].to_xarray()["Q"].attrs["units"] == "N m-1"
-
-
 def test_axes_are_named_after_what_varies(results):
     data = results["contact"].to_xarray()
     assert data["Q"].dims == ("V", "delta")
@@ -118,18 +110,6 @@ def test_validity_of_motions(results):
     each = vr.ensemble(SCENE.replace(mu=np.linspace(0.1, 0.3, 400)), 1.0, 0.5, 1e-3)
     assert each.validity().small_contact.value.shape == (256,)
     assert "unsteadiness" in str(found)
-
-
-def test_figures_are_not_loaded_until_drawn():
-    code = "import sys, viscoroll as vr; repr(vr.PAPER_SECTION_5); vr.contact; print('matplotlib' in sys.modules)"
-    assert printed(code).split()[-1] == "False"
-
-
-def test_plot_writes_where_it_is_told(results, tmp_path):
-    results["motion in SI"].plot(tmp_path / "motion.png")
-    assert (tmp_path / "motion.png").stat().st_size > 1000
-    with pytest.raises(vr.OutputError, match="suffix"):
-        results["motion in SI"].plot(tmp_path / "motion.word")
 
 
 def test_a_table_of_pandas_knows_its_units(results):

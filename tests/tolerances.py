@@ -251,7 +251,7 @@ FLOW_ONSET = 2e-12
 #: energy lost, over that at the start: as FLOW_SPEED, but twice, the energy being a square; measured 7.6e-10.
 FLOW_LOSS = 2e-9
 
-# --- a hostile host (test_hostile.py) ---
+# --- a hostile host (test_invariance.py) ---
 #: Numbers below it, and inverses of them, may become 0 or infinite where subnormals are flushed: products of a few.
 SUBNORMAL = 1e-290
 #: Directed rounding against round-to-nearest, over the largest of a field: sums that all err to one side;

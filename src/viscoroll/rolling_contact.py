@@ -114,7 +114,7 @@ def contact(
     some milliseconds and kept.  A state's result depends on nothing else in the call.
 
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
-    however they broadcast (``tests/test_hostile.py``).
+    however they broadcast (``tests/test_invariance.py``).
     """
     checked_scene(scene, "contact")
     if (delta is None) == (omega is None):

@@ -62,22 +62,6 @@ def test_ensemble_is_roll_bit_for_bit_at_one_alpha(many):
         assert result.steps[i] == motion.steps
 
 
-def test_threads_bit_for_bit():
-    """300 motions are five blocks."""
-    V0, omega0 = starts(300)
-    one, two, five = (vr.ensemble(SCENE, V0, omega0, T, fields=FIELDS, threads=n) for n in (1, 2, 5))
-    for name in (*FIELDS, "onset_time", "rest_time", "status", "switches", "steps"):
-        assert equal(getattr(one, name), getattr(two, name)), name
-        assert equal(getattr(one, name), getattr(five, name)), name
-
-
-def test_any_subset_is_the_same_bit_for_bit():
-    V0, omega0 = starts(100)
-    whole = vr.ensemble(SCENE, V0, omega0, T)
-    part = vr.ensemble(SCENE, V0[70:90], omega0[70:90], T)
-    assert equal(whole.V[70:90], part.V)
-
-
 def test_progress_bar_only_when_it_takes_long(capsys, monkeypatch):
     V0, omega0 = starts(300)
     vr.ensemble(SCENE, V0, omega0, T)  # compiles
@@ -205,20 +189,6 @@ def test_to_xarray_and_back_from_a_file(many, tmp_path):
     assert again.alpha.dims == (("motion",) if many.shape else ())
     assert again.attrs["Conventions"] == "CF-1.11"
     assert equal(again.V.values, result.V)
-
-
-def test_nothing_half_written(tmp_path):
-    """A failure leaves the old file as it was and no temporary one."""
-    path = tmp_path / "ensemble.nc"
-    write_dataset(vr.ensemble(SCENE, 1.5, 0.5, T).to_xarray(), path)
-    before = path.read_bytes()
-    broken = xr.Dataset({"V": ("t", np.array([object()], dtype=object))})
-    with pytest.raises(ValueError, match="arbitrary Python objects"):
-        write_dataset(broken, path)
-    assert path.read_bytes() == before
-    assert [p.name for p in tmp_path.iterdir()] == ["ensemble.nc"]
-    with pytest.raises(vr.OutputError, match="cannot be written"):
-        write_dataset(xr.Dataset(), tmp_path / "absent" / "ensemble.nc")
 
 
 BAD_CALLS = [

@@ -105,7 +105,7 @@ def ensemble(
     there on are NaN, and :meth:`Ensemble.messages` counts such motions.
 
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
-    motions (``tests/test_hostile.py``).
+    motions (``tests/test_invariance.py``).
     """
     checked_scene(scene, "ensemble", moves=True)
     times, names = output_times(t), _names(fields)
