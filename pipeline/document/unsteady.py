@@ -37,7 +37,7 @@ def errors(results: Results) -> str:
         for start in _STARTS:
             found = [one for each in results["transient"]["rows"] for one in each[start]["e"] if one[0] == level]
             for n in range(2):
-                e = [100.0 * one[n + 1] for one in found]
+                e = [100.0 * one[n + 1] for one in found if one[n + 1] is not None]
                 row[f"{start}{n}"] = f"{two(min(e))} to {two(max(e))} ({two(statistics.median(e))}) %" if e else ""
         rows.append(row)
     return listed(columns, rows)
