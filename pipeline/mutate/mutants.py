@@ -93,6 +93,8 @@ MOTION = [
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _MOTION),
     ("motion/output.py", "(scene.j * half_space - cylinder)", "(half_space - scene.j * cylinder)", _MOTION),
     ("motion/integrate.py", "on_edge = sigma * here(inside, stick, clock, case)[1].rate < 0.0", "on_edge = False", "tests/motion/test_nasty_starts.py"),
+    ("motion/rates.py", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.5 * n * V_rate", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.4 * n * V_rate", "tests/motion/test_unsteady.py"),
+    ("rows/added.py", "whole += law.added[start + row]", "whole -= law.added[start + row]", "tests/motion/test_unsteady.py"),
     ("motion/integrate.py", "p / (inertia + load.per_V * (1.0 + delta))", "p / (inertia + load.per_V * (1.0 - delta))", "tests/motion/test_sets_out.py"),
     ("motion/events.py", "    for _ in range(_STEPS):\n", "    for _ in range(0):\n", "tests/motion/test_sets_out.py"),
 ]  # fmt: skip

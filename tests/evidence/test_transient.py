@@ -48,7 +48,7 @@ def test_errors_and_ways_are_those_of_finer_cells(which, steady, rest):
 
 
 def test_the_added_mass_cuts_the_error():
-    """As committed: within 2 % of V up to an unsteadiness of 0.03, but while a start from rest lasts; a quarter to 0.1."""
+    """Within 2 % of V up to an unsteadiness of 0.03, but while a start from rest lasts; a quarter of it up to 0.1."""
     rows = json.loads((RESULTS / "transient.json").read_text())["rows"]
     for start, lasts in (("steady", 0.0), ("rest", 0.3)):
         found = [e for row in rows for e in row[start]["e"]]
