@@ -8,17 +8,13 @@ from collections.abc import Callable
 import numpy as np
 
 from viscoroll.materials import law_table
-from viscoroll.materials import tables as material_tables
 from viscoroll.motion import Ensemble, flow
 
 
 def forget() -> None:
     """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
     flow._recent.clear()
-    material_tables._kept.materials.clear()
     law_table._made.cache_clear()
-    material_tables._series_table.cache_clear()
-    material_tables._pair_tables.cache_clear()
 
 
 def taken_beside(call: Callable[[], Ensemble]) -> int:

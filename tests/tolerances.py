@@ -92,16 +92,9 @@ SLOPE_SLIGHT = 1e-10
 #: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
 SLOPE_DIFFERENCE = 2e-5
 
-# --- materials/tables.py (test_material_tables.py) ---
-#: F, H and m from a table against Bessel ratios, relative; measured 1.5e-15.
+# --- one material against an alpha each (test_material_tables.py) ---
+#: g, h and m of a series of one mode against those by its Bessel ratios, relative; measured 1e-15.
 TABLE = 1e-14
-#: Their slopes, relative, and differences for slight creep, which are slopes; measured 6e-13.
-TABLE_SLOPE = 1e-12
-#: The slope of b, which itself holds the slopes of g and h: from where the unknown of the slow manifold is counted, no
-#: more; measured 1.1e-12 at alpha = 1e4.
-TABLE_B_SLOPE = 1e-11
-#: The alpha up to which that holds.
-SLOPES_OF_B = 1e6
 #: Motions of one material against those of the same alpha each, at rtol 1e-9: half of the stated error of either.
 KINDS = 1e-9
 #: Many states at one alpha against 50 digits, relative, beta times 1/(1 - s): Q loses a digit where 1 - H(eta)/H(zeta)
@@ -362,7 +355,7 @@ PAIR_SWAPPED = 1e-12
 #: Dundurs' constant and wave speeds: quotients of a few roundings.
 PAIR = 1e-14
 
-# --- materials/prony.py, kernels/material/series.py (test_prony.py) ---
+# --- materials/prony.py, kernels/rows/series.py (test_prony.py) ---
 #: One form from the other for one mode: roundings of a product or two.
 SERIES_FORMS = 1e-14
 #: Q Q^T - 1 and Q^T t - e of up to 12 modes: each entry is a product of 2 N gaps; measured 8e-15 at 29 modes.
@@ -400,8 +393,6 @@ BODIES = 1e-12
 BODIES_DIFFERENCE = 1e-7
 #: Their parts of m together, by a table, against m; measured 3e-15.
 SHARES = 1e-14
-#: Each against the sum over its modes, over m; measured 2.1e-15, and 4e-14 between two ways of adding up.
-SHARES_OF_MODES = 1e-13
 #: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
 BODIES_LIMIT = 1e-2
 

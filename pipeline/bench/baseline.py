@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.numerics.bracket import narrowed, secant
 from viscoroll.kernels.printed.law import (
     direct_contact_length,
     direct_delta_star,
@@ -174,6 +173,20 @@ def error_norm(sticking, u, K, limit, rtol, sigma, j):
     largest = max(abs(u[0]), abs(omega))
     scale = max(1e-3 * largest, min(largest, abs(u[0] + j * omega) / (1.0 + j)))
     return max(abs(K[7, 0]), abs(K[7, 1])) / (scale * _SHARE * rtol)
+
+
+@compiled
+def secant(low, high, at_low, at_high):
+    """Where the straight line through both ends is zero."""
+    return low + (high - low) * at_low / (at_low - at_high)
+
+
+@compiled
+def narrowed(low, high, at_low, at_high, side, middle, value):
+    """(low, high, at_low, at_high, side) with ``middle`` as an end: low if ``side`` is +1, high if -1; 0 at first."""
+    if value > 0.0:
+        return middle, high, value, at_high * (0.5 if side == 1 else 1.0), 1
+    return low, middle, at_low * (0.5 if side == -1 else 1.0), value, -1
 
 
 @compiled

@@ -23,9 +23,9 @@ from viscoroll.kernels.bessel.ratios import (
     ratio_k,
     ratio_r,
 )
-from viscoroll.kernels.material.functions import generators, standard
 
 from ..peers.reduction import slip_differences
+from ..peers.standard import generators, standard
 from ..timing import nanoseconds, rounds
 from ..truth import contact_precise
 from .jit import compiled

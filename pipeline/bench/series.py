@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.materials import tables as material_tables
+from viscoroll.materials.law_table import made
 
 from ..timing import nanoseconds, rounds, seconds_of
 
@@ -64,10 +64,6 @@ def spread(random: np.random.Generator, modes: int, count: int) -> Any:
 
 
 def built(scene: vr.Scene) -> float | None:
-    """Milliseconds that the table of a series takes where none is on disk; None where nothing is built ahead."""
-    material, _ = scene.in_own_time()
-    if not isinstance(material, vr.Prony):
-        return None
-    modes = material.modes
-    bins = material_tables._bins(modes.a[-1], modes.b[0])
-    return 1e3 * seconds_of(lambda: material_tables._filled(material_tables.series(material), *bins))[0]
+    """Milliseconds that the rows of a series or a pair take; None of an alpha."""
+    material = scene.material
+    return 1e3 * seconds_of(lambda: made(material))[0] if isinstance(material, vr.Prony | vr.Bodies) else None

@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.material.functions import standard
 
 from ..bench.jit import compiled
 from .reduction import Scene, creep_speeds, partial_rates, slow_D
+from .standard import standard
 
 ENGINE = "numbalsoda" if find_spec("numbalsoda") else "scipy"
 #: share of rtol that the absolute tolerance is; 1e-3 and less cost half as much again for the same error

@@ -24,8 +24,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from viscoroll.kernels.compile.jit import kernel
-from viscoroll.kernels.law.stick import differences
-from viscoroll.kernels.material.functions import at_contact, generator_slopes, generators
+
+from .standard import at_contact, differences, generator_slopes, generators
 
 #: differences of g and h, which are at most min(zeta, 1/2), lose digits where D is a small
 #: part of that: there they are integrated instead

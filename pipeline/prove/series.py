@@ -15,10 +15,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.contact_fields import OF_BODIES
-from viscoroll.kernels.material.functions import at_contact, generators
-from viscoroll.kernels.material.series import AT_HALF_SPACE, Parts, room, values
-from viscoroll.kernels.material.series import shares as parts_of
-from viscoroll.materials.tables import record, series
+from viscoroll.kernels.rows.series import LANES, room_of, values
+from viscoroll.materials.law_modes import series_of
 
 from ..truth import series as raw
 from ..truth import spectral
@@ -60,8 +58,16 @@ def relative(found: float, truth: Any) -> float:
     return float(abs(mpmath.mpf(float(found)) / truth - 1))
 
 
+def of_z(p: vr.Prony, z: float, weights: Any = None) -> list[float]:
+    """g, h and what of m is the half-space's and the cylinder's, by the modes."""
+    work = room_of(p.E.size)
+    values((z, z, z, z), False, series_of(p.modes, weights), work)
+    shift, rise, half_space, cylinder, _ = work.found[::LANES].tolist()
+    return [shift * z, rise * z, half_space, cylinder]
+
+
 def functions(random: np.random.Generator, modes: int, count: int) -> Claim:
-    """g, h and m, as contact and motion read them, over all z."""
+    """g, h and m, which rows are made of, over all z."""
     claim = Claim(
         f"g, h, m of {modes} mode{'s' * (modes > 1)}",
         f"times over up to {DECADES:g} decades, z from the least e^-{BELOW:g} to the longest e^{ABOVE:g}", CONDITIONS,
@@ -69,12 +75,10 @@ def functions(random: np.random.Generator, modes: int, count: int) -> Claim:
     for n in tqdm(range(count), desc=claim.claim, leave=False):
         if n % 10 == 0:  # ten z a material
             p = random_series(random, modes)
-            table = record(p)
             known = raw.rates(mpmath, p.E.tolist(), p.tau.tolist())
-        z = float(np.exp(random.uniform(np.log(table.tau) - BELOW, np.log(p.T[0]) + ABOVE)))
-        truth = raw.functions(mpmath, known, z)
-        found = (*generators(z, table), at_contact(z, table)[4])
-        pairs = zip(found, (truth.g, truth.h, truth.m), strict=True)
+        z = float(np.exp(random.uniform(np.log(p.tau[-1]) - BELOW, np.log(p.T[0]) + ABOVE)))
+        truth, (g, h, half_space, cylinder) = raw.functions(mpmath, known, z), of_z(p, z)
+        pairs = zip((g, h, half_space + cylinder), (truth.g, truth.h, truth.m), strict=True)
         claim.add([relative(value, exact) for value, exact in pairs], at(z=z) + f", {p!r}")
     return claim
 
@@ -150,15 +154,10 @@ def chebyshev(random: np.random.Generator, count: int) -> Claim:
     )  # fmt: skip
     for _ in tqdm(range(count), desc="Chebyshev", leave=False):
         p = random_series(random, int(random.integers(1, 5)), 3.0, (-1.0, 1.0))
-        table = record(p)
         z = float(p.tau[-1] * 10.0 ** random.uniform(-2.0, np.log10(THICKEST)))
         other, weights = spectral.contact(p, z, TERMS), random.random(p.T.size)
-        known, places = Parts(**series(p)._asdict(), weights=weights), (z, z, z, z)
-        work = room(known)
-        values(places, False, known, work)
-        parts_of(places, known, work)
-        half_space = work.found[AT_HALF_SPACE]
-        found = np.array([*generators(z, table), at_contact(z, table)[4], half_space])
+        g, h, half_space, cylinder = of_z(p, z, weights)
+        found = np.array([g, h, half_space + cylinder, half_space])
         claim.add(abs(found / [*other[:3], weights @ other.shares] - 1.0), at(z=z) + f", {p!r}")
     return claim
 

@@ -17,8 +17,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.kernels.bessel import layout as layout
-from viscoroll.kernels.material.functions import generators, standard
 
+from ..peers.standard import generators, standard
 from ..truth.check_values import EDGE_ALPHAS
 from .claim import Claim
 

@@ -11,10 +11,10 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.kernels.material.functions import generators, standard
 from viscoroll.validation.states import random_states
 from viscoroll.validation.stresses import closures
 
+from ..peers.standard import generators, standard
 from ..truth.check_values import chosen_alpha
 from ..truth.enclosures import (
     INPUTS,

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from itertools import pairwise
 from typing import Any, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks
 from .checks import broadcast_shape, checked
 from .labels import unlabelled
-from .materials.prony import Prony
+from .materials.bodies import Bodies
+from .materials.law_modes import kernel_series
 from .materials.prony_array import MaterialArray
-from .materials.tables import series
 from .results import Values
 from .rolling_contact import contact, shaped
 from .scene import Scene, checked_scene
 from .typed import Numbers
+
+Array = NDArray[np.float64]
 
 _BLOCK = 1 << 15
 
@@ -58,8 +61,7 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
-    from .kernels.law.stress_loop import Points, stress_loop
-    from .kernels.material.functions import Own
+    from .kernels.law.stress import Points, stress_loop
 
     checked_scene(scene, "stress")
     plain, labels = unlabelled({"x": x, "V": V, "delta": delta, "omega": omega})
@@ -68,18 +70,14 @@ def stress(
     state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
-    many = isinstance(scene.material, MaterialArray)
-    material, unit = scene.in_own_time()
+    many = scene.material if isinstance(scene.material, MaterialArray) else None
     given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
-    given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta")}
-    given |= {"zeta": np.asarray(state.zeta) / unit}
-    given |= {"alpha": np.arange(len(material), dtype=np.float64) if many else scene.alpha}
+    given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta", "zeta")}
+    given |= {"alpha": scene.alpha if many is None else np.arange(len(many), dtype=np.float64)}
     given |= {"mirror": mirror, "sign": np.sign(state.delta) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
     x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
-    modes = series(material) if isinstance(material, Prony) else None
-    loop = _stresses(material) if many else lambda alphas, *rest: stress_loop(modes or Own(alphas), *rest)
     count = int(np.prod(shape))
     p, tau = np.empty(count), np.empty(count)
 
@@ -87,7 +85,11 @@ def stress(
         mirrored = mirror_of(start, stop) * x_of(start, stop)
         mirrored.flags.writeable = False  # as all that a kernel reads, see elements
         points = Points(mirrored, *(part(start, stop) for part in others))
-        loop(alpha_of(start, stop), points, p[start:stop], tau[start:stop], 0, stop - start)
+        numbers, out = alpha_of(start, stop), (p[start:stop], tau[start:stop])
+        if many is not None:
+            _of_each(many, numbers, points, out)
+        else:
+            stress_loop(*kernel_series(numbers if scene.series is None else scene.series), points, *out)
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
@@ -96,7 +98,12 @@ def stress(
     return Values(found, given, title="Stresses", labels=labels)
 
 
-def _stresses(materials: MaterialArray) -> Callable:
-    from .contact_each import stresses_each
+def _of_each(materials: MaterialArray, numbers: Array, points: Any, out: tuple[Array, Array]) -> None:
+    """The stresses at points with a material each, which lie together where they share one."""
+    from .kernels.law.stress import stress_loop
 
-    return stresses_each(materials)
+    for first, last in pairwise([0, *(1 + np.flatnonzero(np.diff(numbers))), out[0].size]):
+        own = materials[int(numbers[min(first, numbers.size - 1)])]
+        own = own.total if isinstance(own, Bodies) else own
+        some = points._make(part[first:last] if part.size > 1 else part for part in points)
+        stress_loop(*kernel_series(own), some, *(part[first:last] for part in out))

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from .blocks import elements, flattened, run_blocks
 from .contact_fields import SLOPES, SLOPES_OF_BODIES, UNSTEADY
 from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
+from .materials.law_modes import unsteadiness
 from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
-from .materials.tables import unsteadiness
 from .scale import OF_TIME
 
 #: states of a block, where each has a material of its own, which takes some kilobytes, and where not

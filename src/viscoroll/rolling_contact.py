@@ -173,7 +173,6 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> No
 def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
     """The fields ``names`` by the printed equations, a row each, of alpha, kappa, mu, V and the creep."""
     from .kernels.law.states import ROWS, States
-    from .kernels.material.functions import Own
     from .kernels.printed.loop import direct_loop
 
     count = int(np.prod(shape))
@@ -185,7 +184,7 @@ def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool,
         found = np.empty((len(names), stop - start))
         kappa, mu, V, creep = (part(start, stop) for part in parts)
         states = States(kappa, mu, V, creep, creep_is_omega)
-        status: int = direct_loop(Own(alphas(start, stop)), states, rows, found, 0, stop - start)
+        status: int = direct_loop(alphas(start, stop), states, rows, found, 0, stop - start)
         out[:, start:stop] = found
         return status
 

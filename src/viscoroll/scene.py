@@ -156,20 +156,13 @@ class Scene:
     def in_own_time(self) -> tuple[Any, float]:
         """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
 
-        Of a material each as they are: a block finds the own time of each (:func:`.materials.tables.records`).
+        Of a material each as they are: a block finds the own time of each (:mod:`.materials.law_each`).
         """
         if self.series is None:
             if isinstance(self.material, BodiesArray) and self.material.like:
                 return self.material.cylinder, 1.0
             return self.alpha if self.material is None else self.material, 1.0
         return _in_own_time(self.series)
-
-    @property
-    def kernel_material(self) -> Any:
-        """What the kernels count the parts of M by: bodies that differ, else as :meth:`in_own_time`."""
-        if isinstance(self.material, Bodies) and not self.like_bodies:
-            return self.material.in_own_time()[0]
-        return self.in_own_time()[0]
 
     @property
     def like_bodies(self) -> bool:

@@ -43,24 +43,24 @@ SYMBOLS = {
     "t": Symbol("t", "time", ">= 0", "Sect. 4"),
     "x": Symbol("x", "distance travelled", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
     "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
-    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/law/state.py"),
-    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/law/state.py"),
+    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/rows/contact.py"),
+    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/rows/contact.py"),
     "lam": Symbol(
         r"\lambda",
         "contact length over contact length at rest",
         "[alpha^(-1/2), 1]",
         "Eq. (6)",
-        "kernels/law/length.py",
+        "kernels/rows/law.py",
     ),
     "epsilon": Symbol(
-        r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)", "kernels/law/state.py"
+        r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)", "kernels/rows/contact.py"
     ),
-    "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)", "kernels/law/length.py"),
+    "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)", "kernels/rows/law.py"),
     "beta": Symbol(
-        r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/law/stick.py"
+        r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/rows/contact.py"
     ),
-    "Q": Symbol("Q", "traction", "[-mu, mu]", "Eqs. (15), (17)", "kernels/law/stick.py"),
-    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)", "kernels/material/standard.py"),
+    "Q": Symbol("Q", "traction", "[-mu, mu]", "Eqs. (15), (17)", "kernels/rows/contact.py"),
+    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)", "kernels/rows/series.py"),
     "C_rr": Symbol(
         r"C_\mathrm{rr}",
         "coefficient of rolling resistance M/(P R); M of a scene is this",
@@ -79,8 +79,8 @@ SYMBOLS = {
     "rate_slow": Symbol(
         r"\lambda_2", "rate of the slower small disturbance", "finite", "Eq. (22)", "equilibria/result.py"
     ),
-    "M_half_space": Symbol("M_h", "part of M in the half-space", "finite", "", "kernels/material/pair.py"),
-    "M_cylinder": Symbol("M_c", "part of M in the cylinder", "finite", "", "kernels/material/pair.py"),
+    "M_half_space": Symbol("M_h", "part of M in the half-space", "finite", "", "kernels/rows/series.py"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder", "finite", "", "kernels/rows/series.py"),
     "N": Symbol(
         "N",
         "moment for each unit of V', M = M(V) + N V' in slow changes",
@@ -90,13 +90,13 @@ SYMBOLS = {
     ),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
-    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/law/stick.py"),
+    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),
     "kappa_M": Symbol(
         r"\kappa M",
         "kappa times rolling resistance moment over P R",
         ">= 0",
         "Eq. (16)",
-        "kernels/material/standard.py",
+        "kernels/rows/series.py",
     ),
     "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)", "kernels/law/stress.py"),
     "tau": Symbol(

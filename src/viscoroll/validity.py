@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .free_rolling import Strained
+from .materials.law_table import by_modes
 from .materials.measured import Measured
 from .materials.prony import Prony
-from .materials.tables import record
 from .results import Row, as_html, as_text
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
@@ -115,17 +114,10 @@ def passage(V: Any, length: Any) -> Any:
 
 def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
     """kappa V at which the contact is passed at two rates; all over T_ref."""
-    from .kernels.material.functions import generators
-
-    if not series.E.size:
-        return low, high
-    own, unit = series.in_own_time()
-
-    def speed(rate: float) -> float:
-        zeta = 0.5 / (rate * unit)
-        return rate / math.sqrt(1.0 + 2.0 * generators(zeta, record(own))[1] / zeta)  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
-
-    return speed(low), speed(high)
+    rates = np.array([low, high])
+    _, rise, *_ = by_modes(series, 0.5 / rates)
+    low, high = (rates / np.sqrt(1.0 + 2.0 * rise)).tolist()  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
+    return low, high
 
 
 def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:

@@ -1,7 +1,6 @@
 """What a scene does not need is not done: calls of kernels are counted, run as plain Python; imports are compared.
 
-That a bin of a table is made once is in test_material_tables.py, that a flow map is built once in
-test_flow.py, that fields not asked for are not there in test_contact.py.
+That a flow map is built once is in test_flow.py, that fields not asked for are not there in test_contact.py.
 """
 
 from __future__ import annotations
@@ -76,10 +75,9 @@ def test_what_is_not_asked_for_is_not_read(calls):
 
 
 def test_at_rest_nothing_is_integrated(calls):
-    """No law is asked: neither a length nor a Bessel ratio."""
+    """No Bessel ratio is asked for."""
     for name in ("rest", "below rest"):
         assert calls[name][RATIOS] == 0, name
-        assert not {"law.length", "law.stick"} & calls[name].keys(), name
     assert (vr.ensemble(SCENE, np.zeros(5), 0.0, [1.0, 2.0], method="integrate").steps <= 1).all()
 
 

@@ -14,9 +14,6 @@ from closeness import close
 import viscoroll as vr
 from viscoroll import contact_table
 from viscoroll.contact_fields import FIELDS
-from viscoroll.kernels.law.stick import differences
-from viscoroll.kernels.material.functions import at_contact, standard
-from viscoroll.kernels.material.tabulated import tabulated
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -63,35 +60,6 @@ def test_against_the_law_by_ratios(alpha):
     for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M", "beta"):
         error = abs(getattr(many, name) / getattr(single, name) - 1.0)
         assert (error * ((1.0 - s) if name == "beta" else 1.0)).max() <= tol.SLICE, name
-
-
-@pytest.mark.parametrize("alpha", [1.0 + 1e-12, *ALPHAS, 1e12])
-def test_the_table_against_ratios(alpha):
-    """F, H and m, their slopes, and the differences that slight creep asks for."""
-    rng = np.random.default_rng(21)
-    by_ratios, by_table = standard(alpha), tabulated(alpha)
-    for low, high in ((-300.0, -5.0), (-5.0, 6.0), (6.0, 40.0)):
-        for z in np.exp(rng.uniform(low, high, 300)):
-            exact, found = (np.array(at_contact(z, each)) for each in (by_ratios, by_table))
-            g, h, dg, dh, m, _, b, _ = exact
-            error = abs(found - exact)
-            assert error[0] <= tol.TABLE * (z + g)
-            assert error[1] <= tol.TABLE * (0.5 * z + h)
-            assert error[4] <= tol.TABLE * m
-            assert error[6] <= tol.TABLE * b
-            assert error[2] <= tol.TABLE_SLOPE * (1.0 + dg)
-            assert z * error[3] <= tol.TABLE_SLOPE * (z + h + z * dh)
-            assert z * error[5] <= tol.TABLE_SLOPE * m
-            # beyond, the second slopes of the ratios lose digits in proportion to alpha
-            assert z * error[7] <= tol.TABLE_B_SLOPE * b or alpha > tol.SLOPES_OF_B
-            D = z * 10.0 ** rng.uniform(-15.0, -1.0)
-            rises = (np.array(differences(z, z - D, D, each)) for each in (by_ratios, by_table))
-            assert close(*rises, rel=tol.TABLE_SLOPE)
-
-
-def test_no_number_stays_no_number():
-    assert np.isnan(at_contact(np.nan, tabulated(11.0))).all()
-    assert close(at_contact(np.inf, tabulated(11.0))[:4], at_contact(np.inf, standard(11.0))[:4], rel=tol.TABLE)
 
 
 @pytest.mark.parametrize("alpha", ALPHAS)

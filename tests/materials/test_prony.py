@@ -13,10 +13,8 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.truth import series as raw
-from viscoroll.kernels.material import series as kernels
-from viscoroll.kernels.material.functions import at_contact, generators
-from viscoroll.kernels.material.standard import standard
-from viscoroll.materials.tables import record, series
+from viscoroll.materials.law_modes import series_of
+from viscoroll.materials.law_table import by_modes
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -47,7 +45,7 @@ def test_forms_belong_together(drawn):
     """Q is orthogonal, Q^T t = e, times interlace, and creep gives relaxation back."""
     p = random_series(*drawn)
     m = p.modes
-    known = series(p)
+    known = series_of(m)
     assert abs(known.Q @ known.Q.T - np.eye(m.a.size)).max() <= tol.SERIES_ORTHOGONAL
     assert abs(known.Q.T @ known.t - known.e).max() <= tol.SERIES_ORTHOGONAL * known.e.max()
     assert (m.b < m.a).all()
@@ -110,37 +108,25 @@ def scene(material: vr.Prony, **changes: float) -> vr.Scene:
 
 @pytest.mark.parametrize(("seed", "decades"), [*((n, (0.1, 14.0)) for n in range(6)), (15, (31.0, 32.0))])
 def test_functions_against_the_conditions_as_they_stand(seed, decades):
-    """Exact kernels and their table, from the instantaneous to the long-time limit."""
+    """From the instantaneous to the long-time limit."""
     draw = np.random.default_rng(seed)
     p = random_series(int(draw.integers(1, 9)), draw.uniform(*decades), draw.uniform(-2.0, 4.0), seed)
-    known, table = series(p), record(p)
-    room = kernels.room(known)
+    z = np.exp(draw.uniform(np.log(p.tau[-1]) - 30.0, np.log(p.T[0]) + 28.0, 12))
+    shift, rise, half_space, cylinder = by_modes(p, z)
+    assert np.array_equal(half_space, cylinder)
     with mp.workdps(DIGITS + int(decades[1])):
-        exact_rates = raw.rates(mp, p.E.tolist(), p.tau.tolist())
-        for z in np.exp(draw.uniform(np.log(table.tau) - 30.0, np.log(p.T[0]) + 28.0, 12)):
-            exact = raw.functions(mp, exact_rates, z)
-            kernels.values((z, z, z, z), True, known, room)
-            g, h, m = room.found[kernels.AT_G : kernels.AT_B : kernels.LANES]
-            for found in ((g, h, m), (*generators(z, table), at_contact(z, table)[4])):
-                for value, truth in zip(found, (exact.g, exact.h, exact.m), strict=True):
-                    assert abs(mp.mpf(float(value)) / truth - 1) <= tol.SERIES_FUNCTIONS, z
+        known = raw.rates(mp, p.E.tolist(), p.tau.tolist())
+        exact = [raw.functions(mp, known, at) for at in z]
+        for found, name in ((shift * z, "g"), (rise * z, "h"), (half_space + cylinder, "m")):
+            truth = [float(getattr(each, name)) for each in exact]
+            assert close(found, truth, rel=tol.SERIES_FUNCTIONS), name
 
 
 @pytest.mark.parametrize("alpha", [1.5, 11.0, 300.0])
 def test_one_mode_is_the_law_of_bessel_ratios(alpha):
     p = vr.Prony.creep([(alpha - 1.0) / alpha], [1.0], alpha=alpha)
-    table, by_ratios = record(p), standard(alpha)
-    for z in np.exp(np.random.default_rng(3).uniform(-60.0, 60.0, 500)):
-        g, h, dg, dh, m, dm, b, db = at_contact(z, by_ratios)
-        error = abs(np.array(at_contact(z, table)) - (g, h, dg, dh, m, dm, b, db))
-        assert error[0] <= tol.TABLE * (z + g)
-        assert error[1] <= tol.TABLE * h
-        assert error[4] <= tol.TABLE * m
-        assert error[6] <= tol.TABLE * b
-        assert error[2] <= tol.TABLE_SLOPE * (1.0 + dg)
-        assert z * error[3] <= tol.TABLE_SLOPE * (z + h + z * dh)
-        assert z * error[5] <= tol.TABLE_SLOPE * m
-        assert z * error[7] <= tol.TABLE_B_SLOPE * b
+    z = np.exp(np.random.default_rng(3).uniform(-60.0, 60.0, 500))
+    assert close(by_modes(p, z), by_modes(alpha, z), rel=tol.TABLE)
 
 
 @settings(max_examples=40, deadline=None)
@@ -148,16 +134,16 @@ def test_one_mode_is_the_law_of_bessel_ratios(alpha):
 def test_shape_of_the_functions(drawn):
     """z^2 < H < alpha z^2, 0 < g < T_mean/2, g < h, F' > 1, H' > 0, m rises from 0 to T_mean."""
     p = random_series(*drawn)
-    table = record(p)
-    z = np.geomspace(1e-3 * table.tau, 1e3 * p.T[0], 200)
-    g, h, dg, dh, m, _, _, _ = np.array([at_contact(at, table) for at in z.tolist()]).T
+    z = np.geomspace(1e-3 * p.tau[-1], 1e3 * p.T[0], 200)
+    shift, rise, half_space, cylinder = by_modes(p, z)
+    g, h, m = shift * z, rise * z, half_space + cylinder
     rounding = tol.SERIES_FUNCTIONS * p.T_mean
     assert (0.0 < g).all()
     assert (g < 0.5 * p.T_mean + rounding).all()
     assert (g < h + rounding).all()
     assert (2.0 * h < (p.alpha - 1.0) * z * (1.0 + tol.SERIES_FUNCTIONS)).all()
-    assert (dg > -tol.TABLE_SLOPE).all()
-    assert (z + h + z * dh > 0.0).all()
+    assert (np.diff(z + g) > 0.0).all()
+    assert (np.diff(z * z + 2.0 * z * h) > 0.0).all()
     assert (np.diff(m) > -rounding).all()
     assert (m < p.T_mean + rounding).all()
 
@@ -227,16 +213,14 @@ def test_states_alone_and_in_company(drawn, speed, s):
     many = vr.contact(one, np.full(MANY, V), delta=delta)
     for name in ("lam", "epsilon", "delta_star", "Q", "M"):
         assert getattr(many, name)[-1] == getattr(alone, name)
-    material, unit = p.in_own_time()
-    assert p.in_own_time()[0] is material  # every call of contact asks
-    table, zeta = record(material), alone.zeta / unit
-    g, h = generators(zeta, table)
-    g_eta, h_eta = generators(alone.beta * zeta, table)
-    own = V * unit
-    assert close((zeta * zeta + 2.0 * zeta * h) * (20.0 * own) ** 2, 1.0, rel=tol.SERIES_STATES)
-    eta = alone.beta * zeta
-    assert close((zeta + g - eta - g_eta) * 0.3 * own, delta, rel=tol.SERIES_CLOSURE)
-    share = (eta * eta + 2.0 * eta * h_eta) / (zeta * zeta + 2.0 * zeta * h)
+    (shift, rise, *_), (shift_eta, rise_eta, *_) = (
+        by_modes(p, np.array([z])) for z in (alone.zeta, alone.beta * alone.zeta)
+    )
+    zeta, eta = alone.zeta, alone.beta * alone.zeta
+    H, H_eta = zeta * zeta * (1.0 + 2.0 * rise), eta * eta * (1.0 + 2.0 * rise_eta)
+    assert close(H * (20.0 * V) ** 2, 1.0, rel=tol.SERIES_STATES)
+    assert close((zeta * (1.0 + shift) - eta * (1.0 + shift_eta)) * 0.3 * V, delta, rel=tol.SERIES_CLOSURE)
+    share = H_eta / H
     assert close(1.0 - share, alone.Q / 0.3, rel=tol.SERIES_CLOSURE)
 
 

@@ -9,10 +9,9 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
+from pipeline.prove.series import of_z
 from pipeline.truth import series as raw
 from pipeline.truth import spectral
-from viscoroll.kernels.material import series as kernels
-from viscoroll.materials.tables import series
 
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: close times, where elimination with pivots loses ten digits
@@ -30,7 +29,7 @@ def test_rates_from_either_form():
 
 @pytest.mark.parametrize(("p", "z"), [(TWO, 0.003), (TWO, 0.7), (CLOSE, 0.02), (CLOSE, 6.421246641356969)])
 def test_chebyshev_against_the_conditions_and_the_kernels(p, z):
-    found, known = spectral.contact(p, z, 220), series(p)
+    found = spectral.contact(p, z, 220)
     with mp.workdps(60):
         rates = raw.rates(mp, p.E.tolist(), p.tau.tolist())
         truth = raw.functions(mp, rates, z)
@@ -39,11 +38,7 @@ def test_chebyshev_against_the_conditions_and_the_kernels(p, z):
     assert close(found.shares, shares, rel=tol.CHEBYSHEV)
     assert close(sum(shares), float(truth.m), rel=tol.SERIES_FORMS)
     for j in range(p.T.size):
-        weighted = kernels.Parts(**known._asdict(), weights=np.eye(p.T.size)[j])
-        room = kernels.room(weighted)
-        kernels.values((z, z, z, z), False, weighted, room)
-        kernels.shares((z, z, z, z), weighted, room)
-        part, rest = room.found[kernels.AT_HALF_SPACE], room.found[kernels.AT_CYLINDER]
+        _, _, part, rest = of_z(p, z, np.eye(p.T.size)[j])
         assert close(part, shares[j], rel=tol.SERIES_FUNCTIONS)
         assert close(part + rest, float(truth.m), rel=tol.SERIES_FORMS)
 

@@ -1,8 +1,7 @@
 """Rolling resistance over speed: the humps of M(V), and between them the branches on which it can be inverted.
 
-kappa M is one function of kappa V for a material, and zeta, which falls as the speed rises, gives both
-(:mod:`..kernels.law.steady_loop`).  A gain G on the speed turns M(V) = load into M(V) - G V = load, which is the same
-with another curve.
+kappa M is one function of u = kappa V for a material.  A gain G on the speed turns M(V) = load into M(V) - G V = load,
+which is the same with another curve.
 """
 
 from __future__ import annotations
@@ -15,20 +14,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact_table import states_of
 from ..errors import ParameterError
-from ..materials.bodies import Bodies
-from ..materials.prony import Prony
-from ..materials.tables import record
+from ..materials.law_table import LawTable, law_table
 from ..scene import Scene, checked_scene
 from .zeros import zeros
 
-#: zeta in the material's own time that is looked at, and of it octaves beyond the shortest and the longest time that
-#: are looked at closely: farther out the curve has one simple extremum at most
-_LEAST, _MOST = -432, 432
-_MARGIN = 14
-#: nodes an octave, close and far; an extremum keeps others away by this part of zeta
+#: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
+#: extremum at most
+_MARGIN, _WIDE = 15, 446
+#: nodes an octave, close and far; an extremum keeps others away by this part of u
 _CLOSE, _FAR, _APART = 16, 2, 1e-6
-#: kappa times a load, and a gain over the own time, that the nodes reach
+#: kappa times a load, and a gain over the longest time, that the nodes reach
 LEAST_LOAD, MOST_LOAD = 1e-120, 1e80
 _GAINS = (1e-40, 1e8)
 
@@ -45,41 +42,10 @@ class Humps(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Law:
-    """The material of a scene in its own time.
-
-    material : an alpha or a series, of both bodies together.  bodies : the same, or both where they are not alike.
-    unit : the own time over T_ref.
-    """
-
-    material: float | Prony
-    bodies: float | Prony | Bodies
-    unit: float
-
-    @classmethod
-    def of(cls, scene: Scene) -> Law:
-        """That of a scene."""
-        material, unit = scene.in_own_time()
-        return cls(material, scene.kernel_material, unit)
-
-    @property
-    def elastic(self) -> bool:
-        """Whether nothing relaxes."""
-        return self.material == 1.0
-
-    @property
-    def T_mean(self) -> float:
-        """M/V of slow rolling, over T_ref."""
-        own = self.material.T_mean if isinstance(self.material, Prony) else (self.material - 1.0) / self.material
-        return own * self.unit
-
-
-@dataclass(frozen=True)
 class Branches:
     """kappa (M - G V) over the speed: nodes by rising speed, and those between which it is monotone."""
 
-    zeta: NDArray[np.float64]
-    speed: NDArray[np.float64]
+    u: NDArray[np.float64]
     rise: NDArray[np.float64]
     flat: NDArray[np.bool_]
     gain: float
@@ -89,13 +55,13 @@ class Branches:
     @property
     def curve(self) -> Any:
         """The nodes as kernels take them."""
-        from ..kernels.law.steady_loop import Curve
+        from ..kernels.rows.steady import Curve
 
-        return Curve(self.zeta, self.rise, self.flat, self.gain)
+        return Curve(self.u, self.rise, self.flat, self.gain)
 
     def crossed(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which loads meet this branch; an extremum, and loads next to it, belong to the branch that ends in it."""
-        from ..kernels.law.steady_loop import SNAP
+        from ..kernels.rows.steady import SNAP
 
         first, last = self.rise[self.first[branch]], self.rise[self.last[branch]]
         inside = (load > min(first, last)) & (load < max(first, last))
@@ -131,54 +97,56 @@ def humps(scene: Scene) -> Humps:
     for name in ("alpha", "kappa"):
         if np.ndim(getattr(scene, name)):
             raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")
-    law = Law.of(scene)
-    if law.elastic:
+    law = law_of(scene)
+    if law.alpha == 1.0:
         return Humps(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
-    found = branches(law.material, 0.0)
-    V, M = found.speed[found.flat] / (scene.kappa * law.unit), found.rise[found.flat] / scene.kappa
+    found = branches(law, 0.0)
+    V, M = found.u[found.flat] / scene.kappa, found.rise[found.flat] / scene.kappa
     return Humps(V, M, np.arange(V.size) % 2 == 0)
 
 
+def law_of(scene: Scene) -> LawTable:
+    """The law of one material or pair."""
+    given: Any = scene.alpha if scene.material is None else scene.material
+    return scene.law or law_table(given)
+
+
 @lru_cache(maxsize=16)
-def branches(material: float | Prony, gain: float) -> Branches:
-    """The curve of a material in its own time, and a gain in that.
+def branches(law: LawTable, gain: float) -> Branches:
+    """The curve of a material and a gain.
 
     Raises
     ------
     ParameterError
         A gain that the nodes do not reach.
     """
-    if gain and not _GAINS[0] <= abs(gain) <= _GAINS[1]:
-        raise ParameterError("gain on V", f"{gain:g}", f"0, or of a size in [{_GAINS[0]:g}, {_GAINS[1]:g}]")
-    nodes = grid(material)
-    flat = np.exp2(zeros(lambda x: _rows(material, gain, np.exp2(x))[2], nodes))
-    zeta = np.exp2(nodes)
+    longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
+    if gain and not _GAINS[0] <= abs(gain) / longest <= _GAINS[1]:
+        low, high = (bound * longest for bound in _GAINS)
+        raise ParameterError("gain on V", f"{gain:g}", f"0, or of a size in [{low:g}, {high:g}]")
+    nodes = grid(law)
+    flat = np.exp2(zeros(lambda x: _curve(law, gain, np.exp2(x))[1], nodes))
+    u = np.exp2(nodes)
     for at in flat:
-        zeta = zeta[np.abs(zeta - at) > _APART * at]
-    whole = np.concatenate([zeta, flat])
-    order = np.argsort(-whole)
-    zeta, is_flat = whole[order], order >= zeta.size
-    speed, rise, _ = _rows(material, gain, zeta)
-    ends = np.concatenate([[0], np.flatnonzero(is_flat), [zeta.size - 1]])
-    return Branches(zeta, speed, rise, is_flat, gain, ends[:-1].copy(), ends[1:].copy())
+        u = u[np.abs(u - at) > _APART * at]
+    whole = np.concatenate([u, flat])
+    order = np.argsort(whole)
+    is_flat, u = order >= u.size, whole[order]
+    ends = np.concatenate([[0], np.flatnonzero(is_flat), [u.size - 1]])
+    return Branches(u, _curve(law, gain, u)[0], is_flat, gain, ends[:-1].copy(), ends[1:].copy())
 
 
-def grid(material: float | Prony) -> NDArray[np.float64]:
-    """Nodes of log2(zeta), ascending: close where the material relaxes."""
-    if isinstance(material, Prony):
-        shortest, longest = 1.0 / material.modes.a[-1], 1.0 / material.modes.b[0]
-    else:
-        shortest, longest = 1.0 / material, 1.0
-    low, high = math.floor(math.log2(shortest)) - _MARGIN, math.ceil(math.log2(longest)) + _MARGIN
-    parts = (_LEAST, low, _FAR), (low, high, _CLOSE), (high, _MOST, _FAR)
+def grid(law: LawTable) -> NDArray[np.float64]:
+    """Nodes of log2(u), ascending: close where the material relaxes."""
+    times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
+    low, high = math.floor(-math.log2(times.max())) - _MARGIN, math.ceil(-math.log2(times.min())) + _MARGIN
+    parts = (low - _WIDE, low, _FAR), (low, high, _CLOSE), (high, high + _WIDE, _FAR)
     steps = [np.linspace(start, stop, (stop - start) * per, endpoint=False) for start, stop, per in parts]
-    return np.concatenate([*steps, [_MOST]])
+    return np.concatenate([*steps, [high + _WIDE]])
 
 
-def _rows(material: float | Prony, gain: float, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
-    """kappa V, kappa (M - gain V) and its slope at zeta."""
-    from ..kernels.law.steady_loop import curve_loop
-
-    out = np.empty((3, zeta.size))
-    curve_loop(record(material), gain, np.ascontiguousarray(zeta), out)
-    return out
+def _curve(law: LawTable, gain: float, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """kappa (M - gain V) and its slope over kappa V."""
+    one = np.ones(1)
+    rows = states_of(law, [one, one, one, u, np.zeros(1)], u.shape, False, ("M", "dM_dV"))
+    return rows - gain * np.stack([u, np.ones(u.size)])

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..labels import Labels
 from ..results import Row, Shown, short, unit_of
 from ..symbols import attributes
+from . import row
 from .loads import Loads
 from .reason import Reasons
 
@@ -163,12 +164,10 @@ class States:
     eigenvalues: NDArray[np.complex128]
 
     @classmethod
-    def of(cls, loads: Loads, load: NDArray, sign: NDArray, rows: NDArray, unit: float) -> States:
-        """From the rows of a kernel, in the material's own time and a frame where V > 0."""
-        from ..kernels.law import steady_loop as row
-
-        slopes = unit * rows[[row.DQ_DV, row.DQ_DOMEGA, row.DM_HALF_SPACE, row.DM_CYLINDER]]
-        V, delta = sign * rows[row.V] / unit, rows[row.DELTA]
+    def of(cls, loads: Loads, load: NDArray, sign: NDArray, rows: NDArray) -> States:
+        """From the rows of :mod:`row`."""
+        slopes = rows[[row.DQ_DV, row.DQ_DOMEGA, row.DM_HALF_SPACE, row.DM_CYLINDER]]
+        V, delta = sign * rows[row.V], rows[row.DELTA]
         return cls(
             load, V, V * (1.0 + delta), delta, sign * rows[row.Q], sign * rows[row.M_HALF_SPACE],
             sign * rows[row.M_CYLINDER], rows[row.BETA], _eigenvalues(slopes, loads, loads.j[load]),

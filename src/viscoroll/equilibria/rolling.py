@@ -7,7 +7,6 @@ M(V) = force + torque, from which V, and Q = torque - M_cylinder, from which the
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +14,15 @@ from numpy.typing import NDArray
 from ..drive import Feedback
 from ..errors import ParameterError
 from ..labels import unlabelled
+from ..materials.law_table import LawTable
 from ..scene import Scene, checked_scene
 from ..typed import Numbers
 from .loads import Loads, loads_of
 from .reason import reasons_of
-from .resistance import LEAST_LOAD, MOST_LOAD, Law, branches
+from .resistance import LEAST_LOAD, MOST_LOAD, branches, law_of
 from .result import States, Steady, packed
 from .scan import scanned
-from .solve import crossings, lengths, states_at
+from .solve import crossings, states_at
 
 
 def steady(
@@ -66,7 +66,7 @@ def steady(
     For |force + torque| below the largest M(V) there are two equilibria a hump, on its rising and its falling
     branch; they need |Q| < mu.  force + torque = 0: V = 0 alone, where ``delta`` and ``eigenvalues`` are those
     of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic bodies without a drive; Q = mu
-    exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan of V, some 0.05 s a load.
+    exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan of V, some 0.02 s a load.
 
     Stability is that of (V, omega) under force and torque as named, also where V was given.  Without feedback
     det = (dQ/domega) M'(V)/j, so the falling branch of a hump is a saddle.
@@ -78,7 +78,8 @@ def steady(
     plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
     force, torque, slope, V = plain.values()
     loads = loads_of(scene, force, torque, slope, V)
-    law = Law.of(scene)
+    law = law_of(scene)
+    elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
     if loads.given is not None:
         rolling = _at_speed(law, loads)
@@ -86,11 +87,11 @@ def steady(
         rolling = scanned(law, loads)
     else:
         rolling = _under_load(law, loads)
-    neutral = law.elastic and loads.given is None and not gained
+    neutral = elastic and loads.given is None and not gained
     states = States.joined(rolling, States.at_rest(loads, _resting(loads, neutral), law.T_mean))
     held = states.held()
     number = np.bincount(held.load, minlength=loads.mu.size)
-    top = (math.nan, math.nan) if gained or law.elastic else _top(law)
+    top = (math.nan, math.nan) if gained or elastic else _top(law)
     return packed(loads, held, number, reasons_of(loads, number, states, top, neutral)).labelled(labels)
 
 
@@ -102,32 +103,30 @@ def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:
     return np.flatnonzero((total == 0.0) & ((np.abs(loads.torque) > loads.mu) | (not neutral)))
 
 
-def _top(law: Law) -> tuple[float, float]:
+def _top(law: LawTable) -> tuple[float, float]:
     """The largest kappa M, and kappa V there."""
-    found = branches(law.material, 0.0)
+    found = branches(law, 0.0)
     n = int(np.argmax(found.rise))
-    return float(found.rise[n]), float(found.speed[n]) / law.unit
+    return float(found.rise[n]), float(found.u[n])
 
 
-def _under_load(law: Law, loads: Loads) -> States:
+def _under_load(law: LawTable, loads: Loads) -> States:
     """All states of rolling under loads without a gain on omega."""
-    gain, total = loads.gains.V / law.unit, loads.kappa * (loads.force + loads.torque)
+    gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
     size = np.abs(total)
     wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
     if wrong.any():
         allowed = f"0, or of a size in [{LEAST_LOAD:g}, {MOST_LOAD:g}]"
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
-    if not gain and law.elastic:
+    if not gain and law.alpha == 1.0:
         return States.none()
-    load, sign, zeta = crossings(law, gain, total)
-    return states_at(law, loads, load, sign, zeta)
+    load, sign, u = crossings(law, gain, total)
+    return states_at(law, loads, load, sign, u / loads.kappa[load])
 
 
-def _at_speed(law: Law, loads: Loads) -> States:
+def _at_speed(law: LawTable, loads: Loads) -> States:
     """The states at given speeds but 0, where one of force and torque is found."""
     assert loads.V is not None
     load = np.flatnonzero(loads.V)
     speed = loads.V[load]
-    zeta = lengths(law, loads.kappa[load] * np.abs(speed) * law.unit)
-    states = states_at(law, loads, load, np.sign(speed), zeta)
-    return replace(states, V=speed, omega=speed * (1.0 + states.delta))
+    return states_at(law, loads, load, np.sign(speed), np.abs(speed))

@@ -6,7 +6,7 @@ With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu where the contact slips fully
 
 Between the speeds where omega - V is 0 or the limit of stick, which are found first, R is smooth.  Where fw + qw = 0
-the sum fixes V, and R is an equation in omega.  All here is in the own time of the material and in a frame where V > 0.
+the sum fixes V, and R is an equation in omega.  All here is in a frame where V > 0.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials.tables import record
+from ..materials.law_table import LawTable
+from . import row
 from .loads import Loads
-from .resistance import Law, grid
+from .resistance import grid
 from .result import States
-from .solve import crossings, lengths, solved
+from .solve import contact_at, crossings, rows_at
 from .zeros import zeros
 
 #: nodes that an interval of V within the stick limit is cut into, and those of a slip between its limits
@@ -35,9 +36,9 @@ _ROUNDING = 2e-15
 
 
 class _Case(NamedTuple):
-    """One load along the motion: force and torque at rest, their gains in own time; kappa, mu."""
+    """One load along the motion: force and torque at rest, their gains; kappa, mu."""
 
-    law: Law
+    law: LawTable
     f: float
     q: float
     fV: float
@@ -48,59 +49,45 @@ class _Case(NamedTuple):
     mu: float
 
     def at(self, x: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
-        """(V, M, M_half_space, slip at the limit of stick) at log2(zeta)."""
-        from ..kernels.law.steady_loop import law_loop
+        """(V, M, M_half_space, slip at the limit of stick) at x = log2(kappa V)."""
+        V = np.exp2(x) / self.kappa
+        M, M_half_space, star = contact_at(self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star")
+        return V, M, M_half_space, star * V
 
-        out = np.empty((4, x.size))
-        law_loop(record(self.law.bodies), np.exp2(x), out)
-        V = out[0] / self.kappa
-        return V, V * out[1], V * out[1] * out[2], self.mu * V * V * out[3]
-
-    def rows(self, zeta: NDArray, slip: NDArray) -> NDArray:
-        """The rows of ``slip_loop``."""
-        from ..kernels.law.steady_loop import ROWS, slip_loop
-
-        out = np.empty((len(ROWS), zeta.size))
-        solved(
-            "creep",
-            lambda start, stop: slip_loop(record(self.law.bodies), zeta, slip, self.kappa, self.mu, out, start, stop),
-            zeta.size,
-        )
-        return out
+    def rows(self, V: NDArray, slip: NDArray) -> NDArray:
+        """Rows of :mod:`row` where omega - V is given, full slip included."""
+        return rows_at(self.law, self.kappa, self.mu, V, slip / V)
 
     def slip(self, V: NDArray, M: NDArray) -> NDArray:
         """omega - V by the sum of the equations."""
         return (M - (self.fV + self.qV + self.fw + self.qw) * V - (self.f + self.q)) / (self.fw + self.qw)
 
     def excess(self, x: NDArray, slip: NDArray) -> NDArray:
-        """R at log2(zeta) and omega - V."""
-        from ..kernels.law import steady_loop as row
-
-        zeta = np.exp2(x)
-        rows = self.rows(zeta, slip)
-        V = rows[row.V]
-        return rows[row.Q] - rows[row.M_HALF_SPACE] + self.f + self.fV * V + self.fw * (V + slip)
+        """R at x and omega - V."""
+        V = np.exp2(x) / self.kappa
+        Q, M_half_space = contact_at(self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space")
+        return Q - M_half_space + self.f + self.fV * V + self.fw * (V + slip)
 
 
-def scanned(law: Law, loads: Loads) -> States:
+def scanned(law: LawTable, loads: Loads) -> States:
     """All states of rolling but rest."""
-    gains, unit = loads.gains, law.unit
+    gains = loads.gains
     parts = [States.none()]
     for n in range(loads.mu.size):
         for sign in (1.0, -1.0):
             case = _Case(
-                law, sign * loads.force[n], sign * loads.torque[n], gains.force_V / unit, gains.force_omega / unit,
-                gains.torque_V / unit, gains.torque_omega / unit, loads.kappa[n], loads.mu[n],
+                law, sign * loads.force[n], sign * loads.torque[n], gains.force_V, gains.force_omega, gains.torque_V,
+                gains.torque_omega, loads.kappa[n], loads.mu[n],
             )  # fmt: skip
             x, slip = _over_V(case) if case.fw + case.qw else _over_slip(case)
-            rows = _polished(case, np.exp2(x), slip)
+            rows = _polished(case, np.exp2(x) / case.kappa, slip)
             count = rows.shape[1]
-            parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows, unit))
+            parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows))
         parts += _on_the_spot(law, loads, n)
     return States.joined(*parts)
 
 
-def _on_the_spot(law: Law, loads: Loads, n: int) -> list[States]:
+def _on_the_spot(law: LawTable, loads: Loads, n: int) -> list[States]:
     """V = 0 and omega not, where friction and force balance to the bit."""
     gains, total = loads.gains, loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
@@ -111,14 +98,14 @@ def _on_the_spot(law: Law, loads: Loads, n: int) -> list[States]:
     if side * loads.mu[n] + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
     case = _Case(law, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, loads.kappa[n], loads.mu[n])
-    slowest = case.rows(np.exp2(grid(law.material)[-1:]), np.ones(1))
-    spinning = States.of(loads, np.array([n]), np.array([side]), slowest, law.unit)
+    slowest = case.rows(np.exp2(grid(law)[:1]) / case.kappa, np.ones(1))
+    spinning = States.of(loads, np.array([n]), np.array([side]), slowest)
     zero, speed, creep = np.zeros(1), np.array([omega]), np.array([math.inf])
     return [replace(spinning, V=zero, omega=speed, delta=creep, M_half_space=zero, M_cylinder=zero)]
 
 
 def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
-    """log2(zeta) and slip of every state, where omega follows from V."""
+    """x and slip of every state, where omega follows from V."""
 
     def excess(x: NDArray) -> NDArray:
         V, M, _, _ = case.at(x)
@@ -131,7 +118,7 @@ def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
 
         return of
 
-    nodes = grid(case.law.material)
+    nodes = grid(case.law)
     edges = np.concatenate([zeros(beyond(part), nodes) for part in (-1.0, 0.0, 1.0)])
     nodes = np.unique(np.concatenate([nodes, edges]))
     V, M, _, limit = case.at(nodes)
@@ -148,11 +135,11 @@ def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
 
 
 def _over_slip(case: _Case) -> tuple[NDArray, NDArray]:
-    """log2(zeta) and slip of every state, where the sum of the equations fixes V."""
+    """x and slip of every state, where the sum of the equations fixes V."""
     total = np.array([case.kappa * (case.f + case.q)])
-    _, sign, zeta = crossings(case.law, case.fV + case.qV, total)
+    _, sign, u = crossings(case.law, case.fV + case.qV, total)
     places, slips = [np.empty(0)], [np.empty(0)]
-    for x in np.log2(zeta[sign > 0.0]):
+    for x in np.log2(u[sign > 0.0]):
         V, _, M_half_space, limit = (float(values[0]) for values in case.at(np.array([x])))
         rest = M_half_space - case.f - (case.fV + case.fw) * V  # Q + fw slip
 
@@ -168,16 +155,14 @@ def _over_slip(case: _Case) -> tuple[NDArray, NDArray]:
     return np.concatenate(places), np.concatenate(slips)
 
 
-def _polished(case: _Case, zeta: NDArray, slip: NDArray) -> NDArray:
+def _polished(case: _Case, V: NDArray, slip: NDArray) -> NDArray:
     """Rows of the states after some steps of Newton's iteration in V and slip; one that does not help is left out.
 
     Where the contact passes from slip to slip within rounding of V, two zeros are one state, or none.
     """
-    from ..kernels.law import steady_loop as row
-
-    rows = case.rows(zeta, slip)
+    rows = case.rows(V, slip)
     off = _residuals(case, rows, slip)
-    for _ in range(_POLISH if zeta.size else 0):
+    for _ in range(_POLISH if V.size else 0):
         a, b = rows[row.DQ_DV], rows[row.DQ_DOMEGA]
         one, other = rows[row.DM_HALF_SPACE], rows[row.DM_CYLINDER]
         gained = case.fw + case.qw
@@ -187,14 +172,12 @@ def _polished(case: _Case, zeta: NDArray, slip: NDArray) -> NDArray:
         with np.errstate(divide="ignore", invalid="ignore"):
             dV = (off[0] * rest_slip - off[1] * sum_slip) / det
             dslip = (off[1] * sum_V - off[0] * rest_V) / det
-            V = rows[row.V] - dV
-        good = np.isfinite(V) & np.isfinite(dslip) & (np.abs(dV) < 1e-3 * rows[row.V])
-        new_slip = np.where(good, slip - dslip, slip)
-        new_zeta = np.where(good, lengths(case.law, case.kappa * np.where(good, V, rows[row.V])), zeta)
-        new_rows = case.rows(new_zeta, new_slip)
+        good = np.isfinite(dslip) & (np.abs(dV) < 1e-3 * V)
+        new_V, new_slip = np.where(good, V - dV, V), np.where(good, slip - dslip, slip)
+        new_rows = case.rows(new_V, new_slip)
         new_off = _residuals(case, new_rows, new_slip)
         better = good & (np.abs(new_off).sum(axis=0) < np.abs(off).sum(axis=0))
-        zeta, slip = np.where(better, new_zeta, zeta), np.where(better, new_slip, slip)
+        V, slip = np.where(better, new_V, V), np.where(better, new_slip, slip)
         rows, off = np.where(better, new_rows, rows), np.where(better, new_off, off)
     V, delta = rows[row.V], rows[row.DELTA]
     left = np.abs(off).max(axis=0) <= _LEFT * (case.mu + np.abs(rows[row.M_HALF_SPACE]) + np.abs(rows[row.M_CYLINDER]))
@@ -207,8 +190,6 @@ def _polished(case: _Case, zeta: NDArray, slip: NDArray) -> NDArray:
 
 def _residuals(case: _Case, rows: NDArray, slip: NDArray) -> NDArray:
     """What is left of the sum of the equations, and of that along V."""
-    from ..kernels.law import steady_loop as row
-
     V, M_half_space = rows[row.V], rows[row.M_HALF_SPACE]
     omega = V + slip
     force = case.f + case.fV * V + case.fw * omega

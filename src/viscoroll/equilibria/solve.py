@@ -1,26 +1,49 @@
-"""States of steady rolling from kernels, over arrays and on threads."""
+"""States of steady rolling from the rows of the law, over arrays and on threads.
+
+At V and Q the creep follows without a root: by Eq. (15) H(eta) = (1 - |Q|/mu) H(zeta), which is Eq. (6) at the speed
+V/root, root^2 = 1 - |Q|/mu, so that delta = delta_star(V) - root delta_star(V/root), beta = root lam(V/root)/lam(V).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import run_blocks, solve_blocks
-from ..materials.tables import record
+from ..blocks import run_blocks
+from ..contact_table import states_of
+from ..materials.law_table import LawTable
+from . import row
 from .loads import Loads
-from .resistance import Law, branches
+from .resistance import branches
 from .result import States
 
 _BLOCK = 1 << 12
+#: |Q|/mu up to which delta is first taken from its slope at 0, and up to which a step of Newton's iteration makes it
+#: exact: the difference cancels
+_SLIGHT, _CANCELS = 1e-8, 0.2
 
 
-def crossings(law: Law, gain: float, total: NDArray[np.float64]) -> tuple[NDArray, NDArray, NDArray]:
-    """(load, sign of V, zeta) wherever kappa (M - gain V) meets a total."""
-    from ..kernels.law.steady_loop import crossing_loop
+def contact_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> NDArray[np.float64]:
+    """Fields of the contact, a row each."""
+    given = [np.asarray(value, dtype=np.float64) for value in (1.0, kappa, mu, V, delta)]
+    return states_of(law, given, V.shape, False, names)
 
-    found = branches(law.material, gain)
+
+def rows_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> NDArray[np.float64]:
+    """The rows of :mod:`row` at V > 0 and a creep."""
+    moments = "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV"
+    rows = np.stack([V, delta, *contact_at(law, kappa, mu, V, delta, "Q", *moments)])
+    rows[row.DQ_DV] -= rows[row.DQ_DOMEGA] * (1.0 + delta)
+    return rows
+
+
+def crossings(law: LawTable, gain: float, total: NDArray[np.float64]) -> tuple[NDArray, NDArray, NDArray]:
+    """(load, sign of V, kappa |V|) wherever kappa (M - gain V) meets a total."""
+    from ..kernels.rows.steady import crossing_loop
+
+    found = branches(law, gain)
     pairs = []
     for sign in (1.0, -1.0):
         for branch in range(found.first.size):
@@ -28,38 +51,38 @@ def crossings(law: Law, gain: float, total: NDArray[np.float64]) -> tuple[NDArra
             pairs.append((of, np.full(of.size, sign), np.full(of.size, branch)))
     load, sign_of, place = (np.concatenate(each) for each in zip(*pairs, strict=True))
     met, first, last = sign_of * total[load], found.first[place], found.last[place]
-    curve, zeta = found.curve, np.empty(load.size)
+    curve, u = found.curve, np.empty(load.size)
 
     def work(start: int, stop: int) -> None:
-        crossing_loop(record(law.material), curve, met, first, last, zeta, start, stop)
+        crossing_loop(law.record, curve, met, first, last, u, start, stop)
 
     run_blocks(work, load.size, _BLOCK)
-    return load, sign_of, zeta
+    return load, sign_of, u
 
 
-def lengths(law: Law, kappa_V: NDArray[np.float64]) -> NDArray[np.float64]:
-    """zeta of kappa V > 0, both in the material's own time."""
-    from ..kernels.law.steady_loop import length_loop
-
-    zeta = np.empty(kappa_V.size)
-    solved("length", lambda start, stop: length_loop(record(law.material), kappa_V, zeta, start, stop), zeta.size)
-    return zeta
-
-
-def states_at(law: Law, loads: Loads, load: NDArray, sign: NDArray, zeta: NDArray[np.float64]) -> States:
-    """Steady states at zeta, in the frame where V > 0 (``sign`` says which), friction sufficing or not."""
-    from ..kernels.law.steady_loop import BOTH, FORCE, ROWS, TORQUE, Candidates, state_loop
-
-    given = {None: BOTH, "torque": TORQUE, "force": FORCE}[loads.given]
-    candidates = Candidates(
-        zeta, sign * loads.force[load], sign * loads.torque[load], loads.gains.force_V / law.unit,
-        loads.gains.torque_V / law.unit, loads.kappa[load], loads.mu[load], given,
-    )  # fmt: skip
-    rows = np.empty((len(ROWS), load.size))
-    solved("creep", lambda start, stop: state_loop(record(law.bodies), candidates, rows, start, stop), load.size)
-    return States.of(loads, load, sign, rows, law.unit)
-
-
-def solved(what: str, loop: Callable[[int, int], int], count: int) -> None:
-    """Run a kernel over blocks; ConvergenceError if an iteration hit its cap."""
-    solve_blocks(loop, count, _BLOCK, f"steady: an iteration for the {what} hit its cap near state {{}}")
+def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: NDArray[np.float64]) -> States:
+    """Steady states at V > 0, in the frame of ``sign``, friction sufficing or not."""
+    gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
+    force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V
+    free = contact_at(law, kappa, mu, V, 0.0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
+    M = free[0] + free[1]
+    share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
+    if loads.given is None:
+        M = force + torque
+        Q = share * torque - (1.0 - share) * force
+    else:
+        Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
+    part = np.abs(Q) / mu
+    held = part < 1.0
+    root, (star, lam, rise) = np.sqrt(np.where(held, 1.0 - part, 1.0)), free[2:]
+    less_star, less_lam = contact_at(law, kappa, mu, V / root, 0.0, "delta_star", "lam")
+    size = np.where(part > _SLIGHT, star - root * less_star, mu * part / rise)
+    rows = rows_at(law, kappa, mu, V, np.copysign(size, Q))
+    # the answers do not see this
+    rows[row.DELTA] -= np.divide(rows[row.Q] - Q, V * rows[row.DQ_DOMEGA], out=0.0 * V, where=part < _CANCELS)
+    rows[row.Q], rows[row.M_HALF_SPACE], rows[row.M_CYLINDER] = Q, share * M, (1.0 - share) * M
+    rows[row.BETA] = root * less_lam / lam
+    if not held.all():
+        rows[[row.BETA, row.DQ_DV, row.DQ_DOMEGA]] *= held
+        rows[row.DELTA, ~held] = np.nan
+    return States.of(loads, load, sign, rows)

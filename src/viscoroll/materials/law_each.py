@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .law_axis import OCTAVES, tables_of, to_chebyshev
+from .law_modes import series_of
 from .law_table import Floats
 from .prony_array import Block, MaterialArray
-from .tables import series_of
 
 _lock = threading.Lock()
 #: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.axis`), never dropped again, and
@@ -97,9 +97,8 @@ def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> tupl
 
     For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
     """
-    from ..kernels.material.series import packed_size, working_size
-    from ..kernels.numerics.four import LANES
     from ..kernels.rows.grid import HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
+    from ..kernels.rows.series import LANES, packed_size, working_size
 
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
@@ -109,8 +108,8 @@ def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> tupl
     for block in blocks:
         own, N = block.rows, block.modes.a.shape[-1]
         unit[own], limits[own], counts[own] = block.unit, _limits(block), _counts(block)
-        *vectors, Q = series_of(block.modes)
-        packed[own, : packed_size(N)] = np.concatenate([*vectors, _weights(block), Q.reshape(own.size, -1)], axis=1)
+        *vectors, Q, weights = series_of(block.modes, _weights(block))
+        packed[own, : packed_size(N)] = np.concatenate([*vectors, weights, Q.reshape(own.size, -1)], axis=1)
     nodes = grid_size(int(counts[:, 1].max(initial=1)), float(limits[:, 0].max(initial=1.0)))
     rows, marks = _room(int(counts[:, 1].max(initial=1)))
     marks[HELD], working = -1, working_size(most)
@@ -118,7 +117,7 @@ def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> tupl
         hold, make, SOURCE, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
         packed=packed, limits=limits, counts=counts, numbers=np.empty(numbers_size(nodes)), nodes=nodes,
         made=np.zeros(nodes // LANES, np.int64), series=np.empty(working), working=working, columns=packed.shape[1],
-        pair=any(block.weights is not None for block in blocks),
+        unlike=any(block.weights is not None for block in blocks),
     )  # fmt: skip
     return law, unit[of]
 

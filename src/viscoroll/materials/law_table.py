@@ -14,10 +14,10 @@ import numpy as np
 from ..errors import ParameterError
 from .bodies import Bodies
 from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
+from .law_modes import series_of, unsteadiness
 from .pair import Pair
 from .prony import Prony
 from .prony_forms import Modes
-from .tables import series_of, unsteadiness
 
 #: times in T_ref beyond which numbers of a table leave the doubles
 _LONGEST = 1e100
@@ -68,8 +68,7 @@ class LawTable:
         table = self.given_coefficients
         if not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
-        given = self.material.total if isinstance(self.material, Bodies) else self.material
-        return _read_only(with_unsteady(table, self.e0, lambda z: unsteadiness(given, z)))
+        return _read_only(with_unsteady(table, self.e0, lambda z: unsteadiness(self.material, z)))
 
     @cached_property
     def record(self) -> Any:
@@ -166,22 +165,22 @@ def _numbers(given: float | Prony | Bodies) -> tuple[float, float, Modes]:
 
 
 def by_modes(given: float | Prony | Bodies, z: Floats) -> Floats:
-    """(5, n): g/z, h/z, the parts of m in half-space and cylinder, and N at every z > 0, by no table."""
+    """(4, n): g/z, h/z and the parts of m in half-space and cylinder at every z > 0, by no table."""
     _, _, modes = _numbers(given)
     if not modes.a.size:
-        return np.zeros((5, z.size))
+        return np.zeros((4, z.size))
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
-    total = given.total if isinstance(given, Bodies) else given
-    return np.vstack([_evaluated(given, modes, weights)(z)[::2], unsteadiness(total, z)])
+    return _evaluated(given, modes, weights)(z)[::2]
 
 
 def _evaluated(given: float | Prony | Bodies, modes: Modes, weights: Floats) -> Callable[[Floats], Floats]:
     """What :func:`.law_build.build` takes, by the modes."""
-    from ..kernels.material.series import LANES, Parts
-    from ..kernels.rows.modes import FUNCTIONS as OF_Z
     from ..kernels.rows.modes import functions_loop, functions_of_alpha_loop, sloped_room
+    from ..kernels.rows.series import FUNCTIONS as OF_Z
+    from ..kernels.rows.series import LANES
 
-    series, room, unlike = series_of(modes), sloped_room(modes.a.size), isinstance(given, Bodies)
+    series = series_of(modes, weights if isinstance(given, Bodies) else None)
+    room = sloped_room(modes.a.size)
 
     def evaluate(z: Floats) -> Floats:
         count, z = z.size, np.pad(z, (0, -z.size % LANES), mode="edge")
@@ -189,7 +188,7 @@ def _evaluated(given: float | Prony | Bodies, modes: Modes, weights: Floats) -> 
         if isinstance(given, float):
             functions_of_alpha_loop(given, z, found)
         else:
-            functions_loop(Parts(**series._asdict(), weights=weights) if unlike else series, room, z, found)
+            functions_loop(series, room, z, found)
         return found[:, :count]
 
     return evaluate

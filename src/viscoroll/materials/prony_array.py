@@ -23,15 +23,12 @@ class Block(NamedTuple):
     """Materials of equal numbers of modes in their own times (``Prony.in_own_time``), modes along the last axis.
 
     rows : which they are; unit : what their times are counted in
-    T_mean, squares : sum J_j T_j, and sum E_i tau_i^2 + sum J_j T_j^2
     weights : of pairs, what of the strength of each creep mode is the half-space's
     """
 
     rows: NDArray[np.int64]
     modes: Modes
     unit: NDArray[np.float64]
-    T_mean: NDArray[np.float64]
-    squares: NDArray[np.float64]
     weights: NDArray[np.float64] | None = None
 
 
@@ -202,8 +199,7 @@ class PronyArray(MaterialArray):
 
 def block_of(rows: NDArray, strengths: NDArray, times: NDArray, alpha: NDArray, unit: NDArray, *, creep: bool) -> Block:
     """Series of equal numbers of modes; times descending, counted in ``unit``."""
-    modes = (of_creep if creep else of_relaxation)(strengths, times, alpha)
-    return Block(rows, modes, unit, *_sums(modes, times, creep).T)
+    return Block(rows, (of_creep if creep else of_relaxation)(strengths, times, alpha), unit)
 
 
 def moments(strengths: NDArray, times: NDArray, *, creep: bool) -> tuple[NDArray, NDArray]:
@@ -222,11 +218,3 @@ def _kept(array: NDArray[np.float64]) -> NDArray[np.float64]:
     array = array.copy()
     array.flags.writeable = False
     return array
-
-
-def _sums(modes: Modes, times: NDArray, creep: bool) -> NDArray[np.float64]:
-    """(sum J_j T_j, sum E_i tau_i^2 + sum J_j T_j^2) of each, as ``Prony`` has them: of the times given."""
-    tau, T = (1.0 / modes.a, times) if creep else (times, 1.0 / modes.b)
-    first = modes.J * T if creep else modes.E * tau
-    terms = zip(first.tolist(), (modes.E * tau**2).tolist(), (modes.J * T**2).tolist(), strict=True)
-    return np.array([(math.fsum(one), math.fsum(E) + math.fsum(J)) for one, E, J in terms]).reshape(-1, 2)

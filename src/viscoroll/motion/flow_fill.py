@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
-from ..kernels.material.standard import GAUSS_W, GAUSS_X
 from ..kernels.motion.records import PARTIAL
+from ..kernels.numerics.nodes import gauss
 from ..materials.law_table import law_table
 from .flow_motions import motions
 from .flow_rows import NODES, Nodes, Rows, octaves
@@ -29,6 +29,7 @@ _ENDS = "the stick zone does not always last"
 _BEYOND = "its speeds or times leave the range of doubles"
 
 _SPEEDS = octaves(layout.LOW, layout.HIGH)
+_GAUSS_X, _GAUSS_W = gauss(5)
 #: edges of rows over lambda
 _LAMBDA = np.concatenate(
     [layout.SLOW_WIDTH * np.arange(-layout.SLOW_BINS, 0), np.ldexp(1.0, np.arange(layout.SLOW_OCTAVES + 1)) - 1.0]
@@ -143,9 +144,9 @@ class Slow(NamedTuple):
         """As ``manifold_path`` of :mod:`..kernels.flow.read`."""
         end, value = start - span, self.rows.value
         x, angle = (value(one, start) - value(one, end) for one in self.path)
-        V, delta = (value(one, end[..., None] + span[..., None] * GAUSS_X) for one in self.speeds)
+        V, delta = (value(one, end[..., None] + span[..., None] * _GAUSS_X) for one in self.speeds)
         near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
-        direct = [(GAUSS_W * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))]
+        direct = [(_GAUSS_W * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))]
         return np.where(near, direct[0], x), np.where(near, direct[1], angle)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..materials.law_axis import FUNCTIONS, LawAxis, law_axis
 from ..materials.law_axis_file import as_dataset
-from ..materials.tables import unsteadiness
+from ..materials.law_modes import unsteadiness
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,7 @@ from refusals import refused
 import viscoroll as vr
 from pipeline.truth import series as raw
 from viscoroll.kernels.law.unsteady import room, unsteady
-from viscoroll.materials.tables import series
+from viscoroll.materials.law_modes import series_of
 
 DIGITS = 50
 #: about the largest |N|, over S_J
@@ -71,7 +71,7 @@ def exact(known: raw.Rates, z: Any) -> Any:
 @pytest.mark.parametrize("seed", range(4))
 def test_against_its_definition(seed):
     p = random_series(seed)
-    known = series(p)
+    known = series_of(p.modes)
     work = room(known)
     largest = p.second_moments[0]
     with mp.workdps(DIGITS):

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..material.standard import GAUSS_W, GAUSS_X
 from ..numerics.four import LANES, fused, load, parts, spread
+from ..numerics.nodes import gauss
 from ..rows import lanes
 from ..rows.law import octave
 from . import layout
@@ -32,6 +32,8 @@ _SLIDE, _ONSET, _AFTER = SHAPES.slide[2], SHAPES.onset[2], SHAPES.after[2]
 _SLOW, _MANIFOLD, _ENTRY = SHAPES.slow[1], SHAPES.manifold[1], SHAPES.entry[2]
 _ROWS, _ENTRIES, _LAYERS = layout.HIGH - layout.LOW, layout.OCTAVES, SHAPES.layer[2]
 _LAYER = SHAPES.layer[3] * SHAPES.layer[4]
+#: 5-point Gauss-Legendre rule on [0, 1]
+_GAUSS_X, _GAUSS_W = gauss(5)
 
 
 @kernel(inline=True)
@@ -67,8 +69,8 @@ def slide_path(start, tau, flow):
     if tau > _SHORT * abs(T):
         return slide_to(speed_after(T + tau, flow), PATH, flow)[1] - X
     x = 0.0
-    for n in range(GAUSS_X.size):
-        x += GAUSS_W[n] * speed_after(T + tau * GAUSS_X[n], flow)
+    for n in range(_GAUSS_X.size):
+        x += _GAUSS_W[n] * speed_after(T + tau * _GAUSS_X[n], flow)
     return x * tau
 
 
@@ -127,10 +129,10 @@ def manifold_path(start, span, rate, table):
         x_left, angle_left = _to_go(end, table)
         return x - x_left, angle - angle_left
     x = angle = 0.0
-    for n in range(GAUSS_X.size):
-        V, delta = manifold_speeds(end + span * GAUSS_X[n], table)
-        x += GAUSS_W[n] * V
-        angle += GAUSS_W[n] * V * (1.0 + delta)
+    for n in range(_GAUSS_X.size):
+        V, delta = manifold_speeds(end + span * _GAUSS_X[n], table)
+        x += _GAUSS_W[n] * V
+        angle += _GAUSS_W[n] * V * (1.0 + delta)
     return x * span / rate, angle * span / rate
 
 

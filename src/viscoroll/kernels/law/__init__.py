@@ -1,7 +1,7 @@
-"""The contact law, explicit in (zeta, eta): its two inverses, its slopes, the stresses, and arrays of states.
+"""States of the contact by name, and what is computed of a material by its modes, without rows: stresses, and N.
 
-With F, H and m of a material (room ``material``) Eqs. (6), (8)-(10), (15), (16) of the paper read, for V > 0 and
-delta >= 0,
+With F = z + g, H = z^2 + 2 z h and m of a material (:mod:`..rows.series`) Eqs. (6), (8)-(10), (15), (16) of the paper
+read, for V > 0 and delta >= 0,
 
     H(zeta) = 1/(2 kappa V)^2               lam = 2 kappa V zeta        epsilon = g(zeta)/zeta
     delta_star = mu V F(zeta)               F(zeta) - F(eta) = delta/(mu V)      beta = eta/zeta

@@ -54,29 +54,6 @@ def state_of(states, n):
     )  # fmt: skip
 
 
-@kernel
-def signed_slip(state):
-    """(omega - V, sign of the slip, direction of travel); V = 0 counts as V -> 0+."""
-    V, creep = state.V, state.creep
-    direction = -1.0 if V < 0.0 else 1.0
-    slip = creep - V if state.creep_is_omega else creep * V
-    if state.creep_is_omega:
-        sign = np.sign(slip)
-    else:
-        sign = np.sign(creep) * direction
-    return slip, sign, direction
-
-
-@kernel
-def creep_ratio(state, slip):
-    """delta of Eq. (5); infinite when V = 0 < |omega|, 0 at rest."""
-    if not state.creep_is_omega:
-        return state.creep
-    if state.V != 0.0:
-        return slip / state.V
-    return 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
-
-
 @kernel(inline=True)
 def slip_and_creep(state):
     """(a number with the sign of omega - V, creep ratio); V = 0 counts as V -> 0+."""

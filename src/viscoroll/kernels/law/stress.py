@@ -14,19 +14,21 @@ then removes the speed from the formulas, and V = 0 is zeta = inf: Hertz.
 With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the
 part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40
 digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01
-to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).
+to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum: a memory each, of
+weight a_i X_i (:mod:`..rows.series`) in place of alpha B.
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from ..bessel.ratios import ratio_k, ratio_r
-from ..compile.choice import by_record
 from ..compile.jit import kernel
-from ..material.series import Solved, solve
-from ..material.standard import Standard
+from ..numerics.linear import substitute
 from ..numerics.nodes import gauss
+from .unsteady import set_alpha, system
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
@@ -62,58 +64,99 @@ def _memory(u, w, a, r_complement):
     return sign * span * total
 
 
-@kernel
-def _shape_of_one(u, w, z, material):
-    """``unit_shape`` of one relaxation time, inside the contact."""
-    alpha, c = material.alpha, material.T_mean
-    ellipse = np.sqrt(u * w)
-    a = alpha * z
-    if c == 0.0 or a == np.inf:
-        return ellipse
-    r, r_complement = ratio_r(a)
-    k, _ = ratio_k(z)
-    return ellipse + alpha * (c / (1.0 + r * k)) * _memory(u, w, a, r_complement)
+class Memories(NamedTuple):
+    """Of a series at z: 1/r, k, a X and 1 - r of its modes; the matrix of its system; z."""
+
+    per_r: Any
+    k: Any
+    weight: Any
+    complement: Any
+    matrix: Any
+    z: Any
+
+
+@kernel(allocates=True)
+def memories(series):
+    """Those of no z yet."""
+    n = series.a.size
+    return Memories(np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty((n, n)), np.full(1, np.nan))
 
 
 @kernel
-def _shape_of_several(u, w, z, material):
-    """``unit_shape`` of several modes, inside the contact: one memory each."""
-    shape = np.sqrt(u * w)
-    if z == np.inf:
-        return shape
-    series, work = material
-    solve(z, series, work)
+def _remember(z, series, known):
+    """Have those at z."""
+    if known.z[0] == z:
+        return
+    known.z[0] = z
     for i in range(series.a.size):
-        a = series.a[i] * z
-        _, r_complement = ratio_r(a)
-        shape += series.a[i] * work.X[4 * i] * _memory(u, w, a, r_complement)
-    return shape
-
-
-_shape = by_record(3, (Standard, _shape_of_one), (Solved, _shape_of_several))
+        r, known.complement[i] = ratio_r(series.a[i] * z)
+        known.per_r[i], known.weight[i] = 1.0 / r, series.e[i]
+        known.k[i], _ = ratio_k(series.b[i] * z)
+    system(known.per_r, known.k, series, known.matrix)
+    substitute(known.matrix, known.weight, series.a.size)
+    for i in range(series.a.size):
+        known.weight[i] *= series.a[i] * series.e[i] * known.per_r[i]
 
 
 @kernel
-def unit_shape(u, w, z, material):
+def unit_shape(u, w, z, series, known):
     """S/z at the distances u from the front and w from the rear edge, u + w = 2; 0 outside.
 
     z = inf is the elastic limit V = 0.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
-    return _shape(u, w, z, material)
+    shape = np.sqrt(u * w)
+    if z == np.inf:
+        return shape
+    _remember(z, series, known)
+    for i in range(series.a.size):
+        a = series.a[i] * z
+        if known.weight[i] > 0.0 and a < np.inf:
+            shape += known.weight[i] * _memory(u, w, a, known.complement[i])
+    return shape
+
+
+class Points(NamedTuple):
+    """Arrays of one value, or one a point: x in l0, ahead of the axis, and the state; zeta = inf at V = 0."""
+
+    x: Any
+    kappa: Any
+    mu: Any
+    lam: Any
+    epsilon: Any
+    beta: Any
+    zeta: Any
+
+
+@kernel(inline=True)
+def _at(values, i):
+    return values[min(i, values.size - 1)]
 
 
 @kernel
-def stress_at(x, kappa, mu, lam, epsilon, beta, zeta, material):
-    """(p/E', |tau|/E') at x (unit l0, positive ahead of the axis); zeta = inf at V = 0."""
-    y = 2.0 * x / lam
+def _stress(i, points, series, whole, stick):
+    """(p/E', |tau|/E') at a point."""
+    kappa, mu, lam, epsilon = _at(points.kappa, i), _at(points.mu, i), _at(points.lam, i), _at(points.epsilon, i)
+    beta, zeta = _at(points.beta, i), _at(points.zeta, i)
+    y = 2.0 * _at(points.x, i) / lam
     u = (1.0 - y) + epsilon
     w = (1.0 + y) - epsilon
     scale = lam / (8.0 * np.pi * kappa)
-    p = scale * unit_shape(u, w, zeta, material)
+    p = scale * unit_shape(u, w, zeta, series, whole)
     if u >= 2.0 * beta:
         return p, mu * p
-    stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, material)
+    stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, series, stick)
     # beta = 1: the difference is zero to rounding, of either sign
     return p, mu * max(p - scale * stuck, 0.0)
+
+
+@kernel(allocates=True)
+def stress_loop(series, alpha, points, p, tau):
+    """p/E' and |tau|/E' at every point; ``alpha``: none, or one each, of which ``series`` is then the one mode."""
+    whole, stick = memories(series), memories(series)
+    for i in range(p.size):
+        if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
+            whole.z[0] = stick.z[0] = np.nan
+        set_alpha(i, alpha, series)
+        p[i], tau[i] = _stress(i, points, series, whole, stick)

@@ -1,6 +1,6 @@
 """The first-order term of unsteady rolling: M = M(V) + N(V) V' where speed changes slowly, in closed form.
 
-With g, h, H, m, X and the ratios of a series (:mod:`material.series`) at z = zeta, y = sum X_i i2(a_i z),
+With g, h, H, m, X and the ratios of a series (:mod:`..rows.series`) at z = zeta, y = sum X_i i2(a_i z),
 theta = 2 H/H' and ' = d/dz,
 
     W = H g - 2 z (h - z h') g - z H g' + z^2 (y - z y')
@@ -9,7 +9,7 @@ theta = 2 H/H' and ' = d/dz,
 
 _s is the slope at s = 0 of a material with the rates a_i - s, b_j - s, the same J_j b_j, E_i a_i and Q, divided by
 1 + T_mean s, which makes its long-time modulus 1 again.  Every number therefore comes as a jet: value, d/dz, d/ds and
-d2/dz ds.  The system is that of :mod:`material.series` in y = r nu, nu = x/sqrt(r),
+d2/dz ds.  The system is that of :mod:`..rows.series` in y = r nu, nu = x/sqrt(r),
 
     (1/r + Q^T k Q) y = e      h = sum e_i y_i      g = sum t_j k_j (Q y)_j      sum X_i i2_i = sum e_i y_i i2_i/r_i
 
@@ -189,20 +189,26 @@ def _substitute(n, series, work):
 
 
 @kernel
-def _solve(z, T_mean, series, work):
-    """Jets of y and Q y, part by part."""
-    _ratios(z, series, work)
-    count, matrix = series.a.size, work.matrix
+def system(per_r, k, series, matrix):
+    """The factors of 1/r + Q^T k Q."""
+    count = series.a.size
     for i in range(count):
         for n in range(i + 1):
             total = 0.0
             for j in range(count):
-                total += series.Q[j, i] * work.k[0, j] * series.Q[j, n]
+                total += series.Q[j, i] * k[j] * series.Q[j, n]
             matrix[i, n], matrix[n, i] = total, total
-        matrix[i, i] += work.per_r[0, i]
+        matrix[i, i] += per_r[i]
     factorize(matrix, count)
+
+
+@kernel
+def _solve(z, T_mean, series, work):
+    """Jets of y and Q y, part by part."""
+    _ratios(z, series, work)
+    system(work.per_r[0], work.k[0], series, work.matrix)
     for part in range(4):
-        for i in range(count):
+        for i in range(series.a.size):
             work.right[i] = _e(i, T_mean, series)[part]
         if part == 3:
             _subtract(1, 2, series, work)
@@ -256,10 +262,13 @@ def unsteady(z, series, work):
 
 
 @kernel(inline=True)
-def _set_alpha(alpha, series):
-    """Make a series of one mode that of an alpha."""
-    series.a[0] = alpha
-    series.e[0] = series.t[0] = np.sqrt((alpha - 1.0) / alpha)
+def set_alpha(n, alpha, series):
+    """Make a series of one mode that of state n; ``alpha``: none, or one, or one each."""
+    if alpha.size == 0:
+        return
+    own = alpha[min(n, alpha.size - 1)]
+    series.a[0] = own
+    series.e[0] = series.t[0] = np.sqrt((own - 1.0) / own)
 
 
 @kernel(allocates=True)
@@ -267,6 +276,5 @@ def unsteady_loop(series, alpha, zeta, out, start, stop):
     """N at an array of zeta; ``alpha``: none, or one each, of which ``series`` is then the one mode."""
     work = room(series)
     for n in range(start, stop):
-        if alpha.size > 0:
-            _set_alpha(alpha[min(n, alpha.size - 1)], series)
+        set_alpha(n, alpha, series)
         out[n] = unsteady(zeta[n], series, work) if series.e[0] > 0.0 else 0.0

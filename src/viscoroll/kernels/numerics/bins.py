@@ -6,14 +6,11 @@ polynomials of the offset t of the mantissa from the centre of the bin.
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..compile.bits import bits_of, from_bits
 from ..compile.jit import kernel
 
 _MANTISSA = (1 << 52) - 1
 _ONE = 1023 << 52
-_OCTAVE, _LARGEST = 2047 << 52, 2046 << 52
 
 
 @kernel(inline=True)
@@ -28,19 +25,3 @@ def bin_offset(x, bits):
     word, half = bits_of(x), 1 << (51 - bits)
     centre = from_bits((word & (_MANTISSA - (2 * half - 1))) | (_ONE + half))
     return from_bits((word & _MANTISSA) | _ONE) - centre
-
-
-@kernel(inline=True)
-def offset_slope(x):
-    """dt/dx = 2^-n; 0 at infinity."""
-    octave = bits_of(x) & _OCTAVE
-    return from_bits(_LARGEST - min(octave, _LARGEST))
-
-
-@kernel(inline=True)
-def bin_place(number, bits, at):
-    """x at the fraction ``at`` of a bin, exact but for one rounding; in the last octave infinite, or NaN."""
-    octave = from_bits((number >> bits) << 52)
-    part = number & ((1 << bits) - 1)
-    last = octave == np.inf and part > 0  # the bits of NaN
-    return np.nan if last else octave * (1.0 + (part + at) / (1 << bits))

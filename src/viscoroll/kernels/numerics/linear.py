@@ -30,10 +30,3 @@ def substitute(matrix, right, count):
         for column in range(i + 1, count):
             total -= matrix[i, column] * right[column]
         right[i] = total / matrix[i, i]
-
-
-@kernel
-def eliminate(matrix, right):
-    """Solve a linear system, in place of both sides."""
-    factorize(matrix, right.size)
-    substitute(matrix, right, right.size)

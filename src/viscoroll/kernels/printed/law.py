@@ -16,9 +16,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.length import NOT_CONVERGED, OK
 from .bessel import ratio_i, ratio_k0k1
 
+#: statuses
+OK, NOT_CONVERGED = 0, 1
 _EQ_6, _EQ_10 = 6, 10
 _MAX_BRENT = 60
 _EPS = 2.0**-52

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.length import OK
 from ..law.states import (
     BETA,
     DELTA,
@@ -17,25 +16,24 @@ from ..law.states import (
     ZETA,
     M,
     Q,
-    creep_ratio,
-    signed_slip,
+    slip_and_creep,
     state_of,
 )
-from .law import direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
+from .law import OK, direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 
 @kernel
 def direct_state(alpha, state, out):
     """All rows of one state into ``out``; V = 0 is the limit of Sect. 3.4."""
     kappa, mu, speed = state.kappa, state.mu, abs(state.V)
-    slip, sign, direction = signed_slip(state)
-    delta = creep_ratio(state, slip)
+    slip, delta = slip_and_creep(state)
+    sign = np.sign(slip)
     status = OK
     lam, zeta, epsilon = 1.0, np.inf, 0.0
     out[M] = 0.0
     if speed > 0.0:
         lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
-        out[M] = direction * direct_moment(kappa, lam, epsilon, zeta, alpha)
+        out[M] = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
     delta_star = direct_delta_star(kappa, mu, lam, epsilon)
     full_slip = abs(delta) >= delta_star
     out[LAM], out[ZETA], out[EPSILON] = lam, zeta, epsilon
@@ -54,12 +52,12 @@ def direct_state(alpha, state, out):
 
 
 @kernel(allocates=True)
-def direct_loop(own, states, rows, out, start, stop):
+def direct_loop(alpha, states, rows, out, start, stop):
     """States start..stop; ``rows`` picks the output."""
     state = np.empty(len(ROWS))
     worst = OK
     for i in range(start, stop):
-        status = direct_state(own.alpha[min(i, own.alpha.size - 1)], state_of(states, i), state)
+        status = direct_state(alpha[min(i, alpha.size - 1)], state_of(states, i), state)
         worst = max(worst, status)
         for n in range(rows.size):
             out[n, i] = state[rows[n]]

@@ -15,22 +15,22 @@ import numpy as np
 
 from ..compile.address import doubles, integers, record_at
 from ..compile.jit import kernel
-from ..material.series import AT_CYLINDER, AT_G, AT_H, AT_HALF_SPACE, AT_M, shares, unpacked, values
 from ..numerics.four import LANES, divide, fused, load, multiply, slide, spread, store, subtract
 from ..numerics.nodes import chebyshev, rounded, to_chebyshev
 from .lanes import TERMS
-from .record import BODIES, COUNT, E0, LENGTHS, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WIDTH
+from .record import COUNT, E0, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WIDTH
+from .series import CYLINDER, HALF_SPACE, RISE, SHIFT, unpacked, values
 
 #: nodes of an octave of z; points of a polynomial; octaves behind the shortest time where the fast limit begins
 PER, POINTS, FAST = 10, 36, 34
-#: functions at the nodes: ln lam and, over it, L, u m, u lam, epsilon, u m of either body; ln share and, over it, press
-#: and share
-_LN_LAM, _L, _M, _LAM, _EPSILON, _HALF_SPACE, _CYLINDER, _LN_SHARE, _PRESS, _SHARE = range(10)
-_FUNCTIONS = 10
+#: functions at the nodes: over u, L, u m, u lam, epsilon, u m of either body; over v, press and share; all in the order
+#: of the parts of a row; then u, v and the logarithms that these are placed by, of lam and share
+_L, _M, _LAM, _EPSILON, _HALF_SPACE, _CYLINDER, _PRESS, _SHARE, _U, _V, _LN_LAM, _LN_SHARE = range(12)
+_FUNCTIONS = 12
 #: where scratch begins in ``numbers``: arguments of the points, four in front that are no points, then twice values and
 #: their differences; values at the nodes of a row, Chebyshev coefficients; the functions at the nodes of the grid
 _ROOM = LANES + POINTS
-_X, _D, _V, _C, _GRID = 0, _ROOM, 5 * _ROOM, 5 * _ROOM + TERMS, 5 * _ROOM + 2 * TERMS
+_X, _D, _Y, _C, _GRID = 0, _ROOM, 5 * _ROOM, 5 * _ROOM + TERMS, 5 * _ROOM + 2 * TERMS
 #: in the slow row a Chebyshev coefficient below this share of the function is rounding
 _ROUNDING = 4e-16
 _STEP = math.log(2.0) / PER
@@ -65,12 +65,12 @@ _POWERS, _SLOW_POWERS = _powers(False), _powers(True)
 _SLOW_PLACES = _leja(0.5 + 0.5 * rounded(chebyshev(POINTS)))
 
 #: what these kernels know: addresses of the record's arrays; of states or motions the material of each, and how many;
-#: of materials their modes (:func:`..material.series.unpacked`), the numbers in front of rows, and first row, rows and
+#: of materials their modes (:func:`.series.unpacked`), the numbers in front of rows, and first row, rows and
 #: modes; room for the grid of one material, how many numbers, and by which stamp it was made; room for its modes, how
 #: many numbers these are, and the most of any material; whether parts of M are asked for
 SOURCE = np.dtype(
     [(name, np.int64) for name in ("rows", "marks", "of", "count", "packed", "limits", "counts")]
-    + [(name, np.int64) for name in ("numbers", "nodes", "made", "series", "working", "columns", "pair")]
+    + [(name, np.int64) for name in ("numbers", "nodes", "made", "series", "working", "columns", "unlike")]
 )
 #: numbers in front of rows, and those of them that are sums J_j T_j of half-space and cylinder
 LIMITS = OWN + 2
@@ -83,20 +83,21 @@ class Grid(NamedTuple):
     """The grid of the material that is held, and the rows that are made of it."""
 
     rows: Any
-    marks: Any
     numbers: Any
     nodes: int
     made: Any
     series: Any
     modes: int
-    pair: bool
+    unlike: bool
     e0: int
     stamp: int
+    lowest: int
 
 
 def grid_size(count: int, alpha: float) -> int:
-    """How many nodes the grid of a law has, of which so many rows are made."""
-    return PER * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 2 * POINTS
+    """How many nodes the grid of a law has, of which so many rows are made: the last are those of the slow row."""
+    nodes = PER * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 3 * POINTS + LANES
+    return nodes + -nodes % LANES
 
 
 def numbers_size(nodes: int) -> int:
@@ -129,10 +130,12 @@ def make(start, source):
     """A part of a row."""
     given = record_at(source)
     marks = integers(given.marks, start // PART + 1)
+    e0, nodes = marks[E0], given.nodes
+    lowest = PER * (2 - e0) + 2 * POINTS + LANES - nodes  # the next below it that is a multiple of four
     grid = Grid(
-        doubles(given.rows, start + 2 * PART), marks, doubles(given.numbers, _GRID + _FUNCTIONS * given.nodes),
-        given.nodes, integers(given.made, given.nodes // LANES), doubles(given.series, given.working), marks[_MODES],
-        given.pair != 0 and marks[_MODES] > 0, marks[E0], marks[STAMP],
+        doubles(given.rows, start + 2 * PART), doubles(given.numbers, _GRID + _FUNCTIONS * nodes), nodes,
+        integers(given.made, nodes // LANES), doubles(given.series, given.working), marks[_MODES],
+        given.unlike != 0 and marks[_MODES] > 0, e0, marks[STAMP], lowest - lowest % LANES,
     )  # fmt: skip
     _make(start % WIDTH, start // WIDTH - 1, grid)
     marks[start // PART] = marks[STAMP]
@@ -141,95 +144,75 @@ def make(start, source):
 @kernel
 def _make(part, row, grid):
     """One function of a row or a pair of them."""
-    over_v = part >= PRESS
-    first = _L
-    if part == LENGTHS:
-        first = _LAM
-    elif part == BODIES:
-        first = _HALF_SPACE
-    elif over_v:
-        first = _PRESS if part == PRESS else _SHARE
+    over_v, numbers = part >= PRESS, grid.numbers
+    first, count = part // PART, 1 if over_v else 2
     if row == 0:
-        _slow_points(first, over_v, grid)
+        _slow_points(first, count, over_v, grid)
     else:
-        _points(row, first, over_v, grid)
-    count, numbers = 1 if over_v else 2, grid.numbers
+        _points(row, first, count, over_v, grid)
     _differences(count, numbers)
     for which in range(count):
+        function = first + which
         _read(_SLOW_NODES if row == 0 else _LN_NODES, _D + (2 * which + 1) * _ROOM, numbers)
-        if row > 0 and not (over_v or first + which == _L or first + which == _EPSILON):
-            scale = math.ldexp(1.0, int(-grid.e0 - row))
-            for k in range(TERMS):
-                numbers[_V + k] *= _PER_NODES[k] * scale
-        step, to = (1, (row + 1) * WIDTH + part) if over_v else (2, (row + 1) * WIDTH + part + 2 * which)
         if row == 0:
-            _turn_slow(_limit_of(first + which, grid), numbers)
-            _limit(first + which, grid)
+            _turn_slow(function, _limit(function, grid), numbers)
         else:
+            if _over_u(function):
+                scale = math.ldexp(1.0, int(-grid.e0 - row))
+                for k in range(TERMS):
+                    numbers[_Y + k] *= _PER_NODES[k] * scale
             _turn(numbers)
+        to = (row + 1) * WIDTH + part + 2 * which
         for k in range(TERMS):
-            grid.rows[to + (k // 2) * (2 * step) + k % 2] = numbers[_V + k]
+            grid.rows[to + (k // 2) * (2 * count) + k % 2] = numbers[_Y + k]
+
+
+@kernel(inline=True)
+def _over_u(function):
+    """Whether a function is known times u."""
+    return function == _M or function == _LAM or function == _HALF_SPACE or function == _CYLINDER
 
 
 @kernel(inline=True)
 def _limit(function, grid):
-    """In the slow row functions go without their limits: put these in."""
-    numbers, limit = grid.numbers, _limit_of(function, grid)
-    if function == _EPSILON:  # is over t
-        for k in range(TERMS - 1, 0, -1):
-            numbers[_V + k] = numbers[_V + k - 1]
-        numbers[_V], numbers[_V + 1] = 0.0, numbers[_V + 1] + limit
-    else:
-        numbers[_V] += limit
-
-
-@kernel(inline=True)
-def _limit_of(function, grid):
     """As u or v -> 0; of epsilon over t."""
-    T_mean = grid.rows[_T_HALF_SPACE] + grid.rows[_T_CYLINDER]
+    half_space, cylinder = grid.rows[_T_HALF_SPACE], grid.rows[_T_CYLINDER]
     if function == _EPSILON:
-        return math.ldexp(T_mean, int(grid.e0))
+        return math.ldexp(half_space + cylinder, int(grid.e0))
     if function == _M:
-        return T_mean
-    if function == _HALF_SPACE:
-        return grid.rows[_T_HALF_SPACE]
-    return grid.rows[_T_CYLINDER] if function == _CYLINDER else 1.0
+        return half_space + cylinder
+    return half_space if function == _HALF_SPACE else cylinder if function == _CYLINDER else 1.0
 
 
 # --- points ---
 
 
 @kernel
-def _solve(places, pair, series, work):
-    """g, h, m and what either body takes of m at four places."""
+def _fill(places, at, grid):
+    """The functions at four places of z, which are nodes ``at`` of the grid."""
+    series, work = unpacked(grid.series, grid.modes, grid.unlike)
     values(places, False, series, work)
-    if pair:
-        shares(places, series, work)
-    else:
-        for c in range(LANES):
-            work.found[AT_HALF_SPACE + c] = work.found[AT_CYLINDER + c] = 0.5 * work.found[AT_M + c]
-
-
-@kernel
-def _fill(n, at, grid):
-    """The functions at four nodes from n on, which are nodes ``at`` of the grid."""
-    series, work = unpacked(grid.series, grid.modes)
-    z0, z1 = _place(n), _place(n + 1)
-    z2, z3 = _place(n + 2), _place(n + 3)
-    places = (z0, z1, z2, z3)
-    _solve(places, grid.pair, series, work)
-    nodes = grid.nodes
+    numbers, nodes = grid.numbers, grid.nodes
     for c in range(LANES):
         z, to = places[c], _GRID + at + c
-        shift, rise = work.found[AT_G + c] / z, work.found[AT_H + c] / z
+        shift, rise = work.found[LANES * SHIFT + c], work.found[LANES * RISE + c]
+        half_space, cylinder = work.found[LANES * HALF_SPACE + c], work.found[LANES * CYLINDER + c]
         lam, share = 1.0 / np.sqrt(1.0 + 2.0 * rise), 1.0 / (1.0 + shift)
-        half_space, cylinder = work.found[AT_HALF_SPACE + c], work.found[AT_CYLINDER + c]
         u, ratio = 0.5 * lam / z, share / lam
-        grid.numbers[to + nodes * _LN_LAM], grid.numbers[to + nodes * _LN_SHARE] = np.log(lam), np.log(share)
-        grid.numbers[to + nodes * _L], grid.numbers[to + nodes * _M] = lam * (1.0 + shift), u * work.found[AT_M + c]
-        grid.numbers[to + nodes * _LAM], grid.numbers[to + nodes * _EPSILON] = u * lam, shift
-        grid.numbers[to + nodes * _HALF_SPACE], grid.numbers[to + nodes * _CYLINDER] = u * half_space, u * cylinder
-        grid.numbers[to + nodes * _PRESS], grid.numbers[to + nodes * _SHARE] = ratio * ratio, share
+        numbers[to + nodes * _L], numbers[to + nodes * _M] = lam * (1.0 + shift), u * (half_space + cylinder)
+        numbers[to + nodes * _LAM], numbers[to + nodes * _EPSILON] = u * lam, shift
+        numbers[to + nodes * _HALF_SPACE], numbers[to + nodes * _CYLINDER] = u * half_space, u * cylinder
+        numbers[to + nodes * _PRESS], numbers[to + nodes * _SHARE] = ratio * ratio, share
+        numbers[to + nodes * _U], numbers[to + nodes * _V] = u, share / z
+        numbers[to + nodes * _LN_LAM], numbers[to + nodes * _LN_SHARE] = np.log(lam), np.log(share)
+
+
+@kernel(inline=True)
+def _missing(at, grid):
+    """Whether four nodes are to be filled; they count as filled from now on."""
+    missing = grid.made[at // LANES] != grid.stamp
+    grid.made[at // LANES] = grid.stamp
+    return missing
 
 
 @kernel(inline=True)
@@ -241,33 +224,18 @@ def _place(n):
 @kernel(inline=True)
 def _need(first, stop, grid):
     """Have nodes first ... stop - 1."""
-    lowest = _lowest(grid)
     for n in range(first - first % LANES, stop, LANES):
-        at = n - lowest
-        if grid.made[at // LANES] != grid.stamp:
-            grid.made[at // LANES] = grid.stamp
-            _fill(n, at, grid)
-
-
-@kernel(inline=True)
-def _lowest(grid):
-    """The first node of the grid, a multiple of four."""
-    return PER * (2 - grid.e0) + POINTS - grid.nodes
-
-
-@kernel(inline=True)
-def _function(function, n, grid):
-    """A function at node n."""
-    return grid.numbers[_GRID + grid.nodes * function + n - _lowest(grid)]
+        if _missing(n - grid.lowest, grid):
+            _fill((_place(n), _place(n + 1), _place(n + 2), _place(n + 3)), n - grid.lowest, grid)
 
 
 @kernel(inline=True)
 def _from_end(n, row, over_v, grid):
-    """ln of u or v at node n over the end of an octave."""
-    end = (n + PER * (grid.e0 + row)) * _STEP
+    """ln of u or v at node n, which is there, over the end of an octave."""
+    end, at = (n + PER * (grid.e0 + row)) * _STEP, _GRID + n - grid.lowest
     if over_v:
-        return _function(_LN_SHARE, n, grid) - end
-    return _function(_LN_LAM, n, grid) - (end + PER * _STEP)
+        return grid.numbers[at + grid.nodes * _LN_SHARE] - end
+    return grid.numbers[at + grid.nodes * _LN_LAM] - (end + PER * _STEP)
 
 
 @kernel(inline=True)
@@ -278,7 +246,7 @@ def _met(n, row, over_v, grid):
 
 
 @kernel
-def _points(row, first, over_v, grid):
+def _points(row, first, count, over_v, grid):
     """The points around an octave."""
     middle = -0.5 * PER * _STEP
     n = -PER * (grid.e0 + row)
@@ -295,50 +263,34 @@ def _points(row, first, over_v, grid):
     for k in range(POINTS):
         at = n + _OUTWARDS[k]
         grid.numbers[_X + LANES + k] = _from_end(at, row, over_v, grid)
-        grid.numbers[_D + LANES + k] = _function(first, at, grid)
-        if not over_v:
-            grid.numbers[_D + 2 * _ROOM + LANES + k] = _function(first + 1, at, grid)
+        for which in range(count):
+            value = grid.numbers[_GRID + at - grid.lowest + grid.nodes * (first + which)]
+            grid.numbers[_D + 2 * which * _ROOM + LANES + k] = value
 
 
 @kernel
-def _slow_points(first, over_v, grid):
+def _slow_points(first, count, over_v, grid):
     """Points over t of the slow row, from 1/z = 0 to a little beyond its end; functions less their limits."""
-    series, work = unpacked(grid.series, grid.modes)
-    top, numbers = math.ldexp(1.0, int(grid.e0)), grid.numbers
-    w = top if over_v else 2.0 * top
-    w *= 1.0 + 1.25 * (grid.rows[_T_HALF_SPACE] + grid.rows[_T_CYLINDER]) * w
+    numbers, end = grid.numbers, math.ldexp(1.0, int(grid.e0))
+    w = 2.0 * end * (1.0 + 2.5 * (grid.rows[_T_HALF_SPACE] + grid.rows[_T_CYLINDER]) * end)
     for n in range(0, POINTS, LANES):
-        z0, z1 = 1.0 / (w * _SLOW_PLACES[n]), 1.0 / (w * _SLOW_PLACES[n + 1])
-        z2, z3 = 1.0 / (w * _SLOW_PLACES[n + 2]), 1.0 / (w * _SLOW_PLACES[n + 3])
-        places = (z0, z1, z2, z3)
-        _solve(places, grid.pair, series, work)
-        for c in range(LANES):
-            z, at = places[c], LANES + n + c
-            shift, rise = work.found[AT_G + c] / z, work.found[AT_H + c] / z
-            lam, share = 1.0 / np.sqrt(1.0 + 2.0 * rise), 1.0 / (1.0 + shift)
-            numbers[_X + at] = (share if over_v else 0.5 * lam) / (z * top)
-            for which in range(2):
-                value = _slow_value(first + which, lam, shift, share, numbers[_X + at], c, grid, work)
-                numbers[_D + 2 * which * _ROOM + at] = value
-
-
-@kernel(inline=True)
-def _slow_value(function, lam, shift, share, t, c, grid, work):
-    """A function less its limit."""
-    limit = _limit_of(function, grid)
-    if function == _M:
-        return work.found[AT_M + c] - limit
-    if function == _HALF_SPACE:
-        return work.found[AT_HALF_SPACE + c] - limit
-    if function == _CYLINDER:
-        return work.found[AT_CYLINDER + c] - limit
-    if function == _L:
-        return lam * (1.0 + shift) - limit
-    if function == _LAM:
-        return lam - limit
-    if function == _EPSILON:
-        return shift / t - limit
-    return (share / lam) * (share / lam) - limit if function == _PRESS else share - limit
+        at = grid.nodes - POINTS + n
+        if _missing(at, grid):
+            z0, z1 = 1.0 / (w * _SLOW_PLACES[n]), 1.0 / (w * _SLOW_PLACES[n + 1])
+            z2, z3 = 1.0 / (w * _SLOW_PLACES[n + 2]), 1.0 / (w * _SLOW_PLACES[n + 3])
+            _fill((z0, z1, z2, z3), at, grid)
+        for k in range(LANES):
+            from_, to = _GRID + at + k, LANES + n + k
+            x = numbers[from_ + grid.nodes * (_V if over_v else _U)]
+            numbers[_X + to] = x / end
+            for which in range(count):
+                function = first + which
+                value = numbers[from_ + grid.nodes * function]
+                if _over_u(function):
+                    value /= x
+                elif function == _EPSILON:
+                    value /= x / end
+                numbers[_D + 2 * which * _ROOM + to] = value - _limit(function, grid)
 
 
 # --- polynomials ---
@@ -378,9 +330,9 @@ def _read(nodes, at, numbers):
         for n in range(POINTS - 2, -1, -1):
             x, d = spread(numbers[_X + LANES + n]), spread(numbers[at + LANES + n])
             a0, a1, a2 = fused(subtract(x0, x), a0, d), fused(subtract(x1, x), a1, d), fused(subtract(x2, x), a2, d)
-        store(numbers, _V + k, a0)
-        store(numbers, _V + k + LANES, a1)
-        store(numbers, _V + k + 2 * LANES, a2)
+        store(numbers, _Y + k, a0)
+        store(numbers, _Y + k + LANES, a1)
+        store(numbers, _Y + k + 2 * LANES, a2)
 
 
 @kernel(inline=True)
@@ -400,22 +352,27 @@ def _product(matrix, given, to, numbers):
 @kernel
 def _turn(numbers):
     """From values at the nodes of an octave to powers of t."""
-    mean = numbers[_V + TERMS // 2]
+    mean = numbers[_Y + TERMS // 2]
     for k in range(TERMS):
-        numbers[_V + k] -= mean
-    _product(_TO_CHEBYSHEV, _V, _C, numbers)
-    _product(_POWERS, _C, _V, numbers)
-    numbers[_V] += mean
+        numbers[_Y + k] -= mean
+    _product(_TO_CHEBYSHEV, _Y, _C, numbers)
+    _product(_POWERS, _C, _Y, numbers)
+    numbers[_Y] += mean
 
 
 @kernel
-def _turn_slow(limit, numbers):
+def _turn_slow(function, limit, numbers):
     """The same in the slow row, of a function less its limit: rounding is left out, which would grow by 5.8^n."""
-    _product(_TO_CHEBYSHEV, _V, _C, numbers)
+    _product(_TO_CHEBYSHEV, _Y, _C, numbers)
     least = limit
     for n in range(TERMS):
         least = max(least, abs(numbers[_C + n]))
     for n in range(TERMS):
         if n == TERMS - 1 or abs(numbers[_C + n]) < _ROUNDING * least:
             numbers[_C + n] = 0.0
-    _product(_SLOW_POWERS, _C, _V, numbers)
+    _product(_SLOW_POWERS, _C, _Y, numbers)
+    numbers[_Y] += limit
+    if function == _EPSILON:  # over t
+        for k in range(TERMS - 1, 0, -1):
+            numbers[_Y + k] = numbers[_Y + k - 1]
+        numbers[_Y] = 0.0
