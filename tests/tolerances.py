@@ -313,7 +313,7 @@ CHEBYSHEV = 1e-12
 #: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
 SI_SERIES_RTOL = 1e-7
 
-# --- motions in extended precision (truth/test_motions.py) ---
+# --- motions in extended precision (truth/test_motions.py, evidence/test_precise.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
 #: 60 digits: its square; measured 1e-23.
 PRECISE_RATE = 1e-20
@@ -323,7 +323,7 @@ PRECISE_MOTION = 1e-17
 #: Driven ones likewise (truth/test_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
 PRECISE_DRIVEN = 1e-17
 
-# --- boundary elements (reference/test_boundary.py) ---
+# --- boundary elements (evidence/test_boundary.py) ---
 #: Errors of twice the elements fall to an eighth, once layers are resolved; measured 7.9 to 8.6.
 ELEMENTS_FALL = 6.5
 #: Errors of 100 elements a zone, of one mode; measured 3e-5 (g, which is small beside z).

@@ -22,7 +22,7 @@ _DIRECT, _SLICE, _MOTION = (
     "tests/motion/test_motion.py",
 )
 _STEADY, _BOUND, _EACH = "tests/test_steady.py", "tests/test_bound_law.py", "tests/test_contact_each.py"
-_DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_drive_events.py"
+_DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_hard_motions.py"
 
 LAW = [
     ("rows/modes.py", "dh = share * p, share * r,", "dh = share * p, share * k,", _LAW),

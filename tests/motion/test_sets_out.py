@@ -111,17 +111,6 @@ def test_to_and_fro_where_friction_is_strong():
     assert close(found.omega[done], best.omega[done], rel=30e-6, scale=so_far)
 
 
-def test_omega_between_the_nodes_from_rest():
-    """A light cylinder: omega follows creep that the panel before had not resolved between its nodes, 90 rtol off."""
-    scene = vr.Scene(alpha=121964.60683820216, kappa=0.33310311053126856, mu=0.03509131038798789, gamma=1.0, j=2.6e-3)
-    drive, t = {"force": 0.01, "torque": 0.0305}, np.linspace(0.0, 18.0, 31)[1:]
-    best = vr.roll(scene, 0.0, 0.0, t, 1e-12, **drive)
-    so_far = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)))
-    for rtol in (1e-6, 1e-8, 1e-10):
-        m = vr.roll(scene, 0.0, 0.0, t, rtol, **drive)
-        assert close(m.omega, best.omega, rel=10.0 * rtol, scale=so_far)
-
-
 def test_infinite_inertia_where_friction_is_strong():
     """The same motion by a torque on an inertia of 10^9."""
     scene = vr.Scene(alpha=11.0, kappa=1.5, mu=3.1, gamma=20.0, j=0.3)
@@ -153,35 +142,6 @@ def test_two_ways_on_are_none(name):
     assert weaker.status == vr.MotionStatus.DONE
 
 
-#: scenes, starts and torques in which the creep behind a slide relaxes within the rounding of time
-WITHIN_ROUNDING = {
-    "as stick forms": (
-        vr.Scene(61286946.98217327, 485.008595741095, 2.1180059615359082e-06, 1.0, 0.001105185454895873),
-        (-0.00037972829037289383, -0.018872194750263378), -3.3093761095822463e-06, 0.1757458133509312,
-    ),
-    "behind that": (
-        vr.Scene(136783.91057194746, 745.0299015010519, 1.253877996121188e-05, 1.0, 0.001541833724764843),
-        (0.00012943485713066936, 0.07667940372422104),
-        ([0.0, 0.4142940675810428, 0.4142940675810428, 3.8526417955229335],
-         [-1.2598833403608756e-06, 2.3579543109598304e-06, 1.5932640396209462e-06, 1.2947347488647115e-06]), 3.85,
-    ),
-    "where it is lost": (
-        vr.Scene(7201941.700985862, 201.72850302699462, 2.7189868715502376e-05, 1.0, 0.3815971643700291), (0.0, 0.0),
-        ([0.0, 1.3018019205934095, 1.3018019205934095, 1.849418035035823, 1.849418035035823, 2.1806209339960505],
-         [1.1440918835741891e-05, 7.649004508143946e-05, -7.786575953538988e-05, -9.620634589263686e-05,
-          4.4541558187706546e-05, 5.527253274679585e-05]), 2.18,
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", WITHIN_ROUNDING)
-def test_layers_within_the_rounding_of_time(name):
-    """Panels that resolve the layer are shorter than what t can tell: steps too small, where V has long been known."""
-    scene, (V0, omega0), torque, end = WITHIN_ROUNDING[name]
-    e = vr.ensemble(scene, V0, omega0, [end], torque=torque, max_steps=2000)
-    assert e.status[0] == vr.MotionStatus.DONE
-
-
 def slight_motions(count: int) -> list[tuple]:
     """Scenes whose rolling resistance takes up nearly all friction, on little inertia; starts, ends."""
     draw, found = np.random.default_rng(1), []
@@ -201,9 +161,7 @@ def slight_motions(count: int) -> list[tuple]:
 
 def test_slight_friction_and_inertia():
     """The slow manifold lies near the edge of stick, where it was tried without end, in one case of six."""
-    motions = slight_motions(100)
-    motions.append((vr.Scene(2.484, 129.0, 1.6e-6, 0.0118, 0.0011), -2.514e-4, 0.011246, 1.74e4))
-    for scene, V0, omega0, end in motions:
+    for scene, V0, omega0, end in slight_motions(100):
         t = end * np.array([0.1, 0.5, 0.9, 1.0])
         m, best = (vr.roll(scene, V0, omega0, t, rtol, max_steps=1000) for rtol in (1e-8, 1e-10))
         assert m.status == best.status == vr.MotionStatus.DONE, (scene, V0, omega0, end)

@@ -1,4 +1,4 @@
-"""Driven motions in extended precision: the integrator, the check motions made by it, and the package against them."""
+"""Driven motions against those in extended precision."""
 
 from __future__ import annotations
 
@@ -8,19 +8,13 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import given
 from places import ROOT
 
 import viscoroll as vr
-from pipeline.truth import roll_precise
 from pipeline.truth.motion import PATHS
 
 MOTIONS = json.loads((ROOT / "data/reference/check_driven.json").read_text(encoding="utf-8"))["motions"]
-
-
-def given(plain):
-    if not isinstance(plain, dict):
-        return plain
-    return (plain["times"], plain["values"]) if "times" in plain else vr.Feedback(**plain)
 
 
 def inputs(row: dict) -> tuple[tuple, dict]:
@@ -42,16 +36,6 @@ def test_check_motions_hold_together():
     }  # fmt: skip
     assert sum(bool(row["reversals"]) for row in MOTIONS) >= 6
     assert {name for row in MOTIONS for name in row["drive"]} == {"force", "torque", "slope", "brake", "V", "omega"}
-
-
-@pytest.mark.parametrize("name", ["pushed from rest", "slid off rest by a torque", "a jump there and back"])
-def test_check_motions_are_found_again(name):
-    """The same doubles by fewer nodes and a larger tolerance."""
-    row = next(row for row in MOTIONS if row["name"] == name)
-    case, drive = inputs(row)
-    found = roll_precise(*case, **drive, nodes=18, tolerance=1e-19)
-    for field in ("V", "omega", *PATHS):
-        assert [float(value) for value in getattr(found, field)] == row[field], field
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

@@ -1,0 +1,14 @@
+"""Drives that data files hold: numbers, schedules and gains in plain words."""
+
+from __future__ import annotations
+
+import viscoroll as vr
+
+
+def given(plain):
+    """As calls take them."""
+    if not isinstance(plain, dict):
+        return plain
+    if "times" in plain:
+        return plain["times"], plain["values"]
+    return vr.Feedback(**plain | {"value": given(plain["value"])})

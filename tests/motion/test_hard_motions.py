@@ -1,0 +1,40 @@
+"""Motions that once went wrong: each ends as at the tightest tolerance, in few steps (hard_motions.json)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from closeness import close
+from drives import given
+
+import viscoroll as vr
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),  # scenes of all kinds, beyond the model too
+    pytest.mark.filterwarnings("ignore:roll"),
+]
+#: scene, start, drive, times; tolerances, and how many of each the error may be; steps at most
+MOTIONS = json.loads(Path(__file__).with_name("hard_motions.json").read_text(encoding="utf-8"))
+TIGHT = 1e-12
+
+
+@pytest.mark.parametrize("row", MOTIONS, ids=[row["name"] for row in MOTIONS])
+def test_as_at_the_tightest_tolerance(row):
+    """Regimes, their ends and turns of V; speeds over the largest so far, of free motions over that of the time."""
+    case = vr.Scene(*row["scene"]), *row["start"], row["t"]
+    drive = {name: given(plain) for name, plain in row["drive"].items()}
+    best = vr.roll(*case, TIGHT, **drive)
+    speed = np.maximum(np.abs(best.V), np.abs(best.omega))
+    scale = np.maximum.accumulate(speed) if drive else speed
+    for rtol in row["rtols"]:
+        m, bound = vr.roll(*case, rtol, **drive), row["bound"] * (rtol + TIGHT)
+        assert m.status == best.status == vr.MotionStatus.DONE
+        assert m.steps <= row["steps"]
+        assert [s.regime for s in m.switches] == [s.regime for s in best.switches]
+        events, found = ([*(s.t for s in of.switches), *of.reversals] for of in (best, m))
+        assert not events or close(found, events, rel=bound, scale=row["t"][-1])
+        for name, size in (("V", scale), ("omega", scale), ("x", np.maximum.accumulate(np.abs(best.x)))):
+            assert close(getattr(m, name), getattr(best, name), rel=bound, scale=size, what=(name, rtol))
