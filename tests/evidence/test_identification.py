@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+import tolerances as tol
+from closeness import close
 from places import RESULTS
 from processes import made
 
@@ -15,7 +17,11 @@ def test_stage_plans_an_experiment(tmp_path):
     made("measure.identification", "--quick", "--only", "learn", "-o", tmp_path / "identification.json")
     (row, *_) = json.loads((tmp_path / "identification.json").read_text(encoding="utf-8"))["parts"]["learn"]["rows"]
     committed = committed_rows("learn")[0]
+    found, known = row.pop("unknowns"), committed.pop("unknowns")
     assert row == committed
+    for name, one in known.items():
+        for key, value in one.items():
+            assert found[name][key] == value is None or close(found[name][key], value, rel=tol.INTERVAL), (name, key)
 
 
 def committed_rows(part: str) -> list[dict]:

@@ -7,7 +7,6 @@ import json
 import pytest
 from experiments import SLOW, resistance
 from places import ROOT
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll import cli
@@ -84,13 +83,13 @@ WRONG = {
     "a misspelt key": (("sigma", "sigmma"), "unknown key 'sigmma'", "did you mean 'sigma'", "line 23"),
     "another unit": (("speed [m/s]", "speed [km/h]"), "V = in km/h", "in m s-1"),
     "a column that is not there": (('M = "moment"', 'M = "torque"'), "has no column 'torque', but speed, moment"),
-    "what no record has": (('M = "moment"', 'M = "moment", Q = "moment"'), "columns: Q: must be of V, M, F"),
-    "a word among numbers": (("# a remark", "0.1,much"), "row 2 is no row of numbers: '0.1,much'"),
+    "what no record has": (('M = "moment"', 'M = "moment", Q = "moment"'), "[data.columns] unknown key 'Q'", "V, M, F"),
+    "a word among numbers": (("# a remark", "0.1,much"), "'much'", "row 0, column 2"),
     "NaN": (("# a remark", "0.1,nan"), "drum.csv: resistance: M = nan at row 0"),
-    "a key of another kind": (('sigma = 0.01', "sigma = 0.01\nV0 = 3.0"), "V0: must be left out of a resistance"),
-    "another kind": (('"resistance"', '"drum"'), "Invalid enum value 'drum'"),
+    "a key of another kind": (('sigma = 0.01', "sigma = 0.01\nV0 = 3.0"), "unknown key 'V0'", "line 24"),
+    "another kind": (('"resistance"', '"drum"'), "must be one of resistance, traction, coastdown", "line 20"),
     "no file": (('"drum.csv"', '"no.csv"'), "no.csv", "cannot be read"),
-    "a range of one number": (("E = [3e5, 3e7]", "E = 3e6"), "[unknown]", "Expected `array`"),
+    "a range of one number": (("E = [3e5, 3e7]", "E = 3e6"), "unknown E = 3000000.0", "(low, high)"),
     "no unknowns": (("[unknown]\nE = [3e5, 3e7]\nT_ref = [1e-4, 1e-2]", ""), "section [unknown] is missing"),
     "no cylinder": (("[cylinder]", "[scene]"), "unknown key 'material'"),
     "a section that is none": (("[[data]]", "[more]\n[[data]]"), "unknown key 'more'"),
@@ -103,9 +102,11 @@ def test_bad_files_are_refused_in_one_line(case, folder, capsys):
     (old, new), *words = WRONG[case]
     for path in folder.iterdir():
         path.write_text(path.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
-    refused(lambda: read_measurements(folder / "data.toml"), *words, error=vr.ViscorollError)
     assert cli.main(["identify", str(folder / "data.toml")]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    for word in words:
+        assert word in said, said
 
 
 def test_a_files_temperature_is_where_its_shift_is_one(folder):

@@ -40,8 +40,8 @@ def add_commands(commands: Any) -> None:
 def _identify(arguments: Namespace) -> int:
     from ..files import write_dataset, write_text
     from ..identification import identify
-    from ..identification.export import as_json
     from ..identification.file import read_measurements
+    from ..identification.report import as_json
 
     fit = identify(
         **read_measurements(arguments.file), robust=arguments.robust, starts=arguments.starts, seed=arguments.seed,

@@ -1,9 +1,8 @@
 """From measurements to parameters: records, the fit, and what it says.
 
 Read in this order: :mod:`records` and :mod:`motions`, what was measured; :mod:`unknowns`, names and a cylinder of
-their values; :mod:`problem`, residuals and least squares; :mod:`search`, starts and minima; :mod:`profile`, intervals;
-:mod:`products`, what goes together; :mod:`said`, what comes first; :mod:`fit`, what is found; :mod:`ask`, all of it;
-:mod:`report`, in words; :mod:`file`, of a TOML file.
+their values; :mod:`problem`, residuals and least squares; :mod:`profile`, intervals; :mod:`products`, what goes
+together; :mod:`fit`, what is found; :mod:`ask`, all of it by searches; :mod:`report`, in words; :mod:`file`, of TOML.
 """
 
 from .ask import identify

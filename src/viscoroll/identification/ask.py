@@ -1,8 +1,8 @@
-"""From measurements to parameters: :func:`identify`."""
+"""From measurements to parameters: :func:`identify`, by searches from several starts."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -11,11 +11,22 @@ from ..cylinder import Cylinder
 from ..errors import ParameterError
 from ..errors import unknown as not_among
 from .fit import Identification
-from .problem import Found, Problem
+from .problem import Found, Prior, Problem, Vector
 from .records import Record
-from .said import flat
-from .search import minima
-from .unknowns import Shift, Unknown, refuse_unshifted, unknowns_of
+from .unknowns import OF_RECORDS, Shift, Unknown, refuse_unshifted, unknowns_of
+
+#: minima so far above the best are not told of: they are no alternatives
+_ALTERNATIVE = 15.0
+#: tolerance and steps of a search before it is known to be worth more, and the chi2 above the best of one that is not
+_ROUGH, _STEPS, _HOPELESS = 1e-4, 60, 60.0
+#: of a coordinate, how near its start a minimum is trusted to be the only one, and how far from it others are sought
+_NEAR, _LEAP = 0.6, 3.0
+#: what chi2 may rise by between two places of one minimum, and how near they are one place
+_RIDGE, _SAME = 0.5, 1e-2
+#: rounds in which standard deviations settle, and to what share
+_ROUNDS, _SETTLED = 20, 1e-3
+#: median of |normal| over its s.d.
+_MEDIAN = 0.6745
 
 
 def identify(
@@ -61,38 +72,36 @@ def identify(
         A name that is none, a range that does not hold the start, more unknowns than points, records without
         standard deviations where values are missing, records with and without values, two records of one name.
     """
-    given = {"material": shift, "base": shift} if callable(shift) else shift or {}
-    records = _called(cylinder, data, given)
+    shifts = {"material": shift, "base": shift} if callable(shift) else shift or {}
+    records = _called(cylinder, [data] if isinstance(data, Record) else data, shifts)
     unknowns = unknowns_of(cylinder, unknown, records)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
-    problem = Problem(cylinder, unknowns, records, _priors(prior or {}, unknowns), bool(robust), given)
-    points = problem.y.size + len(problem.prior)
-    if points < len(unknowns) + any(one.estimated for one in problem.columns):
-        sentence = f"{len(unknowns)} unknowns, but {points} points: measure more, give sigma, or leave unknowns out"
-        raise ParameterError("unknown", len(unknowns), f"at most {points}", sentence)
-    idle = flat(problem)
-    problem.live = [i for i, name in enumerate(problem.names) if name not in idle]
-    if next(iter(records.values())).planned:
-        return Identification(problem, [Found(problem.start, problem.cost(problem.residuals(problem.start)))])
     for name, count, least in (("starts", starts, 1), ("seed", seed, 0)):
         if not (isinstance(count, (int, np.integer)) and count >= least):
             raise ParameterError(name, count, f"a whole number >= {least}")
-    return Identification(problem, minima(problem, int(starts), seed, progress))
+    problem = Problem(cylinder, unknowns, records, _priors(prior or {}, unknowns), bool(robust), shifts)
+    points = problem.y.size + len(problem.priors)
+    if points < len(unknowns) + any(one.estimated for one in problem.columns):
+        sentence = f"{len(unknowns)} unknowns, but {points} points: measure more, give sigma, or leave unknowns out"
+        raise ParameterError("unknown", len(unknowns), f"at most {points}", sentence)
+    idle = problem.flat()
+    problem.live = [i for i in problem.live if i not in idle]
+    if problem.planned:
+        return Identification(problem, [Found(problem.start, problem.cost(problem.residuals(problem.start)))])
+    return Identification(problem, _minima(problem, int(starts), seed, progress))
 
 
 def _called(cylinder: Cylinder, data: Sequence[Record], shifts: Mapping[str, Shift]) -> dict[str, Record]:
     """The records by name; those without one are called by their kind."""
     found: dict[str, Record] = {}
-    for record in [data] if isinstance(data, Record) else data:
+    for record in data:
         if not isinstance(record, Record):
             raise ParameterError("data", f"{record!r:.60}", "a list of Resistance, Traction and Coastdown")
-        called, n = record.name or record.KIND, 1
-        while called in found:
-            n += 1
-            if record.name:
-                raise ParameterError("name", repr(record.name), "another for each record")
-            called = f"{record.KIND} {n}"
+        alike = sum(type(one) is type(record) and not one.name for one in found.values())
+        called = record.name or (f"{record.KIND} {alike + 1}" if alike else record.KIND)
+        if called in found:
+            raise ParameterError("name", repr(called), "another for each record")
         if record.planned and not record.sigma:
             raise ParameterError(f"{called}: sigma", None, "given where there are no values")
         if record.temperature is not None:
@@ -106,17 +115,82 @@ def _called(cylinder: Cylinder, data: Sequence[Record], shifts: Mapping[str, Shi
     return found
 
 
-def _priors(given: Mapping[str, tuple[float, float]], unknowns: list[Unknown]) -> list[tuple[int, float, float]]:
-    """(Which coordinate, its mean, its standard deviation)."""
+def _priors(given: Mapping[str, tuple[float, float]], unknowns: list[Unknown]) -> list[Prior]:
     found, names = [], [one.name for one in unknowns]
     for name, pair in given.items():
         if name not in names:
             raise not_among("prior", name, names, "an unknown")
-        one = unknowns[names.index(name)]
         if np.shape(pair) != (2,):
             raise ParameterError(f"prior {name}", f"{pair!r:.40}", "(value, standard deviation)")
-        low = -np.inf if one.unit is not None else 0.0
-        mean = number(f"prior {name}", pair[0], low=low, strict=True)
+        one = unknowns[names.index(name)]
+        mean = number(f"prior {name}", pair[0], low=0.0 if one.unit is None else -np.inf, strict=True)
         sd = number(f"standard deviation of prior {name}", pair[1], low=0.0, strict=True)
-        found.append((names.index(name), float(one.to_u(mean)), sd if one.unit is None else sd / one.unit))
+        found.append(Prior(names.index(name), float(one.to_u(mean)), sd / (one.unit or 1.0)))
     return found
+
+
+def _minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Found]:
+    """All that the starts lead to and that are parted by a ridge, the best first."""
+    from tqdm import tqdm
+
+    first = _settled(problem, problem.least(problem.start))
+    starts = [*_spread(problem, count, seed), *_beyond(problem, first.u)]
+    others = tqdm(starts, "identify", delay=1.0, leave=False, disable=not progress)
+    tries = [first, *(problem.least(u, None, _ROUGH, _STEPS) for u in others)]
+    good = min(found.chi2 for found in tries) + _HOPELESS
+    near = [problem.least(one.u) for one in tries if one.chi2 < good]
+    best = _settled(problem, min(near, key=lambda found: found.chi2))
+    kept = [best]
+    for one in sorted((Found(one.u, problem.cost(problem.residuals(one.u))) for one in near), key=lambda one: one.chi2):
+        if one.chi2 - best.chi2 < _ALTERNATIVE and not any(_joined(problem, one, other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _spread(problem: Problem, count: int, seed: int) -> Iterator[Vector]:
+    """A Latin hypercube over the ranges, but one place; what data start, as V0, stays there."""
+    from scipy.stats import qmc
+
+    free = [i for i in problem.live if problem.names[i].split(":")[0] not in OF_RECORDS]
+    if count > 1 and free:
+        for point in qmc.LatinHypercube(len(free), rng=np.random.default_rng(seed)).random(count - 1):
+            u = problem.start.copy()
+            u[free] = problem.low[free] + point * (problem.high - problem.low)[free]
+            yield u
+
+
+def _beyond(problem: Problem, u: Vector) -> list[Vector]:
+    """Places on either side of one far from the start, along what it knows least: ridges of a valley lie across it."""
+    if np.abs(u - problem.start).max() < _NEAR:
+        return []
+    along = np.linalg.svd(problem.weighed(u)[1][:, problem.live])[2][-1]
+    far = np.zeros(u.size)
+    far[problem.live] = _LEAP * along / np.abs(along).max()
+    return [np.clip(u + way, problem.low, problem.high) for way in (far, -far)]
+
+
+def _joined(problem: Problem, one: Found, other: Found) -> bool:
+    """Whether a way leads from one place to the other without a ridge: along what differs most, all else following."""
+    apart = other.u - one.u
+    which = int(np.argmax(np.abs(apart)))
+    if abs(apart[which]) < _SAME:
+        return True
+    powers, top = np.eye(apart.size)[which], max(one.chi2, other.chi2) + _RIDGE
+    ways = (one.u + share * apart for share in (0.5, 0.25, 0.75))
+    return all(problem.least(u, powers, _ROUGH, _STEPS).chi2 < top for u in ways)
+
+
+def _settled(problem: Problem, best: Found) -> Found:
+    """Estimate each sigma that was not given from its residuals, and fit again, until both stay."""
+    estimated = [one for one in problem.columns if one.estimated]
+    for _ in range(_ROUNDS if estimated else 0):
+        r, before = problem.residuals(best.u), problem.sigma.copy()
+        share = 1.0 - min(len(problem.live) / r.size, 0.9)
+        for one in estimated:
+            own = r[one.at]
+            size = np.median(np.abs(own)) / _MEDIAN if problem.robust else np.sqrt(np.mean(own**2) / share)
+            problem.sigma[one.at] *= max(float(size), 1e-12)
+        best = problem.least(best.u)
+        if np.abs(problem.sigma / before - 1.0).max() < _SETTLED:
+            break
+    return best

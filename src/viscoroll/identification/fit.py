@@ -1,25 +1,22 @@
-"""What was found: :class:`Identification`."""
+"""What was found: :class:`Identification`, and :class:`Prediction`."""
 
 from __future__ import annotations
 
-import html
+import math
 from collections.abc import Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..checks import number
 from ..errors import ParameterError, unknown
-from ..results import Row, Shown
-from .predict import Prediction, predicted
-from .problem import Column, Found, Problem
-from .products import Product, Ties
+from ..results import Row, Shown, Values
+from .problem import Found, Noise, Problem, Vector, slopes
+from .products import Product, products, undetermined
 from .profile import Profile, profile
 from .records import Record
-from .said import Noise, noise_of
 from .unknowns import OF_RECORDS, cylinder_of
 
 if TYPE_CHECKING:
@@ -29,6 +26,23 @@ if TYPE_CHECKING:
 _LEVEL = 0.95
 #: of coordinates, what is one place
 _SAME = 1e-6
+#: draws that are thrown away, at most, for one that lies within the ranges
+_TRIES = 50
+
+
+class Band(NamedTuple):
+    """A quantity at the best values, and the ends of its band."""
+
+    value: Any
+    low: Any
+    high: Any
+
+
+class Prediction(Values):
+    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, of the shape of its places."""
+
+    def __getattr__(self, name: str) -> Band:
+        return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
 
 
 class Identification(Shown):
@@ -52,85 +66,44 @@ class Identification(Shown):
     noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation.
     misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1.  Intervals
         mean nothing then.
+    records : the data by name.
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
     """
 
     def __init__(self, problem: Problem, found: list[Found]) -> None:
-        self._problem, self._best = problem, found[0]
-        self.values = problem.values(self._best.u)
+        self._problem, self._best, self._others = problem, found[0], [one.u for one in found[1:]]
+        u, self.chi2 = self._best
+        self.values = problem.values(u)
         self.minima = [(one.chi2, problem.values(one.u)) for one in found]
-        self._others = [one.u for one in found[1:]]
-        r = problem.residuals(self._best.u)
-        self._J = problem.weighed(r, problem.jacobian(self._best.u))
-        self.chi2, self.dof = self._best.chi2, r.size - self._best.u.size
-        self.does_not_act = tuple(name for i, name in enumerate(problem.names) if i not in problem.live)
-        self.planned = all(record.planned for record in problem.records.values())
-        self.noise: dict[str, Noise] = {} if self.planned else noise_of(problem, r)
+        self.dof = problem.y.size + len(problem.priors) - u.size
+        self.records, self.planned = problem.records, problem.planned
+        self.sigma = {str(one): problem.sigma[one.at].copy() for one in problem.columns}
+        self.noise: dict[str, Noise] = {} if self.planned else problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
-        self._profiles: dict[tuple[Any, ...], Profile] = {}
         self.cylinder = cylinder_of(problem.cylinder, {n: v for n, v in self.values.items() if ":" not in n})
-
-    @property
-    def evaluations(self) -> int:
-        """How often all records were computed."""
-        return self._problem.evaluations
-
-    @property
-    def columns(self) -> list[Column]:
-        """Of which record and quantity the residuals are, in their order."""
-        return self._problem.columns
-
-    @property
-    def records(self) -> dict[str, Record]:
-        """The data by name."""
-        return self._problem.records
+        # by slopes, and as far as the ranges let them
+        J = problem.weighed(u)[1]
+        self._cov: Any = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
+        sd, acts = np.sqrt(np.diag(self._cov)), np.isin(np.arange(u.size), problem.live)
+        spread = [one.spread(value) for one, value in zip(problem.unknowns, self.values.values(), strict=True)]
+        self.stderr = dict(zip(self.values, np.where(acts, sd * spread, np.inf).tolist(), strict=True))
+        self.correlations = self._cov / np.outer(sd, sd)
+        self.does_not_act = tuple(np.array(problem.names)[~acts].tolist())
+        self._profiles: dict[tuple[float, ...], Profile] = {}
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record, with its bands."""
         return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
 
-    @property
-    def sigma(self) -> dict[str, Any]:
-        """See above."""
-        return {str(one): self._problem.sigma[one.at].copy() for one in self._problem.columns}
-
-    @cached_property
-    def _cov(self) -> Any:
-        """Of the coordinates, by slopes and as far as the ranges let them."""
-        problem = self._problem
-        return np.linalg.inv(self._J.T @ self._J + np.diag(12.0 / (problem.high - problem.low) ** 2))
-
-    @property
-    def stderr(self) -> dict[str, float]:
-        """See above."""
-        sd = np.sqrt(np.diag(self._cov))
-        sd[[i for i, name in enumerate(self.values) if name in self.does_not_act]] = np.inf
-        spread = (one.spread(self.values[one.name]) for one in self._problem.unknowns)
-        return {name: float(size * each) for name, size, each in zip(self.values, sd, spread, strict=True)}
-
-    @property
-    def correlations(self) -> Any:
-        """See above."""
-        sd = np.sqrt(np.diag(self._cov))
-        return self._cov / np.outer(sd, sd)
-
-    def profile(self, name: str, level: float = _LEVEL) -> Profile:
-        """The walk behind an interval, in coordinates (logarithms): ends, whose range makes them, further pieces."""
-        if name not in self.values:
-            raise unknown("name", name, self.values, "an unknown")
-        powers = np.zeros(len(self.values))
-        powers[self._problem.names.index(name)] = 1.0
-        return self._profile(powers, level)
-
-    def _profile(self, powers: NDArray[np.float64], level: float) -> Profile:
-        key = (level, *powers)
+    def _profile(self, powers: Vector, level: float = _LEVEL) -> Profile:
+        """Of a combination of coordinates."""
+        key = (level, *powers.tolist())
         if key not in self._profiles:
-            problem = self._problem
-            begun = [problem.start] * bool(np.abs(problem.start - self._best.u).max() > _SAME)
-            self._profiles[key] = profile(
-                problem, self._best, self._cov, powers, self._rise(level), [*self._others, *begun]
-            )
+            problem, best = self._problem, self._best
+            begun = [problem.start] * bool(np.abs(problem.start - best.u).max() > _SAME)
+            others = [*self._others, *begun]
+            self._profiles[key] = profile(problem, best, self._cov, powers, self._rise(level), others)
         return self._profiles[key]
 
     def _rise(self, level: float) -> float:
@@ -138,9 +111,8 @@ class Identification(Shown):
         from scipy import stats
 
         level = number("level", level, low=0.0, strict=True, high=0.9999)
-        if any(one.estimated for one in self._problem.columns):
-            return float(stats.f.ppf(level, 1, self.dof))
-        return float(stats.chi2.ppf(level, 1))
+        estimated = any(one.estimated for one in self._problem.columns)
+        return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
 
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
         """Where each unknown lies, by its profile: (low, high), None on a side that is open.
@@ -158,20 +130,17 @@ class Identification(Shown):
         ParameterError
             Another level.
         """
-        found: dict[str, tuple[float | None, float | None]] = {}
-        for one in self._problem.unknowns:
-            if one.name in self.does_not_act:
-                found[one.name] = (None, None)
-                continue
-            sides = self.profile(one.name, level)
-            low, high = (None if end.at is None else float(one.to_value(end.at)) for end in (sides.low, sides.high))
+        found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
+        for i in self._problem.live:
+            one, sides = self._problem.unknowns[i], self._profile(np.eye(len(found))[i], level)
+            low, high = (None if end.at is None else float(one.to_value(end.at)) for end in sides.ends)
             found[one.name] = (low, high)
         return found
 
-    @property
+    @cached_property
     def undetermined(self) -> tuple[str, ...]:
         """See above."""
-        return tuple(self._problem.names[i] for i in self._ties(_LEVEL).which)
+        return tuple(self._problem.names[i] for i in undetermined(self._problem, self._cov, self._profile))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
         """What is determined of the :attr:`undetermined` unknowns: products of powers, with profiles as intervals.
@@ -179,12 +148,11 @@ class Identification(Shown):
         Exponents are those in which all that fits lies nearest to each other; the interval is of just these.  Where no
         exponents do, those by slopes at the best fit.
         """
-        return self._ties(level).products()
-
-    def _ties(self, level: float) -> Ties:
-        return Ties(
-            self._problem, self._best.u, self._J, self._cov, partial(self._profile, level=level), self._rise(level)
-        )
+        which = [self._problem.names.index(name) for name in self.undetermined]
+        return products(
+            self._problem, self._best.u, self._cov, which, lambda powers: self._profile(powers, level),
+            self._rise(level),
+        )  # fmt: skip
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
         """What a record would show, with bands.
@@ -212,33 +180,54 @@ class Identification(Shown):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
         for name in OF_RECORDS:
             if isinstance(getattr(record, name, 0.0), tuple | None):
-                raise ParameterError(
-                    name, None, "a number", f"{name} of the record is not given: a prediction needs it"
-                )
+                sentence = f"{name} of the record is not given: a prediction needs it"
+                raise ParameterError(name, None, "a number", sentence)
         return self._predicted(record, "", level, draws, seed)
 
     def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
-        width = float(np.sqrt(self._rise(level)))
-        return predicted(self._problem, record, called, self._best.u, self._cov, level, width, draws, seed)
+        problem, u = self._problem, self._best.u
 
-    def residuals(self, values: Mapping[str, float]) -> NDArray[np.float64]:
+        def seen(u: Vector) -> Vector:
+            return np.ravel([*problem.predicted(record, called, u).values()])
+
+        value = seen(u)
+        if draws:
+            many = np.random.default_rng(seed).multivariate_normal(u, self._cov, draws * _TRIES, method="eigh")
+            inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
+            share, drawn = 0.5 * (1.0 - level), [seen(at) for at in (inside if len(inside) else [u])]
+            low, high = np.nanquantile(drawn, (share, 1.0 - share), axis=0)
+        else:
+            J = slopes(seen, u, problem.low, problem.high)
+            half = math.sqrt(self._rise(level)) * np.sqrt(np.maximum(((J @ self._cov) * J).sum(axis=1), 0.0))
+            low, high = value - half, value + half
+        shape = (len(record.KINDS), *record.shape)
+        ends = {"": value, "_low": low, "_high": high}
+        found = {
+            name + end: one
+            for end, flat in ends.items()
+            for name, one in zip(record.KINDS, flat.reshape(shape), strict=True)
+        }
+        places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
+        units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
+        return Prediction(found, places, units, f"Prediction, {level:.0%} bands", record.labels)
+
+    def residuals(self, values: Mapping[str, float]) -> Vector:
         """Residuals over sigma of all records, in their order, and of the prior, at values by name.
 
         What is not named is at its start.  For optimisers and samplers of one's own; a motion that fails is 1e6 off.
         """
-        return self._problem.residuals(self._problem.coordinates(self._named(values)))
+        return self._problem.residuals(self._coordinates(values))
 
-    def jacobian(self, values: Mapping[str, float]) -> NDArray[np.float64]:
+    def jacobian(self, values: Mapping[str, float]) -> Vector:
         """Slopes of :meth:`residuals` over the values, (residuals, unknowns), by central differences."""
-        values = self._named(values)
-        J = self._problem.jacobian(self._problem.coordinates(values))
+        J = self._problem.jacobian(self._coordinates(values))
         return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
-    def _named(self, values: Mapping[str, float]) -> Mapping[str, float]:
+    def _coordinates(self, values: Mapping[str, float]) -> Vector:
         for name in values:
             if name not in self.values:
                 raise unknown("values", name, self.values, "an unknown")
-        return values
+        return self._problem.coordinates(values)
 
     def _card(self) -> tuple[str, list[Row]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
@@ -249,9 +238,6 @@ class Identification(Shown):
         from .report import report
 
         return report(self)
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(str(self))}</pre>"
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Data, best fit and its band, and below them residuals over sigma, a column for each quantity of a record.
@@ -272,6 +258,6 @@ class Identification(Shown):
 
     def to_xarray(self) -> xr.Dataset:
         """Values, standard deviations, intervals and correlations over ``unknown``, data and fit over their places."""
-        from .export import as_dataset
+        from .report import as_dataset
 
         return as_dataset(self)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
@@ -61,41 +60,34 @@ class Coastdown(Record):
     def __post_init__(self) -> None:
         super().__post_init__()
         t = np.asarray(self.t)
-        if t.ndim != 1 or (back := np.flatnonzero(np.diff(t) < 0.0)).size:
-            at = (
-                f"{t[back[0]]:g}, {t[back[0] + 1]:g} at rows {back[0]}, {back[0] + 1}"
-                if t.ndim == 1
-                else f"of shape {t.shape}"
-            )
-            raise ParameterError(self._of("t"), at, "a vector in ascending order")
+        if t.ndim > 1:
+            raise ParameterError(self._of("t"), f"of shape {t.shape}", "a vector")
+        if (back := np.flatnonzero(np.diff(t) < 0.0)).size:
+            n = int(back[0])
+            raise ParameterError(self._of("t"), f"{t[n]:g}, {t[n + 1]:g} at rows {n}, {n + 1}", "in ascending order")
         if isinstance(self.omega0, str) and self.omega0 != ROLLING:
             raise ParameterError(self._of("omega0"), repr(self.omega0), f"a number, {ROLLING!r} or None")
-        for name in ("V0", "omega0", "m"):
-            if isinstance(value := getattr(self, name), (str, type(None))):
-                continue
-            low = 0.0 if name == "m" else -math.inf
-            self._set(name, number(self._of(name), value, low=low, strict=True))
+        for name in ("V0", "omega0"):
+            value = getattr(self, name)
+            if value is not None and not (name == "omega0" and isinstance(value, str)):
+                self._set(**{name: number(self._of(name), value)})
         ends = checked(self._of("t0"), self.t0)
         if ends.shape not in ((), (2,)) or (ends.ndim and not ends[0] < ends[1]):
             raise ParameterError(self._of("t0"), self.t0, "a number, or (low, high)")
-        self._set("t0", tuple(ends.tolist()) if ends.ndim else float(ends))
+        self._set(t0=tuple(ends.tolist()) if ends.ndim else float(ends))
         if self.V0 is None and self.planned:
-            raise ParameterError(
-                self._of("V0"), None, "a number", f"{self._of('V0')} is not given: a plan has no data to take it from"
-            )
+            sentence = f"{self._of('V0')} is not given: a plan has no data to take it from"
+            raise ParameterError(self._of("V0"), None, "a number", sentence)
 
-    @property
-    def own(self) -> dict[str, float]:
-        return super().own | ({} if self.m is None else {"m": self.m})
-
-    def starts(self, cylinder: Cylinder) -> dict[str, tuple[float, float, float]]:
-        found = {}
+    def starts(self, cylinder: Cylinder) -> dict[str, tuple[float, tuple[float, float] | None]]:
+        found: dict[str, tuple[float, tuple[float, float] | None]] = {}
         for name, given in (("V", self.V0), ("omega", self.omega0)):
             if given is None:
                 first, most = self._first(name, cylinder.R)
-                found[f"{name}0"] = (first, first - most, first + most)
-        if isinstance(self.t0, tuple):
-            found["t0"] = (min(max(0.0, self.t0[0]), self.t0[1]), *self.t0)
+                found[f"{name}0"] = first, (first - most, first + most)
+            elif not isinstance(given, str):
+                found[f"{name}0"] = given, None
+        found["t0"] = (float(np.clip(0.0, *self.t0)), self.t0) if isinstance(self.t0, tuple) else (self.t0, None)
         return found
 
     def _first(self, name: str, R: float) -> tuple[float, float]:
@@ -112,32 +104,28 @@ class Coastdown(Record):
         return float(given[0]), float(np.max(np.abs(given)))
 
     def model(self, cylinder: Cylinder, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
-        first, t = self._release(cylinder, values)
-        found = {name: np.full(t.shape, value) for name, value in first.items()}
-        if (late := t >= 0.0).any():
-            motion = self._rolled(cylinder, first, t[late], values)
-            for name, column in found.items():
-                column[late] = getattr(motion, name)
+        first, late, motion = self._rolled(cylinder, values)
+        found = {name: np.full(late.shape, value) for name, value in first.items()}
+        for name, column in found.items() if motion else ():
+            column[late] = getattr(motion, name)
         return found
 
     def slipping(self, cylinder: Cylinder, values: Mapping[str, float]) -> int:
         """How many of its points fall into full slip."""
-        first, t = self._release(cylinder, values)
-        late = t[t >= 0.0]
-        return int((self._rolled(cylinder, first, late, values).regime == 0).sum()) if late.size else 0
+        motion = self._rolled(cylinder, values)[-1]
+        return int((motion.regime == 0).sum()) if motion else 0
 
-    def _release(self, cylinder: Cylinder, values: Mapping[str, float]) -> tuple[dict[str, Any], NDArray[np.float64]]:
-        """First speeds and way, and times since then."""
-        V0, omega0 = values.get("V0", self.V0), values.get("omega0", self.omega0)
-        omega0 = V0 / cylinder.R if omega0 == ROLLING else omega0
-        return {"V": V0, "omega": omega0, "x": 0.0}, np.asarray(self.t) - values.get("t0", self.t0)
-
-    @staticmethod
-    def _rolled(cylinder: Cylinder, first: dict[str, Any], t: NDArray[np.float64], values: Mapping[str, float]) -> Any:
-        """The motion from the release on, with the bearing of ``values``."""
+    def _rolled(self, cylinder: Cylinder, values: Mapping[str, float]) -> tuple[dict[str, Any], NDArray[np.bool_], Any]:
+        """First speeds and way; which points lie behind the release; the motion from there, None without a point."""
+        V0: Any = values.get("V0", self.V0)
+        omega0: Any = values.get("omega0", self.omega0)
+        first = {"V": V0, "omega": V0 / cylinder.R if omega0 == ROLLING else omega0, "x": 0.0}
+        t = np.asarray(self.t) - values.get("t0", self.t0)
+        late = t >= 0.0
         drive: dict[str, Any] = {}
         if values.get("brake", 0.0) > 0.0:
             drive["brake"] = values["brake"]
         if values.get("drag", 0.0) != 0.0:
             drive["torque"] = Feedback(0.0, omega=-values["drag"])
-        return cylinder.roll(first["V"], first["omega"], t, _RTOL_DRIVEN if drive else _RTOL, **drive)
+        rtol = _RTOL_DRIVEN if drive else _RTOL
+        return first, late, cylinder.roll(V0, first["omega"], t[late], rtol, **drive) if late.any() else None

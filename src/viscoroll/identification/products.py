@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from functools import cached_property
+import math
+from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .problem import Problem
+from .problem import Problem, Vector
 from .profile import Profile
 
 #: width of an interval of a coordinate from which on it counts as not determined, and of a product
@@ -21,6 +19,9 @@ _TOGETHER = 0.95
 _PARTS, _AS_NEAR = (1, 2, 10, 100), 1.5
 #: how much wider the interval of a product with rounder exponents may be
 _ROUNDER = 5.0
+
+#: the profile of a combination
+ProfileOf = Callable[[Vector], Profile]
 
 
 class Product(NamedTuple):
@@ -39,79 +40,87 @@ class Product(NamedTuple):
     near: bool
 
 
-@dataclass(eq=False)
-class Ties:
-    """What goes together at coordinates u with slopes J; ``profile_of`` a combination, ``rise`` of chi2 at its ends."""
+def undetermined(problem: Problem, cov: Vector, profile_of: ProfileOf) -> list[int]:
+    """Unknowns whose interval tells little, and what is correlated with these."""
+    wide, sd = [], np.sqrt(np.diag(cov))
+    for i in problem.live:
+        low, high = profile_of(np.eye(sd.size)[i]).ends
+        width = (problem.high[i] if high.at is None else high.at) - (problem.low[i] if low.at is None else low.at)
+        if width > min(_WIDE, 0.5 * (problem.high[i] - problem.low[i])):
+            wide.append(i)
+    return [i for i in problem.live if (np.abs(cov[i, wide]) > _TOGETHER * sd[i] * sd[wide]).any()]
 
-    problem: Problem
-    u: NDArray[np.float64]
-    J: NDArray[np.float64]
-    cov: NDArray[np.float64]
-    profile_of: Callable[[NDArray[np.float64]], Profile]
-    rise: float
 
-    @cached_property
-    def which(self) -> list[int]:
-        """Unknowns whose interval tells little, and what is correlated with these."""
-        sd = np.sqrt(np.diag(self.cov))
-        together = np.abs(self.cov) > _TOGETHER * np.outer(sd, sd)
-        wide = [i for i in self.problem.live if self._is_wide(i)]
-        return [i for i in self.problem.live if together[i, wide].any()]
+def products(
+    problem: Problem, u: Vector, cov: Vector, which: list[int], profile_of: ProfileOf,
+    rise: float,
+) -> list[Product]:  # fmt: skip
+    """What is determined of ``which``: by places that all fit, by slopes at u where that is narrower by far.
 
-    def products(self) -> list[Product]:
-        """By places that all fit, by slopes where these are narrower by far, or near the best alone."""
-        if len(self.which) < 2:
-            return []
-        far, near = (list(self._determined(family)) for family in self._directions())
-        rounder = far and (not near or np.log(far[0].high / far[0].low) < _ROUNDER * np.log(near[0].high / near[0].low))
-        return (far if rounder else near) or list(self._determined(self._directions()[1], near=True))
+    Where neither has an interval, by slopes with what these say of their interval, at a ``rise`` of chi2.
+    """
+    if len(which) < 2:
+        return []
+    steep = _by_slopes(problem, u, which)
 
-    def _is_wide(self, i: int) -> bool:
-        """Whether an interval, to the range's ends where open, is wider than a factor of e^2 or half the range."""
-        problem, sides = self.problem, self._single(i)
-        low = problem.low[i] if sides.low.at is None else sides.low.at
-        high = problem.high[i] if sides.high.at is None else sides.high.at
-        return bool(high - low > min(_WIDE, 0.5 * (problem.high[i] - problem.low[i])))
+    def asked(powers: Vector) -> tuple[float, float] | None:
+        low, high = profile_of(powers).ends
+        centre = float(powers @ u)
+        return None if low.at is None or high.at is None else (low.at - centre, high.at - centre)
 
-    def _single(self, i: int) -> Profile:
-        return self.profile_of(np.eye(self.u.size)[i])
+    def guessed(powers: Vector) -> tuple[float, float]:
+        half = math.sqrt(rise * (powers @ cov @ powers))
+        return -half, half
 
-    def _directions(self) -> tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]:
-        """Combinations that may be determined, best first: by places that all fit, and by slopes.
+    by_places = _narrow(problem, u, _by_places(which, profile_of, u.size), asked)
+    by_slopes = _narrow(problem, u, steep, asked)
+    if by_places and (not by_slopes or _width(by_places[0]) < _ROUNDER * _width(by_slopes[0])):
+        return by_places
+    return by_slopes or [one._replace(near=True) for one in _narrow(problem, u, steep, guessed)]
 
-        The former are those in which the places lie nearest to each other, with exponents as round as that allows: what
-        is printed is what is meant.  The latter are where J, without what other unknowns take of it, is largest.
-        """
-        within = np.concatenate([self._single(i).within[:, self.which] for i in self.which])
-        far = []
-        for v in np.linalg.svd(within - within.mean(axis=0), full_matrices=True)[2][::-1]:
-            exact = v / v[np.argmax(np.abs(v))]
-            width = np.ptp(within @ exact)
-            rounded = (np.round(exact * parts) / parts for parts in _PARTS)
-            far.append(next((p for p in rounded if np.ptp(within @ p) <= _AS_NEAR * width), np.round(exact, 2)))
-        J, rest = self.J[:, self.which], self.J[:, [i for i in self.problem.live if i not in self.which]]
-        Vt = np.linalg.svd(J - rest @ np.linalg.lstsq(rest, J, rcond=None)[0], full_matrices=False)[2]
-        return far, [np.round(v / v[np.argmax(np.abs(v))], 2) for v in Vt]
 
-    def _determined(self, family: list[NDArray[np.float64]], near: bool = False) -> Iterator[Product]:
-        """Those of a family, up to the first one that is open or wide."""
-        for direction in family:
-            powers = np.zeros(self.u.size)
-            powers[self.which] = direction
-            if near:
-                half = float(np.sqrt(self.rise * (powers @ self.cov @ powers)))
-                low, high = -half, half
-            else:
-                sides, centre = self.profile_of(powers), float(powers @ self.u)
-                if sides.low.at is None or sides.high.at is None:
-                    return
-                low, high = sides.low.at - centre, sides.high.at - centre
-            if high - low > _NARROW:
-                return
-            values = self.problem.values(self.u)
-            exponents = {
-                one.name: float(p if one.unit is None else p * values[one.name] / one.unit)
-                for one, p in zip(self.problem.unknowns, powers, strict=True) if p
-            }  # fmt: skip
-            value = float(np.prod([values[name] ** p for name, p in exponents.items()]))
-            yield Product(exponents, value, float(np.exp(low)), float(np.exp(high)), near)
+def _width(one: Product) -> float:
+    return float(np.log(one.high / one.low))
+
+
+def _narrow(
+    problem: Problem, u: Vector, family: Iterable[Vector],
+    ends_of: Callable[[Vector], tuple[float, float] | None],
+) -> list[Product]:  # fmt: skip
+    """Products with their intervals, up to the first one that is open or wide."""
+    found, values = [], problem.values(u)
+    for powers in family:
+        ends = ends_of(powers)
+        if ends is None or ends[1] - ends[0] > _NARROW:
+            break
+        exponents = {
+            one.name: float(p if one.unit is None else p * values[one.name] / one.unit)
+            for one, p in zip(problem.unknowns, powers, strict=True) if p
+        }  # fmt: skip
+        value = math.prod(values[name] ** p for name, p in exponents.items())
+        found.append(Product(exponents, value, math.exp(ends[0]), math.exp(ends[1]), False))
+    return found
+
+
+def _by_places(which: list[int], profile_of: ProfileOf, n: int) -> Iterator[Vector]:
+    """Combinations in which all places that fit lie nearest to each other, best first, and as round as that allows."""
+    within = np.concatenate([profile_of(np.eye(n)[i]).within for i in which])[:, which]
+    for v in np.linalg.svd(within - within.mean(axis=0), full_matrices=True)[2][::-1]:
+        exact = v / v[np.argmax(np.abs(v))]
+        rounded = (np.round(exact * parts) / parts for parts in _PARTS)
+        width = _AS_NEAR * np.ptp(within @ exact)
+        yield _among(which, n, next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2)))
+
+
+def _by_slopes(problem: Problem, u: Vector, which: list[int]) -> list[Vector]:
+    """Combinations along which slopes are largest, without what other unknowns take of them."""
+    J, others = problem.weighed(u)[1], [i for i in problem.live if i not in which]
+    own = J[:, which] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, which], rcond=None)[0]
+    Vt = np.linalg.svd(own, full_matrices=False)[2]
+    return [_among(which, u.size, np.round(v / v[np.argmax(np.abs(v))], 2)) for v in Vt]
+
+
+def _among(which: list[int], n: int, powers: Vector) -> Vector:
+    whole = np.zeros(n)
+    whole[which] = powers
+    return whole

@@ -42,23 +42,21 @@ class Record:
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
-        given = {name: getattr(self, name) for name in (*self.PLACES, *self.KINDS)}
+        given = {name: getattr(self, name) for name in (*self.PLACES, *self.measured)}
         for name, value in given.items():
             refuse_other_unit(self._of(name), value, self.unit(name))
-        plain, labels = unlabelled({name: value for name, value in given.items() if value is not None})
+        plain, labels = unlabelled(given)
         arrays = {name: np.atleast_1d(checked(self._of(name), value)) for name, value in plain.items()}
         shape = broadcast_shape(**{self._of(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.PLACES}) != shape:
             raise ParameterError(self._of(self.KINDS[0]), f"of shape {shape}", "a value a place")
         if 0 in shape:
             raise ParameterError(self._of(self.PLACES[0]), "empty", "at least one place")
-        for name, array in arrays.items():
-            self._set(name, np.broadcast_to(array, shape))
-        self._set("labels", labels)
-        self._set("sigma", self._sigmas(shape))
-        for name, low in (("load", 0.0), ("temperature", -math.inf)):
-            if (value := getattr(self, name)) is not None:
-                self._set(name, number(self._of(name), value, low=low, strict=True))
+        self._set(labels=labels, **{name: np.broadcast_to(array, shape) for name, array in arrays.items()})
+        self._set(sigma=self._sigmas(shape))
+        for name, low in (("load", 0.0), ("m", 0.0), ("temperature", -math.inf)):
+            if (value := getattr(self, name, None)) is not None:
+                self._set(**{name: number(self._of(name), value, low=low, strict=True)})
 
     @staticmethod
     def unit(name: str) -> str:
@@ -66,37 +64,42 @@ class Record:
         name = _CALLED.get(name, name)
         return si_unit(name)
 
-    def _set(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
+    def _set(self, **values: Any) -> None:
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     def _of(self, name: str) -> str:
         return f"{self.name or self.KIND}: {name}"
 
     def _sigmas(self, shape: tuple[int, ...]) -> dict[str, NDArray[np.float64] | None]:
         """Standard deviation of each quantity, None where it is to be estimated; of a plan it says what is measured."""
-        measured = [name for name in self.KINDS if getattr(self, name) is not None]
-        given = self.sigma
+        among, given = self.measured or self.KINDS[:1], self.sigma
+        if given is None:
+            return dict.fromkeys(self.measured)
         if not isinstance(given, Mapping):
-            if len(measured) > 1 and given is not None:
-                allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in measured)}}}"
+            if len(among) > 1:
+                allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
                 raise ParameterError(self._of("sigma"), f"{given!r:.40}", allowed)
-            given = {} if given is None else {(measured or self.KINDS)[0]: given}
-        for name in given:
-            if name not in (measured or self.KINDS):
-                raise unknown(self._of("sigma"), name, measured or self.KINDS, "a quantity of it")
-        sigmas = {
-            name: checked(self._of(f"sigma of {name}"), value, low=0.0, strict=True) for name, value in given.items()
-        }
-        try:
-            whole = {name: np.broadcast_to(value, shape) for name, value in sigmas.items()}
-        except ValueError:
-            raise ParameterError(self._of("sigma"), "of another shape", f"a number, or of shape {shape}") from None
-        return {name: whole.get(name) for name in measured or whole}
+            given = {among[0]: given}
+        found: dict[str, NDArray[np.float64] | None] = dict.fromkeys(self.measured)
+        for name, value in given.items():
+            if name not in (self.measured or self.KINDS):
+                raise unknown(self._of("sigma"), name, self.measured or self.KINDS, "a quantity of it")
+            sigma = checked(self._of(f"sigma of {name}"), value, low=0.0, strict=True)
+            if sigma.shape not in ((), shape):
+                raise ParameterError(self._of("sigma"), f"of shape {sigma.shape}", f"a number, or of shape {shape}")
+            found[name] = np.broadcast_to(sigma, shape)
+        return found
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Quantities that it has values of."""
+        return tuple(name for name in self.KINDS if getattr(self, name) is not None)
 
     @property
     def planned(self) -> bool:
         """Whether it holds no values."""
-        return all(getattr(self, name) is None for name in self.KINDS)
+        return not self.measured
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -106,15 +109,12 @@ class Record:
     @property
     def own(self) -> dict[str, float]:
         """What it has in place of the cylinder's."""
-        return {} if self.load is None else {"load": self.load}
+        given = {name: getattr(self, name, None) for name in ("load", "m")}
+        return {name: value for name, value in given.items() if value is not None}
 
-    def starts(self, cylinder: Cylinder) -> dict[str, tuple[float, float, float]]:
-        """Unknowns of its own that it brings along, as "V0": (start, low, high)."""
+    def starts(self, cylinder: Cylinder) -> dict[str, tuple[float, tuple[float, float] | None]]:
+        """What it may have unknown: where that starts, and the range of what is unknown without being asked for."""
         return {}
-
-    def order(self) -> NDArray[np.int64]:
-        """Its places in ascending order, in which residuals have neighbours."""
-        return np.lexsort([np.ravel(getattr(self, name)) for name in reversed(self.PLACES)])
 
     def model(self, cylinder: Cylinder, values: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
         """What the ``cylinder`` would show of all :attr:`KINDS`; ``values`` of bearing and record by their names."""

@@ -1,35 +1,43 @@
-"""An identification in words: what the residuals say first, then values, then what the data do not tell."""
+"""An identification in words: what the residuals say first, then values, then what the data do not tell.
+
+The same as a dataset, and as what JSON holds.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from .. import __version__
 from .motions import Coastdown
-from .unknowns import named
+from .unknowns import of_record
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: points of a motion's phase below which it is told
 _FEW = 5
-_LEVEL = 0.95
 #: correlation that is worth a word, and chi2 by which a profile's way must undercut the fit
 _CLOSE, _BETTER = 0.9, 0.1
 
 
 def report(fit: Any) -> str:
     """The report that ``print(fit)`` shows, of a :class:`viscoroll.identification.Identification`."""
-    lines = [_heading(fit), *(f"  ! {line}" for line in noise_said(fit))]
-    intervals = fit.intervals(_LEVEL)
-    width = max(map(len, fit.values))
-    for name, value in fit.values.items():
-        lines.append(
-            f"  {name:<{width}}  {value:<12.6g} +- {fit.stderr[name]:<9.2g} {_LEVEL:.0%}: {_interval(*intervals[name])}"
-        )
-    return "\n".join([*lines, *(f"  ! {line}" for line in sentences(fit))])
+    width, intervals = max(map(len, fit.values)), fit.intervals()
+    rows = [
+        f"  {name:<{width}}  {value:<12.6g} +- {fit.stderr[name]:<9.2g} 95%: {_end(low)} to {_end(high)}"
+        for (name, value), (low, high) in zip(fit.values.items(), intervals.values(), strict=True)
+    ]
+    said = [[f"  ! {line}" for line in lines] for lines in (_noise(fit), _limits(fit))]
+    return "\n".join([_heading(fit), *said[0], *rows, *said[1]])
 
 
 def sentences(fit: Any) -> list[str]:
-    """All that the data do not say, and what to beware of, a sentence each."""
-    return [*_flat(fit), *_loose(fit), *_sides(fit), *_minima(fit), *_phases(fit), *_close(fit)]
+    """All that is no value: what to beware of, and what the data do not say, a sentence each."""
+    return [*_noise(fit), *_limits(fit)]
 
 
 def _heading(fit: Any) -> str:
@@ -39,64 +47,67 @@ def _heading(fit: Any) -> str:
     head = f"{len(fit.values)} unknowns, {problem.y.size} points"
     if fit.planned:
         return f"{head}, planned: what to expect if the cylinder is the truth"
-    estimated = [str(one) for one in fit.columns if one.estimated]
+    estimated = [f"{one} {fit.sigma[str(one)][0]:.3g}" for one in problem.columns if one.estimated]
     if estimated:
-        return f"{head}; standard deviation estimated: " + ", ".join(
-            f"{name} {fit.sigma[name][0]:.3g}" for name in estimated
-        )
+        return f"{head}; standard deviation estimated: {', '.join(estimated)}"
     chance = "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
 
 
-def noise_said(fit: Any) -> Iterator[str]:
+def _end(value: float | None) -> str:
+    return "open" if value is None else f"{value:.6g}"
+
+
+def _noise(fit: Any) -> Iterator[str]:
     """Residuals that are no noise."""
     for name in fit.misfit:
-        noise = fit.noise[name]
-        lag = f"lag-1 correlation {noise.lag:.2f}, noise allows {noise.allowed:.2f}"
+        rms, lag, allowed, _ = fit.noise[name]
         yield (
-            f"residuals of {name} are no noise ({lag}; rms {noise.rms:.2f} sigma): the model misses something, and "
-            "intervals mean nothing"
+            f"residuals of {name} are no noise (lag-1 correlation {lag:.2f}, noise allows {allowed:.2f}; rms {rms:.2f} "
+            "sigma): the model misses something, and intervals mean nothing"
         )
 
 
-def _interval(low: float | None, high: float | None) -> str:
-    return f"{'open' if low is None else f'{low:.6g}'} to {'open' if high is None else f'{high:.6g}'}"
-
-
-def _flat(fit: Any) -> Iterator[str]:
-    for name in fit.does_not_act:
-        yield f"{name} does not act on these data"
+def _limits(fit: Any) -> Iterator[str]:
+    yield from (f"{name} does not act on these data" for name in fit.does_not_act)
+    yield from _loose(fit)
+    yield from _sides(fit)
+    for chi2, values in fit.minima[1:]:
+        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_listed(values)}"
+    yield from _phases(fit)
+    loose, names = {*fit.does_not_act, *fit.undetermined}, list(fit.values)
+    for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
+        if not {names[i], names[k]} <= loose:
+            yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
 
 
 def _loose(fit: Any) -> Iterator[str]:
-    names = fit.undetermined
-    if not names:
-        return
-    if len(names) == 1:
-        yield f"{names[0]} is not determined by these data"
-        return
-    products = fit.products(_LEVEL)
-    only = f"only {' and '.join(map(_product, products))} {'is' if len(products) == 1 else 'are'} determined"
-    only += ", near these values" if products and products[0].near else ""
-    yield f"{', '.join(names[:-1])} and {names[-1]} cannot be told apart by these data: " + (
-        only if products else "no product of their powers is determined"
-    )
+    """What cannot be told apart."""
+    *names, last = fit.undetermined or ("",)
+    if last and not names:
+        yield f"{last} is not determined by these data"
+    elif last:
+        products = fit.products()
+        only = f"only {' and '.join(map(_product, products))} {'is' if len(products) == 1 else 'are'} determined"
+        only += ", near these values" if products and products[0].near else ""
+        only = only if products else "no product of their powers is determined"
+        yield f"{', '.join(names)} and {last} cannot be told apart by these data: {only}"
 
 
 def _product(one: Any) -> str:
     ordered = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
     text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in ordered)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
-    return f"{text} = {one.value:.4g} ({_LEVEL:.0%}: {low} to {high})"
+    return f"{text} = {one.value:.4g} (95%: {low} to {high})"
 
 
 def _sides(fit: Any) -> Iterator[str]:
+    """What ends of intervals are not of the data."""
     made: dict[str, list[str]] = {}
-    for name in fit.values:
-        if name in fit.does_not_act:
-            continue
-        found = fit.profile(name, _LEVEL)
-        for side, end in (("lower", found.low), ("upper", found.high)):
+    problem = fit._problem
+    for i in problem.live:
+        name, found = problem.names[i], fit._profile(np.eye(len(problem.names))[i])
+        for side, end in zip(("lower", "upper"), found.ends, strict=True):
             if end.at is None:
                 yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
             for bound in end.bounds:
@@ -104,17 +115,12 @@ def _sides(fit: Any) -> Iterator[str]:
         if found.pieces:
             yield f"the interval of {name} is not in one piece: chi2 rises within it above what its ends have"
         if found.best.chi2 < fit.chi2 - _BETTER:
-            listed = _listed(fit._problem.values(found.best.u))
+            listed = _listed(problem.values(found.best.u))
             yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
-    for name in fit._problem.at_end(fit._best.u):
-        yield f"the best fit has {name} at the end of its range"
+    for i in problem.at_end(fit._best.u):
+        yield f"the best fit has {problem.names[i]} at the end of its range"
     for bound, ends in made.items():
         yield f"the range of {bound}, not the data, makes {', '.join(ends)}"
-
-
-def _minima(fit: Any) -> Iterator[str]:
-    for chi2, values in fit.minima[1:]:
-        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_listed(values)}"
 
 
 def _listed(values: dict[str, float]) -> str:
@@ -123,21 +129,48 @@ def _listed(values: dict[str, float]) -> str:
 
 def _phases(fit: Any) -> Iterator[str]:
     """Motions with too few points in a phase."""
-    if "mu" not in fit.values:
-        return
+    for called, record in fit.records.items() if "mu" in fit.values else ():
+        if isinstance(record, Coastdown):
+            cylinder = fit._problem.cylinder_of(record, fit.values)
+            slips = record.slipping(cylinder, of_record(fit.values, called))
+            if 0 < slips < _FEW:
+                yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
+
+
+def as_dataset(fit: Any) -> xr.Dataset:
+    """Values over ``unknown``, each record's places, data, fit and sigma over an axis of its own."""
+    import xarray as xr
+
+    names, ends = np.array(list(fit.values), object), np.array(list(fit.intervals().values()), float)
+    data: dict[str, Any] = {
+        "value": ("unknown", list(fit.values.values())), "stderr": ("unknown", list(fit.stderr.values())),
+        "low": ("unknown", ends[:, 0], {"long_name": "lower end of the 95 % interval, NaN where open"}),
+        "high": ("unknown", ends[:, 1], {"long_name": "upper end of the 95 % interval, NaN where open"}),
+        "correlation": (("unknown", "other"), fit.correlations),
+    }  # fmt: skip
     for called, record in fit.records.items():
-        if not isinstance(record, Coastdown):
-            continue
-        cylinder = fit._problem.cylinder_of(record, fit.values)
-        slips = record.slipping(cylinder, named(fit.values, called))
-        if 0 < slips < _FEW:
-            yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
+        bands = fit.predicted[called]
+        columns = {name: getattr(record, name) for name in (*record.PLACES, *record.measured)}
+        for name in record.sigma:
+            columns |= {f"{name} fit": getattr(bands, name).value, f"{name} sigma": fit.sigma[f"{name} of {called}"]}
+        for name, values in columns.items():
+            data[f"{called} {name}"] = (f"{called} point", np.ravel(values), {"units": record.unit(name.split()[0])})
+    about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
+    return xr.Dataset(data, {"unknown": names, "other": names}, about | {"chi2": fit.chi2, "dof": fit.dof})
 
 
-def _close(fit: Any) -> Iterator[str]:
-    loose = {*fit.does_not_act, *fit.undetermined}
-    names, found = list(fit.values), fit.correlations
-    for i, one in enumerate(names):
-        for k, other in enumerate(names[:i]):
-            if abs(found[i, k]) > _CLOSE and not {one, other} <= loose:
-                yield f"{other} and {one} are correlated: {found[i, k]:+.4f}"
+def as_json(fit: Any) -> dict[str, Any]:
+    """What the report says, by name; null where a side is open or nothing acts."""
+    told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
+    unknowns = {
+        name: {"value": value, "stderr": sd if math.isfinite(sd) else None, "interval": interval}
+        for (name, value), sd, interval in zip(
+            fit.values.items(), fit.stderr.values(), fit.intervals().values(), strict=True
+        )
+    }
+    return {
+        "source": f"viscoroll {__version__}", "unknowns": unknowns, **{name: getattr(fit, name) for name in told},
+        "products": [one._asdict() for one in fit.products()], "correlations": fit.correlations.tolist(),
+        "noise": {name: noise._asdict() for name, noise in fit.noise.items()},
+        "sigma": {name: float(values[0]) for name, values in fit.sigma.items()}, "says": sentences(fit),
+    }  # fmt: skip

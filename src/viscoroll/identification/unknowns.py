@@ -6,16 +6,16 @@ with its name, as V0:run.
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..checks import checked, number
 from ..cylinder import Cylinder
 from ..errors import ParameterError, unknown
 from ..materials.material import Material
@@ -25,17 +25,17 @@ from .records import Record
 #: degrees Celsius -> a_T
 Shift = Callable[[float], float]
 _OWN = ("R", "m", "mu", "j", "g", "load")
-BEARING = ("brake", "drag")
+_OF_BODY = ("E", "nu", "T_ref")
 OF_RECORDS = ("V0", "omega0", "t0")
-#: section -> what its names begin with
-PREFIXES = {"material": "", "base": "base_"}
+#: what goes linearly, others go by their logarithm
+_LINEAR = ("brake", "drag", "nu", "base_nu", *OF_RECORDS)
 _MODE = re.compile(r"(E|tau)_(\d+)$")
 #: of its range, the least unit of what is counted from 0
 _UNIT = 0.1
 
 
 class Unknown(NamedTuple):
-    """Where it starts, and its range; ``unit`` is what a linear one is counted in, others go by their logarithm."""
+    """Where it starts, and its range; ``unit`` is what a linear one is counted in, None of logarithms."""
 
     name: str
     start: float
@@ -56,32 +56,28 @@ class Unknown(NamedTuple):
         return value if self.unit is None else self.unit
 
 
-def known(cylinder: Cylinder) -> dict[str, float]:
-    """All that may be unknown of a cylinder and its bearing, by name.
-
-    Raises
-    ------
-    ParameterError
-        A cylinder with arrays.
-    """
-    values = {name: getattr(cylinder, name) for name in _OWN} | dict.fromkeys(BEARING, 0.0)
-    for name, value in values.items():
-        if np.ndim(value):
-            raise ParameterError(
-                name, f"array of shape {np.shape(value)}", "a single number: identify takes one cylinder"
-            )
-    for section, body in _bodies(cylinder).items():
-        prefix = PREFIXES[section]
-        values |= {prefix + name: getattr(body, name) for name in ("E", "nu", "T_ref")}
-        modes = zip(body.prony.E.tolist(), body.prony.tau.tolist(), strict=True)
-        for n, (E, tau) in enumerate(modes, 1):
-            values |= {f"{prefix}E_{n}": E, f"{prefix}tau_{n}": tau}
-    return values
-
-
 def _bodies(cylinder: Cylinder) -> dict[str, Material]:
+    """By section; names of the half-space have a prefix."""
     pair = cylinder.pair
     return {"material": pair.cylinder} | ({} if pair.base is None else {"base": pair.base})
+
+
+def _prefix(section: str) -> str:
+    return "base_" if section == "base" else ""
+
+
+def _starts(cylinder: Cylinder) -> dict[str, float]:
+    """All that may be unknown of a cylinder and its bearing, by name."""
+    values = {name: getattr(cylinder, name) for name in _OWN} | {"brake": 0.0, "drag": 0.0}
+    for section, body in _bodies(cylinder).items():
+        modes = {
+            f"{name}_{n}": value
+            for name, column in (("E", body.prony.E), ("tau", body.prony.tau))
+            for n, value in enumerate(column.tolist(), 1)
+        }
+        own = {name: getattr(body, name) for name in _OF_BODY} | modes
+        values |= {_prefix(section) + name: value for name, value in own.items()}
+    return {name: number(name, value) for name, value in values.items()}
 
 
 def refuse_unshifted(cylinder: Cylinder, called: str, temperature: float, shifts: Mapping[str, Shift]) -> None:
@@ -98,46 +94,32 @@ def unknowns_of(cylinder: Cylinder, given: Mapping[str, Any], records: Mapping[s
     Raises
     ------
     ParameterError
-        A name that is none, a range that does not hold the start.
+        A name that is none, a range that does not hold the start, a cylinder with arrays.
     """
-    values = known(cylinder)
-    brought = {
-        f"{name}:{called}": spec for called, record in records.items() for name, spec in record.starts(cylinder).items()
-    }
+    starts, ranges = _starts(cylinder), dict(given)
     for called, record in records.items():
-        values |= {f"{name}:{called}": getattr(record, name) for name in OF_RECORDS if _is_number(record, name)}
-    ranges = {}
-    for name, span in given.items():
-        if name not in values and name not in brought:
-            raise unknown("unknown", name, (*values, *brought), "an input")
-        ranges[name] = _range(name, span, brought[name][0] if name in brought else values[name])
-    return [
-        _made(name, *spec) for name, spec in (ranges | {n: s for n, s in brought.items() if n not in ranges}).items()
-    ]
+        for name, (start, span) in record.starts(cylinder).items():
+            starts[f"{name}:{called}"] = start
+            if span is not None:
+                ranges.setdefault(f"{name}:{called}", span)
+    for name in ranges:
+        if name not in starts:
+            raise unknown("unknown", name, starts, "an input")
+    return [_unknown(name, starts[name], span) for name, span in ranges.items()]
 
 
-def _is_number(record: Record, name: str) -> bool:
-    return isinstance(getattr(record, name, None), float)
-
-
-def _range(name: str, span: Any, start: float) -> tuple[float, float, float]:
-    try:
-        low, high = (float(end) for end in span)
-    except (TypeError, ValueError):
-        raise ParameterError(f"unknown {name}", f"{span!r:.60}", "(low, high)") from None
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", "(low, high), finite and low < high")
+def _unknown(name: str, start: float, span: Any) -> Unknown:
+    called, ends = f"unknown {name}", checked(f"unknown {name}", span)
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise ParameterError(called, f"{span!r:.60}", "(low, high), low < high")
+    low, high = ends.tolist()
     if not low <= start <= high:
-        sentence = f"unknown {name}: its range ({low:g}, {high:g}) must hold the start, here {start:.6g}"
-        raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"around {start:g}", sentence)
-    return start, low, high
-
-
-def _made(name: str, start: float, low: float, high: float) -> Unknown:
-    if name.split(":")[0] in (*BEARING, *OF_RECORDS) or name.endswith("nu"):
+        sentence = f"{called}: its range ({low:g}, {high:g}) must hold the start, here {start:.6g}"
+        raise ParameterError(called, f"({low:g}, {high:g})", f"around {start:g}", sentence)
+    if name.split(":")[0] in _LINEAR:
         return Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)))
     if not low > 0.0:
-        raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", "above 0: it goes by its logarithm")
+        raise ParameterError(called, f"({low:g}, {high:g})", "above 0: it goes by its logarithm")
     return Unknown(name, start, low, high, None)
 
 
@@ -145,7 +127,7 @@ def cylinder_of(
     cylinder: Cylinder,
     values: Mapping[str, float],
     record: Record | None = None,
-    shifts: Mapping[str, Shift] | None = None,
+    shifts: Mapping[str, Shift] = MappingProxyType({}),
 ) -> Cylinder:
     """The cylinder with other ``values``, at the load and the temperature of a record.
 
@@ -156,26 +138,26 @@ def cylinder_of(
     """
     changes: dict[str, Any] = {name: values[name] for name in _OWN if name in values}
     bodies = _bodies(cylinder)
-    made = {section: _changed(body, PREFIXES[section], values) for section, body in bodies.items()}
-    if record is not None and record.temperature is not None and shifts:
-        at = record.temperature
-        made = {name: body.at(at, shifts[name]) if name in shifts else body for name, body in made.items()}
-    if any(made[section] is not bodies[section] for section in made):
-        changes |= made
+    made = {section: _changed(body, _prefix(section), values) for section, body in bodies.items()}
     if record is not None:
         changes |= record.own
+        if record.temperature is not None:
+            made |= {section: made[section].at(record.temperature, shifts[section]) for section in shifts & made.keys()}
+    if any(made[section] is not bodies[section] for section in bodies):
+        changes |= made
     return cylinder.replace(**changes) if changes else cylinder
 
 
 def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
     own = {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
-    changes: dict[str, Any] = {name: own[name] for name in ("E", "nu", "T_ref") if name in own}
+    changes: dict[str, Any] = {name: own[name] for name in _OF_BODY if name in own}
     if any(map(_MODE.match, own)):
-        modes = range(1, body.prony.E.size + 1)
-        strengths = (own.get(f"E_{n}", body.prony.E[n - 1]) for n in modes)
-        times = (own.get(f"tau_{n}", body.prony.tau[n - 1]) for n in modes)
+        strengths, times = (
+            tuple(own.get(f"{name}_{n}", value) for n, value in enumerate(column.tolist(), 1))
+            for name, column in (("E", body.prony.E), ("tau", body.prony.tau))
+        )
         # it is no longer what was measured
-        changes |= {"prony": _series(tuple(strengths), tuple(times)), "measured": None}
+        changes |= {"prony": _series(strengths, times), "measured": None}
     elif body.measured is not None and "T_ref" in changes:
         changes["measured"] = body.measured.shifted(changes["T_ref"] / body.T_ref)
     return replace(body, **changes) if changes else body
@@ -187,12 +169,6 @@ def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
     return Prony(strengths, times)
 
 
-def named(values: Mapping[str, float], called: str) -> dict[str, float]:
-    """Of ``values`` the bearing's and those of the record ``called``, without its name."""
-    own = {name.removesuffix(f":{called}"): value for name, value in values.items() if name.endswith(f":{called}")}
-    return {name: value for name, value in values.items() if name in BEARING} | own
-
-
-def coordinates(unknowns: list[Unknown], which: str) -> NDArray[np.float64]:
-    """Coordinates of their ``which``: "start", "low" or "high"."""
-    return np.array([one.to_u(getattr(one, which)) for one in unknowns], float)
+def of_record(values: Mapping[str, float], called: str) -> dict[str, float]:
+    """``values`` with those of the record ``called`` by their bare names."""
+    return {name.removesuffix(f":{called}"): value for name, value in values.items()}

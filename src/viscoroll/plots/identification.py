@@ -17,7 +17,7 @@ _SPREAD = 30.0
 
 def compared(fit: Any) -> Figure:
     """A column for each quantity of a record: data and band over its places above, residuals over sigma below."""
-    columns = [(str(one), one.record, one.quantity) for one in fit.columns]
+    columns = [(str(one), one.record, one.quantity) for one in fit._problem.columns]
     figure, axes = new_figure(
         f"Identification of {', '.join(fit.values)}", 2, len(columns), (3.6 * len(columns) + 1.2, 4.8), squeeze=False,
         sharex="col", height_ratios=(2.5, 1.0),
