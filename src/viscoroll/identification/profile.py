@@ -15,8 +15,8 @@ _FIRST, _STEP = 0.25, 0.7
 _CLOSE = 3e-3
 #: places beyond an end that are looked at, as shares of the way to the bound
 _BEYOND = (0.15, 0.4, 0.8)
-#: of the height at an end, what a search in few steps may have left behind, and its steps then
-_AGAIN, _MANY = 3.0, 100
+#: steps of a search that ended above the height of an end, to be sure of it
+_MANY = 100
 #: tolerance and steps of a place on the way; steps of a look, and the rise over what is asked that ends it
 _LOOSE, _FEW = 1e-5, 15
 _LOOK, _HOPELESS = 4, 20.0
@@ -74,7 +74,7 @@ class Walk:
             nonlocal last
             if d not in known:
                 found = self.at(d, last.u)
-                if self.height(found) > _AGAIN * goal:
+                if self.height(found) > goal:
                     found = self.at(d, found.u, _MANY)
                 known[d] = self.height(found) - goal
                 last = found if known[d] < 0.0 else last
