@@ -24,7 +24,7 @@ from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
 from .rolling import NO_UNIT, law_of
-from .unsteady import checked_unsteady, climbed
+from .unsteady import climbed, refuse_unlike, time_of_rest
 from .warned import look
 
 FIELDS = ROWS
@@ -115,7 +115,8 @@ def ensemble(
     (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
     ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
     refuse_rest(threshold, ready)
-    ready, caught = climbed(ready, checked_unsteady(ready.scene, unsteady, rested))
+    refuse_unlike(ready.scene, unsteady)
+    ready, caught = climbed(ready, time_of_rest(rested))
     scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
     mapped = not (drive.acts or scene.shape or unsteady) and scene.like_bodies
     if method == "flow" and not mapped:

@@ -16,7 +16,7 @@ from .checks import controls, output_times, refuse_many, start_speeds
 from .driven import Drive
 from .one import Motion, integrated
 from .rolling import Inputs, rolled
-from .unsteady import checked_unsteady
+from .unsteady import refuse_unlike, time_of_rest
 from .warned import look
 
 #: room for the ends of steps at first
@@ -125,10 +125,12 @@ def roll(
     for name, value in {"V0": speeds[0], "omega0": speeds[1], **drive.numbers}.items():
         refuse_many(name, value.shape)
     rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    rested = checked_unsteady(scene, unsteady, rested)
+    refuse_unlike(scene, unsteady)
     V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
     look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts or unsteady)
-    inputs = Inputs(scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive, unsteady, rested)
+    inputs = Inputs(
+        scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive, unsteady, time_of_rest(rested)
+    )
     if np.ndim(t) == 0:
         times = _step_times(inputs)
     motion = integrated(inputs, times)

@@ -15,22 +15,26 @@ from ..steadiness import CAUGHT
 from .driven import Prepared
 
 
-def checked_unsteady(scene: Scene, unsteady: bool, rested: bool | float) -> float:
+def time_of_rest(rested: bool | float) -> float:
     """The time of the rest, infinite for a long one.
 
     Raises
     ------
     ParameterError
-        A time that is not one number >= 0; the added mass of bodies that differ.
+        What is not one number >= 0.
     """
-    if unsteady and not scene.like_bodies:
-        sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
-        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     if isinstance(rested, bool):
         return math.inf if rested else 0.0
     if checked("rested", rested, low=0.0).ndim:
         raise ParameterError("rested", rested, "one time >= 0, or True")
     return float(rested)
+
+
+def refuse_unlike(scene: Scene, unsteady: bool) -> None:
+    """Raise ParameterError where the added mass is asked for of bodies that differ."""
+    if unsteady and not scene.like_bodies:
+        sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
+        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
 
 
 def climbed(ready: Prepared, rested: float) -> tuple[Prepared, Any]:

@@ -54,15 +54,24 @@ def scene_of(values: Mapping[str, Any]) -> Scene:
 def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) -> Ensemble:
     """Dimensionless motions from inputs, over seconds where these are in SI units; one where all are numbers."""
     motion_count = max((np.size(value) for value in values.values()), default=1)
-    scene = scene_of(values)
-    if are_si(values):
+    scene, T, drive, settings = scene_of(values), 1.0, drive_of(values), run.settings
+    if are_si(values) and (settings.unsteady or settings.rested):
+        # gamma does more than scale time then
+        T = unit_of_time(values)
+        drive = {name: (each[0] / T, each[1]) if isinstance(each, tuple) else each for name, each in drive.items()}
+    elif are_si(values):
         scene = scene.replace(gamma=scene.gamma / unit_of_time(values))
     V0, omega0 = (_column(dimensionless(values, name), motion_count) if name in values else None for name in START)
-    return ensemble(
-        scene, V0, omega0, run.t,
-        method=run.method, rtol=run.settings.rtol, rest=run.rest, fields=run.fields,
-        speed=run.fastest or None if run.method == "flow" else None, threads=threads, **drive_of(values),
+    found = ensemble(
+        scene, V0, omega0, run.t / T,
+        method=run.method, rtol=settings.rtol, rest=run.rest, unsteady=settings.unsteady,
+        rested=settings.rested if isinstance(settings.rested, bool) else settings.rested / T, fields=run.fields,
+        speed=run.fastest or None if run.method == "flow" else None, threads=threads, **drive,
     )  # fmt: skip
+    if T == 1.0:
+        return found
+    over_time = {name: getattr(found, name) for name in ("x", "angle", "onset_time", "rest_time")}
+    return replace(found, t=run.t, **{name: each * T for name, each in over_time.items() if each is not None})
 
 
 def roll_block(run: Run, block: int) -> tuple[dict[str, Any], Ensemble]:

@@ -37,6 +37,7 @@ from ..materials.file import as_toml, materials_of
 from ..materials.prony import Prony
 from ..motion.batch import FIELDS, FLOW_PAYS
 from ..motion.checks import controls, output_times
+from ..motion.unsteady import time_of_rest
 from ..sections import as_struct, fault, read, refuse_unknown
 from .draws import Design
 from .inputs.drives import is_driven, lasts
@@ -48,6 +49,8 @@ from .quantities import QUANTITIES
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
+#: settings that came later: left out of the digest where they are not given
+_LATER = ("unsteady", "rested")
 _SECTIONS = ("preset", "scene", "cylinder", *MATERIALS, "start", "drive", "correlation", "run")
 
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
@@ -64,6 +67,8 @@ class RunSection(msgspec.Struct, frozen=True):
     method: Literal["auto", "flow", "integrate"] = "auto"
     rtol: float = 1e-8
     rest: float | None = None
+    unsteady: bool = False
+    rested: bool | float = False
     block: Whole | None = None
     keep: Literal["summaries", "all"] = "summaries"
     fields: tuple[str, ...] = ("V", "omega", "x")
@@ -95,7 +100,7 @@ class Run:
         """How every block is rolled: settled by the run as a whole, so that bits do not depend on blocks."""
         if self.settings.method != "auto":
             return self.settings.method
-        if is_driven(self.inputs):
+        if is_driven(self.inputs) or self.settings.unsteady:
             return "integrate"
         return "flow" if self.one_scene and self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
 
@@ -235,13 +240,20 @@ def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.floa
     if settings.rest is not None and inputs.si and {"R", "T_epsilon"} & set(inputs.uncertain):
         problem = f"rest = {settings.rest!r}: must be left out where R or T_epsilon is uncertain"
         raise fault(path, "run", "rest", problem)
+    if settings.method == "flow" and settings.unsteady:
+        raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' with unsteady")
+    for key, value in (("unsteady", settings.unsteady), ("rested", settings.rested)):
+        if value is not False and inputs.si and "T_epsilon" in inputs.uncertain:
+            problem = f"{key} = {msgspec.json.encode(value).decode()}: must be left out where T_epsilon is uncertain"
+            raise fault(path, "run", key, problem)
     if isinstance(settings.t, dict):
         refuse_unknown(path, "run.t", settings.t, ("low", "high", "count", "spacing"))
     try:
         controls(settings.rtol, settings.rest, 1)
+        time_of_rest(settings.rested)
         return output_times(spread(**settings.t) if isinstance(settings.t, dict) else settings.t)
     except ParameterError as error:
-        raise fault(path, "run", error.name if error.name in ("rtol", "rest") else "t", str(error)) from error
+        raise fault(path, "run", error.name if error.name in ("rtol", "rest", "rested") else "t", str(error)) from error
     except TypeError:
         problem = f"t = {settings.t!r:.60}: must be a list, or low, high, count (and spacing)"
         raise fault(path, "run", "t", problem) from None
@@ -250,7 +262,8 @@ def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.floa
 def _digest(settings: RunSection, times: NDArray, *parts: Any) -> str:
     """SHA-256 of what the results depend on; comments and the order of keys are not among it."""
     *described, inputs = parts
-    content = [msgspec.to_builtins(settings), times.tolist(), described, _samples(inputs)]
+    known = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _LATER or value}
+    content = [known, times.tolist(), described, _samples(inputs)]
     content += ["SI"] * inputs.si  # there was a time when speeds and times of a cylinder were dimensionless
     return hashlib.sha256(msgspec.json.encode(_plain(content), order="deterministic")).hexdigest()
 
