@@ -156,6 +156,8 @@ def test_an_older_python_is_told_in_one_line(tmp_path):
 
 def test_one_version():
     """The metadata are made from it; the citation says the same."""
-    assert f"\nversion: {vr.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {vr.__version__}\n" in citation
+    assert "doi: 10.1007/s00707-020-02643-5" in citation
     if Path(vr.__file__).is_relative_to(Path(os.__file__).parent):  # installed, not a tree on PYTHONPATH
         assert importlib.metadata.version("viscoroll") == vr.__version__

@@ -15,6 +15,7 @@ import pytest
 import xarray as xr
 from ordinary_user import as_ordinary_user, let_in
 from places import ROOT
+from refusals import refused
 
 import viscoroll as vr
 from viscoroll import files
@@ -176,6 +177,52 @@ def test_a_cut_or_longer_file_has_no_seal_that_holds() -> None:
     assert not any(files.seal_holds(sealed[:end]) for end in range(len(sealed)))
     assert not files.seal_holds(sealed + b"\n")
     assert files.seal_holds(b"some content") is None
+
+
+# --- what is read is what was written ---
+
+RUBBER = vr.Material(1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one')
+#: format -> how a file of it is written, and read
+FORMATS: dict[str, tuple[Callable[[Path], object], Callable[[Path], object]]] = {
+    "law": (lambda path: vr.tables.save(vr.tables.law(vr.RUBBER_CYLINDER.material), path), vr.load_law),
+    "law of every alpha": (
+        lambda path: vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path),
+        lambda path: vr.load_law(path, 11.0),
+    ),
+    "grid": (
+        lambda path: vr.tables.save(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01]), path),
+        vr.tables.load,
+    ),
+    "material": (RUBBER.to_netcdf, vr.Material.from_netcdf),
+}
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_damage_is_told(form: str, tmp_path: Path) -> None:
+    """One flipped bit anywhere, a file that is cut, longer or another, none: an error in one line that names it."""
+    path, (write, read) = tmp_path / "file.nc", FORMATS[form]
+
+    def told(content: bytes, *words: str) -> None:
+        path.write_bytes(content)
+        refused(lambda: read(path), str(path), *words, error=vr.TableError)
+
+    refused(lambda: read(path), str(path), "cannot be read", error=vr.TableError)
+    refused(lambda: read(tmp_path), str(tmp_path), "cannot be read", error=vr.TableError)
+    write(path)
+    assert [each.name for each in tmp_path.iterdir()] == ["file.nc"]
+    whole = path.read_bytes()
+    for position in np.random.default_rng(3).integers(0, 8 * (len(whole) - 200), 40):
+        damaged = bytearray(whole)
+        damaged[position // 8] ^= 1 << position % 8
+        told(bytes(damaged))
+    for share in (0.001, 0.1, 0.5, 0.9, 0.99):
+        told(whole[: int(share * len(whole))])
+    for other in (b"", b"V,delta\n1,2\n", files.seal(b"[material]")):
+        told(other)
+    for another, (write_it, _) in FORMATS.items():
+        if another in ("material", "grid") and form != another:  # a table that is loaded may be a law
+            write_it(path)
+            refused(lambda: read(path), str(path), error=vr.TableError)
 
 
 # --- every writer is one of these ---

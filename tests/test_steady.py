@@ -15,7 +15,6 @@ from refusals import refused
 
 import viscoroll as vr
 from pipeline.truth.series import functions, rates
-from viscoroll.cli import main
 from viscoroll.equilibria.zeros import zeros
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
@@ -395,17 +394,6 @@ def test_critical_slope():
     np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned, force=np.tan(0.05)).V)
 
 
-def test_terminal_speed_of_faint_slopes():
-    """V1 = g/c: in SI tan(theta) (R/T_epsilon) alpha/(alpha - 1), whatever load, modulus and friction."""
-    cylinder = vr.PAPER_CYLINDER
-    alpha = cylinder.T_epsilon / cylinder.T_sigma
-    for m, E, mu in ((35.5, 2.3e5, 0.2), (5.0, 1e6, 0.5)):
-        own = vr.Cylinder(0.1, m, E, 0.49, cylinder.T_epsilon, cylinder.T_sigma, mu)
-        s = own.steady(slope=1e-6)
-        limit = 1e-6 * cylinder.R / cylinder.T_epsilon * alpha / (alpha - 1.0)
-        assert close(s.V[0], limit, rel=tol.STEADY_FAINT)
-
-
 # --- prescribed speeds ---
 
 
@@ -644,23 +632,3 @@ def test_refusals():
     refused(partial(vr.Feedback, 0.0, omega=math.inf), "omega = inf")
     controlled = partial(vr.PAPER_CYLINDER.steady, torque=vr.Feedback(1.0, V=-1.0), slope=[0.0, 0.1])
     refused(controlled, "torque = a feedback with gains of shape (2,)", "numbers for gains")
-
-
-# --- the command ---
-
-
-def test_command(capsys, tmp_path):
-    scene = ["paper-section-5-rounded"]
-    assert main(["steady", *scene, "--slope", "0:0.105:7", "-o", str(tmp_path / "s.csv")]) == 0
-    rows = np.genfromtxt(tmp_path / "s.csv", delimiter=",", names=True)
-    s = vr.steady(SCENE, slope=np.linspace(0.0, 0.105, 7))
-    np.testing.assert_array_equal(rows["V"], s.V[np.isfinite(s.V)])
-    np.testing.assert_array_equal(rows["stable"] == 1, s.stable[np.isfinite(s.V)])
-    assert main(["steady", *scene, "--slope", "3deg"]) == 2
-    assert main(["steady", *scene, "--force", "0.12"]) == 0
-    assert "load 1: force + torque = 0.12 exceeds" in capsys.readouterr().out
-    assert main(["steady", *scene, "--V", "0.1", "--torque", "0"]) == 0
-    assert "angular velocity" in capsys.readouterr().out
-    for words in (["--slope", "1.6"], ["--V", "1"], ["--force", "nan"]):
-        assert main(["steady", *scene, *words]) == 2
-        assert capsys.readouterr().err.count("\n") == 1

@@ -338,6 +338,14 @@ def test_csv_and_netcdf_hold_the_bits_of_the_call(run, argv):
         assert (p[1:-1] > 0.0).all()
 
 
+def test_steady_states_as_rows(run):
+    run("steady", *PRESET, "--slope", "0:0.105:7", "-o", "s.csv")
+    table, s = pd.read_csv("s.csv"), vr.steady(vr.PAPER_SECTION_5, slope=np.linspace(0.0, 0.105, 7))
+    assert np.array_equal(table["V"], s.V[np.isfinite(s.V)])
+    assert np.array_equal(table["stable"], s.stable[np.isfinite(s.V)])
+    assert "load 1: force + torque = 0.12 exceeds" in run("steady", *PRESET, "--force", "0.12")
+
+
 def test_contact_text_of_one_point(run):
     out = run("contact", *PRESET, "--V", "0.5", "--delta", "0.01")
     state = vr.contact(vr.PAPER_SECTION_5, 0.5, delta=0.01)
@@ -453,6 +461,8 @@ REFUSED = [
     ("contact PAPER --V 0:1:5:cubic --delta 0", "spacing = 'cubic'"),
     ("contact PAPER --V 1, --delta 0", "'' must be"),
     ("stress PAPER --V 1,2 --delta 0", "'1,2' must be a number"),
+    ("steady PAPER --slope 3deg", "3deg"),
+    ("steady PAPER --V 1", "V is given alone"),
     ("roll PAPER --V0 1 --t 1", "--omega0"),
     ("roll PAPER --V0 1 --omega0 1 --t 1,0.5", "ascending"),
     ("roll PAPER --V0 x --omega0 1 --t 1", "'x' must be a number"),

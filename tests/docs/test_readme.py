@@ -1,23 +1,17 @@
 """What the documentation says runs, points somewhere, and shows the numbers that were measured."""
 
-import json
 import re
 import shlex
-import sys
 import tomllib
-from functools import partial
 from pathlib import Path
 
-import mpmath
 import pytest
 import tolerances as tol
 from closeness import close
-from places import RESULTS, ROOT
-from processes import made, stage, stage_refused
-from refusals import refused
+from places import ROOT
+from processes import made
 
 import viscoroll as vr
-from pipeline.truth import contact_precise
 from viscoroll import cli
 from viscoroll.runs import read_run
 
@@ -161,84 +155,3 @@ def test_the_pages_of_data_and_pipeline_name_what_is_there():
 
 def test_blocks_show_the_measured_numbers():
     made("document", "--check")
-
-
-def test_document_fills_and_refuses(tmp_path):
-    page = tmp_path / "page.md"
-    page.write_text("before\n<!-- measured:stress -->\nold\n<!-- end -->\nafter\n", encoding="utf-8")
-    assert stage("document", "--check", page).returncode == 1
-    made("document", page)
-    filled = page.read_text(encoding="utf-8")
-    assert re.fullmatch(r"before\n.*\nafter\n", filled, re.DOTALL)
-    assert "old" not in filled
-    assert stage("document", "--check", page).returncode == 0
-    for text in ("<!-- measured:stress -->\n", "<!-- measured:nothing -->\n<!-- end -->\n"):
-        page.write_text(text, encoding="utf-8")
-        assert stage_refused("document", page).startswith("document: ")
-        assert page.read_text(encoding="utf-8") == text
-    assert "nowhere: no folder" in stage_refused("document", "--results", tmp_path / "nowhere", page)
-
-
-def test_measure_runs_and_document_reads_it(tmp_path):
-    results, page = tmp_path / "measured.json", tmp_path / "README.md"
-    made("measure", "--quick", "-o", results)
-    measured = json.loads(results.read_text(encoding="utf-8"))
-    committed = json.loads((RESULTS / "measured.json").read_text(encoding="utf-8"))
-    assert measured.keys() == committed.keys()
-    assert all(field["worst"] <= tol.MEASURED_CONTACT for field in measured["contact_error"].values())
-    page.write_text("<!-- measured:headline -->\n<!-- end -->\n", encoding="utf-8")
-    made("document", "--results", tmp_path, page)
-    assert "not those of this version" not in page.read_text(encoding="utf-8")
-
-
-def test_measure_refuses_a_configuration_without_its_section(tmp_path):
-    (tmp_path / "empty.toml").write_text("", encoding="utf-8")
-    assert "[measure]" in stage_refused("measure", "--config", tmp_path / "empty.toml", "-o", tmp_path / "out.json")
-    assert not (tmp_path / "out.json").exists()
-
-
-def test_committed_sizes_are_those_of_production():
-    measured = json.loads((RESULTS / "measured.json").read_text(encoding="utf-8"))
-    section = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["measure"]
-    del section["quick"]
-    assert measured["sizes"] == section
-
-
-STATES = [
-    (11.0, 2.91, 0.2, 0.5, -0.01),
-    (1e4, 29.1, 0.3, -1e3, 1e-6),
-    (1.0 + 1e-8, 2.91, 0.2, 0.3, 0.02),
-    (81.5, 29.1, 0.2, 1e-8, 0.0034),
-    (1.0, 2.91, 0.2, 1.0, 0.01),
-    (11.0, 2.91, 0.2, 0.5, 0.5),
-]
-
-
-def test_precise_values_hold_their_digits():
-    for state in STATES:
-        few, many = contact_precise(*state, digits=20), contact_precise(*state, digits=50)
-        double = vr.contact(vr.Scene(*state[:3]), state[3], delta=state[4])
-        to_the_limit = abs(1.0 - float(abs(state[4]) / many["delta_star"]))
-        for name, exact in many.items():
-            with mpmath.workdps(60):
-                assert abs(few[name] - exact) <= mpmath.mpf(10) ** -20 * abs(exact), (name, state)
-            bound = tol.MEASURED_CONTACT / (to_the_limit if name == "beta" else 1.0)
-            assert close(getattr(double, name), float(exact), rel=bound, what=(name, state))
-
-
-def test_precise_refuses():
-    for bad in ((0.5, 1, 1, 1, 0), (2, 1, 1, 0.0, 0), (2, 1, 1, 1, float("nan")), (2, 1, 1, [1.0, 2.0], 0)):
-        refused(partial(contact_precise, *bad))
-    refused(partial(contact_precise, 2, 1, 1, 1, 0, digits=3), "digits")
-
-
-def test_precise_without_mpmath(monkeypatch):
-    monkeypatch.setitem(sys.modules, "mpmath", None)
-    with pytest.raises(vr.MissingDependencyError, match="mpmath"):
-        contact_precise(11.0, 2.91, 0.2, 0.5, 0.01)
-
-
-def test_citation_names_this_version_and_the_paper():
-    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
-    assert f"version: {vr.__version__}\n" in text
-    assert "doi: 10.1007/s00707-020-02643-5" in text

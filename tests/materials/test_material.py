@@ -14,7 +14,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.files import seal, write_dataset
+from viscoroll.files import write_dataset
 from viscoroll.materials.file import as_toml, read_materials
 from viscoroll.materials.store import as_dataset
 
@@ -159,24 +159,6 @@ def test_abaqus():
     long = vr.Material.abaqus(E0=5e6, nu=0.45, g=[0.2, 0.3], tau=[0.1, 10.0], long_term=True, name="pad")
     assert long.prony == found.prony
     assert close(long.instant, 10e6, rel=tol.MATERIAL)
-
-
-def test_ansys():
-    """EX 12 MPa; TB,PRONY pairs 0.5 at 2 s and 0.25 at 40 s: alpha_inf = 0.25, E = 3 MPa, E_i = 2 and 1."""
-    found = vr.Material.ansys(E0=12e6, nu=0.499, alpha=[0.5, 0.25], tau=[2.0, 40.0])
-    assert close(found.E, 3e6, rel=tol.MATERIAL)
-    assert close(found.prony.E, [1.0, 2.0], rel=tol.MATERIAL)
-    # 12 MPa (0.25 + 0.5 exp(-1) + 0.25 exp(-0.05)) at 2 s = 3 + 2.2072766 + 2.8536883 MPa
-    assert close(found.relaxation(2.0), 8.0609649e6, rel=tol.MATERIAL_PRINTED)
-
-
-def test_comsol():
-    """E = 3 MPa, nu = 0.5: G = 1 MPa.  Branches of 2 MPa at 1e-3 s and 0.5 MPa at 1 s: E_i = 2 and 0.5."""
-    found = vr.Material.comsol(E=3e6, nu=0.5, G=[2e6, 0.5e6], tau=[1e-3, 1.0])
-    assert found.E == 3e6
-    assert close(found.prony.E, [0.5, 2.0], rel=tol.MATERIAL)
-    # 3 (1 MPa + 2 MPa + 0.5 MPa)
-    assert close(found.instant, 10.5e6, rel=tol.MATERIAL)
 
 
 def test_lsdyna():
@@ -369,19 +351,9 @@ def test_refused_bands():
     refused(lambda: vr.Material.elastic(1e6, 0.5, thickness=0.0), "thickness = 0.0")
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-def test_damaged_materials(tmp_path):
-    """One flipped bit anywhere, a cut file, another file: refused in one line; an edited file too."""
+def test_edited_materials(tmp_path):
     path = tmp_path / "rubber.nc"
     STORED[0].to_netcdf(path)
-    whole = path.read_bytes()
-    for at in range(0, len(whole), 97):
-        path.write_bytes(whole[:at] + bytes([whole[at] ^ 16]) + whole[at + 1 :])
-        refused(lambda: vr.Material.from_netcdf(path), "rubber.nc", error=vr.TableError)
-    for content in (b"", whole[:-1], whole[: len(whole) // 2], b"[material]\nE = 1.0", seal(b"[material]")):
-        path.write_bytes(content)
-        refused(lambda: vr.Material.from_netcdf(path), "rubber.nc", "no material", error=vr.TableError)
-    refused(lambda: vr.Material.from_netcdf(tmp_path / "none.nc"), "cannot be read", error=vr.TableError)
     refused(partial(read_materials, path, 30.0), "temperature = 30", "wlf", error=vr.ConfigError)
     (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\n')
     refused(partial(read_materials, tmp_path / "a.toml"), "line 2", "none.nc", error=vr.ConfigError)
@@ -391,5 +363,3 @@ def test_damaged_materials(tmp_path):
     for changed in (data.assign(E=-data.E), data.drop_vars("tau"), data.assign_attrs(given="both", schema="other")):
         write_dataset(changed, path, sealed=True)
         refused(lambda: vr.Material.from_netcdf(path), "no material", error=vr.TableError)
-    write_dataset(vr.ensemble(vr.PAPER_SECTION_5, 1.0, 0.0, 1e-3).to_xarray(), path, sealed=True)
-    refused(lambda: vr.Material.from_netcdf(path), "no material", "schema is None", error=vr.TableError)

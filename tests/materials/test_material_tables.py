@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import mpmath as mp
 import numpy as np
 import precise
@@ -12,7 +10,6 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll import contact_table
 from viscoroll.contact_fields import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -91,31 +88,6 @@ def test_extreme_speeds_and_the_last_of_the_stick_zone():
         assert close(getattr(found, name), getattr(exact, name), rel=bound), name
 
 
-def test_a_state_does_not_depend_on_the_others(monkeypatch):
-    """Nor on threads, nor on blocks: bit for bit in any order and any company."""
-    V, delta, _ = states(SCENE, 4 * MANY, seed=14)
-    whole = vr.contact(SCENE, V, delta=delta).as_dict()
-    order = np.random.default_rng(15).permutation(V.size)
-    mixed = vr.contact(SCENE, V[order], delta=delta[order]).as_dict()
-    part = slice(MANY, 2 * MANY)
-    alone = vr.contact(SCENE, V[part], delta=delta[part]).as_dict()
-    monkeypatch.setenv("VISCOROLL_THREADS", "1")
-    monkeypatch.setattr(contact_table, "_BLOCK", 1000)
-    blocks = vr.contact(SCENE, V, delta=delta).as_dict()
-    for name in FIELDS:
-        assert np.array_equal(mixed[name], whole[name][order])
-        assert np.array_equal(alone[name], whole[name][part])
-        assert np.array_equal(blocks[name], whole[name])
-
-
-def test_from_several_threads():
-    scene = vr.Scene(23.5, KAPPA, MU)
-    V, delta, _ = states(scene, MANY, seed=16)
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda _: vr.contact(scene, V, delta=delta).Q, range(4)))
-    assert all(np.array_equal(Q, found[0]) for Q in found)
-
-
 @pytest.mark.parametrize("alpha", ALPHAS)
 def test_full_slip_begins_at_delta_star(alpha):
     """At the delta_star that the call itself reports, and at no other's beyond a few units in the last place."""
@@ -132,27 +104,3 @@ def test_full_slip_begins_at_delta_star(alpha):
         assert np.all(near.full_slip == (ulps > 0))
         assert np.array_equal(near.full_slip, abs(near.delta) >= near.delta_star)
         assert np.all(abs(near.Q) <= MU)
-
-
-def test_signs_rest_and_omega():
-    V, delta, _ = states(SCENE, MANY, seed=18)
-    base = vr.contact(SCENE, V, delta=delta)
-    turned = vr.contact(SCENE, -V, delta=-delta)
-    assert np.array_equal(turned.Q, base.Q)
-    assert np.array_equal(turned.M, -base.M)
-    assert np.array_equal(turned.beta, base.beta)
-    still = vr.contact(SCENE, V, delta=0.0)
-    assert np.all(still.Q == 0.0)
-    assert np.all(still.beta == 1.0)
-    omega = V * (1.0 + delta)
-    by_omega = vr.contact(SCENE, V, omega=omega)
-    as_delta = vr.contact(SCENE, V, delta=(omega - V) / V)
-    assert all(np.array_equal(getattr(by_omega, name), getattr(as_delta, name)) for name in FIELDS)
-
-
-def test_one_field_alone_is_the_same_bit_for_bit():
-    V, delta, _ = states(SCENE, MANY, seed=19)
-    whole = vr.contact(SCENE, V, delta=delta)
-    for name in FIELDS:
-        alone = vr.contact(SCENE, V, delta=delta, fields=name)
-        assert np.array_equal(getattr(alone, name), getattr(whole, name)), name

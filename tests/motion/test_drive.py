@@ -126,29 +126,6 @@ def test_a_sine():
     assert off(m, tight) <= 30.0 * 1e-8
 
 
-def test_settles_where_steady_says():
-    slope = math.radians(1.0)
-    s = vr.steady(ROLLER, slope=slope)
-    m = vr.roll(ROLLER, 0.0, 0.0, [400.0], 1e-10, slope=slope)
-    assert close(m.V[0], s.V[s.stable][0], rel=tol.DRIVE_STEADY)
-    assert close(m.omega[0], s.omega[s.stable][0], rel=tol.DRIVE_STEADY)
-    assert m.scene.kappa == ROLLER.kappa / math.sqrt(math.cos(slope))
-    assert close(m.force[0], math.tan(slope), rel=1e-15)
-
-
-def test_saddle_repels_and_critical_slope_brackets_runaway():
-    s = vr.steady(ROLLER, force=0.02)
-    saddle = s.V[~s.stable][0]
-    for factor, settles in ((0.98, True), (1.02, False)):
-        m = vr.roll(ROLLER, factor * saddle, factor * saddle, [2000.0], force=0.02)
-        assert close(m.V[0], s.V[s.stable][0], rel=1e-4) if settles else m.V[0] > 2.0 * saddle
-    humps = vr.humps(ROLLER)
-    top = humps.M.max()
-    for factor, settles in ((0.99, True), (1.01, False)):
-        m = vr.roll(ROLLER, 0.0, 0.0, [4000.0], force=factor * top)
-        assert (m.V[0] < humps.V[humps.M.argmax()]) == settles
-
-
 def test_jump_of_traction_where_V_passes_0_in_stick():
     """Q jumps by -2 j |g| d/(1 + j)^2 to leading order (Q algebraic at V = 0); speeds only kink."""
     q, j, kappa, mu = -0.28, SCENE.j, SCENE.kappa, SCENE.mu

@@ -193,18 +193,6 @@ def test_files_of_the_first_version(kind, tmp_path):
         vr.tables.export(table, path.with_suffix(suffix))
 
 
-def test_damage(saved):
-    content = saved.read_bytes()
-    for share in (0.001, 0.5, 0.99):
-        saved.write_bytes(content[: int(share * len(content))])
-        refused(partial(vr.tables.load, saved), str(saved), "is damaged", error=vr.TableError)
-    for position in np.random.default_rng(3).integers(0, 8 * (len(content) - 200), 30):
-        damaged = bytearray(content)
-        damaged[position // 8] ^= 1 << position % 8
-        saved.write_bytes(damaged)
-        refused(partial(vr.tables.load, saved), "the SHA-256 at their end", error=vr.TableError)
-
-
 def test_what_is_no_table(alphas, saved, tmp_path):
     for changed, words in (
         (alphas.drop_vars("beta"), "variable 'beta' is missing"),
@@ -219,17 +207,6 @@ def test_what_is_no_table(alphas, saved, tmp_path):
         assert files.seal_holds(saved.read_bytes()) is None
         refused(partial(vr.tables.load, saved), str(saved), words, error=vr.TableError)
     assert [path.name for path in tmp_path.iterdir()] == ["grid.nc"]
-
-
-def test_unwritable_targets(alphas, tmp_path):
-    occupied = tmp_path / "file"
-    occupied.write_text("keep")
-    for target in (occupied / "t.nc", tmp_path, tmp_path / "none/t.nc"):
-        refused(partial(vr.tables.save, alphas, target), str(target), "cannot be written", error=vr.OutputError)
-    for suffix in (".csv", ".mat"):
-        call = partial(vr.tables.export, alphas, tmp_path / f"none/t{suffix}")
-        refused(call, "cannot be written", error=vr.OutputError)
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 # --- formats of other programs ---

@@ -35,7 +35,6 @@ GIVEN: dict[str, tuple[Any, ...]] = {
     "steel on it": (STEEL, RUBBER), "pair": (vr.RUBBER_CYLINDER.replace(base=STEEL, plane="stress").pair,),
 }  # fmt: skip
 V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
-WORDS = "write it again by `viscoroll tables law`"
 
 
 @pytest.fixture(scope="module")
@@ -194,29 +193,6 @@ def test_refused():
 
 def error_of(path: Path) -> str:
     return refused(partial(vr.load_law, path), str(path), error=vr.TableError)
-
-
-def test_cut_and_flipped(copy):
-    content = copy.read_bytes()
-    for share in (0.0, 0.001, 0.1, 0.5, 0.9, 0.99):
-        copy.write_bytes(content[: int(share * len(content))])
-        assert WORDS in error_of(copy), share
-    for position in np.random.default_rng(3).integers(0, 8 * (len(content) - 200), 40):
-        damaged = bytearray(content)
-        damaged[position // 8] ^= 1 << position % 8
-        copy.write_bytes(damaged)
-        assert error_of(copy).endswith(f"differ from the SHA-256 at their end; {WORDS}")
-
-
-def test_no_law(copy, tmp_path):
-    assert "cannot be read" in error_of(tmp_path / "none.nc")
-    assert "cannot be read" in error_of(tmp_path)
-    copy.write_bytes(b"V,delta\n1,2\n")
-    assert WORDS in error_of(copy)
-    RUBBER.to_netcdf(copy)
-    assert error_of(copy).endswith("is no law file of viscoroll: `viscoroll tables law` writes one")
-    vr.tables.save(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 0.2], [0.0, 0.01]), copy)
-    assert "is no law file" in error_of(copy)
 
 
 @pytest.mark.parametrize(

@@ -131,12 +131,8 @@ def test_refused(saved, tmp_path):
         refused(partial(vr.tables.law, **given), words)
 
 
-def test_damaged_or_edited(saved, tmp_path):
+def test_edited(saved, tmp_path):
     path = tmp_path / "copy.nc"
-    content = bytearray(saved.read_bytes())
-    content[len(content) // 2] ^= 8
-    path.write_bytes(content)
-    refused(partial(vr.load_law, path, 11.0), "differ from the SHA-256", error=vr.TableError)
     for change, words in (
         (lambda file: file["press"].__setitem__((0, 0, 3, 5), 0.125), "its numbers are not those"),
         (lambda file: file.__delitem__("m"), "variable 'm' is missing"),

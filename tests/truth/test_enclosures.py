@@ -49,15 +49,13 @@ def test_enclosures_hold_the_printed_law():
         assert balls["full_slip"] == (printed_law["beta"] == 0), state
 
 
-def test_enclosures_refuse():
+@pytest.mark.parametrize(("values", "package"), [(contact_enclosure, "flint"), (contact_precise, "mpmath")])
+def test_bad_input_and_what_is_not_installed(values, package, monkeypatch):
     for bad in ((0.5, 1, 1, 1, 0), (2, 1, 1, 0.0, 0), (2, 1, 1, 1, float("nan")), (2, 1, 1, [1.0, 2.0], 0)):
-        refused(partial(contact_enclosure, *bad))
-
-
-def test_enclosures_without_flint(monkeypatch):
-    monkeypatch.setitem(sys.modules, "flint", None)
-    with pytest.raises(vr.MissingDependencyError, match="python-flint"):
-        contact_enclosure(11.0, 2.91, 0.2, 0.5, 0.01)
+        refused(partial(values, *bad))
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(vr.MissingDependencyError, match=package):
+        values(11.0, 2.91, 0.2, 0.5, 0.01)
 
 
 def test_creep_of_exactly_delta_star():

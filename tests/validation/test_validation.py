@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from processes import made, stage, stage_refused
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.materials.law_store import checksum, content_of
 from viscoroll.validation import Check, Report, report_dataset, stresses, validate
 from viscoroll.validation.direct_motion import roll_direct
 from viscoroll.validation.motions import motion_checks
@@ -152,45 +149,3 @@ def test_direct_motion_that_starts_in_partial_slip():
 def test_refused():
     for options, words in (({"states": 0}, "states = 0"), ({"times": 1}, "times = 1"), ({"seed": -1}, "seed = -1")):
         refused(partial(validate, **options), words)
-
-
-# --- pipeline/demo/validate.py ---
-
-
-def config(path: Path, table: Path, **changes) -> Path:
-    values = SMALL | {"seed": 0} | changes
-    lines = ["[validate]", f'tables = ["{table}"]', *(f"{name} = {value}" for name, value in values.items())]
-    path.write_text("\n".join(lines), encoding="utf-8")
-    return path
-
-
-def test_stage_passes_then_fails(tmp_path, law):
-    out = tmp_path / "out"
-    vr.tables.save(law, tmp_path / "law.nc")
-    settings = config(tmp_path / "small.toml", tmp_path / "law.nc", states=200, stress_states=1, times=5)
-    made("demo.validate", "--config", settings, "-o", out)
-    assert "every difference is within what is allowed" in (out / "validation.txt").read_text(encoding="utf-8")
-    with xr.open_dataset(out / "validation.nc", engine="h5netcdf") as saved:
-        assert saved.attrs["ok"] == 1
-        assert "stress: Q" in saved["check"].values
-    assert (out / "stages/validate.json").exists()
-    wrong = law.copy(deep=True)
-    wrong["press"].values[9] *= 1.0 + tol.CLI_WRONG
-    vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(content_of(wrong).numbers)), tmp_path / "law.nc")
-    result = stage("demo.validate", "--config", settings, "-o", out)
-    assert result.returncode == 1
-    assert "EXCEEDED" in result.stdout
-    with xr.open_dataset(out / "validation.nc", engine="h5netcdf") as saved:
-        assert saved.attrs["ok"] == 0
-
-
-def test_stage_refuses_in_one_line(tmp_path):
-    for changes, words in (
-        ({"stats": 3}, "stats"), ({"states": '"many"'}, "Expected `int`"), ({"seed": -1}, "seed = -1"),
-        ({}, "cannot be read"),
-    ):  # fmt: skip
-        settings = config(tmp_path / "bad.toml", tmp_path / "missing.nc", **changes)
-        if changes == {"seed": -1}:
-            settings.write_text(settings.read_text(encoding="utf-8").replace(f'"{tmp_path / "missing.nc"}"', ""))
-        assert words in stage_refused("demo.validate", "--config", settings, "-o", tmp_path / "out")
-        assert not (tmp_path / "out/validation.nc").exists()

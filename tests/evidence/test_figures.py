@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import runpy
-import tomllib
 from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
@@ -13,19 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from matplotlib.figure import Figure
 from processes import made, printed, stage_refused
 
 import viscoroll as vr
-from pipeline import stage as shared
 from pipeline.demo.captions import SECTIONS
 from pipeline.figures import FIGURES, GALLERY
-from viscoroll.errors import OutputError
-from viscoroll.plots.runs import even_bars, run_distributions
 from viscoroll.plots.style import save
-from viscoroll.runs import open_summaries, read_run, run_ensemble
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -99,14 +93,6 @@ def test_figure_2_shows_the_limits(drawn):
         assert close(star[100], 1e3 * at, rel=tol.FIGURE)
 
 
-def test_figure_3_saturates_and_is_odd(drawn):
-    left, right = drawn["figure-3"].axes
-    _, Q = line(left, "$V$ = 0.1")
-    assert (Q[0], Q[-1]) == (-0.2, 0.2)
-    _, M = line(right, r"$\alpha$ = 21.5")
-    assert close(M, -M[::-1], rel=tol.FIGURE)
-
-
 def test_figure_7_at_the_four_times(drawn):
     panels = drawn["figure-7"].axes
     assert len(panels) == 4
@@ -119,76 +105,11 @@ def test_figure_7_at_the_four_times(drawn):
     assert "$1.512" in why
 
 
-def test_broad_stresses_carry_the_load(drawn):
-    """The areas below all pressures are one, those below the shear are Q/mu of them."""
-    pressure, shear = drawn["broad-stresses"].axes
-    for above, below in zip(pressure.get_lines()[:4], shear.get_lines()[:4], strict=True):
-        x, p = map(np.asarray, above.get_data())
-        area = 0.5 * ((p[1:] + p[:-1]) * np.diff(x)).sum()
-        assert close(area, 0.25 * np.pi, rel=1e-3)  # of an ellipse of length and height 1
-        assert (below.get_ydata() <= p * (1.0 + tol.FIGURE)).all()
-
-
 def test_saved_without_a_warning(drawn, tmp_path):
     for name, figure in drawn.items():
         save(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").read_bytes().startswith(PNG), name
     assert {item.stem for item in tmp_path.iterdir()} == NAMES
-
-
-def test_even_bars_of_what_lies_close_together():
-    """Motions at rest fill one bin, from 0 to the next bin's denormal edge: one bar that shows."""
-    edges, bars = even_bars(np.array([0.0]), np.array([8.7e-311]), np.array([50]))
-    assert edges.tolist() == [-0.5, 0.5]
-    assert bars.tolist() == [50]
-    edges, bars = even_bars(np.array([-1.7e308, 1.7e308]), np.array([-1.6e308, np.inf]), np.array([1, 1]))
-    assert np.isfinite(edges).all()
-    assert np.isfinite(bars).all()
-
-
-def test_a_run_without_values(tmp_path):
-    """A panel without values says so; all values at one point are one bar."""
-    for n, (start, wanted, empty) in enumerate(
-        (
-            ("V0 = 2.0\nomega0 = 0.0", '["V", "onset_time", "rest_time"]', {"onset_time", "rest_time"}),  # none stuck
-            ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', set()),  # all at rest
-            ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', {"delta"}),  # infinite
-        )
-    ):
-        text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
-        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
-        run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / f"{n}.zarr", threads=1)
-        figure = run_distributions(open_summaries(tmp_path / f"{n}.zarr"))
-        titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
-        assert {name for name, title in titles.items() if title == "no values"} == empty
-        save(figure, tmp_path / "run.png")
-
-
-def test_save_is_whole_or_not_at_all(drawn, tmp_path):
-    path = tmp_path / "picture.png"
-    path.write_text("as it was")
-
-    class Broken(Figure):
-        def savefig(self, target, *arguments, **options):
-            Path(target).write_bytes(b"half")
-            raise OSError(28, "No space left on device")
-
-    with pytest.raises(OutputError, match="No space left"):
-        save(Broken(), path)
-    assert path.read_text() == "as it was"
-    assert [item.name for item in tmp_path.iterdir()] == [path.name]
-    with pytest.raises(OutputError, match=r"suffix '\.xyz'"):
-        save(drawn["figure-2"], tmp_path / "picture.xyz")
-    with pytest.raises(OutputError, match="cannot be written"):
-        save(drawn["figure-2"], tmp_path / "nowhere" / "picture.png")
-
-
-def test_import_is_light_and_pyplot_is_left_alone():
-    printed(
-        "import sys; from viscoroll.plots import draw; assert 'matplotlib' not in sys.modules; "
-        "import viscoroll as vr; draw(vr.contact(vr.PAPER_SECTION_5, [0.1, 0.2], delta=0.0).to_xarray()); "
-        "assert 'matplotlib.pyplot' not in sys.modules"
-    )
 
 
 # --- pipeline: motions, ensemble, figures, summary ---
@@ -298,26 +219,6 @@ def test_motions_from_the_file_are_those_of_root_solves(demo):
     assert all(f"<td>{escape(row['law by'])}</td>" in page for row in rows)
 
 
-def test_motions_file(demo):
-    with xr.open_dataset(demo[1] / "motions.nc", engine="h5netcdf") as saved:
-        assert list(saved["ic"].values) == list(vr.PAPER_STARTS)
-        assert saved.sel(ic="IC1").V.values[0] == 1.5
-        rolled = vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, saved.t.values, rtol=1e-6)
-        assert np.array_equal(saved.sel(ic="IC1").V.values, rolled.V)
-        assert np.array_equal(saved.sel(ic="IC1").beta.values, rolled.contact("beta").beta)
-        assert saved.sel(ic="IC1").onset_time.item() == rolled.onset_time
-
-
-def test_ensemble_file(demo):
-    with xr.open_dataset(demo[1] / "ensemble.nc", engine="h5netcdf") as saved:
-        assert saved.sizes["motion"] == 40
-        assert saved.attrs["motions"] == 100
-        assert saved.attrs["seed"] == 3
-        assert saved.V_quantiles.dims == ("quantile", "t")
-        one = vr.roll(vr.PAPER_SECTION_5_ROUNDED, saved.V0.values[7], saved.omega0.values[7], saved.t.values, rtol=1e-4)
-        assert np.array_equal(saved.V.values[7], one.V)
-
-
 def test_summary_page(demo):
     config, out = demo
     page, text = Page(), (out / "index.html").read_text(encoding="utf-8")
@@ -347,14 +248,3 @@ def test_stage_refuses_in_one_line(demo, tmp_path):
     ):
         config.write_text(small.replace(old, new), encoding="utf-8")
         assert words in stage_refused(f"demo.{name}", "--config", config, "-o", tmp_path / "out")
-
-
-def test_stage_says_what_has_to_run_first(demo, tmp_path):
-    for name, words in (("figures", "ensemble.nc"), ("summary", "run pipeline.demo.tabulate first")):
-        assert words in stage_refused(f"demo.{name}", "--config", demo[0], "-o", tmp_path)
-
-
-def test_production_configuration_is_read():
-    content = tomllib.loads(shared.CONFIG.read_text(encoding="utf-8"))
-    assert {"tables", "validate", "runtime", "compare", "motions", "ensemble", "summary"} <= content.keys()
-    assert content["ensemble"]["motions"] == 1_000_000

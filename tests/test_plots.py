@@ -1,0 +1,73 @@
+"""Pictures: whole or not at all, of runs without values too, and loaded when drawn."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from processes import printed
+
+from viscoroll.errors import OutputError
+from viscoroll.plots.runs import even_bars, run_distributions
+from viscoroll.plots.style import save
+from viscoroll.runs import open_summaries, read_run, run_ensemble
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
+
+def test_even_bars_of_what_lies_close_together():
+    """Motions at rest fill one bin, from 0 to the next bin's denormal edge: one bar that shows."""
+    edges, bars = even_bars(np.array([0.0]), np.array([8.7e-311]), np.array([50]))
+    assert edges.tolist() == [-0.5, 0.5]
+    assert bars.tolist() == [50]
+    edges, bars = even_bars(np.array([-1.7e308, 1.7e308]), np.array([-1.6e308, np.inf]), np.array([1, 1]))
+    assert np.isfinite(edges).all()
+    assert np.isfinite(bars).all()
+
+
+def test_a_run_without_values(tmp_path):
+    """A panel without values says so; all values at one point are one bar."""
+    for n, (start, wanted, empty) in enumerate(
+        (
+            ("V0 = 2.0\nomega0 = 0.0", '["V", "onset_time", "rest_time"]', {"onset_time", "rest_time"}),  # none stuck
+            ("V0 = 0.0\nomega0 = 0.0", '["V", "x"]', set()),  # all at rest
+            ("V0 = 0.0\nomega0 = 1.0", '["V", "delta"]', {"delta"}),  # infinite
+        )
+    ):
+        text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
+        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+        run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / f"{n}.zarr", threads=1)
+        figure = run_distributions(open_summaries(tmp_path / f"{n}.zarr"))
+        titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
+        assert {name for name, title in titles.items() if title == "no values"} == empty
+        save(figure, tmp_path / "run.png")
+
+
+def test_save_is_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "picture.png"
+    path.write_text("as it was")
+
+    class Broken(Figure):
+        def savefig(self, target, *arguments, **options):
+            Path(target).write_bytes(b"half")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OutputError, match="No space left"):
+        save(Broken(), path)
+    assert path.read_text() == "as it was"
+    assert [item.name for item in tmp_path.iterdir()] == [path.name]
+    with pytest.raises(OutputError, match=r"suffix '\.xyz'"):
+        save(Figure(), tmp_path / "picture.xyz")
+    with pytest.raises(OutputError, match="cannot be written"):
+        save(Figure(), tmp_path / "nowhere" / "picture.png")
+
+
+def test_import_is_light_and_pyplot_is_left_alone():
+    printed(
+        "import sys; from viscoroll.plots import draw; assert 'matplotlib' not in sys.modules; "
+        "import viscoroll as vr; draw(vr.contact(vr.PAPER_SECTION_5, [0.1, 0.2], delta=0.0).to_xarray()); "
+        "assert 'matplotlib.pyplot' not in sys.modules"
+    )
