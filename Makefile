@@ -2,13 +2,13 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUN := $(BIN)/python
-CONFIG ?= pipeline/config/production.toml
+CONFIG ?= pipeline/config.toml
 SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
 STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup demo tables validate figures bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
+.PHONY: help setup demo tables validate corners figures bench numbers prove same test evidence fuzz mutate torture matrix check clean interop interop-tools peer-tools debian-lists docs test-site site-tools release-check
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-14s %s\n", $$1, $$2}'
@@ -20,65 +20,62 @@ setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	touch $@
 
-demo: out/index.html ## tables, validation, motions, an ensemble of 10^6, figures and a summary page
-	@$(RUN) -m pipeline.demo.summary --config $(CONFIG) --show
+demo: out/index.html ## tables, motions from them, validation, a benchmark, an ensemble of 10^6, figures and a page over all
+	@$(RUN) -m pipeline.report --config $(CONFIG) --show
 
 tables: $(TABLES) ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel
-$(TABLES) &: pipeline/demo/tabulate.py $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.tabulate --config $(CONFIG)
+$(TABLES) &: pipeline/offline.py $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.offline --config $(CONFIG)
+
+out/runtime.nc: pipeline/runtime.py $(TABLES) $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.runtime --config $(CONFIG)
+
+out/ensemble.nc: pipeline/ensemble.py $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.ensemble --config $(CONFIG)
 
 validate: out/validation.nc ## tables and motions against direct solves; exit code 1 beyond a stated tolerance
-out/validation.nc: pipeline/demo/validate.py $(TABLES) $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.validate --config $(CONFIG)
+out/validation.nc: pipeline/validate.py out/runtime.nc $(TABLES) $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.validate --config $(CONFIG)
 
-out/runtime.nc: pipeline/demo/runtime.py pipeline/demo/rodas.py $(TABLES) $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.runtime --config $(CONFIG)
+corners: setup ## law and motions at the ends of what the package takes: out/corners.csv (a minute or two)
+	$(RUN) -m pipeline.validate --corners --config $(CONFIG)
 
-out/direct.nc: pipeline/demo/direct.py pipeline/demo/runtime.py $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.direct --config $(CONFIG)
-
-out/compare.csv: pipeline/demo/compare.py out/runtime.nc out/direct.nc $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.compare --config $(CONFIG)
-
-out/motions.nc: pipeline/demo/motions.py $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.motions --config $(CONFIG)
-
-out/ensemble.nc: pipeline/demo/ensemble.py $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.ensemble --config $(CONFIG)
+out/benchmark.csv: pipeline/benchmark.py out/validation.nc $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.benchmark --config $(CONFIG)
 
 figures: out/figures/figure-5.png ## the paper's figures and more, as PNG under out/figures
-out/figures/figure-5.png: pipeline/demo/figures.py out/ensemble.nc $(SOURCES) $(STAGE)
-	$(RUN) -m pipeline.demo.figures --config $(CONFIG)
+out/figures/figure-5.png: pipeline/figures/__main__.py out/ensemble.nc $(SOURCES) $(STAGE)
+	$(RUN) -m pipeline.figures --config $(CONFIG)
 
-out/index.html: pipeline/demo/summary.py out/validation.nc out/compare.csv out/motions.nc out/ensemble.nc out/figures/figure-5.png
-	$(RUN) -m pipeline.demo.summary --config $(CONFIG)
+out/index.html: pipeline/report.py out/validation.nc out/benchmark.csv out/ensemble.nc out/figures/figure-5.png
+	$(RUN) -m pipeline.report --config $(CONFIG)
 
 bench: setup peer-tools ## run time against error beside the peers, which it installs (long)
-	$(RUN) -m pipeline.bench --config $(CONFIG)
-	$(RUN) -m pipeline.document
+	$(RUN) -m pipeline.evidence.bench
+	$(RUN) -m pipeline.evidence.document
 
-numbers: setup ## measure again what README and docs state, and put it there (about half an hour)
-	$(RUN) -m pipeline.measure --config $(CONFIG)
-	$(RUN) -m pipeline.measure.ensembles --config $(CONFIG)
-	-$(RUN) -m pipeline.measure.outside --config $(CONFIG)
-	-$(RUN) -m pipeline.measure.identification --config $(CONFIG)
-	$(RUN) -m pipeline.document
-	for name in geometry rolling-equilibria wheel-spin reversal slope; do $(RUN) -m pipeline.figures $$name -o docs/figures/$$name.png; done
+numbers: setup figures ## measure again what README and docs state, and put it there (about half an hour)
+	$(RUN) -m pipeline.evidence.measure
+	$(RUN) -m pipeline.evidence.measure.ensembles
+	-$(RUN) -m pipeline.evidence.measure.outside
+	-$(RUN) -m pipeline.evidence.measure.identification
+	$(RUN) -m pipeline.evidence.document
+	for name in geometry rolling-equilibria wheel-spin reversal slope; do cp out/figures/$$name.png docs/figures/; done
 	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
-	$(RUN) -m pipeline.prove --config $(CONFIG)
-	$(RUN) -m pipeline.prove.figures
-	$(RUN) -m pipeline.prove.error_maps --config $(CONFIG)
-	$(RUN) -m pipeline.prove.independent
-	$(RUN) -m pipeline.prove.unsteady
-	$(RUN) -m pipeline.prove.layer
-	$(RUN) -m pipeline.measure.large --config $(CONFIG)
-	$(RUN) -m pipeline.document
+	$(RUN) -m pipeline.evidence.prove
+	$(RUN) -m pipeline.evidence.prove.figures
+	$(RUN) -m pipeline.evidence.prove.error_maps
+	$(RUN) -m pipeline.evidence.prove.independent
+	$(RUN) -m pipeline.evidence.prove.unsteady
+	$(RUN) -m pipeline.evidence.prove.layer
+	$(RUN) -m pipeline.evidence.measure.large
+	$(RUN) -m pipeline.evidence.document
 
 BASE ?= HEAD
 same: setup ## whether this tree computes the same bits as BASE, a commit (HEAD)
-	$(RUN) -m pipeline.same --base $(BASE)
+	$(RUN) -m pipeline.evidence.same --base $(BASE)
 
 test: setup ## the test suite: what users meet
 	$(BIN)/pytest -n 2 --dist worksteal --ignore tests/evidence $(TEST)
@@ -129,21 +126,21 @@ FUZZ_SECONDS ?= 600
 fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS) and the loaders (a minute each)
 	FUZZ_SECONDS=$(FUZZ_SECONDS) $(BIN)/pytest tests/test_properties.py
 	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fuzz]'
-	$(RUN) -m pipeline.torture.fuzz_loaders toml
-	$(RUN) -m pipeline.torture.fuzz_loaders table
+	$(RUN) -m pipeline.evidence.torture.fuzz_loaders toml
+	$(RUN) -m pipeline.evidence.torture.fuzz_loaders table
 
 mutate: setup ## plant defects in the kernels and see which the tests notice (half an hour)
-	$(RUN) -m pipeline.mutate
+	$(RUN) -m pipeline.evidence.mutate
 
 torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 25 minutes)
-	$(RUN) -m pipeline.torture --config $(CONFIG)
-	$(RUN) -m pipeline.document
+	$(RUN) -m pipeline.evidence.torture
+	$(RUN) -m pipeline.evidence.document
 
 matrix: setup ## wheel and sdist in fresh environments: every Python, newest and lowest dependencies (about 20 minutes; PYTHONS names others)
-	$(RUN) -m pipeline.matrix
+	$(RUN) -m pipeline.evidence.matrix
 
 release-check: setup ## sdist and wheel, metadata, the README as a package page, licences, age of the numbers; what is left to decide
-	$(RUN) -m pipeline.release
+	$(RUN) -m pipeline.evidence.release
 
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports

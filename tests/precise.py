@@ -1,4 +1,4 @@
-"""Truth for the tests: the printed law of pipeline.truth, its slopes, and distances in ULP."""
+"""Truth for the tests: the printed law of pipeline.evidence.truth, its slopes, and distances in ULP."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import mpmath as mp
 
-from pipeline.truth import precise
+from pipeline.evidence.truth import precise
 
 DIGITS = 50
-#: digits that the printed forms may lose (see pipeline.truth.precise)
+#: digits that the printed forms may lose (see pipeline.evidence.truth.precise)
 GUARD = 30
 
 

@@ -14,7 +14,7 @@ import viscoroll as vr
 from viscoroll.config import read_bodies, read_scene
 from viscoroll.materials.file import as_toml, read_materials
 
-PRODUCTION = PIPELINE / "config/production.toml"
+PRODUCTION = PIPELINE / "config.toml"
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 

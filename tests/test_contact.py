@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.truth import contact_enclosure
+from pipeline.evidence.truth import contact_enclosure
 from viscoroll.contact_fields import FIELDS, SLOPES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED

@@ -15,7 +15,7 @@ from closeness import close
 from many import MATERIALS, series
 
 import viscoroll as vr
-from pipeline.truth import contact_enclosure
+from pipeline.evidence.truth import contact_enclosure
 from viscoroll.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
 from viscoroll.kernels.rows import law as read
 from viscoroll.kernels.rows.record import hold

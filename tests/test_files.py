@@ -236,8 +236,9 @@ KNOWN = {
 }  # fmt: skip
 #: stages that write to scratch folders of their own
 SCRATCH = (
-    "pipeline/matrix.py", "pipeline/measure/ensembles.py", "pipeline/measure/outside.py", "pipeline/mutate/",
-    "pipeline/torture/",
+    "pipeline/evidence/matrix.py", "pipeline/evidence/measure/ensembles.py", "pipeline/evidence/measure/outside.py",
+    "pipeline/evidence/mutate/",
+    "pipeline/evidence/torture/",
 )  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.truth.series import functions, rates
+from pipeline.evidence.truth.series import functions, rates
 from viscoroll.equilibria.zeros import zeros
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED

@@ -42,7 +42,7 @@ TABLE_SPLINE_NODE = 1e-13
 #: bound.
 GRID_MORE, GRID_LESS = 1.5, 0.3
 
-#: Motions of pipeline/demo/ from the file at rtol 1e-8; by a coarse grid they are further off.
+#: Motions of pipeline/runtime.py from the file at rtol 1e-8; by a coarse grid they are further off.
 DEMO_FILE = 1e-7
 
 # --- examples in other programs (test_interop.py) ---
@@ -264,7 +264,7 @@ PROVEN_ROUNDINGS = 4.0 * 2.0**-53
 PROVEN_SUBNORMAL = 4e-323
 
 # --- planted defects (test_mutants.py) ---
-#: Share of them that the tests must notice, as pipeline/mutate/ asks; 52 of the first 54 were.
+#: Share of them that the tests must notice, as pipeline/evidence/mutate/ asks; 52 of the first 54 were.
 MUTANTS_KILLED = 0.95
 
 # --- independent implementations (test_independent.py) ---
@@ -338,7 +338,7 @@ SENSITIVITY_NONE = 1e-13
 SENSITIVITY_INTERVAL = 0.08
 #: Share of motions without onset, of 256 over two inputs against 500 over the one that matters; measured 0.02.
 SENSITIVITY_SHARE = 0.1
-#: condition number of a motion in which slip returns in passing: sum over its inputs, by pipeline/prove/motion.py.
+#: condition number of a motion in which slip returns in passing: sum over its inputs, by evidence/prove/motion.py.
 GRAZING_CONDITION = 89.0
 
 # --- materials in SI units (test_material.py) ---

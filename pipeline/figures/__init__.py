@@ -1,8 +1,6 @@
 """Pictures by name (:data:`FIGURES`): the paper's, the drawing behind the symbols, and those of the site's gallery.
 
 A picture of the gallery is the code of its page: it is run here as a reader runs it.
-
-    python -m pipeline.figures NAME -o FILE
 """
 
 from __future__ import annotations

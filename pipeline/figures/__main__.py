@@ -1,28 +1,38 @@
-"""One picture: python -m pipeline.figures NAME -o FILE."""
+"""Figures: the paper's, the gallery's and that of the ensemble -> out/figures/*.png.
+
+python -m pipeline.figures [--config FILE] [-o FOLDER]
+"""
 
 from __future__ import annotations
 
-import argparse
+import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
+from tqdm import tqdm
 
 from viscoroll import ModelWarning
 from viscoroll.plots.style import save
 
+from .. import stage
+from ..validate import loaded
 from . import FIGURES
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(prog="python -m pipeline.figures")
-    parser.add_argument("name", choices=[name for name in FIGURES if name != "ensemble"])
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    arguments = parser.parse_args()
-    mpl.use("agg")
-    warnings.simplefilter("ignore", ModelWarning)  # the paper's cylinder, of which its pages say so
-    save(FIGURES[arguments.name](), arguments.output)
+def work(config: Path, out: Path) -> stage.Outcome:
+    del config  # nothing of it
+    ensemble = loaded(out / "ensemble.nc")
+    shown: dict[str, tuple[Any, ...]] = {"ensemble": (ensemble, ensemble)}
+    folder, files = stage.make_folder(out / "figures"), []
+    for name, draw in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):
+        files.append(folder / f"{name}.png")
+        save(draw(*shown.get(name, ())), files[-1])
+    return stage.Outcome(files)
 
 
 if __name__ == "__main__":
-    main()
+    mpl.use("agg")
+    warnings.simplefilter("ignore", ModelWarning)  # the paper's cylinder, of which its pages say so
+    sys.exit(stage.run("figures", None, work, __doc__))

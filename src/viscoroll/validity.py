@@ -22,7 +22,7 @@ DUNDURS_LIMIT = 0.05
 #: in full slip cylinder and half-space pass the contact at speeds that differ by this share; M takes one speed for both
 CREEP_LIMIT = 0.3
 #: contact length over the thickness of a layer, up to which the length is within 5 % of that on a half-space of any
-#: Poisson's ratio (pipeline/prove/layer.py)
+#: Poisson's ratio (pipeline/evidence/prove/layer.py)
 THICK_LIMIT = 2.0 / 3.0
 #: root mean square of relative errors up to which a fit counts as the material that was measured
 MISFIT_LIMIT = 0.05

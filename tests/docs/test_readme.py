@@ -140,18 +140,21 @@ def test_the_pages_of_data_and_pipeline_name_what_is_there():
     page = (ROOT / "data/README.md").read_text(encoding="utf-8")
     here = {path.name for folder in ("reference", "results") for path in (ROOT / "data" / folder).iterdir()}
     said = set(re.findall(r"`(?:\w+/)*([\w-]+\.(?:csv|json|nc))`", page))
-    tables = tomllib.loads((ROOT / "pipeline/config/production.toml").read_text(encoding="utf-8"))["tables"]["laws"]
+    tables = tomllib.loads((ROOT / "pipeline/config.toml").read_text(encoding="utf-8"))["tables"]["laws"]
     made = {"law.nc", *(f"{name}.nc" for name in tables)}
     assert said == {name for name in here if not name.startswith("bench-")} | made
-    page = (ROOT / "pipeline/README.md").read_text(encoding="utf-8")
+    card = (ROOT / "pipeline/README.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"`(\w+\.py)`", card)) == {path.name for path in (ROOT / "pipeline").glob("[!_]*.py")}
+    evidence = ROOT / "pipeline/evidence"
+    page = (evidence / "README.md").read_text(encoding="utf-8")
     stages = {
-        path.relative_to(ROOT / "pipeline").with_suffix("").as_posix().replace("/", ".").removesuffix(".__main__")
-        for path in (ROOT / "pipeline").glob("*/*.py")
+        path.relative_to(evidence).with_suffix("").as_posix().replace("/", ".").removesuffix(".__main__")
+        for path in evidence.glob("*/*.py")
         if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
     }
     assert set(re.findall(r"-> ([a-z_.]+) *(?:->|\()", page)) == stages
-    assert set(re.findall(r"`(\w+\.py)`", page)) == {path.name for path in (ROOT / "pipeline").glob("[!_]*.py")}
+    assert set(re.findall(r"`(\w+\.py)`", page)) == {path.name for path in evidence.glob("[!_]*.py")}
 
 
 def test_blocks_show_the_measured_numbers():
-    made("document", "--check")
+    made("evidence.document", "--check")

@@ -12,10 +12,10 @@ from closeness import close
 from places import PIPELINE, RESULTS, ROOT
 from processes import made, stage, stage_refused
 
-from pipeline.document.bench import comparison
-from pipeline.results import Results
+from pipeline.evidence.document.bench import comparison
+from pipeline.evidence.results import Results
 
-CONFIG = PIPELINE / "config/production.toml"
+CONFIG = PIPELINE / "evidence/sizes.toml"
 OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
 
 
@@ -25,7 +25,7 @@ def folder(tmp_path_factory):
 
 
 def measured(folder: Path, *parts: str) -> list[dict]:
-    made("bench", *parts, "--quick", "-o", folder, "--figures", folder)
+    made("evidence.bench", *parts, "--quick", "-o", folder, "--figures", folder)
     files = [json.loads((folder / f"bench-{part}.json").read_text(encoding="utf-8")) for part in parts]
     assert all({"cpu", "cores", "date", "numba", "python"} <= file["machine"].keys() for file in files)
     return [file["measured"] for file in files]
@@ -138,10 +138,10 @@ def test_last_release(tmp_path):
         config.write_text(text, encoding="utf-8")
         return "last-release", "--quick", "--config", config, "-o", tmp_path, "--figures", tmp_path
 
-    assert "no commit 0000000 here; a shallow clone has few" in stage_refused("bench", *at("0000000"))
+    assert "no commit 0000000 here; a shallow clone has few" in stage_refused("evidence.bench", *at("0000000"))
     if not (ROOT / ".git").exists():
         pytest.skip("not a clone")
-    said = made("bench", *at("HEAD"))
+    said = made("evidence.bench", *at("HEAD"))
     found = json.loads((tmp_path / "bench-last-release.json").read_text(encoding="utf-8"))["measured"]
     assert found.keys() == section["cases"].keys()
     for case, row in found.items():
@@ -157,8 +157,8 @@ def test_committed_error_of_the_map_is_below_the_stated_one():
 
 
 def test_refuses_what_it_cannot_do(tmp_path):
-    assert "unknown part speed" in stage("bench", "speed").stderr
+    assert "unknown part speed" in stage("evidence.bench", "speed").stderr
     broken = tmp_path / "broken.toml"
     broken.write_text("[bench]\n", encoding="utf-8")
-    assert stage_refused("bench", "law", "--config", broken, "-o", tmp_path).startswith("benchmark: ")
+    assert stage_refused("evidence.bench", "law", "--config", broken, "-o", tmp_path).startswith("benchmark: ")
     assert not list(tmp_path.glob("*.json"))

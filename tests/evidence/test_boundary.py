@@ -9,8 +9,8 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from pipeline.truth import boundary
-from pipeline.truth import series as raw
+from pipeline.evidence.truth import boundary
+from pipeline.evidence.truth import series as raw
 
 PAIR = vr.Bodies(cylinder=vr.Prony([2.0, 6.0], [1.0, 0.05]), half_space=vr.Prony([1.0], [0.3]), share=0.7)
 

@@ -37,9 +37,9 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     assert all((store / file).read_bytes() == (alone / file).read_bytes() for file in files)
 
 
-@pytest.mark.parametrize(("name", "key"), [("measure.ensembles", "rows"), ("torture", "parts")])
+@pytest.mark.parametrize(("name", "key"), [("evidence.measure.ensembles", "rows"), ("evidence.torture", "parts")])
 def test_stages_run(tmp_path, name, key):
-    options = ["--only", "ensembles"] if name == "torture" else []
+    options = ["--only", "ensembles"] if name == "evidence.torture" else []
     made(name, *options, "--quick", "-o", tmp_path / "results.json")
     assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))[key]
 
@@ -47,7 +47,7 @@ def test_stages_run(tmp_path, name, key):
 def test_committed_figures():
     """10^8 motions of a scene, and 10^6 with seven uncertain inputs, in a minute of two free cores and 1 GB."""
     committed = json.loads((RESULTS / "ensembles.json").read_text(encoding="utf-8"))
-    section = tomllib.loads((PIPELINE / "config/production.toml").read_text(encoding="utf-8"))["ensembles"]
+    section = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8"))["ensembles"]
     del section["quick"]
     assert committed["sizes"] == section
     for name in ("100000000 motions of a scene", "1000000 motions, seven uncertain inputs"):

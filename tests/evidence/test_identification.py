@@ -9,12 +9,12 @@ from closeness import close
 from places import RESULTS
 from processes import made
 
-from pipeline.measure.identification import COVERAGE, PARTS, complaint
-from pipeline.results import rows_of
+from pipeline.evidence.measure.identification import COVERAGE, PARTS, complaint
+from pipeline.evidence.results import rows_of
 
 
 def test_stage_plans_an_experiment(tmp_path):
-    made("measure.identification", "--quick", "--only", "learn", "-o", tmp_path / "identification.json")
+    made("evidence.measure.identification", "--quick", "--only", "learn", "-o", tmp_path / "identification.json")
     (row, *_) = json.loads((tmp_path / "identification.json").read_text(encoding="utf-8"))["parts"]["learn"]["rows"]
     committed = committed_rows("learn")[0]
     found, known = row.pop("unknowns"), committed.pop("unknowns")

@@ -11,7 +11,7 @@ from closeness import close
 from places import RESULTS
 from processes import made
 
-from pipeline.prove import independent
+from pipeline.evidence.prove import independent
 
 
 def worst(off: dict[str, np.ndarray]) -> dict[str, float]:
@@ -78,7 +78,7 @@ def test_numbers_of_the_paper():
 
 
 def test_committed_deviations_are_those_found_now(tmp_path):
-    made("prove.independent", "-o", tmp_path / "independent.json")
+    made("evidence.prove.independent", "-o", tmp_path / "independent.json")
     now = json.loads((tmp_path / "independent.json").read_text(encoding="utf-8"))
     committed = json.loads((RESULTS / "independent.json").read_text(encoding="utf-8"))
     for mine, theirs in zip(now["deviations"], committed["deviations"], strict=True):

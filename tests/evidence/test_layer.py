@@ -11,7 +11,7 @@ import tolerances as tol
 from closeness import close
 from places import DOCS, RESULTS
 
-from pipeline.prove import layer
+from pipeline.evidence.prove import layer
 from viscoroll.validity import THICK_LIMIT
 
 

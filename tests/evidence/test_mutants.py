@@ -1,4 +1,4 @@
-"""The results of the planted defects (pipeline/mutate/) are of all of them; the stages that want more say so."""
+"""The results of the planted defects (pipeline/evidence/mutate/) are of all of them; stages that want more say so."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import tolerances as tol
 from places import RESULTS
 from processes import printed
 
-from pipeline.mutate.mutants import MUTANTS
+from pipeline.evidence.mutate.mutants import MUTANTS
 
 
 def test_results_are_of_known_defects():
@@ -25,6 +25,6 @@ def test_results_are_of_known_defects():
 def test_fuzzing_without_atheris_says_so():
     """An import that fails, as without the extra."""
     code = "import sys, runpy; sys.modules['atheris'] = None; sys.argv = ['fuzz', 'toml']; "
-    code += "runpy.run_module('pipeline.torture.fuzz_loaders', run_name='__main__')"
+    code += "runpy.run_module('pipeline.evidence.torture.fuzz_loaders', run_name='__main__')"
     shown = printed(code)
     assert "skipped, atheris is not installed" in shown

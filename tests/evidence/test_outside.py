@@ -17,7 +17,7 @@ MISSING += [] if importlib.util.find_spec("fmpy") else ["fmpy"]
 
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed (make interop site-tools): {', '.join(MISSING)}")
 def test_stage_finds_the_law_in_every_program(tmp_path):
-    made("measure.outside", "--quick", "-o", tmp_path / "outside.json")
+    made("evidence.measure.outside", "--quick", "-o", tmp_path / "outside.json")
     found = json.loads((tmp_path / "outside.json").read_text(encoding="utf-8"))
     holds(found)
     committed = json.loads((RESULTS / "outside.json").read_text(encoding="utf-8"))
@@ -41,5 +41,5 @@ def holds(found):
 
 def test_stage_says_what_is_missing(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
-    refused = stage_refused("measure.outside", "--quick", "-o", tmp_path / "outside.json")
+    refused = stage_refused("evidence.measure.outside", "--quick", "-o", tmp_path / "outside.json")
     assert "chromium is not installed" in refused

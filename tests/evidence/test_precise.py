@@ -17,14 +17,14 @@ from truth.test_driven import inputs as driven_inputs
 from truth.test_motions import check_motions, inputs
 
 import viscoroll as vr
-from pipeline.truth import roll_precise
-from pipeline.truth.collocation import radau
-from pipeline.truth.load import pieces_of
-from pipeline.truth.motion import PATHS
-from pipeline.truth.phase import Law
-from pipeline.truth.precise import printed_state
-from pipeline.truth.rest import begun
-from pipeline.truth.solid import solid_of
+from pipeline.evidence.truth import roll_precise
+from pipeline.evidence.truth.collocation import radau
+from pipeline.evidence.truth.load import pieces_of
+from pipeline.evidence.truth.motion import PATHS
+from pipeline.evidence.truth.phase import Law
+from pipeline.evidence.truth.precise import printed_state
+from pipeline.evidence.truth.rest import begun
+from pipeline.evidence.truth.solid import solid_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -98,7 +98,7 @@ def test_check_motions_are_found_again(number):
 def test_picture_of_tolerance_and_error(tmp_path):
     """From the stored proofs."""
     picture = tmp_path / "errors.png"
-    made("prove.figures", "-o", picture)
+    made("evidence.prove.figures", "-o", picture)
     assert picture.read_bytes()[1:4] == b"PNG"
 
 

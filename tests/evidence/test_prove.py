@@ -16,9 +16,9 @@ CHECK_VALUES = DATA / "reference/check_values.csv"
 
 def test_check_values_are_made_again(tmp_path):
     """The stage with the same seed begins with the same rows."""
-    text = (PIPELINE / "config/production.toml").read_text(encoding="utf-8")
+    text = (PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8")
     (tmp_path / "few.toml").write_text(text.replace("states = 2000", "states = 40"), encoding="utf-8")
-    made("truth.check_values", "--config", tmp_path / "few.toml", "--folder", tmp_path, "-o", tmp_path)
+    made("evidence.truth.check_values", "--config", tmp_path / "few.toml", "--folder", tmp_path, "-o", tmp_path)
     again = (tmp_path / "check_values.csv").read_text(encoding="utf-8").splitlines()
     assert len(again) == 41
     assert again == CHECK_VALUES.read_text(encoding="utf-8").splitlines()[:41]
@@ -27,7 +27,7 @@ def test_check_values_are_made_again(tmp_path):
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     output = tmp_path_factory.mktemp("prove") / "proofs.json"
-    assert stage("prove", "--quick", "-o", output).returncode == 0
+    assert stage("evidence.prove", "--quick", "-o", output).returncode == 0
     return {name: part["rows"] for name, part in json.loads(output.read_text(encoding="utf-8"))["parts"].items()}
 
 
@@ -53,7 +53,7 @@ def test_a_planted_error_of_1e_9_fails_the_proof():
     script = """
 import flint
 import numpy as np
-from pipeline.prove import ratios as proof
+from pipeline.evidence.prove import ratios as proof
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel import ratios
 table = ratios._ROWS.reshape(-1)  # the bins come first
@@ -86,7 +86,7 @@ print(seen, tried)
 def test_error_maps_are_below_what_is_stated(tmp_path):
     """The committed maps, and new ones of few cells."""
     files = [tmp_path / "maps.nc", tmp_path / "maps.png"]
-    made("prove.error_maps", "--quick", "-o", files[0], "--figure", files[1])
+    made("evidence.prove.error_maps", "--quick", "-o", files[0], "--figure", files[1])
     assert files[1].stat().st_size > 0
     for path in (files[0], RESULTS / "error-maps.nc"):
         with xr.open_dataset(path, engine="h5netcdf") as maps:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline import release
-from pipeline.results import RESULTS
-from pipeline.stamps import outdated
+from pipeline.evidence import release
+from pipeline.evidence.results import RESULTS
+from pipeline.evidence.stamps import outdated
 
 
 @pytest.fixture(scope="module")

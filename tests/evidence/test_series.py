@@ -9,9 +9,9 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from pipeline.prove.series import of_z
-from pipeline.truth import series as raw
-from pipeline.truth import spectral
+from pipeline.evidence.prove.series import of_z
+from pipeline.evidence.truth import series as raw
+from pipeline.evidence.truth import spectral
 
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: close times, where elimination with pivots loses ten digits

@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 from places import RESULTS
 
-from pipeline import stamps
-from pipeline.document.__main__ import BLOCKS, filled
+from pipeline.evidence import stamps
+from pipeline.evidence.document.__main__ import BLOCKS, filled
 
 OTHER = "0123456789abcdef"
 SENTENCE = "Measured at kernels `01234567`, not those of this version.\n"

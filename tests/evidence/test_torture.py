@@ -11,7 +11,7 @@ import pytest
 from places import PIPELINE, RESULTS
 from processes import made, printed
 
-from pipeline.torture.cache import gap
+from pipeline.evidence.torture.cache import gap
 
 COMMITTED = json.loads((RESULTS / "torture.json").read_text(encoding="utf-8"))
 #: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
@@ -21,7 +21,7 @@ SLOWEST, MOST_MEMORY = 5.0, 1000.0
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
     output = tmp_path_factory.mktemp("torture") / "torture.json"
-    made("torture", "--quick", "--only", "tables", "-o", output)
+    made("evidence.torture", "--quick", "--only", "tables", "-o", output)
     return json.loads(output.read_text(encoding="utf-8"))["parts"]["tables"]["rows"]
 
 
@@ -47,7 +47,7 @@ def test_files_of_the_cache_are_removed(tmp_path: Path) -> None:
 
 
 def test_committed_results_are_of_the_long_run() -> None:
-    section = tomllib.loads((PIPELINE / "config/production.toml").read_text(encoding="utf-8"))["torture"]
+    section = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8"))["torture"]
     del section["quick"]
     parts = COMMITTED["parts"]
     assert set(parts) == {"tables", "ensembles", "cache"}

@@ -10,9 +10,9 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from pipeline.prove import unsteady
-from pipeline.prove.transient import BEHIND, Contact, grid
-from pipeline.results import RESULTS
+from pipeline.evidence.prove import unsteady
+from pipeline.evidence.prove.transient import BEHIND, Contact, grid
+from pipeline.evidence.results import RESULTS
 
 CELLS = grid(0.04)
 

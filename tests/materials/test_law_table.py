@@ -13,8 +13,8 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.prove.series import any_state, state_errors
-from pipeline.truth import series as raw
+from pipeline.evidence.prove.series import any_state, state_errors
+from pipeline.evidence.truth import series as raw
 from viscoroll.materials.law_table import FUNCTIONS, LawTable, law_table
 
 DIGITS = 60

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.truth import series as raw
+from pipeline.evidence.truth import series as raw
 from viscoroll.materials.law_modes import series_of
 from viscoroll.materials.law_table import by_modes
 

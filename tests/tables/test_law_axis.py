@@ -15,7 +15,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.truth import series as raw
+from pipeline.evidence.truth import series as raw
 from viscoroll.materials.law_axis import FUNCTIONS, LawAxis, law_axis
 from viscoroll.materials.law_table import FUNCTIONS as OF_ONE
 from viscoroll.materials.law_table import LawTable, law_table

@@ -12,7 +12,7 @@ from drives import given
 from places import ROOT
 
 import viscoroll as vr
-from pipeline.truth.motion import PATHS
+from pipeline.evidence.truth.motion import PATHS
 
 MOTIONS = json.loads((ROOT / "data/reference/check_driven.json").read_text(encoding="utf-8"))["motions"]
 

@@ -17,8 +17,8 @@ from places import DATA
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.truth import contact_enclosure, contact_precise
-from pipeline.truth.enclosures import INPUTS, slope_changes, slopes
+from pipeline.evidence.truth import contact_enclosure, contact_precise
+from pipeline.evidence.truth.enclosures import INPUTS, slope_changes, slopes
 
 CHECK_VALUES = DATA / "reference/check_values.csv"
 

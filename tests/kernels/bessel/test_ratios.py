@@ -138,7 +138,7 @@ def bins() -> Iterator[tuple[str, Callable[[mp.mpf], mp.mpf]]]:
 
 def refit() -> np.ndarray:
     """The whole table once more: the pipeline's interpolation, but the Bessel functions of ``precise``."""
-    from pipeline.truth.ratios import NODES, chebyshev_fit
+    from pipeline.evidence.truth.ratios import NODES, chebyshev_fit
 
     points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * NODES)) for i in range(NODES)]
     values = ([EXACT[function](at(t)) for t in points] for function, at in bins())

@@ -12,7 +12,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from pipeline.truth import series as raw
+from pipeline.evidence.truth import series as raw
 from viscoroll.kernels.law.unsteady import room, unsteady
 from viscoroll.materials.law_modes import series_of
 

@@ -1,0 +1,132 @@
+"""Benchmark: time against error of Eq. (22), by every way from the law to a motion -> out/benchmark.csv, its figure.
+
+    python -m pipeline.benchmark [--config FILE] [-o FOLDER]
+
+``roll``; the file of the law with the Rosenbrock method of pipeline/runtime.py; ``vr.law`` in SciPy's Radau; and
+splines in a grid of Q and M over (V, delta), as look-up blocks have it, likewise.  The truth is out/direct.nc, root
+solves of the printed equations.  Peers of other houses stand in pipeline/evidence/bench.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+import viscoroll as vr
+from viscoroll.plots.style import save
+
+from . import stage
+from .runtime import Way, from_file, motions
+from .validate import errors, loaded
+
+Rates = Callable[[float, NDArray], Any]
+
+
+class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
+    """[benchmark]: the tolerances, those that splines are tried at; ends and nodes of their grid."""
+
+    rtol: list[float]
+    splines: list[float]
+    V: tuple[float, float, int]
+    delta: tuple[float, int]
+
+
+def by_law(scene: vr.Scene) -> tuple[Rates, Rates]:
+    """Rates of (V, omega) and their Jacobian by the law of a scene."""
+    law, g, j = vr.law(scene), scene.gamma, scene.j
+
+    def rates(_: float, y: NDArray) -> Any:
+        f = law(*y)
+        return g * (f.Q - f.M_half_space), g / j * (-f.Q - f.M_cylinder)
+
+    def jacobian(_: float, y: NDArray) -> Any:
+        f = law(*y, slopes=True)
+        return [
+            [g * (f.dQ_dV - f.dM_half_space_dV), g * f.dQ_domega],
+            [g / j * (-f.dQ_dV - f.dM_cylinder_dV), -g / j * f.dQ_domega],
+        ]
+
+    return rates, jacobian
+
+
+def by_radau(rates: Rates, jacobian: Rates | None, t: NDArray, rtol: float) -> Way:
+    """SciPy's Radau; NaN where it gives up."""
+
+    def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
+        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, jac=jacobian, rtol=rtol, atol=1e-3 * rtol)
+        return (found.y[0], found.y[1]) if found.success else (np.full(t.size, np.nan), np.full(t.size, np.nan))
+
+    return way
+
+
+def by_grid(scene: vr.Scene, V: NDArray, delta: NDArray) -> Rates:
+    """Rates by splines in a grid of Q and M; at the edges its last values are held."""
+    look_up, g, j = vr.tables.Interpolant(vr.tables.build(scene, V, delta)), scene.gamma, scene.j
+
+    def rates(_: float, y: NDArray) -> Any:
+        speed, turn = np.clip(abs(y[0]), V[0], V[-1]), np.sign(y[0])
+        creep = np.clip((y[1] - y[0]) / y[0], delta[0], delta[-1])
+        f = look_up(("Q", "M"), V=speed, delta=creep)
+        Q, half = turn * f.Q, 0.5 * turn * f.M
+        return g * (Q - half), g / j * (-Q - half)
+
+    return rates
+
+
+def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
+    """(By what, tolerance, way) of all."""
+    scene = vr.PAPER_SECTION_5
+    V, delta = vr.tables.spread(*settings.V, "log"), np.linspace(-settings.delta[0], *settings.delta)
+    law, grid = by_law(scene), by_grid(scene, V, delta)
+    for rtol in settings.rtol:
+
+        def roll(V0: float, omega0: float, rtol: float = rtol) -> tuple[NDArray, NDArray]:
+            found = vr.roll(scene, V0, omega0, t, rtol)
+            return found.V, found.omega
+
+        yield "roll", rtol, roll
+        yield "the file of the law, Rosenbrock", rtol, from_file(scene, t, rtol)
+        yield "vr.law, SciPy's Radau", rtol, by_radau(*law, t, rtol)
+    for rtol in settings.splines:
+        yield f"splines in {V.size} by {delta.size}, SciPy's Radau", rtol, by_radau(grid, None, t, rtol)
+
+
+def draw(rows: list[dict[str, Any]], path: Path) -> None:
+    """Time against error."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
+    for marker, name in zip("osd^", dict.fromkeys(row["law by"] for row in rows), strict=True):
+        own = [row for row in rows if row["law by"] == name]
+        axes.loglog([row["error"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name)
+    axes.set(xlabel="largest error of V and ω over the first speed", ylabel="time of a motion, ms")
+    axes.legend()
+    save(figure, path)
+
+
+def work(settings: Benchmark, out: Path) -> stage.Outcome:
+    truth = loaded(out / "direct.nc")
+    rows: list[dict[str, Any]] = []
+    for name, rtol, way in ways(settings, truth.t.values):
+        found = motions(way, truth.t.values, name)
+        error = max(errors(found, truth).values())
+        rows.append({"law by": name, "rtol": rtol, "ms a motion": 1e3 * float(found.seconds.mean()), "error": error})
+    stage.write_rows(out / "benchmark.csv", rows)
+    picture = stage.make_folder(out / "figures") / "benchmark.png"
+    draw(rows, picture)
+    headline = {
+        f"{row['law by']}, rtol {row['rtol']:g}": f"{row['ms a motion']:.3g} ms, error {row['error']:.2g}"
+        for row in rows
+    }
+    return stage.Outcome([out / "benchmark.csv", picture], headline)
+
+
+if __name__ == "__main__":
+    sys.exit(stage.run("benchmark", Benchmark, work, __doc__))

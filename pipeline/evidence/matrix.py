@@ -1,0 +1,184 @@
+"""The package as pip installs it: wheel and sdist, every Python, the newest and the lowest dependencies.
+
+    python -m pipeline.evidence.matrix            all of them; the whole suite once, on the newest Python
+    python -m pipeline.evidence.matrix --quick    newest dependencies on the newest Python, from the wheel; no suite
+
+A case is a fresh environment outside the tree.  The newest dependencies come with the wheel, the lowest, which
+the metadata declare for this Python, with the sdist.  There the program answers once, and tests of the unpacked
+sdist run: the README, the how-to, a run file, and contact states, motions and a flow map against data/reference.
+
+Pythons are those of the classifiers: this one, pyenv's and those on the PATH, or those that $PYTHONS names.  One
+that is not found is told, and is no failure.  Exit code 1 if a case fails.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+import zipfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from email import message_from_bytes
+from pathlib import Path
+from typing import NamedTuple
+
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).parents[1]
+#: what the tests below import beside the package and its extra
+TOOLS = ("hypothesis", "mpmath", "pytest", "python-flint")
+ASKED = ("roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3")
+SAMPLE = (
+    "tests/docs/test_readme.py::test_readme_block_runs",
+    "tests/docs/test_readme.py::test_howto_blocks_run",
+    "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
+    "tests/truth/test_enclosures.py::test_contact_has_the_check_values",
+    "tests/truth/test_motions.py::test_roll_has_the_check_motions",
+    "tests/truth/test_motions.py::test_flow_map_has_the_check_motions",
+)
+_VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
+_LIBRARIES = "import importlib.metadata as m, sys; print(*(f'{n} {m.version(n)}' for n in sys.argv[1:]), sep=', ')"
+
+
+class Packages(NamedTuple):
+    """What is tried: both packages, the tree of the unpacked sdist, and what the metadata require."""
+
+    wheel: Path
+    sdist: Path
+    tree: Path
+    required: list[Requirement]
+
+
+class Case(NamedTuple):
+    """``lowest`` dependencies or the newest; the whole ``suite`` or the sample."""
+
+    version: str
+    python: str
+    lowest: bool
+    suite: bool
+
+    def __str__(self) -> str:
+        return f"Python {self.version}, {'lowest' if self.lowest else 'newest'} dependencies"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    quick = parser.parse_args().quick
+    wanted, found = pythons()
+    for version in wanted:
+        if version not in found:
+            print(f"matrix: no Python {version} was found: it is not tried", flush=True)
+    if not found:
+        return 1
+    newest = list(found)[-1]
+    chosen = [(newest, False)] if quick else [(each, low) for each in found for low in (False, True)]
+    cases = [
+        Case(version, found[version], low, suite=not quick and (version, low) == (newest, False))
+        for version, low in chosen
+    ]
+    with tempfile.TemporaryDirectory(prefix="viscoroll-matrix-") as folder:
+        packages = built(Path(folder))
+        with ThreadPoolExecutor(2) as pool:
+            passed = list(pool.map(lambda case: tried(case, packages, Path(folder)), cases))
+    print(f"matrix: {sum(passed)} of {len(cases)} cases passed", flush=True)
+    return int(not all(passed))
+
+
+def pythons() -> tuple[list[str], dict[str, str]]:
+    """The versions that are wanted, and where each that was found lies, oldest first."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    words = [each.rpartition(":: ")[2] for each in project["classifiers"] if "Python :: 3." in each]
+    named = os.environ.get("PYTHONS", "").split()
+    found: dict[str, str] = {}
+    for path in named or candidates(words):
+        done = subprocess.run([path, "-c", _VERSION], capture_output=True, text=True, check=False)
+        if done.returncode == 0 and (named or done.stdout.strip() in words):
+            found.setdefault(done.stdout.strip(), path)
+        elif named:
+            print(f"matrix: {path} is no Python that makes environments: it is not tried", flush=True)
+    return ([] if named else words), dict(sorted(found.items(), key=lambda each: int(each[0].partition(".")[2])))
+
+
+def candidates(versions: list[str]) -> Iterator[str]:
+    """Pythons that may be there, the preferred first."""
+    yield sys.executable
+    installed = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    for version in versions:
+        yield from map(str, sorted(installed.glob(f"{version}.*/bin/python"), reverse=True))
+        if path := shutil.which(f"python{version}"):
+            yield path
+
+
+def built(folder: Path) -> Packages:
+    """Both packages, the wheel made of the sdist."""
+    subprocess.run([sys.executable, "-m", "build", "--outdir", folder, ROOT], stdout=subprocess.DEVNULL, check=True)
+    (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
+    shutil.unpack_archive(sdist, folder)
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (each for each in archive.namelist() if each.endswith(".dist-info/METADATA"))
+        metadata = message_from_bytes(archive.read(name))
+    required = [Requirement(line) for line in metadata.get_all("Requires-Dist", [])]
+    return Packages(wheel, sdist, folder / sdist.name.removesuffix(".tar.gz"), required)
+
+
+def floors(required: list[Requirement], version: str) -> list[str]:
+    """The lowest version of everything that the package and its extra `runs` declare for this Python."""
+    here = {"python_version": version, "python_full_version": f"{version}.0", "extra": "runs"}
+    return [
+        f"{each.name}=={next(bound.version for bound in each.specifier if bound.operator == '>=')}"
+        for each in required
+        if each.marker is None or each.marker.evaluate(here)
+    ]
+
+
+def tried(case: Case, packages: Packages, folder: Path) -> bool:
+    """Whether everything runs in an environment of this case; says what ran, and what failed."""
+    begun = time.monotonic()
+    place = folder / f"{case.version}-{'lowest' if case.lowest else 'newest'}"
+    (place / "work").mkdir(parents=True)
+    pins = floors(packages.required, case.version) if case.lowest else []
+    (place / "constraints.txt").write_text("\n".join(pins) + "\n", encoding="utf-8")
+    binaries = place / "env" / ("Scripts" if os.name == "nt" else "bin")
+    python, program = str(binaries / "python"), str(binaries / "viscoroll")
+    package = f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
+    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
+    names = sorted({each.name for each in packages.required if each.marker is None or "extra" not in str(each.marker)})
+    warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
+    quiet = ["-p", "no:cacheprovider", "-o", warnings, "--disable-warnings", "--show-capture=no", "-rfE"]
+    test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
+    steps = {
+        "environment": ([case.python, "-m", "venv", place / "env"], place),
+        "installation": ([*pip, "-c", place / "constraints.txt", package, *TOOLS], place),
+        "versions": ([python, "-c", _LIBRARIES, *names], place / "work"),
+        "program": ([program, *ASKED], place / "work"),
+        "tests": ([*test, *(("-n", "2") if case.suite else SAMPLE)], packages.tree),
+    }
+    # without PYTHONDONTWRITEBYTECODE: pip compiles nothing ahead, so what is imported is to be kept
+    dropped = ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
+    environment = {name: value for name, value in os.environ.items() if name not in dropped}
+    environment["VISCOROLL_CACHE_DIR"] = str(place / "cache")
+    told: dict[str, str] = {}
+    for name, (command, where) in steps.items():
+        done = subprocess.run(
+            command, cwd=where, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            check=False,
+        )  # fmt: skip
+        if done.returncode:
+            print(f"matrix: {case}: {name} failed\n{done.stdout[-4000:]}", flush=True)
+            return False
+        told[name] = done.stdout.strip().splitlines()[-1] if done.stdout.strip() else ""
+    kind = "the whole suite" if case.suite else "sample"
+    print(f"matrix: {case} ({time.monotonic() - begun:.0f} s): {kind}: {told['tests']}", flush=True)
+    print(f"        {told['versions']}", flush=True)
+    return True
+
+
+if __name__ == "__main__":
+    sys.exit(main())

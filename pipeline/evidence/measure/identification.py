@@ -1,0 +1,372 @@
+"""What measurements tell, and whether `identify` says it -> data/results/identification.json (kept in git).
+
+    python -m pipeline.evidence.measure.identification [--config FILE] [--quick] [--only PART] [-o FILE]
+
+Of a roller of known truth: what each experiment determines (learn, bearing), planned; what is said of six that
+determine little (said); of synthetic data sets how often intervals hold the truth (coverage), how often a
+search from far off arrives (reach), how far ends of intervals are from a scan (width), and what it all takes (time).
+Sizes and seeds are in [identification] of the configuration.  Exit code 1 if a bound asked is exceeded.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+import viscoroll as vr
+from viscoroll.identification import Identification
+from viscoroll.identification.profile import Walk
+
+from ..results import run_parts
+
+TRUTH = {"mu": 0.3, "E": 3e6, "E_1": 9.0, "T_ref": 1e-3}
+SHAPE = ("E", "E_1", "T_ref")
+RANGES = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-5, 1e-1)}
+BEARING = {"brake": 0.05, "drag": 0.003}
+BEARINGS = {"brake": (0.0, 5.0), "drag": (0.0, 0.3)}
+#: standard deviations: N m/m, N/m, and of motions m/s, rad/s, m
+NOISE = {"M": 0.01, "Q": 1.0, "V": 5e-3, "omega": 5e-2, "x": 2e-3}
+#: what is asked: coverage of nominal 95 % intervals, ends over a width, seconds of a fit and of its profiles
+COVERAGE, WIDTH, FIT, PROFILES = (0.90, 0.98), 0.02, 0.5, 3.0
+#: shares of starts a factor of ten off that must arrive
+REACHED = {"M over the hump": 1.0, "coast-down to 0": 0.95, "thrown, V": 0.95}
+#: of chi2 at the ends of an interval of 95 %
+RISE = 3.8414588
+#: chi2 above the best within which a search has arrived
+_ARRIVED = 0.01
+
+HUMP, SLOW, FAST = (np.geomspace(*ends, 40) for ends in ((0.02, 20.0), (0.02, 0.2), (4.0, 20.0)))
+LOAD = 35.5 * 9.81
+
+
+def roller(values: dict[str, float] = TRUTH) -> vr.Cylinder:
+    """A standard linear solid; at the truth M has its hump, 0.79 N m/m, at 0.64 m/s."""
+    rubber = vr.Material(values["E"], 0.5, vr.Prony([values["E_1"]], [1.0]), values["T_ref"])
+    return vr.Cylinder(R=0.1, m=35.5, mu=values["mu"], material=rubber)
+
+
+Record = vr.Resistance | vr.Traction | vr.Coastdown
+
+
+def drum(V: NDArray, **more: Any) -> vr.Resistance:
+    """Planned: M over V."""
+    return vr.Resistance(V, sigma=NOISE["M"], **more)
+
+
+def traction(*speeds: float) -> vr.Traction:
+    """Planned: Q over 21 creeps at each speed."""
+    delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
+    return vr.Traction(np.repeat(speeds, 21), delta, sigma=NOISE["Q"])
+
+
+def motion(V0: float, end: float, what: str = "V", **more: Any) -> vr.Coastdown:
+    """Planned: 200 points of a motion, let go rolling unless told."""
+    sigma = {name: NOISE[name] for name in what.split()}
+    return vr.Coastdown(np.linspace(0.0, end, 200), sigma=sigma, V0=V0, **{"name": "run"} | more)
+
+
+def thrown(what: str = "V") -> vr.Coastdown:
+    """Planned: at 4 m/s without spin."""
+    return motion(4.0, 20.0, what, omega0=0.0)
+
+
+EXPERIMENTS: dict[str, list[Record]] = {
+    "M, 0.02-20 m/s, over the hump": [drum(HUMP)],
+    "M, 0.3-3 m/s, around the top": [drum(np.geomspace(0.3, 3.0, 40))],
+    "M, 0.02-0.2 m/s, below": [drum(SLOW)],
+    "M, 4-20 m/s, above": [drum(FAST)],
+    "Q at 0.1 m/s": [traction(0.1)],
+    "Q at 0.1 and 1 m/s": [traction(0.1, 1.0)],
+    "Q at 0.1, 1 and 10 m/s": [traction(0.1, 1.0, 10.0)],
+    "coast-down V, 0.3 m/s to 0": [motion(0.3, 20.0)],
+    "coast-down V, 3 to 1.1 m/s (cut at 20 s)": [motion(3.0, 20.0)],
+    "coast-down V, 3 m/s to 0 (40 s)": [motion(3.0, 40.0)],
+    "coast-down V, 10 m/s, 150 s": [motion(10.0, 150.0)],
+    "coast-down x, 3 m/s to 0": [motion(3.0, 40.0, "x")],
+    "thrown, V": [thrown()],
+    "thrown, V and omega": [thrown("V omega")],
+    "M over the hump + Q at 0.1 m/s": [drum(HUMP), traction(0.1)],
+    "coast-down to 0 + Q at 0.1 m/s": [motion(3.0, 40.0), traction(0.1)],
+    "M, Q at 3 speeds, thrown V and omega": [drum(HUMP), traction(0.1, 1.0, 10.0), thrown("V omega")],
+}
+#: series known
+SHAPE_KNOWN: dict[str, list[Record]] = {
+    "shape from a DMA, thrown V": [thrown()],
+    "shape from a DMA, M below the hump": [drum(SLOW)],
+    "shape from a DMA, M above the hump": [drum(FAST)],
+}
+
+
+def _two_loads(made: Callable[..., Record], *given: Any) -> list[Record]:
+    return [made(*given, load=share * LOAD, name=f"at {share:g} P") for share in (0.3, 2.0)]
+
+
+BEARING_EXPERIMENTS: dict[str, list[Record]] = {
+    "coast-down 3 m/s, one load": [motion(3.0, 30.0)],
+    "the same at 0.3 P and 2 P": _two_loads(motion, 3.0, 30.0),
+    "M over the hump, one load": [drum(HUMP)],
+    "M over the hump at 0.3 P and 2 P": _two_loads(drum, HUMP),
+}
+BEARING_SHAPE: dict[str, list[Record]] = {
+    "DMA shape, coast-down 3 m/s, one load": [motion(3.0, 30.0)],
+    "DMA shape, the same at 0.3 P and 2 P": _two_loads(motion, 3.0, 30.0),
+}
+
+
+def starts_of(records: Iterable[Record]) -> dict[str, tuple[float, float]]:
+    """Ranges of the first speeds of motions: none is known for sure."""
+    motions = (one for one in records if isinstance(one, vr.Coastdown))
+    return {f"V0:{one.name}": (0.2 * one.V0, 5.0 * one.V0) for one in motions if one.V0 is not None}
+
+
+def told(name: str, fit: Identification, names: Iterable[str], truth: dict[str, float] = TRUTH) -> dict[str, Any]:
+    """A row: of each unknown s.d. and ends of the interval, both over the truth, less 1 (results keep three digits)."""
+    intervals, stderr = fit.intervals(), fit.stderr
+    unknowns = {}
+    for each in names:
+        low, high = intervals[each]
+        unknowns[each] = {
+            "sd": stderr[each] / truth[each], "low": low and low / truth[each] - 1.0,
+            "high": high and high / truth[each] - 1.0,
+        }  # fmt: skip
+    products = [
+        {"powers": one.powers, "low": one.low - 1.0, "high": one.high - 1.0, "near": one.near} for one in fit.products()
+    ]
+    return {
+        "experiment": name, "unknowns": unknowns, "does_not_act": fit.does_not_act, "undetermined": fit.undetermined,
+        "products": products,
+    }  # fmt: skip
+
+
+def planned(name: str, records: list[Record], names: Iterable[str]) -> dict[str, Any]:
+    """What an experiment would tell of the truth."""
+    given = {each: RANGES[each] for each in names} | starts_of(records)
+    return told(name, vr.identify(roller(), given, records), names)
+
+
+def learn(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = [planned(name, records, TRUTH) for name, records in tqdm([*EXPERIMENTS.items()][: sizes["experiments"]])]
+    some = [*SHAPE_KNOWN.items()][: sizes["experiments"]]
+    return rows + [planned(name, records, ("mu", "E", "T_ref")) for name, records in some]
+
+
+def bearing(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """The same of a roller in a bearing: its data are exact, as no plan has a bearing of its own."""
+    rows = []
+    for group, names in ((BEARING_EXPERIMENTS, ("E", "E_1", "T_ref")), (BEARING_SHAPE, ("E", "T_ref"))):
+        for name, records in [*group.items()][: sizes["experiments"]]:
+            data = [_measured(one, None, BEARING) for one in records]
+            given = {each: RANGES[each] for each in names} | BEARINGS | starts_of(data)
+            fit = vr.identify(roller(), given, data, starts=1)
+            rows.append(told(name, fit, (*names, *BEARING), TRUTH | BEARING))
+    return rows
+
+
+def _measured(record: Record, rng: np.random.Generator | None, bearing: dict[str, float] | None = None) -> Record:
+    """A planned record with values, at the truth, with noise."""
+    exact = record.model(roller().replace(**record.own), bearing or {})
+    values = {
+        name: exact[name] + (0.0 if rng is None else sigma * rng.standard_normal(record.shape))
+        for name, sigma in record.sigma.items()
+    }
+    places = {name: getattr(record, name) for name in record.PLACES}
+    more = {"V0": record.V0, "omega0": record.omega0} if isinstance(record, vr.Coastdown) else {}
+    own = {"sigma": record.sigma, "load": record.load, "name": record.name}
+    return type(record)(**places, **values, **more, **own)
+
+
+def fitted(
+    records: list[Record],
+    seed: int | None,
+    names: Iterable[str] = TRUTH,
+    start: dict[str, float] = TRUTH,
+    starts: int = 1,
+) -> Identification:
+    """A fit to a synthetic data set."""
+    data = [_measured(one, None if seed is None else np.random.default_rng([seed, n])) for n, one in enumerate(records)]
+    given = {each: RANGES[each] for each in names} | starts_of(data)
+    return vr.identify(roller(TRUTH | start), given, data, starts=starts, seed=0)
+
+
+def said(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """Reports of six problems that cannot be solved as they are put."""
+    two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
+    exact = two.contact(HUMP, delta=0.0, fields="M").M
+    bad = vr.Resistance(HUMP, exact + 0.01 * np.random.default_rng(10).standard_normal(HUMP.size), sigma=0.01)
+    held = [_measured(motion(3.0, 40.0), np.random.default_rng(11), BEARING)]
+    shape = {each: RANGES[each] for each in ("E", "E_1", "T_ref")}
+    fits = {
+        "M below the hump": lambda: fitted([drum(SLOW)], 2),
+        "M above the hump": lambda: fitted([drum(FAST)], 2),
+        "Q at one slow speed": lambda: fitted([traction(0.1)], 2),
+        "Q at two speeds": lambda: fitted([traction(0.1, 1.0)], 0, starts=sizes["searches"]),
+        "M of two relaxation times, fitted by one": lambda: vr.identify(roller(), shape, [bad], starts=1),
+        "a coast-down whose bearing is left out": lambda: vr.identify(
+            roller(), shape | starts_of(held), held, starts=1
+        ),
+    }
+    return [{"problem": name, "report": str(fit())} for name, fit in [*fits.items()][: sizes["experiments"]]]
+
+
+#: experiments whose intervals are counted, their unknowns, and those or products of those whose are
+COUNTED: dict[str, tuple[list[Record], tuple[str, ...], tuple[str, ...]]] = {
+    "M over the hump": ([drum(HUMP)], SHAPE, SHAPE),
+    "M over the hump and Q at 0.1 m/s": ([drum(HUMP), traction(0.1)], tuple(TRUTH), tuple(TRUTH)),
+    "thrown, V and omega": ([thrown("V omega")], tuple(TRUTH), tuple(TRUTH)),
+    "M below the hump": ([drum(SLOW)], SHAPE, ("E_1 T_ref",)),
+}
+
+
+def coverage(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """Share of data sets whose intervals hold the truth: those in which chi2 rises by no more than 3.84 up to there.
+
+    Of the first ones the intervals themselves are asked too.
+    """
+    rows = []
+    for name, (records, names, counted) in [*COUNTED.items()][: sizes["experiments"]]:
+        held, unlike = dict.fromkeys(counted, 0), 0
+        for n in tqdm(range(sizes["sets"]), name):
+            fit = fitted(records, sizes["seed"] + n, names)
+            inside = {each: rise_at_truth(fit, each) <= RISE for each in counted}
+            for each in counted:
+                held[each] += inside[each]
+            if n < sizes["asked"]:
+                unlike += any(inside[each] != _holds(fit, each) for each in counted)
+        shares = {each: count / sizes["sets"] for each, count in held.items()}
+        rows.append({
+            "experiment": name, "sets": sizes["sets"], "held": shares, "asked": min(sizes["asked"], sizes["sets"]),
+            "unlike": unlike,
+        })  # fmt: skip
+    return rows
+
+
+def rise_at_truth(fit: Identification, product: str) -> float:
+    """By what chi2 rises with an unknown, or a product of some, held at its true value, all others following."""
+    powers = np.array([float(name in product.split()) for name in fit.values])
+    walk = Walk(fit._problem, fit._best, fit._cov, powers)
+    true = np.log([TRUTH.get(name, 1.0) for name in fit.values])
+    return walk.at(walk.way(true), fit._best.u).chi2 - fit.chi2
+
+
+def _holds(fit: Identification, product: str) -> bool:
+    """Whether the interval that is told holds the truth; of a product the first that is named, which must be this."""
+    true = np.prod([TRUTH[name] for name in product.split()])
+    if product in fit.values:
+        low, high = fit.intervals()[product]
+        return bool((low is None or low <= true) and (high is None or true <= high))
+    told = fit.products()[0]
+    return told.powers == dict.fromkeys(product.split(), 1.0) and bool(told.low <= true / told.value <= told.high)
+
+
+def reach(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """Share of single searches from starts a factor of ten off that arrive."""
+    cases: dict[str, tuple[list[Record], tuple[str, ...]]] = {
+        "M over the hump": ([drum(HUMP)], SHAPE),
+        "coast-down to 0": ([motion(3.0, 40.0)], SHAPE),
+        "thrown, V": ([thrown()], tuple(TRUTH)),
+        "thrown, V and omega": ([thrown("V omega")], tuple(TRUTH)),
+        "Q at 0.1, 1 and 10 m/s": ([traction(0.1, 1.0, 10.0)], tuple(TRUTH)),
+        "M over the hump and Q at 0.1 m/s": ([drum(HUMP), traction(0.1)], tuple(TRUTH)),
+    }
+    rows = []
+    for name, (records, names) in [*cases.items()][: sizes["experiments"]]:
+        rng, chi2, seconds = np.random.default_rng(sizes["seed"]), [], []
+        for _ in tqdm(range(sizes["starts"]), name):
+            begun = time.process_time()
+            start = {each: TRUTH[each] * 10.0 ** rng.uniform(-1.0, 1.0) for each in names}
+            chi2.append(fitted(records, sizes["seed"], names, start).chi2)
+            seconds.append(time.process_time() - begun)
+        best = min(*chi2, fitted(records, sizes["seed"], names).chi2)
+        share = float(np.mean(np.array(chi2) < best + _ARRIVED))
+        rows.append({"experiment": name, "starts": sizes["starts"], "reached": share, "s": float(np.median(seconds))})
+    return rows
+
+
+def width(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """Largest difference of an end from a scan of the profile, over the width of the interval."""
+    rows = []
+    for name, (records, names, counted) in [*COUNTED.items()][: min(sizes["experiments"], len(COUNTED) - 1)]:
+        fit = fitted(records, sizes["seed"], names)
+        off = 0.0
+        for each in tqdm(counted[: sizes["scanned"]], name):
+            low, high = fit.intervals()[each]
+            assert low
+            assert high
+            others = [other for other in names if other != each]
+            for end in (low, high):
+                near = end + (high - low) * np.linspace(-0.05, 0.05, sizes["scan"])
+                rise = [_held_at(records, sizes["seed"], others, fit, each, value).chi2 - fit.chi2 for value in near]
+                crossing = np.interp(RISE, *((rise, near) if end == high else (rise[::-1], near[::-1])))
+                off = max(off, abs(crossing - end) / (high - low))
+        rows.append({"experiment": name, "off": off})
+    return rows
+
+
+def _held_at(
+    records: list[Record], seed: int, others: list[str], fit: Identification, name: str, value: float
+) -> Identification:
+    """A fit of the other unknowns, from the best one."""
+    return fitted(records, seed, others, {each: fit.values[each] for each in others} | {name: value})
+
+
+def times(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """Seconds of processor of a fit of five unknowns to 200 points, from 30 % off, and of its five profiles."""
+    rows = []
+    off = {name: 1.3 * value for name, value in TRUTH.items()}
+    cases = {"thrown, V: 5 unknowns, 200 points": [thrown()], "M over the hump and Q: 4 unknowns, 61 points": COUNTED[
+        "M over the hump and Q at 0.1 m/s"
+    ][0]}  # fmt: skip
+    for name, records in cases.items():
+        seconds: dict[str, list[float]] = {"fit_s": [], "profiles_s": [], "searches_s": []}
+        for seed in range(sizes["repeats"] + 1):
+            clock = time.process_time()
+            fit = fitted(records, sizes["seed"] + seed, start=off)
+            seconds["fit_s"].append(time.process_time() - clock)
+            clock = time.process_time()
+            fit.intervals()
+            seconds["profiles_s"].append(time.process_time() - clock)
+            clock = time.process_time()
+            fitted(records, sizes["seed"] + seed, start=off, starts=sizes["searches"])
+            seconds["searches_s"].append(time.process_time() - clock)
+        medians = {key: float(np.median(values[1:])) for key, values in seconds.items()}
+        rows.append({"case": name, "searches": sizes["searches"]} | medians)
+    return rows
+
+
+PARTS: dict[str, Callable[[dict[str, Any]], list[dict[str, Any]]]] = {
+    "learn": learn, "bearing": bearing, "said": said, "time": times, "width": width, "reach": reach,
+    "coverage": coverage,
+}  # fmt: skip
+
+
+def complaint(row: dict[str, Any]) -> str | None:
+    """What a row exceeds of what is asked."""
+    faults = []
+    if "held" in row and "sets" in row:
+        low, high = COVERAGE
+        faults += [f"{name} held by {share:.1%}" for name, share in row["held"].items() if not low <= share <= high]
+    if row.get("unlike"):
+        faults.append(f"{row['unlike']} intervals are not where chi2 rises")
+    if row.get("reached", 1.0) < REACHED.get(row.get("experiment", ""), 0.0):
+        faults.append(f"{row['reached']:.0%} of starts arrive")
+    if row.get("off", 0.0) > WIDTH:
+        faults.append(f"an end is {row['off']:.1%} of the width off")
+    if row.get("fit_s", 0.0) > FIT or row.get("profiles_s", 0.0) > PROFILES:
+        faults.append(f"{row['fit_s']:.2g} s a fit, {row['profiles_s']:.2g} s its profiles")
+    return f"{row.get('experiment', row.get('case'))}: {', '.join(faults)}" if faults else None
+
+
+def main() -> int:
+    os.environ["VISCOROLL_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    return run_parts("identification", PARTS, __doc__, "identification.json", complaint)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

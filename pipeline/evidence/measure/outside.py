@@ -1,0 +1,228 @@
+"""The law outside Python: the page that computes, C, Node and FMUs -> data/results/outside.json (kept in git).
+
+    python -m pipeline.evidence.measure.outside [--config FILE] [--quick] [-o FILE]
+
+Wants chromium, node, cc and fmpy (make site-tools interop-tools); sizes are in [outside] of the configuration.  Every
+number is of one core.  pipeline/evidence/document/ puts it into docs/live.md and docs/loading/README.md.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import viscoroll as vr
+from viscoroll import fmu, tables
+from viscoroll.config import read_bodies
+from viscoroll.errors import MissingDependencyError
+from viscoroll.extras import imported
+
+from ...stage import ROOT
+from ..results import run
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+#: of which law, on the page and in the programs
+RUBBER = ROOT / "docs/examples/rubber.toml"
+FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
+#: live.md without its theme: sets a slider, and times the redraw with its layout
+PAGE = """<!DOCTYPE html><link rel="stylesheet" href="viscoroll.css"><pre id="found"></pre><div id="law"></div>
+<script src="read_law.js"></script><script src="rubber.js"></script><script src="live.js"></script>
+<script>
+const place = document.getElementById("law"), found = [];
+for (const state of STATES) {
+  let ms = 0;
+  for (const [name, value] of Object.entries(state)) {
+    const slider = place.querySelector(`[name=${name}]`), begun = performance.now();
+    slider.value = value;
+    slider.dispatchEvent(new Event("input"));
+    place.offsetHeight;
+    ms = performance.now() - begun;
+  }
+  const shown = [...place.querySelectorAll("data")].map(one => [one.id, Number(one.value)]);
+  found.push({ ms, ...Object.fromEntries(shown) });
+}
+document.getElementById("found").textContent = JSON.stringify(found);
+</script>
+"""
+NODE = """
+const law = require("./read_law.js"), fs = require("fs"), contact = law(JSON.parse(fs.readFileSync("rubber.json")));
+const states = JSON.parse(fs.readFileSync("states.json"));
+let best = Infinity, sum = 0;
+for (let n = 0; n < 20; n++) {
+  const begun = process.hrtime.bigint();
+  for (const [kappa, mu, V, slip] of states) sum += contact(kappa, mu, V, slip).Q;
+  best = Math.min(best, Number(process.hrtime.bigint() - begun) / states.length);
+}
+console.log(best);
+"""
+C = """
+#define _POSIX_C_SOURCE 199309L
+#include <stdio.h>
+#include <time.h>
+#include "rubber.h"
+static const double X[][4] = {STATES};
+static double now(void) { struct timespec t; clock_gettime(CLOCK_MONOTONIC, &t); return 1e9 * t.tv_sec + t.tv_nsec; }
+int main(void) {
+  int count = sizeof X / sizeof *X;
+  double sum = 0.0;
+  for (int slopes = 0; slopes < 2; slopes++) {
+    double best = 1e99;
+    for (int n = 0; n < 20; n++) {
+      double begun = now();
+      for (int i = 0; i < count; i++) {
+        vr_state s;
+        vr_slopes d = {0.0, 0.0, 0.0, 0.0, 0.0};
+        if (slopes) vr_contact_slopes(&rubber, X[i][0], X[i][1], X[i][2], X[i][3], &s, &d);
+        else s = vr_contact(&rubber, X[i][0], X[i][1], X[i][2], X[i][3]);
+        sum += s.Q + d.dQ_dV;
+      }
+      best = fmin(best, (now() - begun) / count);
+    }
+    printf("%g\\n", best);
+  }
+  return sum == 0.1;
+}
+"""
+
+
+def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+    """All that outside.json holds beside the machine."""
+    law = tables.law(read_bodies(RUBBER))
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        tables.export(law, folder / "rubber.json")
+        tables.export(law, folder / "rubber.h")
+        return {"sizes": sizes, "page": page(folder, sizes), "states": programs(folder, sizes), "fmu": fmus(folder)}
+
+
+def program(*names: str) -> str:
+    """The first of them that is installed."""
+    found = next(filter(None, map(shutil.which, names)), None)
+    if found is None:
+        raise MissingDependencyError(names[0], None)
+    return found
+
+
+def printed(folder: Path, *command: str) -> str:
+    environment = os.environ | {"HOME": str(folder)}
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True, env=environment).stdout
+
+
+def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
+    """Milliseconds of a redraw, and the largest errors of the numbers that are shown."""
+    random, count = np.random.default_rng(sizes["seed"]), sizes["redraws"]
+    columns = {
+        "creep": random.uniform(-0.3, 0.3, count),
+        "mu": random.uniform(-2, 0, count),
+        "u": random.uniform(-3, 9, count),
+    }
+    states = [dict(zip(columns, map(float, row), strict=True)) for row in zip(*columns.values(), strict=True)]
+    for path in ("loading/read_law.js", "_static/live.js", "_static/viscoroll.css"):
+        shutil.copy(ROOT / "docs" / path, folder)
+    rubber = (folder / "rubber.json").read_text(encoding="utf-8")
+    (folder / "rubber.js").write_text(f"const RUBBER = {rubber};\n", encoding="utf-8")
+    (folder / "page.html").write_text(PAGE.replace("STATES", json.dumps(states)), encoding="utf-8")
+    options = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--dump-dom")
+    shown = printed(folder, program(*BROWSERS), *options, (folder / "page.html").as_uri())
+    found = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[1]))  # type: ignore[index]
+    at = {name: np.array([one[name] for one in found]) for name in found[0]}
+    exact = vr.contact(vr.Scene(kappa=1.0, mu=at["mu"], material=read_bodies(RUBBER).law), at["u"], delta=at["creep"])
+    ms = at["ms"]
+    return {
+        "median_ms": float(np.median(ms)), "slowest_ms": float(ms.max()), "bytes": len(rubber),
+        "error": max(largest(at[name], getattr(exact, name), 1.0 if name == "beta" else 0.0) for name in FIELDS),
+    }  # fmt: skip
+
+
+def largest(found: Any, exact: Any, scale: Any = 0.0) -> float:
+    """Largest difference over the larger of ``exact`` and ``scale``."""
+    return float(np.max(np.abs(found - exact) / np.maximum(np.abs(exact), scale)))
+
+
+def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
+    """Nanoseconds a state."""
+    random, count = np.random.default_rng(sizes["seed"]), sizes["states"]
+    kappa, mu = 10.0 ** random.uniform(0, 2, count), 10.0 ** random.uniform(-3, 0, count)
+    V = 10.0 ** random.uniform(-4, 9, count) / kappa
+    star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=read_bodies(RUBBER).law), V, delta=0.0).delta_star
+    states = np.column_stack([kappa, mu, V, star * V * random.uniform(-1, 1, count)]).tolist()
+    (folder / "states.json").write_text(json.dumps(states))
+    (folder / "node.js").write_text(NODE)
+    rows = ",".join("{" + ",".join(map(repr, row)) + "}" for row in states)
+    (folder / "time.c").write_text(C.replace("STATES", rows))
+    printed(folder, program("cc"), "-std=c99", "-O2", "time.c", "-lm", "-o", "time")
+    values, slopes = map(float, printed(folder, "./time").split())
+    return {"c_ns": values, "c_slopes_ns": slopes, "node_ns": float(printed(folder, program("node"), "node.js"))}
+
+
+def fmus(folder: Path) -> dict[str, Any]:
+    """Size, complaints of the standard, and errors of both models on a throw of the rubber cylinder."""
+    fmpy, validation = imported("fmpy", "fmpy", "fmu"), imported("fmpy.validation", "fmpy", "fmu")
+    cylinder, t = vr.RUBBER_CYLINDER, np.linspace(0.0, 1.0, 21)
+    exact = cylinder.roll(2.0, 0.0, t, rtol=1e-11)
+    found: dict[str, Any] = {"complaints": 0, "bytes": 0, "roller_error": 0.0, "element_error": 0.0}
+    for model in fmu.MODELS:
+        for version in (2, 3):
+            path = folder / f"{model}{version}.fmu"
+            fmu.build(cylinder, path, model, version)
+            found["complaints"] += len(validation.validate_fmu(str(path)))
+            found["bytes"] = max(found["bytes"], path.stat().st_size)
+            V, omega, x = (rolled if model == "Roller" else carried)(fmpy, path, cylinder, t)
+            errors = [largest(V, exact.V), largest(omega, exact.omega, np.abs(exact.omega).max())]
+            errors += [] if x is None else [largest(x, exact.x, np.abs(exact.x).max())]
+            name = "roller_error" if model == "Roller" else "element_error"
+            found[name] = max(found[name], *errors)
+    return found
+
+
+def rolled(fmpy: Any, path: Path, cylinder: vr.Cylinder, t: Any) -> tuple[Any, ...]:
+    """A roller as co-simulation that takes its own steps."""
+    options = {"stop_time": t[-1], "output_interval": t[1], "fmi_type": "CoSimulation", "output": ["v", "omega", "x"]}
+    found = fmpy.simulate_fmu(str(path), start_values={"v0": 2.0, "omega0": 0.0}, **options)
+    return found["v"], found["omega"], found["x"]
+
+
+def carried(fmpy: Any, path: Path, cylinder: vr.Cylinder, t: Any) -> tuple[Any, ...]:
+    """A contact element in SciPy's Radau, with its directional derivatives."""
+    about, folder = fmpy.read_model_description(str(path)), fmpy.extract(str(path))
+    one, inertia = (
+        fmpy.instantiate_fmu(folder, about, "ModelExchange"),
+        [cylinder.m, cylinder.j * cylinder.m * cylinder.R**2],
+    )
+    put, get = (one.setReal, one.getReal) if about.fmiVersion == "2.0" else (one.setFloat64, one.getFloat64)
+    references = {variable.name: variable.valueReference for variable in about.modelVariables}
+    forces, speeds = ([references[name] for name in names] for names in (("force", "torque"), ("v", "omega")))
+    if about.fmiVersion == "2.0":
+        one.setupExperiment()
+    one.enterInitializationMode()
+    one.exitInitializationMode()
+
+    def rates(_: float, y: Any) -> Any:
+        put(speeds, y.tolist())
+        return np.divide(get(forces), inertia)
+
+    def jacobian(_: float, y: Any) -> Any:
+        put(speeds, y.tolist())
+        columns = [one.getDirectionalDerivative(forces, [speed], [1.0]) for speed in speeds]
+        return np.transpose(columns) / np.array(inertia)[:, np.newaxis]
+
+    found = solve_ivp(rates, (0.0, t[-1]), [2.0, 0.0], "Radau", t, jac=jacobian, rtol=1e-9, atol=1e-12)
+    one.terminate()
+    one.freeInstance()
+    shutil.rmtree(folder)
+    return found.y[0], found.y[1], None
+
+
+if __name__ == "__main__":
+    sys.exit(run("outside", measure, __doc__))

@@ -1,0 +1,161 @@
+"""What a release needs, checked: sdist and wheel, metadata, the README as a package page, licences, measured numbers.
+
+    python -m pipeline.evidence.release [--final]
+
+Builds both packages, without a network, and says of each check whether it holds.  What only a person can decide, the
+repository's address say, is listed as open; with --final that is a failure too.  Exit code 1 if a check fails.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+import tarfile
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from packaging.metadata import Metadata
+from readme_renderer import markdown
+
+import viscoroll as vr
+
+from .results import RESULTS
+from .stamps import SHORT, kernels_digest, outdated
+
+ROOT = Path(__file__).parents[2]
+#: data that others made: their files need a licence beside them in the sdist
+MATERIALS = "data/materials/"
+#: of the wheel, and of the sdist beside those
+SHIPPED = (".py", ".pyi", ".npy", ".h", ".c", "py.typed")
+LARGEST = 4_000_000
+#: marks of the machine that built, and what never ships
+FOREIGN = re.compile(r"(^|/)(__pycache__|_build|\.venv|\.git|out|data/tables)(/|$)|\.pyc$")
+_LINK = re.compile(r"\]\((?!https?:|#|mailto:)([^)\s]+)\)")
+
+
+class Packages(NamedTuple):
+    """Names in either package, the metadata of the wheel, and the sizes of the sdist's files."""
+
+    wheel: list[str]
+    sdist: dict[str, int]
+    metadata: Metadata
+    texts: dict[str, str]
+
+
+def built(folder: Path) -> Packages:
+    """Both packages of this tree."""
+    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, ROOT]
+    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+    (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
+    texts = {}
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        (found,) = (name for name in names if name.endswith(".dist-info/METADATA"))
+        metadata = Metadata.from_email(archive.read(found), validate=True)  # raises where a field is not valid
+    with tarfile.open(sdist) as archive:
+        members = {each.name.partition("/")[2]: each for each in archive.getmembers() if each.isfile()}
+        for name in ("LICENSE", "CITATION.cff", "CHANGELOG.md", f"{MATERIALS}README.md"):
+            if name in members and (file := archive.extractfile(members[name])) is not None:
+                texts[name] = file.read().decode()
+    return Packages(names, {name: each.size for name, each in members.items()}, metadata, texts)
+
+
+def metadata(packages: Packages) -> Iterator[str]:
+    """Name, version, licence and classifiers say the same everywhere."""
+    found = packages.metadata
+    if str(found.version) != vr.__version__:
+        yield f"the metadata say version {found.version}, the package {vr.__version__}"
+    if f"version: {vr.__version__}\n" not in packages.texts.get("CITATION.cff", ""):
+        yield f"CITATION.cff does not name version {vr.__version__}"
+    if f"## {vr.__version__}" not in packages.texts.get("CHANGELOG.md", ""):
+        yield f"the CHANGELOG has no section {vr.__version__}"
+    if found.license_expression != "BSD-3-Clause" or not found.summary or not found.description:
+        yield "licence expression, summary or description is missing"
+
+
+def contents(packages: Packages) -> Iterator[str]:
+    """Every module of the tree is in the wheel, nothing else is; the sdist holds its own tests."""
+    modules = {path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src/viscoroll").rglob("*.py")}
+    own = {name for name in packages.wheel if ".dist-info/" not in name}
+    yield from (f"the wheel lacks {name}" for name in sorted(modules - own))
+    yield from (f"the wheel ships {name}" for name in sorted(own) if not name.endswith(SHIPPED))
+    for name in ("Makefile", "constraints.txt", "tests/conftest.py", "docs/conf.py", "pipeline/stage.py"):
+        if name not in packages.sdist:
+            yield f"the sdist lacks {name}"
+    yield from (f"the sdist ships {name}" for name in sorted(packages.sdist) if FOREIGN.search(name))
+    yield from (f"{name} has {size / 1e6:.1f} MB" for name, size in packages.sdist.items() if size > LARGEST)
+
+
+def licences(packages: Packages) -> Iterator[str]:
+    """Our licence is in both packages; what others made has its own beside it, and a row that names it."""
+    if not any(name.endswith("licenses/LICENSE") for name in packages.wheel) or "LICENSE" not in packages.sdist:
+        yield "LICENSE is not in both packages"
+    theirs = [name for name in packages.sdist if name.startswith(MATERIALS) and name.endswith(".csv")]
+    beside = [name for name in packages.sdist if name.startswith(f"{MATERIALS}LICENSE.")]
+    rows = packages.texts.get(f"{MATERIALS}README.md", "").splitlines()
+    for name in theirs:
+        row = next((line for line in rows if Path(name).name in line), "")
+        if not any(Path(licence).name in row for licence in beside):
+            yield f"{name} has no licence"
+
+
+def page(packages: Packages) -> Iterator[str]:
+    """The README renders as a package page."""
+    if markdown.render(packages.metadata.description or "") is None:
+        yield "the README does not render"
+
+
+def numbers(packages: Packages) -> Iterator[str]:
+    """What README and docs state was measured at the kernels that are shipped."""
+    others = outdated(RESULTS)
+    if others:
+        files = ", ".join(f"{name} ({', '.join(one[:SHORT] for one in digests)})" for name, digests in others.items())
+        yield f"of other kernels than these, {kernels_digest()[:SHORT]}, in data/results: {files}"
+
+
+def undecided(packages: Packages) -> Iterator[str]:
+    """What only a person can decide."""
+    if not (packages.metadata.project_urls or {}).get("Repository"):
+        links = sorted(set(_LINK.findall(packages.metadata.description or "")))
+        yield (
+            f"the repository has no address ([project.urls] in pyproject.toml): {len(links)} links and pictures of "
+            "the README lead nowhere on a package page"
+        )
+    unreleased = packages.texts["CHANGELOG.md"].partition("## Unreleased")[2].partition("\n## ")[0]
+    if unreleased.strip():
+        yield "the CHANGELOG has an unreleased section: give it the version and set __version__ and CITATION.cff"
+
+
+CHECKS = {
+    "metadata": metadata,
+    "contents": contents,
+    "licences": licences,
+    "package page": page,
+    "measured numbers": numbers,
+}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--final", action="store_true", help="what is open is a failure too")
+    final = parser.parse_args().final
+    with tempfile.TemporaryDirectory(prefix="viscoroll-release-") as folder:
+        packages = built(Path(folder))
+    failed = False
+    for name, check in CHECKS.items():
+        problems = list(check(packages))
+        failed |= bool(problems)
+        print(f"{name}: " + ("; ".join(problems) or "as it should be"))
+    left = list(undecided(packages))
+    for text in left:
+        print(f"open: {text}")
+    return int(failed or (final and bool(left)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

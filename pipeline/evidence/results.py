@@ -1,0 +1,175 @@
+"""What the stages share whose results are kept in git: their options and sizes, the file, rows and parts."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import math
+import platform
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import viscoroll as vr
+from viscoroll.blocks import cores
+from viscoroll.errors import ConfigError
+from viscoroll.files import write_text
+
+from ..stage import ROOT, make_folder, read_toml, told
+from .stamps import kernels_digest
+
+#: folder of the results
+RESULTS = ROOT / "data/results"
+SIZES = ROOT / "pipeline/evidence/sizes.toml"
+
+
+#: name -> what measures that part of a stage: rows, from the sizes
+Parts = Mapping[str, Callable[[dict[str, Any]], list[dict[str, Any]]]]
+
+
+def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | None = None) -> argparse.ArgumentParser:
+    """-o; where there are sizes to choose, --config and --quick; where there are parts, --only."""
+    result = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawTextHelpFormatter)
+    if sizes:
+        result.add_argument("--config", type=Path, default=SIZES, help="TOML file with the sizes")
+        result.add_argument("--quick", action="store_true", help="the sizes of a test: does it run?")
+    if parts:
+        result.add_argument("--only", choices=parts, help="renew one part in a file that has the others")
+    result.add_argument("-o", "--output", type=Path, default=output)
+    return result
+
+
+def run(
+    name: str, work: Callable[..., dict[str, Any]], doc: str | None, file: str | None = None, *, sizes: bool = True
+) -> int:
+    """Run a stage from the command line: what ``work`` finds, and the machine, into -o, data/results/``file``."""
+    arguments = parser(doc, RESULTS / (file or f"{name}.json"), sizes=sizes).parse_args()
+
+    def measured() -> None:
+        output = arguments.output.resolve()
+        found = work(*([read_sizes(arguments.config, name, arguments.quick)] if sizes else []))
+        write_results(output, found | {"machine": machine()})
+        print(f"{output}: written; now run pipeline.evidence.document")
+
+    return told(name, measured)
+
+
+def run_parts(
+    name: str, parts: Parts, doc: str | None, file: str, complaint: Callable[[dict[str, Any]], str | None]
+) -> int:
+    """Run a stage of ``parts``: rows, sizes and machine of each; --only renews one beside those that -o has.
+
+    Exit code 1 if there is a ``complaint`` about a row.
+    """
+    arguments = parser(doc, RESULTS / file, parts=parts).parse_args()
+    only, output = arguments.only, arguments.output
+
+    def measured() -> int:
+        sizes = read_sizes(arguments.config, name, arguments.quick)
+        found = json.loads(output.read_text(encoding="utf-8"))["parts"] if only and output.exists() else {}
+        for part in [only] if only else parts:
+            found[part] = {"rows": parts[part](sizes), "sizes": sizes, "machine": machine()}
+        write_results(output, {"parts": found})
+        rows = rows_of(found)
+        complaints = [text for row in rows if (text := complaint(row))]
+        for text in complaints:
+            print(f"{name}: {text}", file=sys.stderr)
+        print(f"{output}: {len(rows)} rows, {len(complaints)} of them bad")
+        return int(bool(complaints))
+
+    return told(name, measured)
+
+
+class Results(dict[str, Any]):
+    """What stages have left, by the name of the file, from the first of the folders that has it."""
+
+    def __init__(self, *folders: Path) -> None:
+        super().__init__()
+        self.folders = folders
+
+    def __missing__(self, name: str) -> Any:
+        for folder in self.folders:
+            if (path := folder / f"{name}.json").exists():
+                self[name] = json.loads(path.read_text(encoding="utf-8"))
+                return self[name]
+        raise KeyError(f"{name}.json")
+
+    def found(self, name: str) -> Any:
+        """None if there is no such file."""
+        try:
+            return self[name]
+        except KeyError:
+            return None
+
+
+def rows_of(parts: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of all parts, one part after the other."""
+    return [row for part in parts.values() for row in part["rows"]]
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A Markdown table."""
+    head = list(head)
+    return "".join("| " + " | ".join(line) + " |\n" for line in (head, ["---"] * len(head), *rows))
+
+
+def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
+    """Section [name] of the configuration ("bench.law" lies in [bench]), with its [quick] over it if asked.
+
+    Raises
+    ------
+    ConfigError
+        A file that cannot be read, is not TOML, or lacks the section.
+    """
+    section = read_toml(path)
+    try:
+        for key in name.split("."):
+            section = section[key]
+        sizes = section | section["quick"] if quick else section
+    except KeyError as error:
+        raise ConfigError(path, f"section [{name}] or its key {error} is missing") from error
+    return {key: value for key, value in sizes.items() if key != "quick"}
+
+
+def write_results(path: Path, results: Any, *, ordered: bool = True) -> None:
+    """``results`` as JSON, keys sorted if ``ordered``; floats as :func:`rounded`."""
+    make_folder(path.parent)
+    text = json.dumps(rounded(results), indent=1, sort_keys=ordered, ensure_ascii=False, allow_nan=False)
+    write_text(path, f"{text}\n")
+
+
+def rounded(value: Any) -> Any:
+    """Every float to three significant digits: more would be noise in the history; None for inf and NaN, as in JSON."""
+    if isinstance(value, dict):
+        return {str(key): rounded(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [rounded(item) for item in value]
+    if not isinstance(value, float):
+        return value
+    return float(f"{value:.3g}") if math.isfinite(value) else None
+
+
+def machine() -> dict[str, Any]:
+    """Where and when, and with what, this was measured."""
+    import numba
+
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        cpu = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        cpu = platform.processor() or platform.machine()
+    return {
+        "cpu": cpu,
+        "cores": cores(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "numba": numba.__version__,
+        "viscoroll": vr.__version__,
+        "kernels": kernels_digest(),
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+    }

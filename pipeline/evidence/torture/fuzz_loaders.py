@@ -1,0 +1,108 @@
+"""Coverage-guided fuzzing of the loaders: TOML scenes and materials (config.py), and table files (tables/store.py).
+
+    python -m pipeline.evidence.torture.fuzz_loaders toml|table [--seconds N] [--corpus FOLDER]
+
+Whatever the bytes, a loader returns or raises one of the package's own errors, in one line.  Anything
+else is a finding: exit code 77 of libFuzzer, and the input in ./crash-*.  Wants atheris (pip install
+-e '.[fuzz]'); without it says so and ends well.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+SCENES = (
+    b'preset = "paper-section-5"\n',
+    b"[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\ngamma = 1.1e4\nj = 0.5\n",
+    b"[cylinder]\nR = 0.1\nm = 35.5\nE = 2e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 1\nmu = 0.2\nplane = 'stress'\n",
+    b"[material]\nE = 3e6\nnu = 0.5\nprony = { E = [0.3, 0.6], tau = [2e-2, 1e-3] }\n[base]\nE = 2e11\nnu = 0.3\n",
+)
+#: bytes of the largest input: a small table
+LONGEST = 1 << 17
+
+
+def read_toml(path: Path) -> None:
+    from viscoroll import ViscorollError
+    from viscoroll.config import read_bodies, read_scene
+
+    for read in (read_scene, read_bodies):
+        try:
+            read(path)
+        except ViscorollError as error:
+            own(error)
+
+
+def read_table(path: Path) -> None:
+    from viscoroll import ViscorollError, load_law
+    from viscoroll.tables import load
+
+    for read in (load, load_law):
+        try:
+            read(path)
+        except ViscorollError as error:
+            own(error)
+
+
+def own(error: Exception) -> None:
+    if not str(error) or "\n" in str(error):
+        raise AssertionError(f"not one line: {error!r}")
+
+
+def seeds(what: str, folder: Path) -> None:
+    """Files that the fuzzer starts from."""
+    if what == "toml":
+        for n, content in enumerate(SCENES):
+            (folder / f"{n}.toml").write_bytes(content)
+    else:
+        from viscoroll import RUBBER_CYLINDER
+        from viscoroll.tables import build, law, save
+
+        save(build(RUBBER_CYLINDER, [0.1, 0.2], [0.0, 0.01]), folder / "grid")
+        save(law(11.0), folder / "law")
+
+
+def fuzz(what: str, seconds: int, corpus: Path) -> None:
+    """Never returns: libFuzzer ends the process."""
+    import atheris
+
+    with atheris.instrument_imports(include=["viscoroll", "tomllib", "h5netcdf"]):
+        import viscoroll.config
+        import viscoroll.tables.store  # noqa: F401
+    seeds(what, corpus)
+    read: Callable[[Path], None] = {"toml": read_toml, "table": read_table}[what]
+    path = Path(tempfile.mkdtemp()) / "input"
+
+    def one(data: bytes) -> None:
+        path.write_bytes(data)
+        read(path)
+
+    options = [f"-max_total_time={seconds}", f"-max_len={LONGEST}", "-timeout=20", "-rss_limit_mb=4096"]
+    atheris.Setup([sys.argv[0], *options, str(corpus)], one)
+    atheris.Fuzz()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("what", choices=("toml", "table"))
+    parser.add_argument("--seconds", type=int, default=60)
+    parser.add_argument(
+        "--corpus", type=Path, help="folder that keeps what was found worth keeping; default: none kept"
+    )
+    arguments = parser.parse_args()
+    try:
+        import atheris  # noqa: F401
+    except ImportError:
+        print("fuzz_loaders: skipped, atheris is not installed (pip install -e '.[fuzz]')")
+        return 0
+    corpus = arguments.corpus or Path(tempfile.mkdtemp())
+    corpus.mkdir(parents=True, exist_ok=True)
+    fuzz(arguments.what, arguments.seconds, corpus)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,199 @@
+"""Report: one page over all that was made -> out/index.html.
+
+    python -m pipeline.report [--config FILE] [-o FOLDER] [--show]
+
+With --show nothing is written: prints where everything is, the headline errors and the times.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import sys
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+import viscoroll as vr
+from viscoroll.errors import FileProblem
+from viscoroll.files import write_text
+from viscoroll.materials.law_store import errors_of
+from viscoroll.presets import PRESETS
+
+from . import stage
+from .figures.captions import SECTIONS
+
+STAGES = {
+    "offline": "The tables of the law",
+    "runtime": "Motions from the file of the law",
+    "ensemble": "Random starts",
+    "validate": "Against direct solves of the printed equations",
+    "benchmark": "Time against error",
+    "figures": "Figures",
+}
+_STYLE = (
+    "body{font:16px/1.45 sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#111}"
+    "table{border-collapse:collapse;margin:.6em 0}td,th{border:1px solid #bbb;padding:.2em .6em;text-align:left}"
+    "td.n{text-align:right;font-variant-numeric:tabular-nums}img{max-width:100%;border:1px solid #ddd}"
+    "figure{margin:1.5em 0}pre{overflow-x:auto;background:#f4f4f4;padding:.8em;font-size:12px}.bad{font-weight:bold}"
+)
+
+
+class Report(msgspec.Struct, forbid_unknown_fields=True):
+    """[report]: the table files that the page links to, seen from the root of the project."""
+
+    tables: list[str]
+
+
+def records(out: Path) -> dict[str, dict[str, Any]]:
+    """What the stages left under <out>/stages.
+
+    Raises
+    ------
+    FileProblem
+        If one of them has not run, or its record is damaged.
+    """
+    found = {}
+    for name in STAGES:
+        path = out / "stages" / f"{name}.json"
+        try:
+            found[name] = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise FileProblem(path, f"cannot be read ({error}); run pipeline.{name} first") from error
+    return found
+
+
+def table_facts(path: Path) -> dict[str, Any]:
+    """Size in kB, title, and the stated errors of the file of a law."""
+    table = vr.tables.load(path)
+    return {"kB": path.stat().st_size / 1e3, "title": table.attrs["title"], "errors": errors_of(table)}
+
+
+def rows(pairs: dict[str, Any]) -> str:
+    """A two-column HTML table."""
+    lines = (
+        f'<tr><td>{escape(str(name))}</td><td class="n">{escape(stage.readable(value))}</td></tr>'
+        for name, value in pairs.items()
+    )
+    return f"<table>{''.join(lines)}</table>"
+
+
+def grid(found: list[dict[str, Any]]) -> str:
+    """An HTML table of rows, their names in the first column."""
+    head = "".join(f"<th>{escape(name)}</th>" for name in found[0])
+    lines = (
+        "".join(
+            f"<td{' class=n' if isinstance(value, float) else ''}>{escape(stage.readable(value))}</td>"
+            for value in row.values()
+        )
+        for row in found
+    )
+    return f"<table><tr>{head}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+
+
+def link(path: Path, out: Path) -> str:
+    """A link as seen from the page."""
+    target = Path(os.path.relpath(path, out)).as_posix()
+    return f'<a href="{escape(target)}">{escape(path.name)}</a>'
+
+
+def picture(path: Path, out: Path, caption: str) -> str:
+    """A figure with its image in the page itself."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    image = f'<img src="data:image/png;base64,{data}" alt="{escape(caption)}">'
+    return f"<figure>{image}<figcaption>{escape(caption)} {link(path, out)}</figcaption></figure>"
+
+
+def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
+    """The sections of figures, each with its numbers."""
+    drawn = {Path(file).stem: out / file for file in found["figures"]["files"]}
+    numbers = {"Three throws": "runtime", "Random throws": "ensemble"}
+    parts = []
+    for title, captions in SECTIONS.items():
+        parts.append(f"<h2>{escape(title)}</h2>")
+        if title in numbers:
+            parts.append(rows(found[numbers[title]]["headline"]))
+            parts += [f"<p>{link(out / file, out)}</p>" for file in found[numbers[title]]["files"]]
+        parts += [picture(drawn.pop(name), out, caption) for name, caption in captions.items() if name in drawn]
+    return parts + [picture(path, out, name) for name, path in drawn.items()]
+
+
+def introduced(found: dict[str, dict[str, Any]]) -> str:
+    """What rolls on this page, and what that is worth."""
+    names = {str(found["ensemble"]["headline"]["preset"])}
+    scenes = " and ".join(f"preset {escape(name)}: {escape(str(PRESETS[name]))}" for name in sorted(names))
+    fastest = max(abs(V0) for V0, _ in vr.PAPER_STARTS.values())
+    worth = "; ".join(PRESETS[name].validity(fastest).steady.sentence for name in sorted(names))
+    return (
+        f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: the example of the paper's "
+        f"Sect. 5, {scenes}.  Everything is dimensionless.</p><p>For motions: {escape(worth)}.</p>"
+    )
+
+
+def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> str:
+    """The whole page: the physics first, then tables and checks, seconds last."""
+    failed = found["validate"]["failed"]
+    verdict = '<span class="bad">a stated tolerance is exceeded</span>' if failed else "every check passed"
+    parts = [
+        "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>viscoroll</title>',
+        f"<style>{_STYLE}</style></head><body>", "<h1>A viscoelastic cylinder, rolling and sliding</h1>",
+        introduced(found), *pictures(out, found), "<h2>Tables</h2>",
+    ]  # fmt: skip
+    for path, facts in tables.items():
+        parts.append(f"<h3>{link(path, out)} ({facts['kB']:.0f} kB)</h3><p>{escape(facts['title'])}.</p>")
+        parts.append("<p>Largest error of each function at any speed, relative:</p>" + rows(facts["errors"]))
+    report = (out / "validation.txt").read_text(encoding="utf-8")
+    parts += [
+        "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
+        rows(found["validate"]["headline"]),
+        f"<p>{', '.join(link(out / file, out) for file in found['validate']['files'])}</p>",
+        f"<pre>{escape(report)}</pre>",
+        "<h2>Time against error</h2><p>Offline a stage wrote the law of the material into a file; at run time the "
+        "three throws come from that file alone.  Here that stands beside roll, and beside splines in a grid of Q and "
+        "M over V and δ; the truth is root solves of the printed equations.  Error: the largest of V and ω over the "
+        "first speed.</p>",
+        grid(stage.read_rows(out / "benchmark.csv")),
+        picture(out / "figures/benchmark.png", out, "Time of a motion over its error."),
+        f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
+        rows({STAGES[name]: record["seconds"] for name, record in found.items()}), "</body></html>",
+    ]  # fmt: skip
+    return "\n".join(part for part in parts if part) + "\n"
+
+
+def show(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> None:
+    """Print the same in short: files, headline numbers, times."""
+    for path, facts in tables.items():
+        worst = ", ".join(f"{name} {error:.2g}" for name, error in facts["errors"].items())
+        print(f"{stage.shown(path)} ({facts['kB']:.0f} kB): largest errors, relative: {worst}")
+    for name, record in found.items():
+        files = [stage.shown(out / file) for file in record["files"]]
+        where = f"{len(files)} pictures in {stage.shown(out / 'figures')}" if name == "figures" else ", ".join(files)
+        print(f"{name} ({record['seconds']:.1f} s): {where}")
+        for text, value in record["headline"].items():
+            print(f"  {text}: {stage.readable(value)}")
+    print(f"Everything on one page: {stage.shown(out / 'index.html')}")
+
+
+def make(config: Path, out: Path, print_only: bool) -> None:
+    """Write the page, or print the same in short."""
+    settings = stage.read_section(config, "report", Report)
+    found = records(out)
+    tables = {stage.ROOT / name: table_facts(stage.ROOT / name) for name in settings.tables}
+    if print_only:
+        return show(out, found, tables)
+    write_text(out / "index.html", page(out, found, tables))
+    print(f"report: {stage.shown(out / 'index.html')}")
+
+
+def main() -> int:
+    parser = stage.parser(__doc__)
+    parser.add_argument("--show", action="store_true", help="print files, errors and times; write nothing")
+    arguments = parser.parse_args()
+    return stage.told("report", lambda: make(arguments.config, arguments.output, arguments.show))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
