@@ -108,7 +108,7 @@ def start_tabulate(folder: Path) -> subprocess.Popen:
     folder.mkdir(exist_ok=True)
     config = folder / "run.toml"
     config.write_text(CONFIG, encoding="utf-8")
-    command = [sys.executable, "-m", "pipeline.demo.tabulate", "--config", config, "--tables", folder, "-o", folder]
+    command = [sys.executable, "-m", "pipeline.offline", "--config", config, "--tables", folder, "-o", folder]
     return subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
     )
