@@ -104,13 +104,6 @@ def test_slow_starts():
     assert ROLLER.validity([0.0, 30.0]).steady.value[0] == 0.0
 
 
-def test_the_paper_s_cylinder_is_slow_at_nine_millimetres_a_second():
-    """And not at 1 m/s."""
-    slow, fast = (vr.PAPER_CYLINDER.validity(V).steady for V in (0.1 / 10.7, 1.0))
-    assert close(slow.value, 57.0, rel=0.02)
-    assert fast.holds
-
-
 def test_no_relaxation_time_bounds_it():
     """Of any material |N| (kappa V)^2 <= 1.35/16 (1 - 1/alpha); modes that are slower change nothing much."""
     draw = np.random.default_rng(1)
@@ -172,14 +165,6 @@ def test_along_a_motion():
     assert close(many.value, [each.value[-1] for each in alone], rel=tol.STEADINESS)
     assert close(many.share, [each.share for each in alone], rel=1e-3, scale=1.0)
     assert "0.12 % of the way lies below" in found.sentence
-
-
-def test_along_a_motion_in_SI_units():
-    roller = vr.PAPER_CYLINDER
-    m, e = roller.roll(1.0, 10.0, [0.0, 50.0, 90.0]), roller.ensemble([1.0, 2.0], [10.0, 20.0], [50.0, 1e4])
-    for found in (m.validity().steady, e.validity().steady):
-        assert close(found.ten_percent.speed, roller.validity(1.0).steady.ten_percent.speed, rel=tol.STEADINESS)
-        assert "down to 0.21 m/s" in found.sentence
 
 
 # --- warnings of roll and ensemble ---

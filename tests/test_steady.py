@@ -64,12 +64,6 @@ def test_humps_of_several_modes():
     assert vr.humps(vr.Scene(1.0, KAPPA, MU)).V.size == 0
 
 
-def test_humps_do_not_follow_the_unit_of_time():
-    one, other = vr.humps(series_scene(TWO)), vr.humps(series_scene(TWO.slower(37.0)))
-    assert close(other.V * 37.0, one.V, rel=tol.STEADY_HUMP_V)
-    assert close(other.M, one.M, rel=tol.STEADY)
-
-
 def test_zeros_finds_close_pairs():
     x = np.linspace(-1.0, 1.0, 30)
     for apart in (1e-2, 1e-3, 1e-5):

@@ -170,18 +170,6 @@ def test_how_thick_the_layer_is():
         assert cylinder.validity(0.0).thick == (None, None, "thickness not known: the law is that of a half-space")
 
 
-def test_validity_of_a_series_of_cylinders():
-    """Retardation times, radii and loads of each: as of single ones."""
-    T = np.array([0.1, 0.2])
-    many = vr.Cylinder(R=[0.1, 0.2], m=35.5, E=2.3e5, nu=0.49, T_epsilon=T, T_sigma=0.01, mu=0.2, load=[300.0, 400.0])
-    found = many.validity(0.5, 1130.0, omega=1.0)
-    for n in range(2):
-        one = many.replace(R=many.R[n], T_epsilon=T[n], load=many.load[n]).validity(0.5, 1130.0, omega=1.0)
-        for name in ("small_contact", "under_axis", "quasistatic", "steady", "creep"):
-            value = np.broadcast_to(getattr(found, name).value, (2,))[n]
-            assert close(value, getattr(one, name).value, rel=tol.PAIR)
-
-
 def test_print_says_whether_each_holds_and_failed_names_what_does_not():
     found = vr.PAPER_SECTION_5.validity(np.array([0.0, 1.5]))
     assert found.failed == ("steady",)

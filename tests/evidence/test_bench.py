@@ -8,12 +8,8 @@ from pathlib import Path
 
 import pytest
 import tolerances as tol
-from closeness import close
 from places import PIPELINE, RESULTS, ROOT
 from processes import made, stage, stage_refused
-
-from pipeline.evidence.document.bench import comparison
-from pipeline.evidence.results import Results
 
 CONFIG = PIPELINE / "evidence/sizes.toml"
 OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
@@ -73,15 +69,6 @@ def test_driven(folder):
     assert {row["method"] for row in found["rows"]} == {"viscoroll", "LSODA, saturated law"}
 
 
-def test_ratios_lead_with_like_against_like():
-    """Peers integrate: the first ratio is to motions that are integrated, a later one to a look-up."""
-    rows = comparison(Results(RESULTS), best=True)
-    (paper,) = (row for row in rows if "the paper's method" in row[1])
-    ratio, _, theirs, ours, looked_up, _ = paper
-    assert close(float(ratio), float(theirs.split()[0]) / float(ours.split()[0]), rel=tol.TWO_DIGITS)
-    assert float(looked_up) > 10.0 * float(ratio)
-
-
 def test_law_tables_and_the_rest(folder):
     parts = "law", "tables", "skips", "scaling", "cold-start", "fixed-scene", "agreement"
     law, tables, skips, scaling, cold, fixed, agreement = measured(folder, *parts)
@@ -101,21 +88,6 @@ def test_law_tables_and_the_rest(folder):
     assert {row["threads"] for row in scaling["rows"]} == {1, 2}
     assert all(row["peak_mb"] >= row["before_mb"] > 0.0 for row in scaling["rows"])
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
-
-
-def test_bound_law(folder):
-    (law,) = measured(folder, "bound-law")
-    assert len(law["rows"]) == 3 * 6
-    assert all(row["ns"] > 0.0 and row["contact"]["ns"] > 0.0 for row in law["rows"])
-
-
-def test_series(folder):
-    """Every material has its row, and those of several modes the time of their table."""
-    (rows,) = measured(folder, "series")
-    assert len(rows) == 10
-    for row in rows:
-        assert all(row[kind]["ns"] > 0.0 for kind in ("contact", "motion") if kind in row)
-    assert {row["material"] for row in rows if row["table_ms"]} >= {"1 modes", "30 modes", "pair of 10 and 3 modes"}
 
 
 def test_first_calls(folder):

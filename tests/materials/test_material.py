@@ -275,6 +275,7 @@ STORED = (
     vr.Material(3e6, 0.5, vr.Prony.creep([0.3, 0.69], [3.0, 1e-5], alpha=100.00000000000001)),
     vr.Material.elastic(2e11, 0.3),
     vr.Material.rigid(name="ideal"),
+    vr.Material.elastic(1e6, 0.3, name="tread \U0001f6de, Gummi für µ\tand\x7f\n"),
     vr.Material(
         2e6, 0.5, vr.Prony([2.0], [1e-3]), thickness=0.02 / 3.0, measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f")
     ),

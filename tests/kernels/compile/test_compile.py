@@ -21,7 +21,6 @@ from typing import NamedTuple
 import numba
 import numpy as np
 import pytest
-from numba.core.codegen import JITCodeLibrary
 from ordinary_user import NOBODY, as_ordinary_user, let_in
 from processes import printed, python
 
@@ -121,29 +120,6 @@ def test_numpy_functions_that_numba_compiles_itself_work(kernels):
         return np.median(x) + square(x[0])
 
     assert middle(np.array([3.0, 1.0, 2.0])) == 11.0
-
-
-def test_a_symbol_that_is_missing_is_an_exception(kernels, monkeypatch):
-    """Not the end of the process; the function is named, and numba's own way taken."""
-    whole = deferred._pipelines()[1]
-    monkeypatch.setattr(deferred, "_pipelines", lambda: (deferred.Compiler, whole))
-    monkeypatch.setattr(JITCodeLibrary, "_get_module_for_linking", empty_module)
-    with pytest.raises(RuntimeError, match=r"cubed calls _ZN\w*square\w*, which was not compiled with it"):
-        whole(*given(cubed, numba.float64)).compile_extra(cubed.py_func)
-
-
-def empty_module(library):
-    from llvmlite import binding
-
-    return binding.parse_assembly(str(library._codegen._create_empty_module("nothing")))
-
-
-def given(dispatcher, *args):
-    """What numba gives a pipeline."""
-    compiler = dispatcher._compiler
-    context = compiler.targetdescr
-    flags = compiler._customize_flags(numba.core.compiler.Flags())
-    return context.typing_context, context.target_context, None, args, None, flags, {}
 
 
 @pytest.mark.parametrize(
