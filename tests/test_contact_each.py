@@ -12,7 +12,7 @@ import precise
 import pytest
 import tolerances as tol
 from closeness import close
-from many import MATERIALS, series
+from many import MATERIALS
 
 import viscoroll as vr
 from pipeline.evidence.truth import contact_enclosure
@@ -88,17 +88,6 @@ def test_any_speed():
         assert close(found.delta_star[n], float(exact["delta_star"]), rel=tol.EACH_ALPHA)
     rest = vr.contact(vr.Scene([2.0, 11.0], 2.91, 0.2), 0.0, omega=[0.0, 1.0])
     assert (rest.Q.tolist(), rest.M.tolist(), rest.lam.tolist()) == ([0.0, 0.2], [0.0, 0.0], [1.0, 1.0])
-
-
-def test_an_alpha_each_is_that_alpha_alone():
-    """Rows of the axis and those of a table of its own: both to rounding."""
-    alpha, kappa, mu, V, s = states(60, 5)
-    found, delta = solved(alpha, kappa, mu, V, s)
-    for n in range(alpha.size):
-        alone = vr.contact(vr.Scene(alpha[n], kappa[n], mu[n]), V[n], delta=delta[n])
-        for name in ("lam", "epsilon", "delta_star", "Q", "M"):
-            bound = tol.EACH_SHIFT if name == "epsilon" else tol.EACH_ALPHA
-            assert close(getattr(found, name)[n], getattr(alone, name), rel=bound), (name, n)
 
 
 def test_the_axis_is_shared_by_threads(monkeypatch):
@@ -183,11 +172,3 @@ def test_a_material_each_is_that_material_alone(name):
             rel = rel / near if field == "beta" or field.startswith("dQ") else rel
             pair = getattr(found, field)[:, n], getattr(alone, field)
             assert close(*pair, rel=rel, scale=scales.get(field, 0.0), what=(field, n))
-
-
-def test_one_material_in_an_array_at_many_speeds():
-    many, V = series(7, 2, 3.0, 1), np.array([1e-3, 0.3, 40.0])
-    found = vr.contact(vr.Scene(material=many, kappa=2.91, mu=0.2), V, omega=1.001 * V)
-    alone = vr.contact(vr.Scene(material=many[0], kappa=2.91, mu=0.2), V, omega=1.001 * V)
-    assert close(found.Q, alone.Q, rel=tol.EACH_MATERIAL)
-    assert close(found.M, alone.M, rel=tol.EACH_MATERIAL)

@@ -97,12 +97,17 @@ def rolled(scene: vr.Scene, **given) -> dict[str, np.ndarray]:
     return {name: getattr(many, name) for name in names}
 
 
+UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3)
 #: name -> arrays of states or starts, and the call of them
 CALLS: dict[str, tuple[Callable, Callable]] = {
     "states": (states, lambda **given: vr.contact(SCENE, **given).as_dict()),
     "slopes": (
         lambda: {name: values[::30] for name, values in states().items()},
         lambda **given: vr.contact(SCENE, **given, slopes=True).as_dict(),
+    ),
+    "two bodies": (
+        lambda: {"V": np.concatenate([states()["V"][::40], [1e-140, 1e140]])},
+        lambda V: vr.contact(scene_of(UNLIKE), V, delta=1e-4, slopes=True).as_dict(),
     ),
     "as printed": (
         lambda: {name: values[:2500:30] for name, values in states().items()},

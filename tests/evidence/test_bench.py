@@ -70,24 +70,18 @@ def test_driven(folder):
 
 
 def test_law_tables_and_the_rest(folder):
-    parts = "law", "tables", "skips", "scaling", "cold-start", "fixed-scene", "agreement"
-    law, tables, skips, scaling, cold, fixed, agreement = measured(folder, *parts)
-    assert all(row["ns"] > 0.0 for row in fixed["rows"].values())
+    """Every other part runs at a smoke size, and errors are what they are stated to be."""
+    parts = "law", "tables", "skips", "scaling", "cold-start", "fixed-scene", "agreement", "bound-law", "series"
+    law, tables, _, scaling, cold, fixed, agreement, _, series = measured(folder, *parts)
     assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED
-    assert fixed["bytes"] < 3_000_000
     assert agreement["within_stated"] == agreement["scenes_with_map"]
-    for row in law.values():
-        assert row["ns"] > 0.0
-        assert max(row["error"].values()) < tol.BENCH_LAW
-    kinds = {row["kind"]: row for row in tables["rows"]}
-    assert set(kinds) == {"shipped ratios", "1-D ratio splines", "3-D atlas"}
-    shipped, atlas = kinds["shipped ratios"]["error"], kinds["3-D atlas"]["error"]
-    assert max(shipped.values()) < tol.BENCH_LAW < min(atlas.values())
-    assert max(atlas.values()) < tol.BENCH_COARSE_ATLAS
-    assert all(row["ratio"] > 0.0 for row in skips.values())
+    assert all(max(row["error"].values()) < tol.BENCH_LAW for row in law.values())
+    errors = {row["kind"]: row["error"].values() for row in tables["rows"]}
+    assert max(errors["shipped ratios"]) < tol.BENCH_LAW < min(errors["3-D atlas"])
+    assert max(errors["3-D atlas"]) < tol.BENCH_COARSE_ATLAS
     assert {row["threads"] for row in scaling["rows"]} == {1, 2}
-    assert all(row["peak_mb"] >= row["before_mb"] > 0.0 for row in scaling["rows"])
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
+    assert {row["material"] for row in series if row["table_ms"]} >= {"1 modes", "30 modes", "pair of 10 and 3 modes"}
 
 
 def test_first_calls(folder):

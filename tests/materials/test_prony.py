@@ -291,19 +291,6 @@ UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], 
 PARTS = ("M_half_space", "M_cylinder")
 
 
-def test_many_states_of_two_bodies():
-    """By the tables over kappa |V| as state by state, for both signs of V, at V = 0 and beyond the tables' speeds."""
-    V = np.resize([*SPEEDS, *-SPEEDS, 0.0, 1e-140, 1e140], MANY)
-    many = vr.contact(scene(UNLIKE), V, delta=1e-4)
-    for n in range(2 * SPEEDS.size + 3):
-        alone = vr.contact(scene(UNLIKE), V[n], delta=1e-4)
-        for name in (*PARTS, "Q", "M", "lam"):
-            assert close(getattr(many, name)[n], getattr(alone, name), rel=tol.BODIES, what=(name, V[n]))
-        assert close(alone.M_half_space + alone.M_cylinder, alone.M, rel=tol.BODIES)
-    only = vr.contact(scene(UNLIKE), V, delta=1e-4, fields="M_cylinder")
-    assert np.array_equal(only.M_cylinder, many.M_cylinder)
-
-
 def test_slopes_of_the_parts_of_M():
     """Against differences, and both together against dM/dV; at V = 0 the slow limit, half of M for like bodies."""
     V = np.geomspace(1e-5, 1e7, 40)
@@ -361,23 +348,6 @@ def test_slip_is_lost_and_regained_in_two_bands():
     assert [switch.regime for switch in motion.switches[:3]] == ["full slip", "partial slip", "full slip"]
     V = [motion.at([switch.t]).V.item() for switch in motion.switches[:3]]
     assert close(V, [1264.0, 804.0, 0.0840], rel=tol.SERIES_BANDS)
-
-
-def test_motions_of_one_mode_are_those_of_its_alpha():
-    p = vr.Prony.creep([10.0 / 11.0], [1.0], alpha=11.0)
-    t = np.linspace(0.0, 3e-3, 31)
-    for V0, omega0 in vr.PAPER_STARTS.values():
-        old = vr.roll(vr.PAPER_SECTION_5_ROUNDED, V0, omega0, t)
-        new = vr.roll(vr.PAPER_SECTION_5_ROUNDED.replace(material=p), V0, omega0, t)
-        assert close(new.V, old.V, rel=tol.SERIES_MOTION, scale=1.0)
-        assert close(new.onset_time, old.onset_time, rel=tol.SERIES_MOTION)
-        far = vr.roll(
-            vr.PAPER_SECTION_5_ROUNDED.replace(material=p.slower(1e4), gamma=1.1e4 * 1e-8),
-            V0 / 1e4, omega0 / 1e4, t * 1e4,
-        )  # fmt: skip
-        assert close(far.V * 1e4, old.V, rel=tol.SERIES_MOTION, scale=1.0)
-        assert close(far.x, old.x, rel=tol.SERIES_MOTION, scale=1.0)
-        assert close(far.switches[0].t / 1e4, old.switches[0].t, rel=tol.SERIES_MOTION)
 
 
 def test_flow_map_of_a_series_and_its_unit():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
@@ -116,15 +115,6 @@ def test_attributes_are_complete(saved):
     told = vr.tables.info(saved)
     for words in ("law", 'name = "a \\"rubber\\""', "largest relative error", "sha256_of_numbers"):
         assert words in told
-
-
-def test_sizes(tmp_path, monkeypatch):
-    """Files of one relaxation time and of 16 over 15 decades: coefficients, and some 30 kB of frame."""
-    monkeypatch.setattr(sys, "orig_argv", ["viscoroll"])  # which the file's history holds
-    broad = vr.Prony(0.3 * 1.3 ** np.arange(16), 10.0 ** -np.arange(16.0))
-    for given, most in ((11.0, 85_000), (broad, 140_000)):
-        vr.tables.save(vr.tables.law(given), tmp_path / "law.nc")
-        assert (tmp_path / "law.nc").stat().st_size < most
 
 
 # --- wherever a material stands ---
