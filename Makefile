@@ -115,7 +115,7 @@ docs: .venv/docs ## the site, every example of it run: docs/_build/html/index.ht
 	touch $@
 
 test-site: .venv/docs site-tools ## build the site and open every page of it in a browser, which it installs
-	$(BIN)/pytest -rs tests/docs/test_site.py
+	$(BIN)/pytest -rs tests/evidence/test_site.py
 
 site-tools:
 	command -v chromium >/dev/null || { $(SUDO) apt-get update -qq; \

@@ -89,8 +89,6 @@ SLOPE = 1e-14
 SLOPE_OF_M = 5e-14
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
-#: Central differences of Q with a step of 1e-3 of the nearer end of [0, delta_star]: their truncation; measured 2e-6.
-SLOPE_DIFFERENCE = 2e-5
 
 # --- one material against an alpha each (test_material_tables.py) ---
 #: g, h and m of a series of one mode against those by its Bessel ratios, relative; measured 1e-15.
@@ -170,19 +168,6 @@ MANIFOLD = 0.02
 #: The second stick of the brief's example, printed to 9 digits.
 RETURN_TIME = 3e-9
 
-# --- boundary layer (kernels/free/test_layer.py) ---
-#: A panel of two e-folds, of degree 9, against an integration in time at rtol 1e-12; measured 2e-9.
-LAYER_PANEL = 1e-8
-#: What slopes change by over a distance e from the manifold, over e: that of delta most, which goes with S + e where S
-#: is a twentieth of the first e; measured 21.
-LAYER_LINEAR = 40.0
-
-# --- partial slip (kernels/free/test_partial_slip.py) ---
-#: The slow manifold over its leading order, less 1, times zeta; measured 0.0024 at alpha = 1.5 to 0.068 at 300.
-MANIFOLD_NEXT = 0.2
-#: A slope by central differences of a step of 1e-4: its square.
-MANIFOLD_SLOPE = 1e-7
-
 # --- full slip (test_slide.py) ---
 #: Closed forms of the elastic cylinder, over the speed and the duration: roundings.
 SLIDE = 1e-14
@@ -226,8 +211,6 @@ BENCH_REFERENCE = 1e-9
 BENCH_LAW = 1e-9
 #: Splines of an atlas with 8 x 16 x 16 nodes; measured 5e-3.
 BENCH_COARSE_ATLAS = 0.05
-#: A ratio in two digits, of times in three: rounded by 5 % and twice 0.5 % at most.
-TWO_DIGITS = 0.06
 #: A number in six digits, and what depends on such a one.
 SIX_DIGITS = 1e-5
 #: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.
@@ -303,15 +286,8 @@ TRUNCATED = 1e-12
 COPULA = 1e-3
 #: Mean and variance against numpy's: other orders of summation of up to 1e5 numbers of size 1.
 MOMENT = 1e-12
-#: Motions over seconds against those over T_epsilon at rtol 1e-10, over the largest value: roundings of time and
-#: gamma; measured 1.3e-14 (rolling_loss, others 1.2e-15).
-SI_UNITS = 1e-13
-#: the same of a series, at rtol 1e-10, another unit of time; measured 4.6e-15.
-SI_SERIES = 3e-14
 #: g, h, m and shares by Chebyshev polynomials where they resolve the layer at the front edge; measured 1e-14.
 CHEBYSHEV = 1e-12
-#: of motions at rtol 1e-6 of one cylinder, scaled to seconds before or after they are rolled
-SI_SERIES_RTOL = 1e-7
 
 # --- motions in extended precision (truth/test_motions.py, evidence/test_precise.py) ---
 #: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
@@ -338,8 +314,6 @@ SENSITIVITY_NONE = 1e-13
 SENSITIVITY_INTERVAL = 0.08
 #: Share of motions without onset, of 256 over two inputs against 500 over the one that matters; measured 0.02.
 SENSITIVITY_SHARE = 0.1
-#: condition number of a motion in which slip returns in passing: sum over its inputs, by evidence/prove/motion.py.
-GRAZING_CONDITION = 89.0
 
 # --- materials in SI units (test_material.py) ---
 #: moduli and compliances against sums written out: a few roundings a mode; measured 4.4e-16.
@@ -348,10 +322,6 @@ MATERIAL = 4e-15
 MATERIAL_FORMS = 3e-14
 #: numbers that a docstring gives to eight digits.
 MATERIAL_PRINTED = 1e-7
-#: contact in two units of time: the times themselves round; measured 7.2e-15 (Q), the rest 9e-16.
-UNIT_OF_TIME = 3e-14
-#: a pair in the unit of time of either body: the times round; measured 2.6e-13 in a small part of M, 1.8e-14 else.
-PAIR_SWAPPED = 1e-12
 #: Dundurs' constant and wave speeds: quotients of a few roundings.
 PAIR = 1e-14
 
@@ -383,8 +353,6 @@ SERIES_CLOSURE = 1e-8
 SERIES_STRESS = 1e-6
 #: Speeds at which slip returns, known to three digits from another program.
 SERIES_BANDS = 1e-3
-#: Motions of one mode by its series and by its alpha at rtol 1e-8.
-SERIES_MOTION = 1e-10
 #: The integrator's own error beside that of a map.
 SERIES_MAP = 3e-9
 #: Moments of two bodies: sums over modes of positive terms, and one table.
@@ -477,8 +445,6 @@ DMA_SCALED = 1e-6
 DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
-#: Median of the local Kramers-Kronig ratio of broad spectra, noise 0.5 %; measured 0.021.
-DMA_KRAMERS_KRONIG = 0.05
 #: that of the curve shipped from pyvisco, "about 1.65"; measured 1.68.
 DMA_PYVISCO = (1.55, 1.75)
 #: log10 a_T of WLF-made data: 21 points in three decades without noise (the interpolant; measured 1.3e-4), and 11
@@ -506,16 +472,12 @@ SI_ENSEMBLE = 1e-9
 RUN_SI = 1e-8
 
 # --- driven motions (motion/test_drive.py) ---
-#: SciPy's Radau at rtol 1e-7, atol 1e-9, over corners of the law that it steps across.
-DRIVE_PEER = 2e-5
 #: Works against energies at rtol 1e-10 and 1e-11, over the largest of them.
 DRIVE_BALANCE = 1e-8
-#: The general method against that of free motions, both at 1e-10; their losses, which have a rule of their own there.
-DRIVE_FREE, DRIVE_LOSS = 3e-9, 1e-7
+#: The general method against that of free motions, both at 1e-10.
+DRIVE_FREE = 3e-9
 #: A sine from a table of 10^3 points a period: h^2/8 of the second derivative.
 DRIVE_TABLE = 2e-4
-#: Terminal speeds after 60 relaxation times.
-DRIVE_STEADY = 1e-8
 #: Q next to V = 0, a share of 1e-9 of the time away from it.
 DRIVE_TURN = 1e-6
 #: Inertia 1e9 in place of an infinite one.
