@@ -33,7 +33,7 @@ def states_of(
     ``given``: one law for all; many materials, with their numbers in place of the alphas; or, None, alphas.
     """
     from .kernels.law.states import ROWS, States
-    from .kernels.rows.contact import slopes_loop, table_loop, unsteady_loop
+    from .kernels.rows.contact import Asked, slopes_loop, table_loop, unsteady_loop
 
     count, slopes = int(np.prod(shape)), set(names) & set(SLOPES + SLOPES_OF_BODIES)
     values = set(names) - slopes - {UNSTEADY}
@@ -55,19 +55,19 @@ def states_of(
             order = np.argsort(each, kind="stable") if each.size > 1 else order
             V = _in(unit, V)
             creep = _in(unit, creep) if creep_is_omega else creep
-        states = States(kappa, mu, V, creep, creep_is_omega)
+        asked = Asked(States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
         room = np.empty((2, _TOGETHER if isinstance(given, LawTable) else 1))
         if values:
-            table_loop(law, states, order, to, out, room, start, stop)
+            table_loop(law, asked, room, stop - start)
         if slopes:
-            slopes_loop(law, states, order, to, out, start, stop)
+            slopes_loop(law, asked, stop - start)
         if UNSTEADY in names:
             N = names.index(UNSTEADY)
             if isinstance(given, LawTable):
-                unsteady_loop(law, given.unsteady_rows, states, out[N], start, stop)
+                unsteady_loop(law, given.unsteady_rows, asked.states, out[N], start, stop)
             else:
                 to_N = np.where(np.arange(len(ROWS)) == ROWS.index("zeta"), N, -1)
-                table_loop(law, states, order, to_N, out, room, start, stop)
+                table_loop(law, asked._replace(to=to_N), room, stop - start)
                 out[N, start:stop] = unsteadiness(each, out[N, start:stop])
         if unit is not None:
             for row, name in enumerate(names):

@@ -8,6 +8,8 @@ at slight creep.  There their difference is exact with the mean slope S of press
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from ..compile.jit import kernel
@@ -139,109 +141,131 @@ def slopes_of_Q(u, L, dL, state, law):
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
 
 
+class Asked(NamedTuple):
+    """States, in an order or, where that is empty, in theirs; which row of ``out`` each quantity goes to, -1 for none.
+
+    first : the column of state 0
+    """
+
+    states: Any
+    order: Any
+    to: Any
+    out: Any
+    first: int
+
+
 @kernel(inline=True)
-def _turn(order, k):
+def _turn(k, asked):
     """The state whose turn it is."""
-    return order[np.uint64(k)] if order.size > 0 else k
+    return asked.order[np.uint64(k)] if asked.order.size > 0 else k
 
 
 @kernel(inline=True)
-def _put(row, value, out, n):
+def _at(k, asked):
+    """(Its column, the state, kappa |V|)."""
+    n = _turn(k, asked)
+    state = state_of(asked.states, n)
+    return np.uint64(n + asked.first), state, state.kappa * abs(state.V)
+
+
+@kernel(inline=True)
+def _put(row, value, n, asked):
     """A quantity into its row, if it has one."""
     if row >= 0:
-        out[np.uint64(row), n] = value
+        asked.out[np.uint64(row), n] = value
 
 
 @kernel(inline=True)
-def _speeds(law, states, order, to, out, found, first, begin, end):
-    """What depends on the speed alone, into columns begin..end of ``out``; L and lam into ``found``."""
+def _speeds(law, asked, found, begin, end):
+    """What depends on the speed alone of states begin..end; L and lam into ``found``."""
+    to = asked.to
     to_lam, to_zeta, to_epsilon, to_M = to[LAM], to[ZETA], to[EPSILON], to[M]
     to_half_space, to_cylinder = to[M_HALF_SPACE], to[M_CYLINDER]
     measured = to_lam >= 0 or to_zeta >= 0 or to_epsilon >= 0 or to[BETA] >= 0
     for k in range(begin, end):
-        now, i = _turn(order, k - first), np.uint64(k - begin)
-        n, state = np.uint64(now + first), state_of(states, now)
-        u = state.kappa * abs(state.V)
+        i = np.uint64(k - begin)
+        n, state, u = _at(k, asked)
         here = place(u, law)
         L, m, scale = speed(here, u, law)
         way = way_of(here, u, scale, state)
         found[0, i] = L
-        _put(to_M, way * m, out, n)
+        _put(to_M, way * m, n, asked)
         if measured:
             lam, epsilon = lengths(here, u, law)
             found[1, i] = lam
-            _put(to_lam, lam, out, n)
-            _put(to_zeta, 0.5 * lam / u, out, n)
-            _put(to_epsilon, epsilon, out, n)
+            _put(to_lam, lam, n, asked)
+            _put(to_zeta, 0.5 * lam / u, n, asked)
+            _put(to_epsilon, epsilon, n, asked)
         if to_half_space >= 0 or to_cylinder >= 0:
             half_space, cylinder = bodies(here, u, law)
-            _put(to_half_space, way * half_space, out, n)
-            _put(to_cylinder, way * cylinder, out, n)
+            _put(to_half_space, way * half_space, n, asked)
+            _put(to_cylinder, way * cylinder, n, asked)
 
 
 @kernel(inline=True)
-def _creeps(law, states, order, to, out, found, first, begin, end):
+def _creeps(law, asked, found, begin, end):
     """What depends on the creep too."""
+    to, states = asked.to, asked.states
     to_Q, to_beta, to_star, to_delta, to_full_slip = to[Q], to[BETA], to[DELTA_STAR], to[DELTA], to[FULL_SLIP]
     alike = states.kappa.size == 1 and states.mu.size == 1
     per, inverse = 0.5 * states.mu[0] / states.kappa[0], 2.0 * states.kappa[0] / states.mu[0]
     for k in range(begin, end):
-        now, i = _turn(order, k - first), np.uint64(k - begin)
-        n, state = np.uint64(now + first), state_of(states, now)
+        i = np.uint64(k - begin)
+        n, state, u = _at(k, asked)
         if rarely(not alike):
             per, inverse = 0.5 * state.mu / state.kappa, 2.0 * state.kappa / state.mu
-        u, L = state.kappa * abs(state.V), found[0, i]
+        L = found[0, i]
         slip, delta = slip_and_creep(state)
         delta_star, D = per * L, inverse * abs(delta)
         full_slip = abs(delta) >= delta_star
         if to_Q >= 0:
             part = 1.0 if full_slip else traction(u, L, D, law)
-            out[np.uint64(to_Q), n] = np.copysign(state.mu * part, slip)
+            _put(to_Q, np.copysign(state.mu * part, slip), n, asked)
         if to_beta >= 0:
-            out[np.uint64(to_beta), n] = 0.0 if full_slip else stick_share(u, found[1, i], L, D, law)
-        _put(to_star, delta_star, out, n)
-        _put(to_delta, delta, out, n)
-        _put(to_full_slip, 1.0 if full_slip else 0.0, out, n)
+            _put(to_beta, 0.0 if full_slip else stick_share(u, found[1, i], L, D, law), n, asked)
+        _put(to_star, delta_star, n, asked)
+        _put(to_delta, delta, n, asked)
+        _put(to_full_slip, 1.0 if full_slip else 0.0, n, asked)
 
 
 @kernel
-def table_loop(law, states, order, to, out, found, first, stop):
-    """Values of states into columns first..stop of ``out``; ``to``: which row each quantity goes to, -1 for none.
+def table_loop(law, asked, found, count):
+    """Values of ``count`` states.
 
-    ``order``: of the states, or none.  ``found``: room for two lengths of some states, which wait there: so the
-    processor works on several at once; of one state where each has a law of its own, of which one is held at a time.
+    ``found``: room for two lengths of some states, which wait there: so the processor works on several at once; of one
+    state where each has a law of its own, of which one is held at a time.
     """
+    to = asked.to
     crept = to[Q] >= 0 or to[BETA] >= 0 or to[DELTA_STAR] >= 0 or to[DELTA] >= 0 or to[FULL_SLIP] >= 0
-    for begin in range(first, stop, found.shape[1]):
-        end = min(begin + found.shape[1], stop)
-        hold(law, _turn(order, begin - first))
-        _speeds(law, states, order, to, out, found, first, begin, end)
+    for begin in range(0, count, found.shape[1]):
+        end = min(begin + found.shape[1], count)
+        hold(law, _turn(begin, asked))
+        _speeds(law, asked, found, begin, end)
         if crept:
-            _creeps(law, states, order, to, out, found, first, begin, end)
+            _creeps(law, asked, found, begin, end)
 
 
 @kernel
-def slopes_loop(law, states, order, to, out, first, stop):
+def slopes_loop(law, asked, count):
     """Slopes, likewise."""
+    to = asked.to
     to_V, to_creep, to_omega, to_M = to[DQ_DV], to[DQ_DDELTA], to[DQ_DOMEGA], to[DM_DV]
     to_half_space, to_cylinder = to[DM_HALF_SPACE_DV], to[DM_CYLINDER_DV]
-    for k in range(stop - first):
-        now = _turn(order, k)
-        hold(law, now)
-        n, state = np.uint64(now + first), state_of(states, now)
-        u = state.kappa * abs(state.V)
+    for k in range(count):
+        hold(law, _turn(k, asked))
+        n, state, u = _at(k, asked)
         here = place(u, law)
         L, dL, rise = speed_slopes(here, u, law)
-        _put(to_M, rise, out, n)
+        _put(to_M, rise, n, asked)
         if to_half_space >= 0 or to_cylinder >= 0:
             half_space, cylinder = body_slopes(here, u, law)
-            _put(to_half_space, half_space, out, n)
-            _put(to_cylinder, cylinder, out, n)
+            _put(to_half_space, half_space, n, asked)
+            _put(to_cylinder, cylinder, n, asked)
         if to_V >= 0 or to_creep >= 0 or to_omega >= 0:
             over_V, over_delta, over_omega = slopes_of_Q(u, L, dL, state, law)
-            _put(to_V, over_V, out, n)
-            _put(to_creep, over_delta, out, n)
-            _put(to_omega, over_omega, out, n)
+            _put(to_V, over_V, n, asked)
+            _put(to_creep, over_delta, n, asked)
+            _put(to_omega, over_omega, n, asked)
 
 
 @kernel
