@@ -120,6 +120,18 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     assert (slower.regime[0], slower.regime[1]) == (1, -1)
 
 
+def test_it_ends_there_at_any_tolerance():
+    """The end of the range of N is told from that of the stick zone, however closely either is met."""
+    scene = vr.Scene(alpha=7.0, kappa=8.819364017569045, mu=0.035796649013264355, gamma=4660.73125, j=0.6964318)
+    V0 = -1.625636130638283
+    ends = []
+    for rtol in (1e-6, 1e-11):
+        e = vr.ensemble(scene, V0, V0, np.linspace(0.0, 0.08, 81), rtol=rtol, unsteady=True)
+        assert e.status[0] == vr.MotionStatus.UNSTEADY
+        ends.append(np.isfinite(e.V[0]).sum())
+    assert ends == [38, 38]
+
+
 def test_elastic_bodies_have_none():
     scene = RUBBER.replace(alpha=1.0)
     plain, unsteady = (vr.roll(scene, 1.0, 0.2, T, unsteady=each) for each in (False, True))

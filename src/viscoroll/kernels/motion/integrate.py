@@ -148,10 +148,11 @@ def vanishes(state, frame, clock, case):
 
 
 @kernel
-def spent(state, frame, case):
-    """Whether the added mass is beyond its range, or at its end."""
-    n = added_mass(case.scene.law, state.V, case.scene.kappa, case.scene.gamma)[0]
-    return not frame.slips and room(n, case.scene.j) <= min(1.0 - frame.sigma * state.second, case.limits.rtol)
+def spent(event, state, frame, case):
+    """Whether the added mass is beyond its range, or this event is that it has come to the end of it."""
+    left = room(added_mass(case.scene.law, state.V, case.scene.kappa, case.scene.gamma)[0], case.scene.j)
+    at_end = event == EDGE and left < 1.0 - frame.sigma * state.second
+    return not frame.slips and (left <= 0.0 or at_end)
 
 
 @kernel
@@ -180,7 +181,7 @@ def settled(state, frame, clock, case):
 @kernel
 def follow(moving, fresh, state, frame, clock, case):
     """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
-    onset_time, turns, noted, settled_at = np.nan, 0, 0, -1.0
+    event, onset_time, turns, noted, settled_at = NO_EVENT, np.nan, 0, 0, -1.0
     regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
     while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
@@ -191,7 +192,7 @@ def follow(moving, fresh, state, frame, clock, case):
             if moving:
                 state, frame = at_new_piece(state, frame, clock, case)
                 moving = not frame.slips or state.V != 0.0 or state.second != 0.0
-        if moving and spent(state, frame, case):
+        if moving and spent(event, state, frame, case):
             return UNSTEADY, put_here(state, frame, clock, case), turns, onset_time, np.nan
         event, direction, before = NO_EVENT, frame.direction, clock
         if rests(moving, state, frame, clock, case):
@@ -224,7 +225,7 @@ def follow(moving, fresh, state, frame, clock, case):
             rest_time, omega = clock.tau / case.pace, speeds(state, frame, case.scene)[0]
             case.work.totals[PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
             return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
-        if event != NO_EVENT and not spent(state, frame, case):
+        if event != NO_EVENT and not spent(event, state, frame, case):
             state, frame, still = switch(event, state, frame, clock, case)
             moving = not still
             clock = clock_at(_PAST * clock.length if event == KINK else 0.0, clock)
