@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -73,7 +73,14 @@ def identify(
         standard deviations where values are missing, records with and without values, two records of one name.
     """
     shifts = {"material": shift, "base": shift} if callable(shift) else shift or {}
-    records = _called(cylinder, [data] if isinstance(data, Record) else data, shifts)
+    data = [data] if isinstance(data, Record) else data
+    for name, value, kind, allowed in (
+        ("cylinder", cylinder, Cylinder, "a Cylinder"), ("unknown", unknown, Mapping, "{name: (low, high)}"),
+        ("data", data, Iterable, "a list of records"), ("shift", shifts, Mapping, "a function, or one for each body"),
+    ):  # fmt: skip
+        if not isinstance(value, kind):
+            raise ParameterError(name, f"{value!r:.60}", allowed)
+    records = _called(cylinder, data, shifts)
     unknowns = unknowns_of(cylinder, unknown, records)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..config import read_body
 from ..cylinder import Cylinder
-from ..errors import ParameterError, TableError
+from ..errors import ConfigError, ParameterError, TableError
 from ..materials.file import shifts_of
 from ..scale import refuse_other_unit
 from ..sections import fault, hint, read, refuse_unknown
@@ -51,27 +51,27 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 def _record(path: Path, given: Any) -> Record:
     kind = _KINDS.get(given.get("kind", "")) if isinstance(given, dict) else None
     if kind is None:
-        raise fault(path, "data", "kind", f"kind: must be one of {', '.join(_KINDS)}")
+        raise ConfigError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
     own = {field.name for field in dataclasses.fields(kind) if field.init} - {*kind.PLACES, *kind.KINDS}
     refuse_unknown(path, "data", given, ("kind", "file", "columns", *sorted(own)))
     columns = given.get("columns", {})
     refuse_unknown(path, "data.columns", columns, (*kind.PLACES, *kind.KINDS))
     if not isinstance(given.get("file"), str):
-        raise fault(path, "data", "file", "file: must name a CSV file")
+        raise ConfigError(path, "[[data]] file: must name a CSV file")
     more: Any = {name: None if value == _UNKNOWN else value for name, value in given.items() if name in own}
     try:
         return kind(**more, **_columns(path.parent / given["file"], kind, columns))
     except ParameterError as error:
-        raise fault(path, "data", "file", f"{given['file']}: {error}") from error
+        raise ConfigError(path, f"[[data]] {given['file']}: {error}") from error
 
 
 def _columns(path: Path, kind: type[Record], called: dict[str, str]) -> dict[str, Any]:
     """Places and quantities of a CSV file, by the names given to its columns, or their own."""
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-        head, *rows = [line for line in lines if line.strip() and not line.startswith("#")]
+        head, *rows = [line for line in lines if line.strip() and not line.startswith("#")] or [""]
     except (OSError, ValueError) as error:
-        raise TableError(path, f"cannot be read: needs a line of names, and rows of numbers ({error})") from error
+        raise TableError(path, f"cannot be read ({error})") from error
     names, units = zip(*(_HEADING.findall(cell.strip())[0] for cell in next(csv.reader([head]))), strict=True)
     where = {}
     for quantity in (*kind.PLACES, *kind.KINDS):
