@@ -120,6 +120,12 @@ REFUSED = {
     "many cylinders": (
         lambda: vr.identify(roller().replace(mu=[0.1, 0.2]), ranges("E"), [resistance()]), "mu", "a single number",
     ),
+    "no cylinder": (lambda: vr.identify("roller", ranges("E"), [resistance()]), "cylinder = 'roller'", "a Cylinder"),
+    "no names": (lambda: vr.identify(roller(), ["E"], [resistance()]), "unknown = ['E']", "{name: (low, high)}"),
+    "no data": (lambda: vr.identify(roller(), ranges("E"), 3), "data = 3", "a list of records"),
+    "no shift": (
+        lambda: vr.identify(roller(), ranges("E"), [resistance(temperature=60.0)], shift=3), "shift = 3", "a function",
+    ),
     "no places": (lambda: vr.Resistance([], []), "resistance: V = empty"),
     "no start at all": (lambda: vr.identify(roller(), ranges("E"), resistance(), starts=0), "starts = 0"),
     "no record": (lambda: vr.identify(roller(), ranges("E"), []), "no record"),

@@ -283,9 +283,6 @@ def reach(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         "M over the hump": ([drum(HUMP)], SHAPE),
         "coast-down to 0": ([motion(3.0, 40.0)], SHAPE),
         "thrown, V": ([thrown()], tuple(TRUTH)),
-        "thrown, V and omega": ([thrown("V omega")], tuple(TRUTH)),
-        "Q at 0.1, 1 and 10 m/s": ([traction(0.1, 1.0, 10.0)], tuple(TRUTH)),
-        "M over the hump and Q at 0.1 m/s": ([drum(HUMP), traction(0.1)], tuple(TRUTH)),
     }
     rows = []
     for name, (records, names) in [*cases.items()][: sizes["experiments"]]:
