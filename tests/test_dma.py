@@ -144,24 +144,6 @@ def test_a_grid_that_is_wider_changes_what_the_data_do_not_hold(whole):
     assert max(abs(np.log(other.alpha / window.alpha)) for other in window.wider) > 0.1  # ... and said
 
 
-def test_report(whole):
-    text = str(whole)
-    for words in ("Prony series of", "T_ref", "misfit", "1.00% was asked for", "Kramers-Kronig", "outside", "wider"):
-        assert words in text
-    assert "not reached" not in text
-    few = vr.fit_prony(whole.omega, whole.storage, whole.loss, 2)
-    assert not few.reached
-    assert "and not reached" in str(few)
-    assert "outside the data" in str(vr.fit_prony(*curve(np.logspace(0, 2, 14), tau=np.logspace(4, -4, 10))))
-
-
-def test_material_by_the_fit(whole):
-    rubber = whole.material(0.5, name="rubber", density=1100.0)
-    assert (rubber.E, rubber.T_ref, rubber.prony) == (whole.E, whole.T_ref, whole.prony)
-    for found, fitted in zip((rubber.storage(WHOLE), rubber.loss(WHOLE)), whole.modulus(WHOLE), strict=True):
-        assert close(found, fitted, rel=tol.DMA_EXACT)
-
-
 # --- several temperatures ---
 
 TEMPERATURES = np.array([-40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 40.0])

@@ -19,12 +19,6 @@ from viscoroll.equilibria.zeros import zeros
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
-#: alpha, kappa V and kappa M at the largest M, from another program
-TOPS = {
-    1.2: (0.525651, 0.02828775), 2.0: (0.543497, 0.09864525), 5.0: (0.608982, 0.19385991),
-    11.0: (0.684028, 0.24659784), 21.5: (0.743392, 0.27401809), 81.5: (0.815493, 0.29897582),
-    1000.0: (0.848366, 0.30820235),
-}  # fmt: skip
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: a hump a mode, of ever smaller height
 TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
@@ -44,18 +38,7 @@ def residuals(scene: vr.Scene, s) -> tuple[np.ndarray, np.ndarray]:
 # --- humps ---
 
 
-def test_tops_of_one_mode():
-    for alpha, (kappa_V, kappa_M) in TOPS.items():
-        hump = vr.humps(vr.Scene(alpha, KAPPA, MU))
-        assert hump.top.tolist() == [True]
-        assert close(hump.V[0] * KAPPA, kappa_V, rel=tol.STEADY_TABLE_V, scale=1.0)
-        assert close(hump.M[0] * KAPPA, kappa_M, rel=tol.STEADY_TABLE_M, scale=1.0)
-
-
 def test_humps_of_several_modes():
-    two = vr.humps(series_scene(TWO, kappa=1.0))
-    assert close(two.V, [0.194, 2.2, 9.1], rel=tol.STEADY_HUMPS)
-    assert close(two.M, [0.151, 0.081, 0.096], rel=tol.STEADY_HUMPS)
     ten = vr.humps(series_scene(TEN))
     assert ten.top.tolist() == [True, False] * 9 + [True]
     slopes = vr.contact(series_scene(TEN), ten.V, delta=0.0, fields=("M", "dM_dV"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import grp
 import hashlib
 import importlib
@@ -79,29 +78,6 @@ def test_only_what_python_calls_is_compiled_to_machine_code(kernels):
     assert len([*kernels.rglob("*.nbc")]) == 2
 
 
-def test_literal_integers_are_compiled_once(kernels):
-    @kernel
-    def sum_of_powers(x):
-        return power(x, 1) + power(x, 2) + power(x, 3)
-
-    compiled = []
-    numba.core.event.register("numba:compile", listener := Compiles(compiled))
-    assert sum_of_powers(2.0) == 14.0
-    numba.core.event.unregister("numba:compile", listener)
-    assert sorted(compiled) == ["power", "sum_of_powers"]
-
-
-class Compiles(numba.core.event.Listener):
-    def __init__(self, names: list[str]) -> None:
-        self.names = names
-
-    def on_start(self, event) -> None:
-        self.names.append(event.data["dispatcher"].py_func.__name__)
-
-    def on_end(self, event) -> None:
-        pass
-
-
 def test_an_ordinary_function_between_kernels_works(kernels):
     """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it misses."""
     between = numba.njit(lambda x: square(x) + 1.0)
@@ -173,22 +149,6 @@ def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
     with pytest.raises(numba.TypingError, match="nothing_of_the_kind"):
         wrong(1.0)
     assert deferred._deferring
-
-
-def test_garbage_is_collected_again_after_compiling(kernels):
-    @kernel
-    def wrong(x):
-        return x.nothing_of_the_kind
-
-    with pytest.raises(numba.TypingError):
-        wrong(1.0)
-    assert gc.isenabled()
-    gc.disable()
-    try:
-        assert cubed(2.0) == 8.0
-        assert not gc.isenabled()
-    finally:
-        gc.enable()
 
 
 # --- the cache ---
