@@ -91,8 +91,6 @@ SLOPE_OF_M = 5e-14
 SLOPE_SLIGHT = 1e-10
 
 # --- one material against an alpha each (test_material_tables.py) ---
-#: g, h and m of a series of one mode against those by its Bessel ratios, relative; measured 1e-15.
-TABLE = 1e-14
 #: Motions of one material against those of the same alpha each, at rtol 1e-9: half of the stated error of either.
 KINDS = 1e-9
 #: Many states at one alpha against 50 digits, relative, beta times 1/(1 - s): Q loses a digit where 1 - H(eta)/H(zeta)
@@ -347,8 +345,6 @@ UNIT = 1e-12
 SERIES_SLOPE = 2e-11
 #: States and stresses by the modes against those by rows; the equation of the length.
 SERIES_STATES = 1e-12
-#: Eqs. (10), (15) put back together from beta: differences of near numbers.
-SERIES_CLOSURE = 1e-8
 #: Integrals of stresses by 2,000 points; the layer at the front of a broad material is what they see least of.
 SERIES_STRESS = 1e-6
 #: Speeds at which slip returns, known to three digits from another program.
@@ -361,14 +357,8 @@ BODIES = 1e-12
 BODIES_DIFFERENCE = 1e-7
 #: Their parts of m together, by a table, against m; measured 3e-15.
 SHARES = 1e-14
-#: Limits of their shares: kappa V T = 1e-8 of the slow one, and a thousand times the slow mode's own speed.
-BODIES_LIMIT = 1e-2
 
 # --- steady rolling (test_steady.py) ---
-#: The tops of M(V), kappa V and kappa M, as printed by another program.
-STEADY_TABLE_V, STEADY_TABLE_M = 1e-6, 1e-8
-#: Speeds and moments of humps known to two or three digits.
-STEADY_HUMPS = 4e-2
 #: Speeds of humps against extended precision: where a slope from a table is 0; measured 2.8e-14.  The documentation
 #: states 1e-11.
 STEADY_HUMP_V = 1e-11
