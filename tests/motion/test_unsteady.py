@@ -105,7 +105,9 @@ def test_from_rest_and_to_it():
     assert close(held.force, 0.05 / GENTLE.gamma - M.Q + 0.5 * (M.M + 0.05 * M.N), rel=1e-6, scale=0.01)
 
 
-@pytest.mark.parametrize(("scene", "V0", "level"), [(RUBBER, 1.0, -0.5), (ROLLER, 30.0, 1.0)])
+@pytest.mark.parametrize(
+    ("scene", "V0", "level"), [(RUBBER, 1.0, -0.5), (RUBBER.replace(j=4.0), 1.0, -0.2), (ROLLER, 30.0, 1.0)]
+)
 def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
         m = vr.roll(scene, V0, V0, 100.0, unsteady=True)

@@ -75,7 +75,7 @@ def ensemble(
         all others are integrated.  The result says which, and the map's error.  Driven motions, and
         those of bodies that differ, are integrated: "flow" is refused.
     rtol, rest, unsteady, rested, max_steps : as for :func:`roll`; ``V0`` and ``omega0`` of the result are what a rest
-        left of them.
+        left of them.  With a material each an unsteady motion takes some milliseconds more, for its N.
     fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
         work_torque brake_loss``; only these are kept in memory.  Without a drive a loss takes an
         integrated motion a second pass, to some rtol of the energy.

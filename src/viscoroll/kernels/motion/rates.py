@@ -93,9 +93,8 @@ def strong(load, frame, scene):
 
 @kernel(inline=True)
 def room(n, j):
-    """Positive where the added mass is below 1 + j and leaves half of it; 1 where there is none."""
-    share = n / (1.0 + j)
-    return (1.0 - share) * (1.0 + 2.0 * share)
+    """Positive where the added mass is below 1 + j and leaves half of that, and of the 1 + n/2 of V; 1 without it."""
+    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
 
 
 @kernel(inline=True)
