@@ -102,12 +102,12 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error."""
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(figsize=(6.0, 4.0), layout="constrained")
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
     for marker, name in zip("osd^", dict.fromkeys(row["law by"] for row in rows), strict=True):
         own = [row for row in rows if row["law by"] == name]
         axes.loglog([row["error"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name)
     axes.set(xlabel="largest error of V and ω over the first speed", ylabel="time of a motion, ms")
-    axes.legend()
+    figure.legend(loc="outside upper center", ncols=2)
     save(figure, path)
 
 
