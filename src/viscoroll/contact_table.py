@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import elements, flattened, run_blocks
+from .blocks import elements, run_blocks
 from .contact_fields import SLOPES, SLOPES_OF_BODIES, UNSTEADY
 from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from .materials.law_modes import unsteadiness
 from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
-from .scale import OF_TIME
 
 #: states of a block, where each has a material of its own, which takes some kilobytes, and where not
 _BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
@@ -45,16 +44,14 @@ def states_of(
 
     def work(start: int, stop: int) -> None:
         kappa, mu, V, creep = (part(start, stop) for part in parts)
-        each, unit, order = own(start, stop), None, np.empty(0, np.int64)
+        each, order = own(start, stop), np.empty(0, np.int64)
         if isinstance(given, LawTable):
             law: Any = given.record
         elif given is None:
             law, order = law_of_alphas(each), order_of_alphas(each, kappa, V)
         else:
-            law, unit = law_of_materials(given, each.astype(np.int64))
+            law = law_of_materials(given, each.astype(np.int64))
             order = np.argsort(each, kind="stable") if each.size > 1 else order
-            V = _in(unit, V)
-            creep = _in(unit, creep) if creep_is_omega else creep
         asked = Asked(States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
         room = np.empty((2, _TOGETHER if isinstance(given, LawTable) else 1))
         if values:
@@ -69,15 +66,6 @@ def states_of(
                 to_N = np.where(np.arange(len(ROWS)) == ROWS.index("zeta"), N, -1)
                 table_loop(law, asked._replace(to=to_N), room, stop - start)
                 out[N, start:stop] = unsteadiness(each, out[N, start:stop])
-        if unit is not None:
-            for row, name in enumerate(names):
-                if name in OF_TIME and name != UNSTEADY:
-                    out[row, start:stop] *= unit ** OF_TIME[name]
 
     run_blocks(work, count, _BLOCK_EACH if isinstance(given, MaterialArray) else _BLOCK)
     return out
-
-
-def _in(unit: NDArray, speeds: NDArray) -> NDArray:
-    """Speeds in the time of each material."""
-    return flattened(speeds * unit, np.broadcast_shapes(speeds.shape, unit.shape))

@@ -156,7 +156,7 @@ class Scene:
     def in_own_time(self) -> tuple[Any, float]:
         """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
 
-        Of a material each as they are: a block finds the own time of each (:mod:`.materials.law_each`).
+        Of a material each as they are.
         """
         if self.series is None:
             if isinstance(self.material, BodiesArray) and self.material.like:

@@ -149,6 +149,7 @@ def test_refused():
     many, few = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), vr.Prony([[1.0]] * 3, [1.0])
     scene, pair = scene_of(many), scene_of(vr.Bodies(many, many, 0.4))
     wide = vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0))
+    far = scene_of(vr.Prony([[1.0], [2.0]], [1e-120]))
     for call, *words in (
         (lambda: vr.Prony([[1.0, -2.0]], [1.0, 0.1]), "E = -2.0", ">= 0"),
         (lambda: vr.Prony([[1.0, 2.0]], [[1.0, 0.0]]), "tau = 0.0", "> 0"),
@@ -174,5 +175,9 @@ def test_refused():
         (lambda: vr.Bodies(many, many, [[0.1, 0.5]]), "share", "one for each pair"),
         (lambda: vr.law(pair), "material = <2 pairs", "one material"),
         (lambda: vr.contact(pair, 1.0, delta=0.0, fields="N"), "fields = 'N'", "one material"),
+        (
+            lambda: vr.contact(scene_of(vr.Prony([[1.0], [2.0]], [1e-120])), 1.0, delta=0.0),
+            ("times", "1e-100 to 1e+100"),
+        ),
     ):
         refused(call, *words)

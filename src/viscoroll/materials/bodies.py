@@ -88,14 +88,3 @@ class Bodies:
     def alpha(self) -> float:
         """Instantaneous over long-time stiffness of the pair."""
         return self.total.alpha
-
-    def in_own_time(self) -> tuple[Bodies, float]:
-        """(The pair with the slow time of ``total`` near 1, the time that this is counted in), a power of two."""
-        return self._own
-
-    @cached_property
-    def _own(self) -> tuple[Bodies, float]:
-        _, unit = self.total.in_own_time()
-        if unit == 1.0:
-            return self, unit
-        return Bodies(self.cylinder.slower(1.0 / unit), self.half_space.slower(1.0 / unit), self.share), unit

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import broadcast_shape, checked
 from ..errors import ParameterError
 from .prony import Prony
-from .prony_array import Block, MaterialArray, PronyArray, block_of, moments, own_unit
+from .prony_array import Block, MaterialArray, PronyArray, block_of
 from .prony_forms import MOST_MODES, of_relaxation
 
 
@@ -26,15 +26,9 @@ class _Given(NamedTuple):
     alpha: NDArray[np.float64]
     part: NDArray[np.float64]
 
-    @property
-    def moments(self) -> tuple[NDArray, NDArray]:
-        """What is its in those of the pair."""
-        first, second = moments(self.strengths, self.times, creep=self.by_creep)
-        return self.part * first, self.part * second
-
-    def creep(self, factor: NDArray) -> tuple[NDArray, NDArray]:
-        """What is its in the creep of the pair, strengths and times, the latter longer by a factor."""
-        strengths, times = self.strengths, self.times * factor[:, None]
+    def creep(self) -> tuple[NDArray, NDArray]:
+        """What is its in the creep of the pair, strengths and times."""
+        strengths, times = self.strengths, self.times
         if not self.by_creep:
             modes = of_relaxation(strengths, times, self.alpha)
             strengths, times = modes.J, 1.0 / modes.b
@@ -133,7 +127,7 @@ class BodiesArray(MaterialArray):
         return self._one(cylinder, half_space, float(share))
 
     def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
-        """The pairs ``which`` in the own times of their sums, those of as many modes together."""
+        """The pairs ``which``, those of as many modes together."""
         share = np.broadcast_to(self.share, self.shape)[which]
         if self._same:
             yield from self._of_one(which, share)
@@ -160,9 +154,7 @@ class BodiesArray(MaterialArray):
         for body in bodies:
             odd |= body.unlike(which)
         rows, given = np.flatnonzero(~odd), [body.of(which[~odd], share[~odd]) for body in bodies]
-        first, second = (np.sum(terms, axis=0) for terms in zip(*(one.moments for one in given), strict=True))
-        unit = own_unit(first, second)
-        J, T = (np.concatenate(each, axis=1) for each in zip(*(one.creep(1.0 / unit) for one in given), strict=True))
+        J, T = (np.concatenate(each, axis=1) for each in zip(*(one.creep() for one in given), strict=True))
         own = np.repeat([float(body.is_half_space) for body in bodies], [one.times.shape[1] for one in given])
         order = np.argsort(-T, axis=1, kind="stable")
         J, T = (np.take_along_axis(each, order, axis=1) for each in (J, T))
@@ -170,16 +162,16 @@ class BodiesArray(MaterialArray):
         odd[rows[~apart]] = True
         rows = rows[apart]
         if rows.size:
-            found = block_of(places[rows], J[apart], T[apart], self.alpha[which[rows]], unit[apart], creep=True)
+            found = block_of(places[rows], J[apart], T[apart], self.alpha[which[rows]], creep=True)
             yield found._replace(weights=own[order[apart]])
         for n in np.flatnonzero(odd):
             yield self._alone(places[n : n + 1], int(which[n]))
 
     def _alone(self, place: NDArray, number: int) -> Block:
         """A pair with a mode less than the others, or of two bodies with modes of one time."""
-        own, unit = self[number].in_own_time()
+        own = self[number]
         total = own.total
-        alone = total.J[None], total.T[None], np.array([total.alpha]), np.array([unit])
+        alone = total.J[None], total.T[None], np.array([total.alpha])
         return block_of(place, *alone, creep=True)._replace(weights=own.half_space_weights[None])
 
     @cached_property

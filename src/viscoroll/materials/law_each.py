@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .law_axis import OCTAVES, tables_of, to_chebyshev
-from .law_modes import series_of
+from .law_modes import refuse_far, series_of
 from .law_table import Floats
 from .prony_array import Block, MaterialArray
 
@@ -92,8 +92,8 @@ def _octave(octave: int) -> tuple[Floats, int]:
     return _read_only(np.ascontiguousarray(np.moveaxis(found, 0, 2))), rows
 
 
-def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> tuple[Any, Floats]:
-    """(The record of states or motions that have the materials ``which``, what times of each are counted in).
+def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> Any:
+    """The record of states or motions that have the materials ``which``.
 
     For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
     """
@@ -104,22 +104,23 @@ def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> tupl
     blocks = list(materials.blocks(some))
     most = max((block.modes.a.shape[-1] for block in blocks), default=0)
     limits, counts = np.empty((some.size, LIMITS)), np.empty((some.size, 3), np.int64)
-    packed, unit = np.zeros((some.size, packed_size(most))), np.empty(some.size)
+    packed = np.zeros((some.size, packed_size(most)))
     for block in blocks:
         own, N = block.rows, block.modes.a.shape[-1]
-        unit[own], limits[own], counts[own] = block.unit, _limits(block), _counts(block)
+        if N:
+            refuse_far(block.modes.b.min(), block.modes.a.max())
+        limits[own], counts[own] = _limits(block), _counts(block)
         *vectors, Q, weights = series_of(block.modes, _weights(block))
         packed[own, : packed_size(N)] = np.concatenate([*vectors, weights, Q.reshape(own.size, -1)], axis=1)
     nodes = grid_size(int(counts[:, 1].max(initial=1)), float(limits[:, 0].max(initial=1.0)))
     rows, marks = _room(int(counts[:, 1].max(initial=1)))
     marks[HELD], working = -1, working_size(most)
-    law = _record(
+    return _record(
         hold, make, SOURCE, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
         packed=packed, limits=limits, counts=counts, numbers=np.empty(numbers_size(nodes)), nodes=nodes,
         made=np.zeros(nodes // LANES, np.int64), series=np.empty(working), working=working, columns=packed.shape[1],
         unlike=any(block.weights is not None for block in blocks),
     )  # fmt: skip
-    return law, unit[of]
 
 
 def _weights(block: Block) -> Floats:

@@ -7,9 +7,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import ParameterError
 from .bodies import Bodies
 from .prony import Prony
 from .prony_forms import Modes
+
+#: times in T_ref beyond which numbers of rows leave the doubles
+_LONGEST = 1e100
+
+
+def refuse_far(slowest: float, fastest: float) -> None:
+    """Raise ParameterError where times, by the rates of creep and relaxation, leave the range of rows."""
+    if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
+        allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} of their unit"
+        raise ParameterError("times", f"{1.0 / fastest:g} to {1.0 / slowest:g}", allowed)
 
 
 def series_of(modes: Modes, weights: NDArray[np.float64] | None = None) -> Any:

@@ -11,16 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
 from .bodies import Bodies
 from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
-from .law_modes import series_of, unsteadiness
+from .law_modes import refuse_far, series_of, unsteadiness
 from .pair import Pair
 from .prony import Prony
 from .prony_forms import Modes
 
-#: times in T_ref beyond which numbers of a table leave the doubles
-_LONGEST = 1e100
 #: tables kept, of some 0.2 MB
 _KEPT = 32
 
@@ -135,9 +132,7 @@ def made(given: float | Prony | Bodies, least: int = 0, coefficients: Floats | N
     limits = _sums(fast, (np.ones(weights.size), *parts))
     table, e0 = _elastic(), 0
     if modes.a.size:
-        if not 1.0 / _LONGEST <= modes.b[0] <= modes.a[-1] <= _LONGEST:
-            allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} of their unit"
-            raise ParameterError("times", f"{1.0 / modes.a[-1]:g} to {1.0 / modes.b[0]:g}", allowed)
+        refuse_far(modes.b[0], modes.a[-1])
         if coefficients is None:
             means = _sums((modes.J / modes.b)[None], parts)[:, 0]
             evaluate, ends = _evaluated(given, modes, weights), Limits(alpha, means, limits[1:])

@@ -20,15 +20,14 @@ from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_
 
 
 class Block(NamedTuple):
-    """Materials of equal numbers of modes in their own times (``Prony.in_own_time``), modes along the last axis.
+    """Materials of equal numbers of modes, along the last axis.
 
-    rows : which they are; unit : what their times are counted in
+    rows : which they are
     weights : of pairs, what of the strength of each creep mode is the half-space's
     """
 
     rows: NDArray[np.int64]
     modes: Modes
-    unit: NDArray[np.float64]
     weights: NDArray[np.float64] | None = None
 
 
@@ -49,7 +48,7 @@ class MaterialArray(ABC):
 
     @abstractmethod
     def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
-        """The materials ``which`` in their own times, those of as many modes together."""
+        """The materials ``which``, those of as many modes together."""
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -146,18 +145,15 @@ class PronyArray(MaterialArray):
         return self._like(self._strengths, self._times * by[..., None], self._alpha)
 
     def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
-        """The materials ``which`` in their own times: those with all their modes together, and the others."""
+        """The materials ``which``: those with all their modes together, and the others."""
         whole = ~self.unlike[which]
         if whole.any():
-            yield self._block(np.flatnonzero(whole), *self.ordered(which[whole]))
+            yield block_of(np.flatnonzero(whole), *self.ordered(which[whole]), creep=self._creep)
         for place in np.flatnonzero(~whole):
             one = self[which[place]]
             strengths, times = (one.J, one.T) if self._creep else (one.E, one.tau)
-            yield self._block(np.array([place]), strengths[None], times[None], np.array([one.alpha]))
-
-    def _block(self, rows: NDArray, strengths: NDArray, times: NDArray, alpha: NDArray) -> Block:
-        unit = own_unit(*moments(strengths, times, creep=self._creep))
-        return block_of(rows, strengths, times * (1.0 / unit)[:, None], alpha, unit, creep=self._creep)
+            alpha = np.array([one.alpha])
+            yield block_of(np.array([place]), strengths[None], times[None], alpha, creep=self._creep)
 
     def ordered(self, which: NDArray[np.int64]) -> tuple[NDArray, NDArray, NDArray]:
         """(Strengths, times, alpha) of some, the longest time first."""
@@ -197,21 +193,9 @@ class PronyArray(MaterialArray):
         return f"<{n} series of {modes} modes, by {'creep' if self._creep else 'relaxation'}>"
 
 
-def block_of(rows: NDArray, strengths: NDArray, times: NDArray, alpha: NDArray, unit: NDArray, *, creep: bool) -> Block:
-    """Series of equal numbers of modes; times descending, counted in ``unit``."""
-    return Block(rows, (of_creep if creep else of_relaxation)(strengths, times, alpha), unit)
-
-
-def moments(strengths: NDArray, times: NDArray, *, creep: bool) -> tuple[NDArray, NDArray]:
-    """(sum J_j T_j, sum J_j T_j^2) of each, from either form: sum J_j T_j^2 = sum E_i tau_i^2 + (sum E_i tau_i)^2."""
-    first, second = (strengths * times).sum(axis=-1), (strengths * times**2).sum(axis=-1)
-    return first, second if creep else second + first**2
-
-
-def own_unit(first: NDArray, second: NDArray) -> NDArray[np.float64]:
-    """What times of each are counted in (``Prony.in_own_time``), from its ``moments``: 1 of no modes."""
-    slow = np.where(first > 0.0, 2.0 * second - first**2, 1.0) / np.where(first > 0.0, first, 1.0)
-    return np.exp2(np.round(np.log2(slow)))
+def block_of(rows: NDArray, strengths: NDArray, times: NDArray, alpha: NDArray, *, creep: bool) -> Block:
+    """Series of equal numbers of modes; times descending."""
+    return Block(rows, (of_creep if creep else of_relaxation)(strengths, times, alpha))
 
 
 def _kept(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -236,8 +236,8 @@ def _law_of(scene: Scene, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64
     material = scene.in_own_time()[0]
 
     def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
-        found, unit = law_of_materials(material, np.minimum(which, len(material) - 1))
-        return found, flattened(unit, unit.shape), isinstance(material, BodiesArray)
+        found = law_of_materials(material, np.minimum(which, len(material) - 1))
+        return found, NO_UNIT, isinstance(material, BodiesArray)
 
     def own(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
         given: Any = scene.material

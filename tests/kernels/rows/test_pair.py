@@ -57,12 +57,3 @@ def test_limits_of_the_shares():
     for found, body, weight in ((fast[HALF_SPACE], STIFF, phi), (fast[CYLINDER], SOFT, UNLIKE.share)):
         sum_of = (body.J / body.T * (np.log(2.0 * body.T / z) - np.euler_gamma + 0.25)).sum()
         assert close(found, 0.5 * UNLIKE.alpha * z * z * weight * sum_of, rel=tol.SHARES)
-
-
-def test_own_time_of_a_pair():
-    """Powers of two, as that of the sum."""
-    slow = vr.Bodies(SOFT.slower(2.0**30), STIFF.slower(2.0**30), 0.3)
-    (here, unit), (there, again) = slow.in_own_time(), UNLIKE.in_own_time()
-    assert (unit, again) == (2.0**30 * again, UNLIKE.total.in_own_time()[1])
-    assert slow.in_own_time()[0] is here  # made once, not at every call
-    assert close(by_modes(here, PLACES)[2:], by_modes(there, PLACES)[2:], rel=tol.BODIES)
