@@ -6,7 +6,7 @@ from ..compile.jit import kernel
 from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
 from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, may_end
-from .rates import creep_limit
+from .rates import creep_limit, edge
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
 #: how closely a panel ends on an event, as a share of the tolerance, and the least that rounding leaves, over what the
@@ -145,10 +145,9 @@ def located(event, v, frame, case):
     slope = (rise_at(v + _ASIDE, powers, OF_EVENT) - rise_at(v - _ASIDE, powers, OF_EVENT)) / (2.0 * _ASIDE)
     for _ in range(_STEPS):
         speed, second = nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND)
-        limit = creep_limit(speed, case.scene)
-        off = frame.spin * (1.0 + limit * second)
-        if frame.slips:
-            off = frame.sigma * (second - speed) - limit * abs(speed)
+        off = edge(speed, second, frame, case.scene)
+        if not frame.slips:
+            off = frame.spin * (1.0 + creep_limit(speed, case.scene) * second)
         if not abs(off) < _NEAR_BY * abs(slope):
             break
         v = min(max(v - off / slope, 0.0), 2.0)

@@ -52,7 +52,7 @@ _STILL = 1e-75
 #: length of the panel behind that, over the time so far
 _SETTLING = 1e-11
 #: share of the length of panels that is kept where the law bends at delta = 0
-_PAST = 0.3
+_PAST = 0.7
 
 
 @kernel

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, WIDE, N
 from .load import FUNCTIONS, load_of, needed, values_at, varies
+from .rates import edge
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
 
 #: rows of the values at the nodes: unknowns; rates of p and of the second, and of V at node 0; speed scale, Q and parts
@@ -89,7 +90,6 @@ def put_node(i, rates, weight, nodes):
     nodes[P + i], nodes[OF_OMEGA + i], nodes[OF_Q + i] = rates.p, rates.omega, rates.Q
     nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i] = rates.M_half_space, rates.M_cylinder
     nodes[SPEED + i] = max(abs(nodes[V + i]), abs(rates.omega))
-    nodes[EVENT + WIDE * EDGE + i] = rates.edge
 
 
 @kernel(inline=True)
@@ -108,6 +108,7 @@ def put_events(panel, frame, case):
     nodes = case.work.nodes
     for i in range(N + 1):
         nodes[EVENT + WIDE * TURN + i] = nodes[V + i]
+        nodes[EVENT + WIDE * EDGE + i] = edge(nodes[V + i], nodes[SECOND + i], frame, case.scene)
         if not frame.slips:
             nodes[EVENT + WIDE * KINK + i] = frame.sigma * nodes[SECOND + i] + FAINT
         if frame.spin != 0.0:

@@ -141,7 +141,7 @@ def pass_panel(end, v, panel, frame, clock, case):
     if outputs:
         while at < tau.size and (tau[at] < end or closed):
             share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
-            _put(at, 2.0 * share ** (1.0 / panel.power), panel, frame, case)
+            _put(at, 2.0 * (share if panel.power == 1 else share ** (1.0 / panel.power)), panel, frame, case)
             at += 1
     if clock.ends < case.notes.ends.size:
         case.notes.ends[clock.ends] = end / case.pace

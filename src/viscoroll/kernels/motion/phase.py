@@ -47,7 +47,7 @@ _RISE = 0.25
 #: share of the time until the drive changes in which its slope shows
 _SOON = 1e-3
 #: growth and shrinkage of panels; growth behind a graded panel, and the order of its error
-_GROW, _SHRINK, _FAILED, _SAFETY, _BEHIND, _BENT = 6.0, 0.1, 0.3, 0.9, 3.0, 3.0
+_GROW, _SHRINK, _FAILED, _SAFETY, _BEHIND, _BENT = 6.0, 0.1, 0.3, 0.9, 30.0, 3.0
 #: V over the speed that divides slow from fast rolling, and |d|, both over rtol, below which V decays exponentially
 _SLOWEST, _SETTLED = 1e-4, 1e-2
 
@@ -171,11 +171,10 @@ def _next_length(panel, size, rejected, last, last_size):
     Where a layer is left behind errors stay small although panels grow: they may as well grow faster.
     """
     length = _FAILED * panel.length
-    if size < 1e300 and panel.power == 1:
-        length = panel.length * max(_SHRINK, min(_GROW, _SAFETY * (size + 1e-30) ** (-1.0 / N)))
-    elif size < 1e300:
+    if size < 1e300:
         # the bend of the law at eta = 0 sets the error of graded nodes, and is left behind with them
-        length = panel.length * (_BEHIND if size <= 1.0 else max(_SHRINK, _SAFETY * size ** (-1.0 / _BENT)))
+        most, order = (_GROW, 1.0 * N) if panel.power == 1 else (_BEHIND, _BENT)
+        length = panel.length * max(_SHRINK, min(most, _SAFETY * (size + 1e-30) ** (-1.0 / order)))
     if not size <= 1.0:
         return min(length, (_LESS if rejected == 0 else _FAR_LESS) * panel.length)
     if panel.power > 1 or last == 0.0:

@@ -41,7 +41,6 @@ class Rates(NamedTuple):
 
     p, p_rate : what is collocated in place of V, V itself in full slip and under strong friction, and p'
     rate : ``weight`` times the slope of the second unknown
-    edge : of the stick zone, and of the range of the added mass: positive within the regime
     further : slopes in V and in the second unknown
     """
 
@@ -54,7 +53,6 @@ class Rates(NamedTuple):
     p_rate: float
     rate: float
     weight: float
-    edge: float
     p_V: float
     p_second: float
     p_rate_V: float
@@ -85,16 +83,25 @@ def creep_limit(V, scene):
 
 
 @kernel(inline=True)
+def room(n, j):
+    """Positive where the added mass is below 1 + j and leaves half of that, and of the 1 + n/2 of V; 1 without it."""
+    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
+
+
+@kernel(inline=True)
+def edge(V, second, frame, scene):
+    """Of the stick zone: positive within the regime."""
+    if not frame.slips:
+        n, _, _ = added_mass(scene.law, V, scene.kappa, scene.gamma)
+        return (1.0 - frame.sigma * second) * room(n, scene.j)
+    return frame.sigma * (second - V) - creep_limit(V, scene) * abs(V)
+
+
+@kernel(inline=True)
 def strong(load, frame, scene):
     """Whether friction is so strong that V is collocated itself, with Q in its rate."""
     per_V, k = load.per_V, 0.5 * scene.mu / scene.kappa
     return not frame.slips and frame.sigma < 0.0 and k * per_V > _STRONG * (per_V + load.per_omega)
-
-
-@kernel(inline=True)
-def room(n, j):
-    """Positive where the added mass is below 1 + j and leaves half of that, and of the 1 + n/2 of V; 1 without it."""
-    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
 
 
 @kernel(inline=True)
@@ -128,7 +135,7 @@ def stick_rates(V, d, load, frame, scene):
     p_rate_V = per_both * (force_V + torque_V - half_space_rise - cylinder_rise)
     V_rate = per_V * (Q - M_half_space + force) + load.V_rate
     V_V, V_d = per_V * (Q_V - half_space_rise + force_V), per_V * (Q_d + gains.force_omega * omega_d)
-    torque_d, edge = gains.torque_omega * omega_d, 1.0 - sign * d
+    torque_d = gains.torque_omega * omega_d
     n, n_V, whole = added_mass(law, V, scene.kappa, scene.gamma)
     if n != 0.0:
         light = 1.0 / (1.0 + 0.5 * per_V * n)
@@ -136,7 +143,7 @@ def stick_rates(V, d, load, frame, scene):
         V_V, V_d, drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.5 * n * V_rate
         M_half_space, M_cylinder = M_half_space + drag, M_cylinder + drag
         torque_V, torque_d = torque_V - 0.5 * (n_V * V_rate + n * V_V), torque_d - 0.5 * n * V_d
-        p, p_V, edge = p + per_both * whole, p_V + per_both * n, edge * room(n, scene.j)
+        p, p_V = p + per_both * whole, p_V + per_both * n
     omega_rate = per_omega * (torque - Q - M_cylinder) + load.omega_rate
     rate = ((omega_rate - V_rate) / k - d * spread * V_rate) / L
     turn_V, turn_d = per_omega * (torque_V - Q_V - cylinder_rise), per_omega * (torque_d - Q_d)
@@ -144,7 +151,7 @@ def stick_rates(V, d, load, frame, scene):
     if rarely(strong(load, frame, scene)):
         p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
     return Rates(
-        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, edge, p_V, p_d, p_rate_V, p_rate_d,
+        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, p_V, p_d, p_rate_V, p_rate_d,
         ((turn_V - V_V) / k - d * spread * V_V - bend) / L, ((turn_d - V_d) / k - spread * (V_rate + d * V_d)) / L, 1.0,
     )  # fmt: skip
 
@@ -153,14 +160,13 @@ def stick_rates(V, d, load, frame, scene):
 def slip_rates(V, omega, load, frame, scene):
     """Full slip."""
     u, Q = scene.kappa * abs(V), frame.sigma * scene.mu
-    L, _, _, m_half_space, m_cylinder, half_space_rise, cylinder_rise = _speeds(u, scene)
+    _, _, _, m_half_space, m_cylinder, half_space_rise, cylinder_rise = _speeds(u, scene)
     force, _, torque = acting(V, omega, load, frame)
     M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
     V_rate = load.per_V * (Q - M_half_space + force) + load.V_rate
     omega_rate = load.per_omega * (torque - Q - M_cylinder) + load.omega_rate
-    edge = frame.sigma * (omega - V) - 0.5 * scene.mu / scene.kappa * L * abs(V)
     return Rates(
-        omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0, edge,
+        omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0,
         1.0, 0.0, load.per_V * (gains.force_V - half_space_rise), 0.0,
         load.per_omega * (gains.torque_V - cylinder_rise), load.per_omega * gains.torque_omega, 0.0,
     )  # fmt: skip
