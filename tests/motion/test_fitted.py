@@ -134,8 +134,8 @@ def test_speeds_prescribed_by_callables(name):
         m = vr.roll(ROLLER, 0.0, None, t, rtol, omega=CALLABLES[name])
         assert m.status == vr.MotionStatus.DONE
         assert m.steps < tol.CALLABLE_STEPS
-        assert close(m.omega, exact, rel=3.0 * rtol, scale=np.abs(exact).max())
-        assert close(m.V, best.V, rel=3.0 * rtol, scale=np.abs(exact).max())
+        assert close(m.omega, exact, rel=rtol, scale=np.abs(exact).max())
+        assert close(m.V, best.V, rel=rtol, scale=np.abs(exact).max())
 
 
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-8, 1e-11])

@@ -1,9 +1,7 @@
-"""Driven motions beside LSODA on the saturated law: constant drives, ramps from rest; free motions by their method."""
+"""Driven motions beside LSODA on the saturated law: constant drives, ramps from rest."""
 
 from __future__ import annotations
 
-from functools import partial
-from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,8 +15,6 @@ from ..timing import seconds_of
 
 #: this many copies of a motion are rolled at once, and so many times, the least of which counts
 _COPIES, _TIMES = 40, 3
-#: a force under which a motion counts as driven, and that moves nothing
-_NO_FORCE = 1e-200
 
 
 class Motion(NamedTuple):
@@ -59,7 +55,7 @@ def motions(random: np.random.Generator, kind: str, count: int, times: int) -> l
 
 
 def driven(sizes: dict[str, Any]) -> dict[str, Any]:
-    """Kind -> method -> microseconds a motion (median, 95th percentile, mean) and errors, a row each; free ones."""
+    """Kind -> method -> microseconds a motion (median, 95th percentile, mean) and errors, a row each."""
     random, rows = np.random.default_rng(sizes["seed"]), []
     for kind in ("constant", "rest", "ramp"):
         some = motions(random, kind, sizes["motions"], sizes["times"])
@@ -74,21 +70,7 @@ def driven(sizes: dict[str, Any]) -> dict[str, Any]:
                 taken = [(_ours if ours else _peers)(each, rtol) for each in few]
                 row = {"kind": kind, "method": method, "rtol": rtol, "motions": len(few)}
                 rows.append(row | _summary(taken, exact[: len(few)]))
-    return {"rows": rows, "free": [_free(sizes, rtol) for rtol in sizes["free_rtol"]]}
-
-
-def _free(sizes: dict[str, Any], rtol: float) -> dict[str, float]:
-    """Microseconds of free motions of one scene by their own methods and by that of driven ones, and how far apart."""
-    start = np.random.default_rng(sizes["seed"]).uniform(-2.0, 2.0, (2, sizes["free_motions"]))
-    t, found = np.linspace(0.0, sizes["free_end"], sizes["times"]), []
-    for drive in ({"method": "integrate"}, {"force": _NO_FORCE}):
-        roll = partial(vr.ensemble, vr.PAPER_SECTION_5, *start, t, rtol=rtol, threads=1, fields=("V", "omega"), **drive)
-        roll()
-        found.append(min((seconds_of(roll) for _ in range(_TIMES)), key=itemgetter(0)))
-    (own, one), (driven, other) = found
-    apart = max(np.abs(getattr(one, name) - getattr(other, name)).max() for name in ("V", "omega"))
-    per = 1e6 / sizes["free_motions"]
-    return {"rtol": rtol, "own_us": per * own, "driven_us": per * driven, "apart": float(apart)}
+    return {"rows": rows}
 
 
 def _summary(taken: list[tuple[float, NDArray]], exact: list[NDArray]) -> dict[str, float]:

@@ -53,7 +53,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
         "bench_bound_law": bench.bound_law,
         "bench_scaling": bench.scaling, "bench_skips": bench.skips, "bench_cold_start": bench.cold_start,
         "bench_first_calls": bench.first_calls, "bench_series": bench.series, "bench_driven": bench.driven,
-        "bench_free": bench.free, "bench_last_release": bench.last_release,
+        "bench_last_release": bench.last_release,
     },
 }  # fmt: skip
 BLOCKS = {name: (stage, text) for stage, texts in STAGES.items() for name, text in texts.items()}

@@ -239,15 +239,6 @@ def driven(results: Results) -> str:
     return listed(columns, rows)
 
 
-def free(results: Results) -> str:
-    """Free motions by their own methods and by that of driven ones."""
-    columns = {
-        "rtol": "{rtol:.0e}", "by their own methods": "{own_us:.3g} µs",
-        "by that of driven motion": "{driven_us:.3g} µs", "largest difference": "{apart:.1e}",
-    }  # fmt: skip
-    return listed(columns, results["bench-driven"]["measured"]["free"])
-
-
 def cold_start(results: Results) -> str:
     """Whole processes."""
     rows = (
