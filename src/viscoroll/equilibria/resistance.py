@@ -69,6 +69,13 @@ class Branches:
             inside &= np.abs(load - first) > SNAP * np.abs(load)
         return inside | (np.abs(load - last) <= SNAP * np.abs(load)) if self.flat[self.last[branch]] else inside
 
+    def nodes(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The node of this branch behind which it meets each load."""
+        first, last = self.first[branch], self.last[branch]
+        rise = self.rise[first : last + 1]
+        at = np.searchsorted(rise, load, "right") if rise[-1] > rise[0] else np.searchsorted(-rise, -load)
+        return np.asarray(first + np.clip(at - 1, 0, last - first - 1))
+
 
 def humps(scene: Scene) -> Humps:
     """Every local maximum and minimum of the rolling resistance M over the speed.

@@ -48,13 +48,12 @@ def crossings(law: LawTable, gain: float, total: NDArray[np.float64]) -> tuple[N
     for sign in (1.0, -1.0):
         for branch in range(found.first.size):
             of = np.flatnonzero(found.crossed(branch, sign * total))
-            pairs.append((of, np.full(of.size, sign), np.full(of.size, branch)))
-    load, sign_of, place = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    met, first, last = sign_of * total[load], found.first[place], found.last[place]
-    curve, u = found.curve, np.empty(load.size)
+            pairs.append((of, np.full(of.size, sign), found.nodes(branch, sign * total[of])))
+    load, sign_of, node = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    met, curve, u = sign_of * total[load], found.curve, np.empty(load.size)
 
     def work(start: int, stop: int) -> None:
-        crossing_loop(law.record, curve, met, first, last, u, start, stop)
+        crossing_loop(law.record, curve, met, node, u, start, stop)
 
     run_blocks(work, load.size, _BLOCK)
     return load, sign_of, u

@@ -19,7 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernels.numerics.nodes import chebyshev, rounded, to_chebyshev
+from ..kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
 
 Floats = NDArray[np.float64]
 
@@ -41,18 +41,8 @@ _NODES = rounded(chebyshev(TERMS))
 _TO_CHEBYSHEV = np.ascontiguousarray(to_chebyshev(TERMS).T)
 
 
-def _powers(twice: list[float]) -> Floats:
-    """[n, k]: coefficient of t^k in T_n(x), where 2 x = ``twice`` over the powers of t."""
-    found = np.zeros((TERMS, TERMS))
-    found[0, 0], found[1, :2] = 1.0, 0.5 * np.array(twice)
-    for n in range(2, TERMS):
-        found[n] = twice[0] * found[n - 1] - found[n - 2]
-        found[n, 1:] += twice[1] * found[n - 1, :-1]
-    return found
-
-
 #: of T_n(t), and in the slow row of T_n(2 t - 1)
-_POWERS, _SLOW_POWERS = _powers([0.0, 2.0]), _powers([-2.0, 4.0])
+_POWERS, _SLOW_POWERS = powers_of_chebyshev(TERMS, 0.0, 1.0), powers_of_chebyshev(TERMS, 1.0, 2.0)
 
 
 @dataclass(frozen=True)
@@ -283,7 +273,7 @@ def arranged(table: Floats, e0: int, alpha: float, fast: Floats) -> Floats:
         L, dL = L - 0.5 * (L * value - 1.0 / L) / A, -0.5 * L * slope / A
     lengths = rows.fit_slopes(L.reshape(rows.x.shape), dL.reshape(rows.x.shape))
     lengths[0, 0] = 1.0
-    pairs = [_paired(*both) for both in ((lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder))]
+    pairs = [paired(*both) for both in ((lengths, half_space + cylinder), (lam, epsilon), (half_space, cylinder))]
     return np.concatenate([*pairs, press, share], axis=1)
 
 
@@ -297,7 +287,7 @@ def _press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats) -> 
     return np.where(far, alpha * share**2, value), np.where(far, bend * share, slope)
 
 
-def _paired(a: Floats, b: Floats) -> Floats:
+def paired(a: Floats, b: Floats) -> Floats:
     """a0 a1 b0 b1, a2 a3 b2 b3, ... of every row."""
     both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
     return both.reshape(len(a), -1)

@@ -16,6 +16,7 @@ from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
 from ..kernels.motion.records import PARTIAL
 from ..kernels.numerics.nodes import gauss
+from ..materials.law_build import paired
 from ..materials.law_table import law_table
 from .flow_motions import motions
 from .flow_rows import NODES, Nodes, Rows, octaves
@@ -94,11 +95,6 @@ def fill(made: FlowMap, threads: int | None) -> str:
     return ""
 
 
-def _pair(a: Floats, b: Floats) -> Floats:
-    """The powers of two functions as ``lanes`` reads them."""
-    return np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2).reshape(len(a), -1)
-
-
 def _fill_slides(case: Case, parts: FlowTables) -> None:
     """Full slip, V > 0 and V < 0: V' = +-mu - M/2 stands alone."""
     _, kappa, mu, j = case.parameters
@@ -118,14 +114,14 @@ def _fill_slides(case: Case, parts: FlowTables) -> None:
         if not (np.diff(kept.ravel(), prepend=0.0) > 0.0).all():
             raise Unserved(_HELD)
         time, path, onset = NODES.powers(T), NODES.powers(X), NODES.powers(kept)
-        parts.slide[n] = np.concatenate([_pair(time, NODES.powers(limit)), path], axis=-1)
+        parts.slide[n] = np.concatenate([paired(time, NODES.powers(limit)), path], axis=-1)
         # nearly held: the inverse would end before the speeds that are served
         if not kappa * mu * time[-3].sum() < 2.0 ** (layout.HIGH - 1):
             raise Unserved(_HELD)
         parts.after[n] = NODES.powers(_SPEEDS.inverse(time, _SPEEDS.x / (kappa * mu)) / kappa)
         u = _SPEEDS.inverse(onset, _SPEEDS.x * (1.0 + j) / kappa)
         at = [NODES.powers(value) for value in (u / kappa, _SPEEDS.value(time, u), _SPEEDS.value(path, u))]
-        parts.onset[n] = np.concatenate([_pair(*at[:2]), at[2]], axis=-1)
+        parts.onset[n] = np.concatenate([paired(*at[:2]), at[2]], axis=-1)
 
 
 class Slow(NamedTuple):
@@ -161,8 +157,8 @@ def _fill_slow(case: Case, parts: FlowTables) -> Slow:
     speeds = NODES.powers(V), NODES.powers(delta)
     lam = rows.inverse(speeds[0], _SPEEDS.x / case.parameters[1])
     slow = Slow(rows, speeds, (to_go[0], to_go[1]), to_go[2], NODES.powers(lam))
-    parts.slow[: len(V)] = np.concatenate([_pair(*speeds), _pair(*slow.path), slow.loss], axis=-1)
-    parts.manifold[:] = _pair(slow.lam, NODES.powers(rows.value(speeds[1], lam)))
+    parts.slow[: len(V)] = np.concatenate([paired(*speeds), paired(*slow.path), slow.loss], axis=-1)
+    parts.manifold[:] = paired(slow.lam, NODES.powers(rows.value(speeds[1], lam)))
     return slow
 
 
@@ -226,7 +222,7 @@ def _fill_layers(case: Case, sign: float, first: int, slow: Slow, entry: Floats,
     rates = NODES.powers(_stiff_rate(case, onsets.x / kappa))
     gained = [_padded(_COARSE.powers(value)) for value in (x, angle, lost)]
     entry[:] = np.concatenate(
-        [_pair(known + _padded(above), rates), _padded(split_powers), _pair(*gained[:2]), gained[2]], axis=-1
+        [paired(known + _padded(above), rates), _padded(split_powers), paired(*gained[:2]), gained[2]], axis=-1
     )
 
 

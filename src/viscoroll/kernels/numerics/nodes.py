@@ -107,6 +107,16 @@ def to_chebyshev(n: int) -> _Floats:
     return rounded(columns).T.copy()
 
 
+def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
+    """[m, k]: coefficient of t^k in T_m(scale t - shift), m < n."""
+    found = np.zeros((n, n))
+    found[0, 0], found[1, :2] = 1.0, [-shift, scale]
+    for m in range(2, n):
+        found[m] = (0.0 - 2.0 * shift) * found[m - 1] - found[m - 2]
+        found[m, 1:] += 2.0 * scale * found[m - 1, :-1]
+    return found
+
+
 def rounded(values: Any) -> _Floats:
     """The nearest doubles."""
     return np.array(values, dtype=np.float64)

@@ -16,7 +16,7 @@ import numpy as np
 from ..compile.address import doubles, integers, record_at
 from ..compile.jit import kernel
 from ..numerics.four import LANES, divide, fused, load, multiply, slide, spread, store, subtract
-from ..numerics.nodes import chebyshev, rounded, to_chebyshev
+from ..numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
 from .lanes import TERMS
 from .record import COUNT, E0, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WIDTH
 from .series import CYLINDER, HALF_SPACE, RISE, SHIFT, unpacked, values
@@ -45,14 +45,6 @@ _TO_CHEBYSHEV = np.ascontiguousarray(to_chebyshev(TERMS).T).ravel()
 _OUTWARDS = np.array([POINTS // 2 + (n + 1) // 2 * (-1) ** n for n in range(POINTS)])
 
 
-def _powers(slow: bool) -> np.ndarray:
-    """[n, k]: coefficient of t^k in T_n(t), or in T_n(2 t - 1) = T_2n(sqrt t); row after row."""
-    found, step = np.zeros((TERMS, TERMS)), 2 if slow else 1
-    for n in range(TERMS):
-        found[n, : n + 1] = np.polynomial.chebyshev.cheb2poly(np.eye(step * n + 1)[step * n])[::step]
-    return found.ravel()
-
-
 def _leja(places: np.ndarray) -> np.ndarray:
     """Places in an order in which differences stay small: each is the farthest from those before."""
     found = [places.argmax()]
@@ -61,7 +53,7 @@ def _leja(places: np.ndarray) -> np.ndarray:
     return np.asarray(places[found])
 
 
-_POWERS, _SLOW_POWERS = _powers(False), _powers(True)
+_POWERS, _SLOW_POWERS = (powers_of_chebyshev(TERMS, shift, 1.0 + shift).ravel() for shift in (0.0, 1.0))
 _SLOW_PLACES = _leja(0.5 + 0.5 * rounded(chebyshev(POINTS)))
 
 #: what these kernels know: addresses of the record's arrays; of states or motions the material of each, and how many;

@@ -39,19 +39,6 @@ def _on_curve(u, gain, law):
 
 
 @kernel
-def _bracket(load, first, last, rise):
-    """The node from ``first`` to ``last`` - 1 behind which the monotone ``rise`` meets the load."""
-    rising = rise[last] > rise[first]
-    while last - first > 1:
-        middle = (first + last) // 2
-        if (rise[middle] <= load) == rising:
-            first = middle
-        else:
-            last = middle
-    return first
-
-
-@kernel
 def _crossing(load, n, curve, law):
     """u between the nodes n and n + 1 where the curve meets the load: Newton's iteration in a closed bracket.
 
@@ -86,8 +73,7 @@ def _crossing(load, n, curve, law):
 
 
 @kernel
-def crossing_loop(law, curve, load, first, last, out, start, stop):
-    """u where the curve meets each load between two of its nodes."""
+def crossing_loop(law, curve, load, node, out, start, stop):
+    """u where the curve meets each load between a node and the next."""
     for n in range(start, stop):
-        at = _bracket(load[n], first[n], last[n], curve.rise)
-        out[n] = _crossing(load[n], at, curve, law)
+        out[n] = _crossing(load[n], node[n], curve, law)
