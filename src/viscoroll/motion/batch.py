@@ -77,8 +77,8 @@ def ensemble(
     rtol, rest, unsteady, rested, max_steps : as for :func:`roll`; ``V0`` and ``omega0`` of the result are what a rest
         left of them.  With a material each an unsteady motion takes some milliseconds more, for its N.
     fields : out of ``V omega x angle delta regime slip_loss rolling_loss``, and ``force torque work_force
-        work_torque brake_loss``; only these are kept in memory.  Without a drive a loss takes an
-        integrated motion a second pass, to some rtol of the energy.
+        work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
+        some rtol of the energy that moves.
     speed : highest speed that the flow map is made for; default the largest of the starts.
         Where a large ensemble is rolled in several calls, one number for all makes the
         bits independent of how it is cut.
