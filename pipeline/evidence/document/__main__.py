@@ -48,7 +48,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     },
     "torture": {"torture": tables.torture},
     "bench": {
-        "bench_peers": bench.peers, "bench_all": bench.headline, "bench_fixed_scene": bench.fixed_scene,
+        "bench_peers": bench.peers, "bench_fixed_scene": bench.fixed_scene,
         "bench_own": bench.own_parameters, "bench_agreement": bench.agreement, "bench_law": bench.law,
         "bench_bound_law": bench.bound_law,
         "bench_scaling": bench.scaling, "bench_skips": bench.skips, "bench_cold_start": bench.cold_start,

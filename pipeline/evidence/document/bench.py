@@ -61,12 +61,12 @@ def ratios(rows: list[dict[str, Any]], own: str, key: str = "max") -> list[dict[
     return result
 
 
-def comparison(results: Results, *, best: bool = False) -> list[tuple[str, ...]]:
+def comparison(results: Results) -> list[tuple[str, ...]]:
     """(ratio, method, its us a motion and error, ours, ratio and ours of the look-up) on IC1-IC3, on the random starts,
     and with own parameters, where nothing is looked up.
 
-    Slow peers were tried on fewer of the random motions than this package, whose error is that over all of them.
-    ``best``: each peer at the setting with its smallest error alone.
+    Each peer at the setting with its smallest error.  Slow ones were tried on fewer of the random motions than this
+    package, whose error is that over all of them.
     """
     groups = {
         "IC1-IC3": ("work-precision", paper_rows),
@@ -83,11 +83,8 @@ def comparison(results: Results, *, best: bool = False) -> list[tuple[str, ...]]
         default = [row for row in rows if (row["method"], row["rtol"]) == (INTEGRATED, DEFAULT_RTOL)]
         compared = ratios(peers + default, INTEGRATED)
         looked_up = {(row["method"], row["rtol"]): row for row in ratios(rows, LOOKED_UP)}
-        if best:
-            compared = [
-                min((r for r in compared if r["method"] == m), key=lambda r: r["max"]) for m in _methods(compared)
-            ]
-        for row in compared:
+        for method in _methods(compared):
+            row = min((row for row in compared if row["method"] == method), key=lambda row: row["max"])
             name = f"{methods[row['method']]['label']}, rtol {row['rtol']:.0e}, {where}"
             name += f" ({row['failed']} of {row['motions']} given up)" if row["failed"] else ""
             quick = looked_up.get((row["method"], row["rtol"]))
@@ -101,15 +98,10 @@ def _methods(rows: list[dict[str, Any]]) -> list[str]:
     return list(dict.fromkeys(row["method"] for row in rows))
 
 
-def headline(results: Results, *, best: bool = False) -> str:
-    """The comparison with every row of every peer, ratios first."""
-    columns = ("times faster", "than", "its time and max error", "viscoroll, integrated", "times faster", "looked up")
-    return table(columns, comparison(results, best=best))
-
-
 def peers(results: Results) -> str:
-    """The comparison at the setting where each peer errs least."""
-    return headline(results, best=True)
+    """The comparison at the setting where each peer errs least, ratios first."""
+    columns = ("times faster", "than", "its time and max error", "viscoroll, integrated", "times faster", "looked up")
+    return table(columns, comparison(results))
 
 
 def own_parameters(results: Results) -> str:
