@@ -125,8 +125,8 @@ def proofs(results: Results) -> str:
     """A row a proof, with the claim that comes closest to its bound; data/results/proofs.json has all of them."""
     titles = {
         "ratios": "Bessel ratios", "contact": "contact states", "states": "states of rows, 60 digits", "shape": "shape",
-        "slopes": "slopes and stress", "motion": "motion", "series": "series and pairs", "boundary": "boundary elements",
-        "driven": "driven motion", "check_driven": "driven motion, extended precision",
+        "slopes": "slopes and stress", "motion": "motion", "series": "series and pairs",
+        "boundary": "boundary elements", "driven": "driven motion", "check_driven": "driven motion, extended precision",
     }  # fmt: skip
     columns = {
         "proof": "{title}", "claims": "{claims}", "points": "{points:,}", "closest to its bound": "{claim}",
