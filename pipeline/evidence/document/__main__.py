@@ -39,7 +39,7 @@ STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
     "measure.identification": {
         "identify_learn": identification.learn, "identify_bearing": identification.bearing,
         "identify_said": identification.said, "identify_times": identification.times,
-        "identify_coverage": identification.coverage,
+        "identify_coverage": identification.coverage, "identify_reach": identification.reach,
     },
     "prove": {"proofs": tables.proofs},
     "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},

@@ -12,7 +12,8 @@ _HEADS = {"E_1": "E_1 = alpha − 1"}
 
 
 def _rows(results: Results, part: str) -> list[dict[str, Any]]:
-    return results["identification"]["parts"][part]["rows"]
+    """Of a part, none of one that was not measured yet."""
+    return results["identification"]["parts"].get(part, {"rows": []})["rows"]
 
 
 def _known(row: dict[str, Any], name: str) -> str:
@@ -84,6 +85,14 @@ def coverage(results: Results) -> str:
         {"intervals of 95 % that hold the truth": "{experiment}, {sets} data sets", "share": "{shares}"},
         (
             row | {"shares": ", ".join(f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items())}
-            for row in _rows(results, "coverage")
+            for row in _rows(results, "coverage") + _rows(results, "product")
         ),
+    )
+
+
+def reach(results: Results) -> str:
+    """How often one search arrives."""
+    return listed(
+        {"one search, up to a factor of ten off": "{experiment}", "arrives": "{share} of {starts}"},
+        (row | {"share": f"{100.0 * row['reached']:.3g} %"} for row in _rows(results, "reach")),
     )

@@ -233,7 +233,7 @@ def coverage(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 def product(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """How often that of a product does, which must be named."""
-    return _counted(sizes, PRODUCTS)
+    return _counted(sizes | {"asked": sizes["named"]}, PRODUCTS)
 
 
 def _counted(sizes: dict[str, Any], experiments: dict[str, Any]) -> list[dict[str, Any]]:

@@ -20,8 +20,9 @@ _PARTS, _AS_NEAR = (1, 2, 10, 100), 1.5
 #: how much wider the interval of a product with rounder exponents may be
 _ROUNDER = 5.0
 
-#: the profile of a combination
+#: the profile of a combination, and ends of its interval over what it is, if it has both
 ProfileOf = Callable[[Vector], Profile]
+EndsOf = Callable[[Vector], tuple[float, float] | None]
 
 
 class Product(NamedTuple):
@@ -52,9 +53,8 @@ def undetermined(problem: Problem, cov: Vector, profile_of: ProfileOf) -> list[i
 
 
 def products(
-    problem: Problem, u: Vector, cov: Vector, which: list[int], profile_of: ProfileOf,
-    rise: float,
-) -> list[Product]:  # fmt: skip
+    problem: Problem, u: Vector, cov: Vector, which: list[int], profile_of: ProfileOf, rise: float
+) -> list[Product]:
     """What is determined of ``which``: by places that all fit, by slopes at u where that is narrower by far.
 
     Where neither has an interval, by slopes with what these say of their interval, at a ``rise`` of chi2.
@@ -74,19 +74,13 @@ def products(
 
     by_places = _narrow(problem, u, _by_places(which, profile_of, u.size), asked)
     by_slopes = _narrow(problem, u, steep, asked)
-    if by_places and (not by_slopes or _width(by_places[0]) < _ROUNDER * _width(by_slopes[0])):
+    widths = [math.log(family[0].high / family[0].low) if family else math.inf for family in (by_places, by_slopes)]
+    if by_places and widths[0] < _ROUNDER * widths[1]:
         return by_places
     return by_slopes or [one._replace(near=True) for one in _narrow(problem, u, steep, guessed)]
 
 
-def _width(one: Product) -> float:
-    return float(np.log(one.high / one.low))
-
-
-def _narrow(
-    problem: Problem, u: Vector, family: Iterable[Vector],
-    ends_of: Callable[[Vector], tuple[float, float] | None],
-) -> list[Product]:  # fmt: skip
+def _narrow(problem: Problem, u: Vector, family: Iterable[Vector], ends_of: EndsOf) -> list[Product]:
     """Products with their intervals, up to the first one that is open or wide."""
     found, values = [], problem.values(u)
     for powers in family:

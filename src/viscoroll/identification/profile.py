@@ -64,32 +64,35 @@ class Walk:
         return found
 
     def out(self, reach: float, goal: float, start: Found | None = None) -> tuple[float | None, Found]:
-        """(Where the height is the goal, None if it is less up to ``reach``; the last lower place), from such a one."""
+        """(Where the height is the goal, None if it is less up to ``reach``; the place there), from a lower one."""
         from scipy.optimize import brentq
 
-        last = start or self.best
-        d, step, known = self.way(last.u), min(goal * self.sd, _FIRST), {}
+        low = high = start or self.best
+        d, step, known = self.way(low.u), min(goal * self.sd, _FIRST), {}
 
         def over(d: float) -> float:
-            nonlocal last
+            nonlocal low, high
             if d not in known:
-                found = self.at(d, last.u)
-                if self.height(found) > goal:
-                    found = self.at(d, found.u, _MANY)
-                known[d] = self.height(found) - goal
-                last = found if known[d] < 0.0 else last
-            return 0.0 if abs(known[d]) < _CLOSE * goal else known[d]
+                found = self.at(d, low.u)
+                if self.height(found) > goal:  # in few steps, or in another valley
+                    found = min((self.at(d, u, _MANY) for u in (found.u, high.u)), key=lambda one: one.chi2)
+                known[d] = found
+                low, high = (found, high) if self.height(found) < goal else (low, found)
+            f = self.height(known[d]) - goal
+            return 0.0 if abs(f) < _CLOSE * goal else f
 
-        known[d] = f = self.height(last) - goal
+        known[d] = low
+        f = over(d)
         while f < 0.0:
             if abs(reach - d) < 1e-9:
-                return None, last
+                return None, low
             a, fa = d, f
             d = a + math.copysign(min(step, abs(reach - a)), reach)
             f = over(d)
             rate = max((f - fa) / step, 0.05 * goal / step)
             step = min(max(-1.05 * f / rate, 0.3 * step), 3.0 * step, _STEP)
-        return brentq(over, a, d, xtol=_CLOSE * min(self.sd, 1.0)), last
+        end = brentq(over, a, d, xtol=_CLOSE * min(self.sd, 1.0))
+        return end, known[min(known, key=lambda d: abs(d - end))]
 
     def beyond(self, d: float, reach: float, rise: float, others: list[Vector]) -> list[Found]:
         """Places behind an end, met from elsewhere, where chi2 has risen by less."""
