@@ -67,17 +67,17 @@ class Walk:
         """(Where the height is the goal, None if it is less up to ``reach``; the place there), from a lower one."""
         from scipy.optimize import brentq
 
-        low = high = start or self.best
+        low = start or self.best
         d, step, known = self.way(low.u), min(goal * self.sd, _FIRST), {}
 
         def over(d: float) -> float:
-            nonlocal low, high
+            nonlocal low
             if d not in known:
                 found = self.at(d, low.u)
-                if self.height(found) > goal:  # in few steps, or in another valley
-                    found = min((self.at(d, u, _MANY) for u in (found.u, high.u)), key=lambda one: one.chi2)
+                if self.height(found) > goal:
+                    found = self.at(d, found.u, _MANY)
                 known[d] = found
-                low, high = (found, high) if self.height(found) < goal else (low, found)
+                low = found if self.height(found) < goal else low
             f = self.height(known[d]) - goal
             return 0.0 if abs(f) < _CLOSE * goal else f
 
