@@ -57,9 +57,8 @@ _MOST_ITERATIONS = 12
 #: leave
 SHARE, _NEWTON, _LEAST = 0.4, 0.01, 1e-14
 #: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, which
-#: nothing tells yet; change over the tolerance that the last iteration may make in partial slip: what the equations
-#: say at the nodes stays as it was before
-_ANEW, _SLOWED, _FIRST_GAIN, _CLOSE = 1e-2, 1e-3, 0.01, 10.0
+#: nothing tells yet
+_ANEW, _SLOWED, _FIRST_GAIN = 1e-2, 1e-3, 0.1
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
 #: the last term's share of the error: the next one over this one, and the coefficient of a power over that
@@ -169,14 +168,14 @@ def solve(panel, slope, track, frame, case):
     left = max(_NEWTON * tolerance, _LEAST)
     put_drive(panel, case)
     guess(panel, slope, track, frame, case)
-    before, anew, close = np.inf, True, 1.0 if frame.slips else _CLOSE
-    fed = strong(load_there(0, frame, case), frame, case.scene)
+    before, anew, fed = np.inf, True, strong(load_there(0, frame, case), frame, case.scene)
     for n in range(_MOST_ITERATIONS):
         change = _newton(anew, fed, panel, frame, case)
         gain = _FIRST_GAIN if n == 0 else change / before
         if not (change < 1e6 and gain < 2.0):
             return False
-        if change <= close * tolerance and change * gain <= left:
+        # what is integrated stays as it was before this change
+        if change <= tolerance and change * gain <= left:
             rise_terms(V, work.nodes, OF_V, work.powers)
             rise_terms(SECOND, work.nodes, OF_SECOND, work.powers)
             return True
