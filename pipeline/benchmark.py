@@ -88,7 +88,7 @@ def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
     for rtol in settings.rtol:
 
         def roll(V0: float, omega0: float, rtol: float = rtol) -> tuple[NDArray, NDArray]:
-            found = vr.roll(scene, V0, omega0, t, rtol)
+            found = vr.roll(scene, V0, omega0, t, rtol=rtol)
             return found.V, found.omega
 
         yield "roll", rtol, roll

@@ -11,8 +11,8 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import pytest
 from memory import forget
 
+from viscoroll import known
 from viscoroll.motion import flow_store
-from viscoroll.si import warned as of_materials
 
 # what a user chose for other work does not reach the tests
 os.environ.pop("VISCOROLL_THREADS", None)
@@ -38,7 +38,7 @@ def pytest_sessionfinish(session):
 @pytest.fixture(autouse=True)
 def nothing_said_yet(monkeypatch):
     """What is said of a material once a process is said in each test."""
-    monkeypatch.setattr(of_materials, "_told", set())
+    monkeypatch.setattr(known, "_told", set())
 
 
 @pytest.fixture

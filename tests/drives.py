@@ -10,5 +10,5 @@ def given(plain):
     if not isinstance(plain, dict):
         return plain
     if "times" in plain:
-        return plain["times"], plain["values"]
+        return vr.Schedule(**plain)
     return vr.Feedback(**plain | {"value": given(plain["value"])})

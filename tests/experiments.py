@@ -44,6 +44,6 @@ def traction(speeds=(0.1,), seed: int | None = None, sigma: float = 1.0, **more)
 
 def thrown(seed: int | None = None, t: np.ndarray = TIMES, omega0: float | None = 0.0, **more) -> vr.Coastdown:
     """V of a roller thrown at 4 m/s without spin, or let go rolling."""
-    motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, 1e-10, **more)
+    motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, rtol=1e-10, **more)
     spin = {} if omega0 is None else {"omega0": omega0}
     return vr.Coastdown(t, noise(seed, motion.V, 5e-3), sigma=5e-3, name="throw", **spin)

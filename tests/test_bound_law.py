@@ -202,8 +202,8 @@ def test_a_pickled_law_binds_anew(law):
         (vr.Scene(2.0, [50.0], 0.2), "kappa"),
         (vr.Scene(2.0, 50.0, np.full((2, 2), 0.2)), "mu"),
         (vr.Scene(kappa=50.0, mu=0.2, material=vr.Prony([[1.0], [2.0]], [1.0])), "material"),
-        (vr.PAPER_CYLINDER, "scene"),
-        (2.0, "scene"),
+        (vr.PAPER_CYLINDER.replace(load=[1.0, 2.0]), "kappa"),
+        (2.0, "roller"),
     ],
 )
 def test_a_law_is_of_one_scene(scene, name):

@@ -132,7 +132,7 @@ CALLS: dict[str, tuple[Callable, Callable]] = {
     "driven": (
         drives,
         lambda torque, **given: rolled(
-            SCENE.replace(gamma=1e3), omega0=0.1, torque=([0.0, 1.0], torque), brake=0.05, **given
+            SCENE.replace(gamma=1e3), omega0=0.1, torque=vr.Schedule([0.0, 1.0], torque), brake=0.05, **given
         ),
     ),
     "validity": (
@@ -203,7 +203,7 @@ def test_a_grid_is_as_the_grid_written_out():
     """Across the edges of blocks."""
     V, delta = np.linspace(-1.0, 2.0, 301), np.linspace(-0.04, 0.04, 333)
     axes = vr.contact(SCENE, V[:, None], delta=delta).as_dict()
-    assert_same(axes, vr.contact(SCENE, *np.meshgrid(V, delta, indexing="ij")).as_dict())
+    assert_same(axes, vr.contact(SCENE, np.repeat(V[:, None], 333, axis=1), delta=np.tile(delta, (301, 1))).as_dict())
 
 
 # --- floating-point environment ---

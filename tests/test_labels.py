@@ -72,7 +72,7 @@ def test_ensembles(body):
     assert data.V.sel(motion="y", t=2e-3) == plain.V[1, 1]
     assert data["motion"].attrs["long_name"] == "roller"
     assert found.to_pandas().loc[("y", 2e-3), "V [m s-1]" if body is ROLLER else "V"] == plain.V[1, 1]
-    by_array = own(V, 0.0, [1e-3], slope=0.01 * V, force=([0.0, 1.0], [0.0, 0.0])).to_xarray()
+    by_array = own(V, 0.0, [1e-3], slope=0.01 * V, force=vr.Schedule([0.0, 1.0], [0.0, 0.0])).to_xarray()
     assert list(by_array["motion"]) == ["a", "b"]
     assert "motion" not in plain.to_xarray().coords
     levels = pd.MultiIndex.from_tuples([("p", 1), ("q", 2)], names=["maker", "batch"])

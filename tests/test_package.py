@@ -28,16 +28,16 @@ def parameters(function) -> list[str]:
 
 def test_documented_names():
     """The spellings that the documentation promises."""
-    assert parameters(vr.contact)[:4] == ["scene", "V", "delta", "omega"]
+    assert parameters(vr.contact)[:4] == ["roller", "V", "delta", "omega"]
     assert {"fields", "slopes", "method"} <= set(parameters(vr.contact))
-    assert parameters(vr.law) == ["scene"]
+    assert parameters(vr.law) == ["roller"]
     assert parameters(vr.Law.__call__) == ["self", "V", "omega", "slopes"]
-    assert parameters(vr.steady) == ["scene", "force", "torque", "slope", "V"]
-    assert parameters(vr.stress)[:4] == ["scene", "x", "V", "delta"]
-    assert parameters(vr.roll)[:5] == ["scene", "V0", "omega0", "t", "rtol"]
+    assert parameters(vr.steady) == ["roller", "force", "torque", "slope", "V"]
+    assert parameters(vr.stress)[:4] == ["roller", "x", "V", "delta"]
+    assert parameters(vr.roll)[:5] == ["roller", "V0", "omega0", "t", "rtol"]
     assert {"rest", "max_steps"} <= set(parameters(vr.roll))
     assert inspect.signature(vr.roll).parameters["rtol"].default == 1e-8
-    assert parameters(vr.ensemble)[:4] == ["scene", "V0", "omega0", "t"]
+    assert parameters(vr.ensemble)[:4] == ["roller", "V0", "omega0", "t"]
     assert [f.name for f in dataclasses.fields(vr.Scene)] == ["alpha", "kappa", "mu", "gamma", "j", "material"]
     assert [f.name for f in dataclasses.fields(vr.Cylinder)] == [
         "R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "plane", "material", "base", "pressed",

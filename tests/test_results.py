@@ -30,7 +30,7 @@ def results():
         "contact in SI": ROLLER.contact(V, delta=0.01),
         "stress": vr.stress(SCENE, np.linspace(-0.2, 0.6, 21), 0.5, delta=-0.01),
         "motion": vr.roll(SCENE, 1.5, 0.5, t),
-        "driven": vr.roll(SCENE, 0.0, 0.0, t, torque=([0.0, 2e-3], [0.0, 0.1])),
+        "driven": vr.roll(SCENE, 0.0, 0.0, t, torque=vr.Schedule([0.0, 2e-3], [0.0, 0.1])),
         "motion in SI": ROLLER.roll(1.0, 0.0, np.linspace(0.0, 1.0, 9)),
         "ensemble": vr.ensemble(SCENE, np.linspace(0.5, 1.5, 12), 0.5, t),
         "ensemble in SI": ROLLER.ensemble(np.linspace(0.5, 1.5, 3), 0.0, [0.1, 0.2]),
@@ -126,7 +126,7 @@ def test_a_table_of_pandas_has_a_row_each(results):
     table = driven.to_pandas()
     assert np.array_equal(table["torque"], driven.torque)
     assert table.index.to_numpy().tolist() == driven.t.tolist()
-    many = ROLLER.ensemble([1.0, 2.0], 0.0, [0.1, 0.2], torque=([0.0, 1.0], [0.0, 3.0]))
+    many = ROLLER.ensemble([1.0, 2.0], 0.0, [0.1, 0.2], torque=vr.Schedule([0.0, 1.0], [0.0, 3.0]))
     assert many.to_pandas().index.names == ["motion", "t [s]"]
     assert len(many.to_pandas()) == 4
     assert vr.contact(SCENE, 1.0, delta=0.01).to_pandas()["M"].tolist() == [vr.contact(SCENE, 1.0, delta=0.01).M]
@@ -142,7 +142,7 @@ def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
 
 def test_a_motion_tells_its_peak(results):
     """First, largest with its time, last: a roller that is spun up and rolls out was fastest between the two."""
-    m = ROLLER.roll(0.0, 0.0, np.linspace(0.0, 10.0, 101), torque=([0.0, 1.0, 1.0], [2.0, 2.0, 0.0]))
+    m = ROLLER.roll(0.0, 0.0, np.linspace(0.0, 10.0, 101), torque=vr.Schedule([0.0, 1.0, 1.0], [2.0, 2.0, 0.0]))
     (line,) = (line for line in repr(m).splitlines() if line.startswith("  V "))
     assert line.split(maxsplit=1)[1] == f"first 0, largest {m.V[10]:.6g} (at t = 1), last {m.V[-1]:.6g} m s-1"
     assert "largest" not in next(line for line in repr(results["motion"]).splitlines() if line.startswith("  V "))
@@ -154,7 +154,7 @@ def test_a_motion_tells_its_peak(results):
 
 def test_without_a_threshold_nothing_is_told_to_rest():
     """Nothing stops: V decays to less than doubles hold, driven before or not, and rolls on until there."""
-    pushed = vr.roll(SCENE, 1.5, 0.5, 1.0, force=([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.0]))
+    pushed = vr.roll(SCENE, 1.5, 0.5, 1.0, force=vr.Schedule([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.0]))
     for m in (pushed, vr.roll(SCENE, 1.5, 0.5, 1.0)):
         assert m.V[-1] == 0.0
         assert m.switches[-1].regime == "partial slip"
@@ -177,9 +177,9 @@ def test_a_validity_is_a_card(results):
 def test_a_torque_that_jumps_is_drawn_with_both_sides():
     """In a figure of few output times too: the schedule's corners, and beside it what does not jump."""
     gain = -2.0
-    schedule = ([0.0, 1.0, 1.0, 2.0, 2.0, 2.2, 2.2], [3.0, 3.0, 0.0, 0.0, 5.0, 5.0, 0.0])
+    schedule = vr.Schedule([0.0, 1.0, 1.0, 2.0, 2.0, 2.2, 2.2], [3.0, 3.0, 0.0, 0.0, 5.0, 5.0, 0.0])
     m = ROLLER.roll(
-        0.0, 0.0, [0.0, 0.5, 1.0, 3.0], torque=schedule, force=vr.Feedback(([0.0, 0.7], [0.0, 4.0]), V=gain)
+        0.0, 0.0, [0.0, 0.5, 1.0, 3.0], torque=schedule, force=vr.Feedback(vr.Schedule([0.0, 0.7], [0.0, 4.0]), V=gain)
     )
     *_, force, torque = m.plot().axes
     t, drawn = torque.lines[0].get_data()
@@ -200,7 +200,7 @@ def test_speeds_that_rise_by_factors_have_a_logarithmic_axis():
 def test_a_contact_tells_the_coefficient_of_rolling_resistance():
     c, bare = (
         ROLLER.contact(V=[0.1, 1.0], delta=0.0),
-        vr.contact(ROLLER.scene(), ROLLER.V_from_si([0.1, 1.0]), delta=0.0),
+        vr.contact(ROLLER.scene(), np.array([0.1, 1.0]) / ROLLER.scale["V"], delta=0.0),
     )
     assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), rel=tol.SI_MOTION)
     assert np.array_equal(c.C_rr, bare.M)

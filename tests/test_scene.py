@@ -15,6 +15,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+from viscoroll.scale import DIMENSIONS
 
 SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
 
@@ -60,31 +61,26 @@ def test_presets():
     assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 
-def test_conversions_by_hand():
+def test_units_by_hand():
     cylinder = vr.Cylinder(**SI)
-    assert close(cylinder.V_from_si(0.2), 0.2 * 10.7 / 0.1, rel=tol.SCENE)
-    assert close(cylinder.omega_from_si(3.0), 32.1, rel=tol.SCENE)
-    assert close(cylinder.t_from_si(10.7), 1.0, rel=tol.SCENE)
-    assert close(cylinder.x_to_si(2.0), 0.2, rel=tol.SCENE)
-    # pure rolling stays pure rolling: V_si = omega_si R
-    assert close(cylinder.V_to_si(0.7), cylinder.omega_to_si(0.7) * cylinder.R, rel=tol.SCENE)
+    P, scale = cylinder.load, cylinder.scale
+    for name, one in {"V": 0.1 / 10.7, "omega": 1.0 / 10.7, "t": 10.7, "x": 0.1, "Q": P, "M": P * 0.1}.items():
+        assert close(scale[name], one, rel=tol.SCENE, what=name)
+    assert scale["beta"] == 1.0
+    assert all(vr.PAPER_SECTION_5.scale[name] == 1.0 for name in DIMENSIONS)
 
 
 def test_force_and_torque():
     """Eqs. (20), (21): F = P (Q - M/2), moment P R (Q + M/2); with Eq. (22) they are Newton's law."""
     cylinder = vr.Cylinder(**SI)
-    P = cylinder.load
-    assert close(cylinder.traction_to_si(0.1, 0.03), P * 0.085, rel=tol.SCENE)
-    assert close(cylinder.torque_to_si(0.1, 0.03), P * 0.1 * 0.115, rel=tol.SCENE)
-    assert cylinder.traction_to_si([0.1, 0.2], 0.0).shape == (2,)
-    scene = cylinder.scene()
-    Q, M = 0.05, 0.02
+    scene, found = cylinder.scene(), cylinder.contact(0.01, omega=0.0995)
+    Q, M = found.Q / cylinder.load, found.M / (cylinder.load * cylinder.R)
     # (V - j omega)' = 2 gamma Q, (V + j omega)' = -gamma M per unit of T_epsilon
     acceleration = scene.gamma * (Q - 0.5 * M) * cylinder.R / cylinder.T_epsilon**2
     spin = scene.gamma * (-Q - 0.5 * M) / scene.j / cylinder.T_epsilon**2
-    assert close(cylinder.traction_to_si(Q, M), cylinder.m * acceleration, rel=tol.SCENE)
+    assert close(found.Q - found.M_half_space / cylinder.R, cylinder.m * acceleration, rel=tol.SCENE)
     inertia = scene.j * cylinder.m * cylinder.R**2
-    assert close(cylinder.torque_to_si(Q, M), -inertia * spin, rel=tol.SCENE)
+    assert close(found.Q * cylinder.R + found.M_cylinder, -inertia * spin, rel=tol.SCENE)
 
 
 RUBBER = vr.Material(E=2.3e5, nu=0.5, prony=vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-4]), T_ref=0.3)
@@ -107,7 +103,7 @@ def test_a_material_in_place_of_the_four_parameters():
     )  # fmt: skip
     for name in ("E_prime", "l0", "load", "T_ref"):
         assert getattr(cylinder, name) == getattr(vr.Cylinder(**SI), name)
-    assert cylinder.V_from_si(0.2) == vr.Cylinder(**SI).V_from_si(0.2)
+    assert cylinder.scale["V"] == vr.Cylinder(**SI).scale["V"]
     assert vr.Cylinder(**SI, base=own).scene() == paper  # a base alike changes nothing
     assert vr.Cylinder(*SI.values()) == vr.Cylinder(**SI)
 
@@ -152,8 +148,8 @@ def test_time_of_a_pair():
     ):  # fmt: skip
         cylinder = vr.Cylinder(**ROLLER, material=material, base=base)
         assert cylinder.T_ref == T
-        assert cylinder.t_to_si(1.0) == T
-        assert cylinder.V_from_si(1.0) == T / 0.1
+        assert 1.0 * cylinder.scale["t"] == T
+        assert 1.0 / cylinder.scale["V"] == T / 0.1
 
 
 def test_scene_of_a_pair():
@@ -164,19 +160,6 @@ def test_scene_of_a_pair():
     assert close(scene.gamma, cylinder.load * 0.3**2 / (35.5 * 0.1), rel=tol.SCENE)
     rigid = vr.Cylinder(**ROLLER, material=vr.Material.rigid(), base=HARD).scene().material
     assert rigid == vr.Bodies(vr.Prony.elastic(), HARD.prony, 0.0)
-
-
-def test_forces_of_a_pair():
-    """Eqs. (20), (21) with the part of each body; M/2 is that of like bodies alone."""
-    pair, like = vr.Cylinder(**ROLLER, material=RUBBER, base=STEEL), vr.Cylinder(**SI)
-    P = pair.load
-    assert close(pair.traction_to_si(0.1, M_half_space=0.03), P * 0.07, rel=tol.SCENE)
-    assert close(pair.torque_to_si(0.1, M_cylinder=0.03), P * 0.1 * 0.13, rel=tol.SCENE)
-    assert like.traction_to_si(0.1, M_half_space=0.015) == like.traction_to_si(0.1, 0.03)
-    refused(partial(pair.traction_to_si, 0.1, 0.03), "give M_half_space in place of M")
-    refused(partial(pair.torque_to_si, 0.1, 0.03), "give M_cylinder in place of M")
-    refused(partial(like.torque_to_si, 0.1), "give M or M_cylinder")
-    refused(partial(like.torque_to_si, 0.1, 0.1, M_cylinder=0.1), "both")
 
 
 BAD_PAIRS = [

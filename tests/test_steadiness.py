@@ -15,6 +15,8 @@ from scipy.optimize import brentq
 
 import viscoroll as vr
 from viscoroll.motion import warned
+from viscoroll.scale import Scale
+from viscoroll.steadiness import Steadiness
 
 #: a fit of docs/examples/dma.csv, and a roller on it as of docs/may_i.md: 0.1 m, T_ref 3 s
 DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
@@ -68,7 +70,7 @@ def test_by_the_motion_itself():
 
 def test_the_numbers_that_were_measured():
     """That roller from 1 m/s, as local_steadiness says: right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s."""
-    found = ROLLER.validity(30.0).steady.scaled(1.0 / 30.0, 3.0, 0.1, ("m/s", "s", "m"))
+    found = Steadiness.of(ROLLER.freely(30.0).scaled(Scale(R=0.1, T=3.0)))
     assert close(found.value, 2.6e-4, rel=0.02)
     assert close(found.whole, 14.04, rel=1e-3)
     assert close(found.one_percent.speed, 0.14, rel=0.03)

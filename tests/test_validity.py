@@ -12,7 +12,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.validity import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
+from viscoroll.assumptions import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
 
 SCENE = vr.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
@@ -50,7 +50,7 @@ def test_wave_speed():
     assert cylinder.validity(1.0).quasistatic.holds is None
     wave = math.sqrt(cylinder.E / (2.0 * (1.0 + cylinder.nu)) / density)
     share = np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT
-    found = cylinder.validity(share * wave, density).quasistatic
+    found = cylinder.validity(share * wave, density=density).quasistatic
     assert close(found.value, abs(share), rel=tol.SCENE)
     assert found.holds.tolist() == [True, False, False]
     assert found.sentence.startswith("the speed is 20 % of that of shear waves")
@@ -59,7 +59,7 @@ def test_wave_speed():
 def test_speeds_and_densities_beyond_all_bounds():
     """No NaN, no warning: a ratio that no double can hold is infinite."""
     for V, density in ((3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324)):
-        found = vr.PAPER_CYLINDER.validity(V, density)
+        found = vr.PAPER_CYLINDER.validity(V, density=density)
         assert found.quasistatic.holds == (V < 1.0)
         assert not np.isnan(found.quasistatic.value)
         assert "nan" not in str(found)
@@ -74,7 +74,7 @@ def test_scenes_beyond_all_bounds():
 
 
 def test_a_sentence_each():
-    _, *lines = str(vr.PAPER_CYLINDER.validity(1.0, 1130.0)).splitlines()
+    _, *lines = str(vr.PAPER_CYLINDER.validity(1.0, density=1130.0)).splitlines()
     assert [line.split()[0] for line in lines] == list(SCENE.validity(1.0)._fields)
     assert "plane strain" in lines[-1]
     assert SCENE.validity(1.0).bodies.holds is None
@@ -82,7 +82,8 @@ def test_a_sentence_each():
 
 def test_bad_input():
     for density in (0.0, -1.0, math.nan, [1.0, 2.0], "heavy"):
-        refused(partial(vr.PAPER_CYLINDER.validity, 1.0, density), "density")
+        refused(partial(vr.PAPER_CYLINDER.validity, 1.0, density=density), "density")
+    refused(partial(SCENE.validity, 1.0, density=1130.0), "a Scene knows no speed of waves")
     refused(lambda: SCENE.validity(math.nan), "V = nan")
     refused(lambda: SCENE.replace(alpha=[1.0, 2.0]).validity([1.0, 2.0, 3.0]), "broadcast")
 
@@ -141,7 +142,9 @@ def test_waves_of_materials_that_know_their_density():
     found = cylinder.validity(1.0).quasistatic
     assert close(found.value, 1.0 / math.sqrt(RUBBER.G / 1100.0), rel=tol.PAIR)
     assert close(
-        cylinder.validity(1.0, 4400.0).quasistatic.value, 2.0 * cylinder.validity(1.0).quasistatic.value, rel=tol.PAIR
+        cylinder.validity(1.0, density=4400.0).quasistatic.value,
+        2.0 * cylinder.validity(1.0).quasistatic.value,
+        rel=tol.PAIR,
     )
 
 

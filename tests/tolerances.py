@@ -445,6 +445,8 @@ DMA_SHIFT_NOISY = 0.02
 # --- SI units (si/) ---
 #: A motion in SI units against the dimensionless one, over the largest value: factors round.
 SI_MOTION = 1e-12
+#: The same on a slope, where kappa is rounded by another way and brake and reversals magnify it; measured 3e-12.
+SI_TILTED = 3e-11
 #: Work against kinetic energy and losses, over the largest work, at rtol 1e-8; measured 4.7e-10.
 SI_ENERGY = 1e-8
 #: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8; measured 5e-14.

@@ -2,6 +2,7 @@
 
 from . import sampling as sampling
 from . import tables as tables
+from .assumptions import Validity as Validity
 from .bound_law import Law as Law
 from .bound_law import law as law
 from .contact_stress import stress as stress
@@ -10,6 +11,8 @@ from .dma import Fit as Fit
 from .dma import fit_prony as fit_prony
 from .dma import read_dma as read_dma
 from .drive import Feedback as Feedback
+from .drive import Schedule as Schedule
+from .equilibria import Steady as Steady
 from .equilibria import humps as humps
 from .equilibria import steady as steady
 from .errors import MOTION_STATUS as MOTION_STATUS
@@ -27,6 +30,7 @@ from .identification import Coastdown as Coastdown
 from .identification import Resistance as Resistance
 from .identification import Traction as Traction
 from .identification import identify as identify
+from .judged import validity as validity
 from .materials.bodies import Bodies as Bodies
 from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material
@@ -36,6 +40,8 @@ from .materials.shift import WLF as WLF
 from .materials.shift import Arrhenius as Arrhenius
 from .motion import ensemble as ensemble
 from .motion import roll as roll
+from .motion.many import Ensemble as Ensemble
+from .motion.one import Motion as Motion
 from .presets import PAPER_CYLINDER as PAPER_CYLINDER
 from .presets import PAPER_FIGURES_2_3 as PAPER_FIGURES_2_3
 from .presets import PAPER_SECTION_5 as PAPER_SECTION_5
@@ -43,6 +49,7 @@ from .presets import PAPER_SECTION_5_ROUNDED as PAPER_SECTION_5_ROUNDED
 from .presets import PAPER_STARTS as PAPER_STARTS
 from .presets import RUBBER_CYLINDER as RUBBER_CYLINDER
 from .presets import RUBBER_ROLLER as RUBBER_ROLLER
+from .results import Values as Values
 from .rolling_contact import contact as contact
 from .scene import Scene as Scene
 

@@ -15,8 +15,8 @@ from .errors import ParameterError
 from .kernels.rows.loads import Loads, LoadsAndSlopes
 from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
+from .parameters import Rolls, framed
 from .rolling_contact import contact, one_material, refuse_overflow
-from .scene import Scene, checked_scene
 from .typed import Numbers
 
 Array: TypeAlias = NDArray[np.float64]
@@ -26,22 +26,23 @@ _loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__
 
 
 class Law:
-    """A scene's law, bound: what :func:`law` returns.
+    """The law of a scene or a cylinder, bound: what :func:`law` returns.
 
     Attributes
     ----------
-    scene : that it is the law of.
+    roller, scene : that it is the law of, and the dimensionless scene of that.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, roller: Rolls) -> None:
         from .kernels.rows.jitted import SWITCHED_OFF, Jitted, Room
 
         if SWITCHED_OFF:
             raise ParameterError("NUMBA_DISABLE_JIT", 1, "0: a bound law is machine code")
+        scene, scale = framed(roller, "law")
         table = one_material(scene)
         assert isinstance(table, LawTable)
-        self.scene = scene
-        self._jitted = jitted = Jitted(table.record, table.unlike, scene.kappa, scene.mu)
+        self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
+        self._jitted = jitted = Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale)
         self._function, self._plain, self._sloped, self._room = jitted.function, jitted.plain, jitted.address, Room
 
     @overload
@@ -68,7 +69,7 @@ class Law:
         -------
         Loads or LoadsAndSlopes
             Q, M, M_half_space, M_cylinder, and with slopes dQ_dV at fixed omega, dQ_domega, dM_half_space_dV,
-            dM_cylinder_dV; dimensionless.
+            dM_cylinder_dV; in the units of what rolls.
 
         Raises
         ------
@@ -82,11 +83,11 @@ class Law:
             except ctypes.ArgumentError:  # an integer beyond the doubles
                 status = 1
             if status:
-                refuse_overflow(np.asarray(self.scene.kappa), checked("V", V))
+                refuse_overflow(self._fastest, checked("V", V))
                 checked("omega", omega)
             return _loads_and_slopes(out) if slopes else _loads(out[:4])
         kind = LoadsAndSlopes if slopes else Loads
-        found = contact(self.scene, V, omega=omega, fields=kind._fields)
+        found = contact(self.roller, V, omega=omega, fields=kind._fields)
         return kind(**found.as_dict())
 
     @property
@@ -113,13 +114,13 @@ class Law:
         return self._jitted.ctypes
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return law, (self.scene,)
+        return law, (self.roller,)
 
     def __repr__(self) -> str:
-        return f"law({self.scene!r})"
+        return f"law of {self.roller!r}"
 
 
-def law(scene: Scene) -> Law:
+def law(roller: Rolls) -> Law:
     """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
 
     ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
@@ -127,7 +128,8 @@ def law(scene: Scene) -> Law:
 
     Parameters
     ----------
-    scene : alpha or material, kappa and mu are used: one number each, one material or two bodies.
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, or a :class:`Cylinder`, whose law
+        takes and gives SI units: one number each, one material or two bodies.
 
     Returns
     -------
@@ -138,7 +140,7 @@ def law(scene: Scene) -> Law:
     Raises
     ------
     ParameterError
-        What is no :class:`Scene`; arrays for alpha, kappa or mu; a material each; numba that is switched off.
+        What is no scene and no cylinder; arrays for alpha, kappa or mu; a material each; numba that is switched off.
 
     Notes
     -----
@@ -146,11 +148,11 @@ def law(scene: Scene) -> Law:
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
     """
-    checked_scene(scene, "law")
+    scene, _ = framed(roller, "law")
     if isinstance(scene.material, MaterialArray):
         raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
     for name in ("alpha", "kappa", "mu"):
         value = np.asarray(getattr(scene, name))
         if value.ndim:
             raise ParameterError(name, f"an array of shape {value.shape}", "one number: a law is of one scene")
-    return Law(scene)
+    return Law(roller)

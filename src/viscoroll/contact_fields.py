@@ -12,11 +12,19 @@ SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: on request alone
 UNSTEADY = "N"
-KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY)
+#: of which field each of these is made by units alone: the length is over l0, C_rr = M/(P R)
+SAME = {"length": "lam", "C_rr": "M"}
+KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, *SAME)
+#: what is given without a word, of like bodies and of others, and of a cylinder in SI units
+DEFAULT = {
+    (True, False): FIELDS,
+    (False, False): (*FIELDS, *OF_BODIES),
+    **dict.fromkeys(((True, True), (False, True)), ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)),
+}
 
 
-def field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: str) -> tuple[str, ...]:
-    """The fields and slopes of a call by name.
+def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool, method: str) -> tuple[str, ...]:
+    """The fields and slopes of a call by name; of bodies that are ``like``, in units of SI.
 
     Raises
     ------
@@ -25,13 +33,13 @@ def field_names(fields: Iterable[str] | None, like: bool, slopes: bool, method: 
     """
     if method not in ("table", "direct"):
         raise ParameterError("method", repr(method), "'table' or 'direct'")
-    default, default_slopes = (FIELDS, SLOPES) if like else (FIELDS + OF_BODIES, SLOPES + SLOPES_OF_BODIES)
-    names = default if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-    for name in names:
-        if name not in KNOWN:
-            raise unknown("fields", name, KNOWN, "a field")
+    names = DEFAULT[like, si] if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    if fields is not None:
+        for name in names:
+            if name not in KNOWN:
+                raise unknown("fields", name, KNOWN, "a field")
     if slopes:
-        names += tuple(name for name in default_slopes if name not in names)
+        names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
         raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
     if method == "direct" and UNSTEADY in names:

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks
 from .checks import broadcast_shape, checked
+from .errors import one_of
 from .labels import unlabelled
 from .materials.bodies import Bodies
 from .materials.law_modes import kernel_series
 from .materials.prony_array import MaterialArray
+from .parameters import Rolls, framed
 from .results import Values
-from .rolling_contact import contact, shaped
-from .scene import Scene, checked_scene
+from .rolling_contact import shaped, states
 from .typed import Numbers
 
 Array = NDArray[np.float64]
@@ -25,22 +26,18 @@ _BLOCK = 1 << 15
 
 
 @overload
-def stress(scene: Scene, x: Numbers, V: Numbers, delta: Numbers, omega: None = None) -> Values: ...
+def stress(roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers, omega: None = None) -> Values: ...
 @overload
-def stress(scene: Scene, x: Numbers, V: Numbers, delta: None = None, *, omega: Numbers) -> Values: ...
+def stress(roller: Rolls, x: Numbers, V: Numbers, *, delta: None = None, omega: Numbers) -> Values: ...
 def stress(
-    scene: Scene,
-    x: Numbers,
-    V: Numbers,
-    delta: Numbers | None = None,
-    omega: Numbers | None = None,
+    roller: Rolls, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
 ) -> Values:
     """Pressure and shear stress along the contact, Eqs. (11)-(14).
 
     Parameters
     ----------
-    scene : alpha, kappa and mu are used.
-    x : position over l0, from the foot of the axis, positive along the axis of V; any
+    roller : a :class:`Scene`, of which alpha, kappa and mu are used; or a :class:`Cylinder`, in SI units.
+    x : position over l0, of a Cylinder in m, from the foot of the axis, positive along the axis of V; any
         value, the stresses are 0 outside the contact.
     V, delta, omega : as for :func:`contact`; all arguments broadcast.
 
@@ -48,7 +45,7 @@ def stress(
     -------
     Values
         ``p``: p/E' >= 0.  ``tau``: shear stress on the cylinder over E', of the sign of
-        omega - V, |tau| <= mu p.
+        omega - V, |tau| <= mu p.  Of a Cylinder in Pa.
 
     Raises
     ------
@@ -63,18 +60,23 @@ def stress(
     """
     from .kernels.law.stress import Points, stress_loop
 
-    checked_scene(scene, "stress")
-    plain, labels = unlabelled({"x": x, "V": V, "delta": delta, "omega": omega})
-    x, V, delta, omega = plain.values()
-    creep: Any = {"delta": delta, "omega": omega}  # :func:`contact` refuses both and neither
-    state = contact(scene, V, **creep, fields=("lam", "epsilon", "beta", "zeta", "delta"))
+    scene, scale = framed(roller, "stress")
+    if (delta is None) == (omega is None):
+        raise one_of("delta", "omega", both=delta is not None)
+    creep_name = "omega" if delta is None else "delta"
+    places, labels = unlabelled({"x": x, "V": V, creep_name: omega if delta is None else delta})
+    at, speed, creep = (checked(*given) for given in places.items())
+    if scale.si:
+        roller.look(speed)
+        at, speed, creep = at / scale["length"], speed / scale["V"], creep / scale[creep_name]
+    state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
-    mirror = np.where(checked("V", V) < 0.0, -1.0, 1.0)
+    mirror = np.where(speed < 0.0, -1.0, 1.0)
     many = scene.material if isinstance(scene.material, MaterialArray) else None
-    given = {"x": checked("x", x), "kappa": scene.kappa, "mu": scene.mu}
-    given |= {name: getattr(state, name) for name in ("lam", "epsilon", "beta", "zeta")}
+    given = {"x": at, "kappa": scene.kappa, "mu": scene.mu}
+    given |= {name: state[name] for name in ("lam", "epsilon", "beta", "zeta")}
     given |= {"alpha": scene.alpha if many is None else np.arange(len(many), dtype=np.float64)}
-    given |= {"mirror": mirror, "sign": np.sign(state.delta) * mirror}
+    given |= {"mirror": mirror, "sign": np.sign(state["delta"]) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in given.items()}
     shape = broadcast_shape(**arrays)
     x_of, *others, alpha_of, mirror_of, sign_of = (elements(array, shape) for array in arrays.values())
@@ -93,9 +95,8 @@ def stress(
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
-    given = {"x": x, "V": V} | ({"omega": omega} if delta is None else {"delta": delta})
-    found = {"p": shaped("p", p, shape), "tau": shaped("tau", tau, shape)}
-    return Values(found, given, title="Stresses", labels=labels)
+    found = {name: scale.of(name, shaped(name, row, shape)) for name, row in (("p", p), ("tau", tau))}
+    return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 
 def _of_each(materials: MaterialArray, numbers: Array, points: Any, out: tuple[Array, Array]) -> None:

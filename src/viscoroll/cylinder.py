@@ -10,19 +10,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .checks import broadcast_shape, checked
+from . import known
+from .assumptions import WAVE_LIMIT, Assumption, Validity, coupling, inertia, measurement, passage, thickness
+from .checks import broadcast_shape, checked, number
+from .drive import slope_factor
 from .errors import ParameterError, one_of
+from .free_rolling import rolling
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.measured import Measured
 from .materials.pair import Pair, Plane, effective_modulus
+from .motion.warned import say
+from .parameters import frozen, same
 from .results import Row, Shown, short
-from .scene import Scene, frozen, same
-from .si.conversions import Conversions
-from .si.methods import InSI
-from .si.scaling import contact_length, scene_from_si, scene_of_pair, scene_of_solids
-from .si.validity import deforming, slowness
-from .validity import MISFIT_LIMIT, held_speeds
+from .scale import Scale
+from .scaling import contact_length, scene_from_si, scene_of_pair, scene_of_solids
+from .scene import Methods, Scene
+from .symbols import MEASURED
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
@@ -30,11 +34,11 @@ _UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Cylinder(InSI, Conversions):
+class Cylinder(Methods):
     """A viscoelastic cylinder on a half-space, in SI units.
 
-    Its methods take and give SI units, per m of its length: :meth:`contact`, :meth:`stress`, :meth:`roll`,
-    :meth:`ensemble`, :meth:`steady`, :meth:`validity`.  :meth:`scene` is its dimensionless counterpart.
+    The functions of the package, and its methods of the same names, take and give SI units, per m of its length.
+    :meth:`scene` is its dimensionless counterpart; ``scale`` holds what 1 of each of its quantities is.
 
     Parameters
     ----------
@@ -61,8 +65,7 @@ class Cylinder(InSI, Conversions):
 
     Notes
     -----
-    Dimensionless times are over ``T_ref``.  ``*_from_si`` and ``*_to_si`` take numbers or arrays and are good to a
-    few roundings (``tests/test_scene.py``).
+    Dimensionless times are over ``T_ref``.
     """
 
     R: Any
@@ -162,11 +165,13 @@ class Cylinder(InSI, Conversions):
             given["material"] = None
         return Cylinder(**(given | changes))
 
-    def _some(self, which: NDArray[np.int64], count: int) -> Cylinder:
-        """Some of ``count`` cylinders, by their numbers."""
+    def some(self, which: NDArray[np.int64], count: int) -> Cylinder:
         arrays = {name: value for name in _NUMBERS if np.shape(value := getattr(self, name)) == (count,)}
         picked = {"load" if name == "pressed" else name: value[which] for name, value in arrays.items()}
         return self.replace(**picked) if picked else self
+
+    def tilted(self, slope: Any) -> Cylinder:
+        return self.replace(load=self.load * slope_factor(slope)[1])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Cylinder):
@@ -208,8 +213,17 @@ class Cylinder(InSI, Conversions):
         """Contact length at rest, sqrt(32 R P/E'), m."""
         return contact_length(self.R, self.load, self.E_prime)
 
+    @cached_property
+    def scale(self) -> Scale:  # type: ignore[override]
+        """What 1 of each quantity of the scene is, in SI units: ``scale["V"]`` in m/s."""
+        return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
+
     def scene(self) -> Scene:
         """The dimensionless scene: alpha or the series of the materials, kappa, gamma of Sect. 3.1 and Eq. (4)."""
+        return self._scene
+
+    @cached_property
+    def _scene(self) -> Scene:
         if self._papers and np.ndim(self.T_epsilon):
             return scene_of_solids(
                 self.R, self.m, self.E, self.nu, self.T_ref, (self.T_epsilon, self.T_sigma), self.mu, self.j, self.g,
@@ -221,33 +235,82 @@ class Cylinder(InSI, Conversions):
         scene = scene_of_pair(self.R, self.m, self.pair, self.mu, self.j, self.g, self.pressed)
         return scene.replace(material=self.material) if isinstance(self.material, LawTable) else scene
 
+    def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
+        if density is not None:
+            density = number("density", density, low=0.0, strict=True)
+        fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
+        length, like = lam * self.l0, self._papers or self.pair.like
+        long = "a long cylinder, or one held between walls (plane strain)"
+        return found._replace(
+            quasistatic=inertia(*self._slowness(fastest, density)),
+            bodies=coupling(*((0.0, 0.0) if self._papers else self.pair.dundurs), like=like),
+            measured=measurement(passage(V, length), self._measured),
+            thick=thickness(length, {name: body.thickness for name, body in self._bodies.items()}),
+            plane=Assumption(None, None, long if self.plane == "strain" else "a thin disc (plane stress)"),
+        )
+
+    def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
+        """Warn where the contact at a speed of V, m/s, asks for frequencies that the data of a body do not hold.
+
+        Only extremes are looked at, and rest is passed over: M is 0 there.
+        """
+        if V is None or self._known_speeds is None:
+            return
+        extent = known.extent_of(V) if extent is None else extent
+        if not known.beyond(extent, self._known_speeds) or known.told(self._measured):
+            return
+        # the extremes of V and of l0 may be of different cylinders
+        l0 = np.reshape(self.l0, np.shape(self.l0) + (1,) * (np.ndim(V) - np.ndim(self.l0)))
+        rates = known.extent_of(np.abs(V) / l0)
+        assert self._held is not None
+        if self._known_speeds == (math.inf, 0.0) or known.beyond(rates, self._held):
+            material, unit = self.scene().in_own_time()
+            lam = rolling(material, np.array(rates) * unit * self.T_ref, ("lam",))[0]
+            known.tell(self._measured, passage(np.array(rates), lam))
+
+    def look_at_starts(self, V0: Any, omega0: Any) -> None:
+        """Warn of starts beyond the speed of shear waves where a density is known."""
+        if self._wave_speed is None:
+            return
+        V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
+        if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._wave_speed:
+            say([f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"])
+
+    def _slowness(self, speed: Any, density: float | None) -> tuple[Any, list[str]]:
+        G = self.E / (2.0 * (1.0 + self.nu)) if self._papers else None
+        return known.slowness(None if self._papers else self.pair, G, speed, density)
+
     @cached_property
     def _wave_speed(self) -> float | None:
         """That of the slowest shear wave in any of the cylinders, m/s; None where no density is known."""
-        per_speed = slowness(self, np.ones(()), None)[0]
+        per_speed = self._slowness(np.ones(()), None)[0]
         return None if per_speed is None else 1.0 / float(np.max(per_speed))
+
+    @cached_property
+    def _bodies(self) -> dict[str, Material]:
+        return known.deforming(None if self._papers else self.pair)
 
     @cached_property
     def _measured(self) -> dict[str, Measured]:
         """What the bodies were measured by, where they tell."""
-        return {name: body.measured for name, body in deforming(self).items() if body.measured is not None}
+        return {name: body.measured for name, body in self._bodies.items() if body.measured is not None}
 
     @cached_property
     def _held(self) -> tuple[float, float] | None:
         """|V|/l0 between which the contact asks for what all bodies' data hold, 1/s; None where nothing is known."""
-        if not self._measured:
-            return None
-        series, T = self.scene().series, self.T_ref
-        assert series is not None  # bodies that tell are materials
-        ends = max(data.low for data in self._measured.values()), min(data.high for data in self._measured.values())
-        low, high = held_speeds(series, *(rate * T for rate in ends))
-        return low / T, high / T
+        series = self.scene().series
+        return known.held(self._measured, series, self.T_ref) if self._measured and series is not None else None
 
     @cached_property
     def _known_speeds(self) -> tuple[float, float] | None:
         """|V| between which every one of the cylinders is held by data, m/s; (inf, 0) of a fit that misses them."""
         if self._held is None:
             return None
-        if any(data.misfit > MISFIT_LIMIT for data in self._measured.values()):
+        if known.misses(self._measured):
             return math.inf, 0.0
         return self._held[0] * float(np.max(self.l0)), self._held[1] * float(np.min(self.l0))
+
+    @cached_property
+    def about(self) -> dict[str, Any]:  # type: ignore[override]
+        """Between which speeds the materials were measured, for datasets."""
+        return {} if self._held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in self._held]}

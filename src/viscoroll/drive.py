@@ -1,4 +1,4 @@
-"""What pushes and turns the cylinder: :class:`Feedback`, and the slope that it stands on."""
+"""What pushes and turns the cylinder: :class:`Schedule`, :class:`Feedback`, and the slope that it stands on."""
 
 from __future__ import annotations
 
@@ -12,6 +12,41 @@ from numpy.typing import ArrayLike, NDArray
 
 from .checks import checked
 from .errors import ParameterError
+from .scale import Scale
+
+
+@dataclass(frozen=True, eq=False)
+class Schedule:
+    """A function of time by its corners: linear between, constant outside; a time given twice is a jump.
+
+    Parameters
+    ----------
+    times : (k,), ascending, >= 0; of an ensemble also (n, k), of each motion its own.
+    values : (k,), or (n, k).
+
+    Raises
+    ------
+    ParameterError
+        What is not numeric or not finite, times that fall or that come more than twice, shapes that do not go together.
+    """
+
+    times: Any
+    values: Any
+
+    def __post_init__(self) -> None:
+        for name, low in (("times", 0.0), ("values", -np.inf)):
+            object.__setattr__(self, name, _own(name, getattr(self, name), low))
+        times, values = self.times, self.values
+        fits = {np.ndim(times), np.ndim(values)} <= {1, 2}
+        fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
+        if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
+            shapes = f"times {np.shape(times)}, values {np.shape(values)}"
+            raise ParameterError("Schedule", shapes, "times (k,) and values (k,), or (n, k) for n motions")
+        if (np.diff(times) < 0.0).any():
+            raise ParameterError("times", times[..., :-1][np.diff(times) < 0.0][0], "in ascending order")
+        thrice = times[..., 2:] == times[..., :-2]
+        if thrice.any():
+            raise ParameterError("times", times[..., :-2][thrice][0], "there once, or twice for a jump")
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +56,7 @@ class Feedback:
     Parameters
     ----------
     value : what acts at rest, over P for a force, over P R for a torque: a number or an array; for motions also
-        (times, values) or a callable of t, see :func:`roll`.
+        a :class:`Schedule` or a callable of t, see :func:`roll`.
     V, omega : gains, numbers, for motions of an ensemble also (n,); < 0 brakes what is too fast, as an engine's torque
         falls with its speed.
 
@@ -36,7 +71,7 @@ class Feedback:
     omega: Any = 0.0
 
     def __post_init__(self) -> None:
-        if not (callable(self.value) or isinstance(self.value, tuple)):  # those are checked with their motion
+        if not (callable(self.value) or isinstance(self.value, Schedule)):  # those are checked with their motion
             object.__setattr__(self, "value", _own("value", self.value))
         for name in ("V", "omega"):
             object.__setattr__(self, name, gain := _own(name, getattr(self, name)))
@@ -49,9 +84,9 @@ class Feedback:
         return np.broadcast_shapes(np.shape(self.V), np.shape(self.omega))
 
 
-def _own(name: str, given: Any) -> Any:
+def _own(name: str, given: Any, low: float = -np.inf) -> Any:
     """A number, or an array that nobody else writes to."""
-    value = checked(name, given)
+    value = checked(name, given, low=low)
     if not value.ndim:
         return float(value)
     value = value.copy()
@@ -89,3 +124,29 @@ def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[
         allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"
         raise ParameterError("slope", f"{theta[steep].flat[0]:g}", allowed)
     return np.tan(theta), np.cos(theta)
+
+
+def over(name: str, given: Any, scale: Scale) -> Any:
+    """A number, an array, a schedule, a function of time or a feedback, over its unit and that of time.
+
+    Raises
+    ------
+    ParameterError
+        What is not numeric or not finite, a brake below 0, arrays where numbers belong.
+    """
+    if given is None or not scale.si:
+        return given
+    unit, low = scale[name], 0.0 if name == "brake" else -np.inf
+    if isinstance(given, Feedback):
+        gains = given.V * scale["V"] / unit, given.omega * scale["omega"] / unit
+        return Feedback(over(name, given.value, scale), *gains)
+    if callable(given):
+        if np.ndim(unit):
+            raise ParameterError(name, "a function", "a number", f"{name} is a function: the cylinder must be one then")
+        refuse_more_than_t(name, given)
+        return lambda t: checked(f"{name}(t)", given(t * scale["t"]), low=low) / unit
+    if isinstance(given, Schedule):
+        values = checked(f"values of {name}", given.values, low=low)
+        return Schedule(given.times / scale["t"], values / (unit[:, np.newaxis] if np.ndim(unit) else unit))
+    value = checked(name, given, low=low) / unit
+    return value if value.ndim else float(value)

@@ -126,3 +126,13 @@ MOTION_STATUS = {
     MotionStatus.UNSTEADY: "too slow for the added mass, which came to 1 + j or to half of that below 0",
     MotionStatus.CAUGHT: "caught in the imprint of its rest, which takes seven tenths of its energy",
 }
+
+
+def outside() -> int:
+    """Frames up to the first one that is not of this package: the ``stacklevel`` of a warning."""
+    import sys
+
+    depth, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "viscoroll":
+        depth, frame = depth + 1, frame.f_back
+    return depth

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from .contact_table import states_of
 from .materials.law_table import law_table
 from .materials.prony import Prony
+from .scale import Scale
 
 Array = NDArray[np.float64]
 
@@ -177,9 +178,12 @@ class Free:
     length: Any
     words: tuple[str, str, str] = ("", "", "")
 
-    def scaled(self, speed: Any, time: Any, length: Any, words: tuple[str, str, str]) -> Free:
+    def scaled(self, scale: Scale) -> Free:
         """The same in other units."""
-        return replace(self, speed=self.speed * speed, time=self.time * time, length=self.length * length, words=words)
+        if not scale.si:
+            return self
+        speed, time, length = self.speed * scale["V"], self.time * scale["t"], self.length * scale["x"]
+        return replace(self, speed=speed, time=time, length=length, words=("m/s", "s", "m"))
 
     def at(self, place: tuple[Any, ...]) -> Free:
         """One of the states."""

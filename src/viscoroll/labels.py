@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .drive import Schedule
 from .errors import ParameterError
 
 
@@ -61,17 +62,12 @@ def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], Labels | None]:
     if not arrays and not series:
         return given, None
     others = {name: value for name, value in given.items() if name not in arrays | series}
-    plain = [name for name, value in others.items() if not _is_schedule(value) and np.ndim(value)]
+    plain = [name for name, value in others.items() if not isinstance(value, Schedule) and np.ndim(value)]
     if plain or (arrays and series):
         names = ", ".join((*arrays, *series, *plain))
         raise ParameterError(names, "some labelled", "alike", f"{names}: give labels to all of them, or to none")
     plain_values, labels = _of_xarray(arrays) if arrays else _of_pandas(series)
     return given | plain_values, labels
-
-
-def _is_schedule(value: Any) -> bool:
-    """Whether it is (times, values), which has a length of its own."""
-    return isinstance(value, tuple) and any(np.ndim(part) for part in value)
 
 
 def _of_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:

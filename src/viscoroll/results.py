@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -73,6 +74,15 @@ class Shown:
 
         return saved(draw(self.to_xarray()), path)
 
+    def keys(self) -> Iterable[str]:
+        """Names of what it holds."""
+        return [field.name for field in fields(self) if not field.name.startswith("_")]  # type: ignore[arg-type]
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.keys():
+            raise KeyError(name)
+        return getattr(self, name)
+
     def __repr__(self) -> str:
         return as_text(*self._card())
 
@@ -123,8 +133,8 @@ class Values(Shown):
     """Named results of one call; a name that was not asked for is an AttributeError.
 
     given : the arguments over which they were computed, by name.
-    units : unit of each that has one; title : what they are; labels : those of the arguments; about : attributes of
-    the dataset.
+    units : unit of each that has one; si : whether all that have a dimension are in SI units; title : what they are;
+    labels : those of the arguments; about : attributes of the dataset.
     """
 
     def __init__(
@@ -133,12 +143,15 @@ class Values(Shown):
         given: dict[str, Any] | None = None,
         units: dict[str, str] | None = None,
         title: str = "Contact",
+        *,
+        si: bool = False,
         labels: Labels | None = None,
         about: dict[str, Any] | None = None,
     ) -> None:
         self._about = about or {}
         self._values = values if labels is None else {name: labels.of(name, value) for name, value in values.items()}
-        self._given, self._units, self._title, self._labels = given or {}, units or {}, title, labels
+        self._given, self._units, self._labels = given or {}, units or {}, labels
+        self._title, self._si = title + ", in SI units" * si, si
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -156,10 +169,13 @@ class Values(Shown):
         """The results by name."""
         return dict(self._values)
 
+    def keys(self) -> Iterable[str]:
+        return self._values.keys()
+
     def _card(self) -> tuple[str, list[Row]]:
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
-        return title, [Row(name, short(value), self._units.get(name, "")) for name, value in self._values.items()]
+        return title, [Row(name, short(value), unit_of(self._attributes(name))) for name, value in self._values.items()]
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over the arguments that vary, with names and units.
@@ -186,7 +202,7 @@ class Values(Shown):
         return xr.Dataset(data, coordinates, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
-        found = attributes(name)
+        found: dict[str, Any] = dict(attributes(name, self._si))
         return found | {"units": self._units[name]} if name in self._units else found
 
 

@@ -6,23 +6,23 @@ the fields that were named.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import elements, solve_blocks
-from .checks import broadcast_shape, checked_extent
-from .contact_fields import OF_BODIES, SLOPES_OF_BODIES, UNSTEADY, field_names
+from .checks import broadcast_shape, checked, checked_extent, extent
+from .contact_fields import OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import states_of
 from .errors import ParameterError, one_of
 from .labels import unlabelled
 from .materials.bodies_array import BodiesArray
 from .materials.law_table import LawTable, law_table
 from .materials.prony_array import MaterialArray
+from .parameters import Parameters, Rolls, framed
 from .results import Values
-from .scene import Scene, checked_scene
 from .typed import Numbers
 
 #: of bodies that are alike, half of each
@@ -35,52 +35,54 @@ _FASTEST_DIRECT = 1e12
 
 @overload
 def contact(
-    scene: Scene,
+    roller: Rolls,
     V: Numbers,
+    *,
     delta: Numbers,
     omega: None = None,
-    *,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
     method: Literal["table", "direct"] = "table",
 ) -> Values: ...
 @overload
 def contact(
-    scene: Scene,
+    roller: Rolls,
     V: Numbers,
-    delta: None = None,
     *,
+    delta: None = None,
     omega: Numbers,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
     method: Literal["table", "direct"] = "table",
 ) -> Values: ...
 def contact(
-    scene: Scene,
+    roller: Rolls,
     V: Numbers,
+    *,
     delta: Numbers | None = None,
     omega: Numbers | None = None,
-    *,
     fields: Iterable[str] | None = None,
     slopes: bool = False,
     method: Literal["table", "direct"] = "table",
 ) -> Values:
     """State of the contact: Eqs. (6)-(10), (15)-(18).
 
-    Everything is dimensionless.  Arguments broadcast against each other and against array
-    parameters of the scene; if all are scalars so are the results.
+    Arguments broadcast against each other and against array parameters of what rolls; if all are scalars so are the
+    results.
 
     Parameters
     ----------
-    scene : alpha or material, kappa and mu are used.
-    V : velocity of the axis, any sign.
-    delta, omega : exactly one: creep ratio (omega - V)/V, or angular velocity; any sign.
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, everything dimensionless; or a
+        :class:`Cylinder`, in SI units per m of its length.
+    V : velocity of the axis, any sign; of a Cylinder m/s.
+    delta, omega : exactly one: creep ratio (omega R - V)/V, or angular velocity (rad/s); any sign.
         At V = 0 a given ``delta`` means the limit V -> 0+.
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
         for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
         ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
-        changes slowly, in units of T_ref^2; only these are computed.  Default: the first nine, of bodies
-        that differ the two parts too.
+        changes slowly, in units of T_ref^2; ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the
+        coefficient of rolling resistance; only these are computed.  Default: the first nine; of bodies that differ,
+        and of a Cylinder, the two parts too; of a Cylinder ``length`` and ``C_rr``.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
@@ -91,8 +93,10 @@ def contact(
     Returns
     -------
     Values
-        The fields as attributes.  ``zeta`` is infinite at V = 0, ``delta`` at V = 0 with
-        omega != 0.  ``epsilon`` may exceed 1: the contact then lies wholly ahead of the axis.
+        The fields as attributes and by ``[name]``.  Of a Cylinder ``Q`` is in N/m, ``M`` and its parts in N m/m,
+        ``zeta`` in s; force and moment on it, Eqs. (20), (21), are Q - M_half_space/R and Q R + M_cylinder.
+        ``zeta`` is infinite at V = 0, ``delta`` at V = 0 with omega != 0.  ``epsilon`` may exceed 1: the contact then
+        lies wholly ahead of the axis.
 
     Raises
     ------
@@ -101,6 +105,13 @@ def contact(
         neither of delta and omega, unknown field or method, shapes that do not broadcast.
     ConvergenceError
         If a solve hits its iteration cap.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+    >>> state = roller.contact(0.01, omega=0.099)
+    >>> traction, moment = state.Q, state.M
 
     Notes
     -----
@@ -116,24 +127,34 @@ def contact(
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
     however they broadcast (``tests/test_invariance.py``).
     """
-    checked_scene(scene, "contact")
+    scene, scale = framed(roller, "contact")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
-    names = field_names(fields, scene.like_bodies, slopes, method)
-    plain, labels = unlabelled({"V": V, "delta": delta, "omega": omega})
-    V, delta, omega = plain["V"], plain["delta"], plain["omega"]
+    names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
     creep_name = "omega" if delta is None else "delta"
-    inputs = {
-        "alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu,
-        "V": V, creep_name: omega if delta is None else delta,
-    }  # fmt: skip
-    arrays, extents = {}, {}
-    for name, value in inputs.items():
-        arrays[name], extents[name] = checked_extent(name, value)
+    given, labels = unlabelled({"V": V, creep_name: omega if delta is None else delta})
+    speed, ends = checked_extent("V", given["V"])
+    creep = checked(creep_name, given[creep_name])
+    about = None
+    if scale.si:
+        roller.look(speed, ends)
+        about = roller.about
+        speed = speed / scale["V"]
+        creep = creep / scale["omega"] if delta is None else creep
+    found = states(scene, speed, creep, delta is None, names, method)
+    if scale.si:
+        found = {name: scale.of(name, value) for name, value in found.items()}
+    return Values(found, given, si=scale.si, labels=labels, about=about)
+
+
+def states(
+    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: Sequence[str], method: str = "table"
+) -> dict[str, Any]:
+    """Fields without dimension, at checked speeds, and creeps or angular velocities."""
+    arrays = {"alpha": np.asarray(scene.alpha), "kappa": np.asarray(scene.kappa), "mu": np.asarray(scene.mu), "V": V}
+    arrays["omega" if creep_is_omega else "delta"] = creep
     shape = broadcast_shape(**arrays)
-    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST
-    if extents["kappa"][1] * max(map(abs, extents["V"])) > fastest:
-        refuse_overflow(arrays["kappa"], arrays["V"], fastest)
+    refuse_overflow(arrays["kappa"], V, _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST)
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     one = None if method == "direct" else one_material(scene)
@@ -143,20 +164,20 @@ def contact(
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
     unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, BodiesArray)
-    halved = {} if unlike else {name: _HALVES[name] for name in names if name in _HALVES}
-    solved = tuple(dict.fromkeys(halved.get(name, name) for name in names))
-    broadcast = list(arrays.values()), shape, creep_name == "omega", solved
-    found = _direct(*broadcast) if method == "direct" else states_of(one, *broadcast)
-    rows = dict(zip(solved, found, strict=True))
-    rows |= {name: 0.5 * rows[whole] for name, whole in halved.items()}
-    given = {"V": V, creep_name: omega if delta is None else delta}
-    return Values({name: shaped(name, rows[name], shape) for name in names}, given, labels=labels)
+    made = SAME if unlike else SAME | _HALVES
+    solved = tuple(dict.fromkeys([made.get(name, name) for name in names]))
+    broadcast = list(arrays.values()), shape, creep_is_omega, solved
+    rows = dict(zip(solved, _direct(*broadcast) if method == "direct" else states_of(one, *broadcast), strict=True))
+    for name in names:
+        if name not in rows:
+            rows[name] = rows[made[name]] if name in SAME else 0.5 * rows[made[name]]
+    return {name: shaped(name, rows[name], shape) for name in names}
 
 
-def one_material(scene: Scene) -> LawTable | MaterialArray | None:
+def one_material(scene: Parameters) -> LawTable | MaterialArray | None:
     """The table that serves all states; many series or pairs; or, None, alphas."""
-    if scene.law is not None:
-        return scene.law
+    if scene.table is not None:
+        return scene.table
     if scene.material is None:
         return law_table(float(np.asarray(scene.alpha).item())) if np.size(scene.alpha) == 1 else None
     return scene.in_own_time()[0] if isinstance(scene.material, MaterialArray) else law_table(scene.material)
@@ -164,6 +185,11 @@ def one_material(scene: Scene) -> LawTable | MaterialArray | None:
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
     """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly (zeta would be 0), or that given."""
+    if not (kappa.size and V.size):
+        return
+    low, high = extent(V)
+    if extent(kappa)[1] * max(-low, high) <= fastest:
+        return
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:

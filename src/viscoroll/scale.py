@@ -15,7 +15,7 @@ from .errors import ParameterError
 #: quantity -> its dimension in radius R, time T, load P (N/m), mass m (kg/m), contact length at rest l0, modulus E';
 #: what is not here is a ratio
 DIMENSIONS = {
-    **dict.fromkeys(("t", "onset_time", "rest_time", "zeta"), "T"),
+    **dict.fromkeys(("t", "onset_time", "rest_time", "rested", "zeta"), "T"),
     **dict.fromkeys(("V", "V0", "rest", "speed"), "R/T"),
     **dict.fromkeys(("omega", "omega0"), "rad/T"),
     **dict.fromkeys(("angle", "slope"), "rad"),
@@ -84,6 +84,9 @@ class Scale(dict[str, Any]):
     ) -> None:  # fmt: skip
         super().__init__(R=R, T=T, P=P, m=m, l0=l0, E_prime=E_prime, rad=1.0)
         self.si = si
+
+    # its numbers may be arrays
+    __eq__, __hash__ = object.__eq__, object.__hash__  # type: ignore[assignment]
 
     def __missing__(self, name: str) -> Any:
         above, below = 1.0, 1.0

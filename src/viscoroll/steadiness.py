@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from .assumptions import Assumption
 from .free_rolling import Free, Reach, Start
-from .validity import Assumption
 
 #: unsteadiness up to which V is right to some 10 %: measured with a transient solver of many modes (docs/may_i.md)
 STEADY_LIMIT = 0.1
@@ -72,10 +72,6 @@ class Steadiness(Assumption):
         made = cls(value <= STEADY_LIMIT, value, sentence)
         made.free, made.rolled = free, rolled
         return made
-
-    def scaled(self, speed: Any, time: Any, length: Any, words: tuple[str, str, str]) -> Steadiness:
-        """The same in other units."""
-        return self._made(self.value, self.free.scaled(speed, time, length, words), self.rolled)
 
     @cached_property
     def one_percent(self) -> Reach:

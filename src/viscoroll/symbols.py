@@ -66,7 +66,7 @@ SYMBOLS = {
         "coefficient of rolling resistance M/(P R); M of a scene is this",
         "finite",
         "Eq. (16)",
-        "si/contact.py",
+        "rolling_contact.py",
     ),
     "force": Symbol("f", "force along V", "finite", "", "kernels/motion/load.py"),
     "torque": Symbol("q", "torque along omega", "finite", "", "kernels/motion/load.py"),

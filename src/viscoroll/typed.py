@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
@@ -18,7 +18,5 @@ if TYPE_CHECKING:
 
     #: one number, or an array as numpy, xarray, pandas or lists hold it; no text
     Numbers: TypeAlias = float | SupportsArray | Sequence[float] | Sequence[SupportsArray] | Sequence[Sequence[float]]
-    #: numbers, (times, values), or a function of time
-    Driving: TypeAlias = Numbers | tuple[Numbers, Numbers] | Callable[[float], float]
 else:
-    Numbers = Driving = Any
+    Numbers = Any

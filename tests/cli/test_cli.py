@@ -136,7 +136,7 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
     def fail(*_, **__):
         raise raised
 
-    monkeypatch.setattr(vr, "contact", fail)
+    monkeypatch.setattr(vr.Scene, "contact", fail)
     assert main(["contact", *PRESET, "--V", "1", "--delta", "0"]) == code
     out, err = capsys.readouterr()
     assert out == ""
@@ -310,7 +310,7 @@ SAME = {
     "roll --V0 1.5 --omega0 0.5 --t 0:3e-3:7 --rtol 1e-6": (
         ("t",),
         lambda: {
-            name: getattr(vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, T, 1e-6), name)
+            name: getattr(vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, T, rtol=1e-6), name)
             for name in ("V", "omega", "x", "angle", "delta")
         },
     ),
@@ -366,8 +366,8 @@ def test_roll_text(run, here):
 
 
 def test_roll_says_how_an_unfinished_motion_ended(run, monkeypatch):
-    roll = vr.roll
-    monkeypatch.setattr(vr, "roll", lambda *args, **options: roll(*args, **options, max_steps=5))
+    roll = vr.Scene.roll
+    monkeypatch.setattr(vr.Scene, "roll", lambda *args, **options: roll(*args, **options, max_steps=5))
     out = run("roll", *START, "--t", "0,3e-3")
     assert "the step limit was reached first" in out
     assert "not_reached" in out

@@ -12,7 +12,7 @@ from closeness import close
 from places import DOCS, RESULTS
 
 from pipeline.evidence.prove import layer
-from viscoroll.validity import THICK_LIMIT
+from viscoroll.assumptions import THICK_LIMIT
 
 
 def settlement(k: float, nu: float) -> float:

@@ -300,7 +300,7 @@ def test_a_records_temperature_is_the_shift_of_its_material():
 
 def test_a_late_clock_and_a_bearing_are_found_in_a_motion():
     t = np.linspace(0.0, 30.0, 200)
-    m = roller().roll(3.0, 30.0, t, 1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
+    m = roller().roll(3.0, 30.0, t, rtol=1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
     late = vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
     unknown = ranges("T_ref") | {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}
     fit = vr.identify(roller(T_ref=1.2e-3), unknown, [late], starts=1)

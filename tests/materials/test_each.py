@@ -33,7 +33,7 @@ def test_an_ensemble_is_its_motions(name):
     asked = {"rtol": 1e-6, "rest": 1e-3, "fields": fields, "method": "integrate"}
     found = vr.ensemble(scene_of(many, mu=mu), *start, T, **asked, threads=1)
     for i in range(len(many)):
-        motion = vr.roll(scene_of(many[i], mu=mu[i]), *start[:, i], T, 1e-6, rest=1e-3)
+        motion = vr.roll(scene_of(many[i], mu=mu[i]), *start[:, i], T, rtol=1e-6, rest=1e-3)
         for field in fields:
             exact = getattr(motion, field)
             scale = max(np.nanmax(np.abs(exact)), float(field.endswith("loss")))
@@ -55,7 +55,7 @@ def test_driven(name, drive):
     found = vr.ensemble(scene_of(many), 0.5, 0.4, T, **drive, rtol=1e-6, fields=("V", "work_force"))
     single = {name: value[0] if isinstance(value, list) else value for name, value in drive.items()}
     for i, one in enumerate(many):
-        motion = vr.roll(scene_of(one), 0.5, 0.4, T, 1e-6, **single)
+        motion = vr.roll(scene_of(one), 0.5, 0.4, T, rtol=1e-6, **single)
         assert close(found.V[i], motion.V, rel=tol.MOTION_EACH)
         assert close(found.work_force[i], motion.work_force, rel=tol.MOTION_EACH)
 
@@ -164,7 +164,7 @@ def test_refused():
         (lambda: many.slower(-1.0), "factor"),
         (lambda: vr.Scene(material=many, kappa=[1.0, 2.0, 3.0], mu=0.1), "shapes", "alpha (2,), kappa (3,)"),
         (lambda: scene.validity([0.3, 0.2, 0.1]), "shapes", "broadcast"),
-        (lambda: vr.roll(scene, 1.0, 1.0, T), "scene", "one motion"),
+        (lambda: vr.roll(scene, 1.0, 1.0, T), "material", "one motion"),
         (lambda: vr.ensemble(pair, 1.0, 1.0, T, method="flow"), "method = 'flow'"),
         (lambda: vr.contact(scene, 1.0, delta=0.0, method="direct"), "method = 'direct'"),
         (lambda: vr.Material(1e6, 0.5, many), "prony", "a Prony series"),

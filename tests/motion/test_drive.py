@@ -20,14 +20,15 @@ T = np.linspace(0.0, 8.0, 33)
 BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
 PAIR = vr.Bodies(cylinder=BROAD, half_space=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
 #: starts and drives that meet every regime: wheel spin and grip again, lock-up, V = 0 in stick and in slip, runaway
+SPIN = vr.Schedule([0.0, 3.0, 3.0, 4.5, 4.5], [0.0, 0.375, 0.375, 0.075, 0.0])
 CASES = {
-    "wheel spin and grip again": (0.0, 0.0, {"torque": ([0.0, 3.0, 3.0, 4.5, 4.5], [0.0, 0.375, 0.375, 0.075, 0.0])}),
+    "wheel spin and grip again": (0.0, 0.0, {"torque": SPIN}),
     "up a slope and back": (0.3, 0.3, {"force": -0.05}),
     "down a slope": (0.0, 0.0, {"force": 0.05}),
     "turned in stick": (0.5, 0.5, {"torque": -0.2}),
     "locked up and turned": (1.0, 1.0, {"torque": -0.6}),
-    "sliding under both": (1.0, -1.0, {"force": 0.1, "torque": ([0.0, 8.0], [0.05, 0.13])}),
-    "sliding from rest": (0.0, 1e-6, {"torque": ([0.0, 8.0], [0.5, -1.1])}),
+    "sliding under both": (1.0, -1.0, {"force": 0.1, "torque": vr.Schedule([0.0, 8.0], [0.05, 0.13])}),
+    "sliding from rest": (0.0, 1e-6, {"torque": vr.Schedule([0.0, 8.0], [0.5, -1.1])}),
     "runaway": (2.0, 2.0, {"force": 0.2}),
     "speed controller": (0.2, 0.2, {"torque": vr.Feedback(0.3, V=-0.5)}),
 }
@@ -59,8 +60,8 @@ def off(one, other) -> float:
 def test_tolerance_and_energy(rtol):
     """V and omega within 30 rtol of the largest speed so far; works are energy gained and lost."""
     for name, (V0, omega0, drive) in CASES.items():
-        tight = vr.roll(SCENE, V0, omega0, T, 1e-11, **drive)
-        m = vr.roll(SCENE, V0, omega0, T, rtol, **drive)
+        tight = vr.roll(SCENE, V0, omega0, T, rtol=1e-11, **drive)
+        m = vr.roll(SCENE, V0, omega0, T, rtol=rtol, **drive)
         assert off(m, tight) <= 30.0 * rtol, name
         assert balance(m) <= 30.0 * rtol, name
         assert balance(tight) <= tol.DRIVE_BALANCE, name
@@ -77,7 +78,7 @@ def test_mirror_symmetry():
             if isinstance(given, vr.Feedback):
                 mirrored[name] = vr.Feedback(-given.value, V=given.V, omega=given.omega)
             else:
-                mirrored[name] = (given[0], [-v for v in given[1]]) if isinstance(given, tuple) else -given
+                mirrored[name] = vr.Schedule(given.times, -given.values) if isinstance(given, vr.Schedule) else -given
         m, other = vr.roll(SCENE, V0, omega0, T, **drive), vr.roll(SCENE, -V0, -omega0, T, **mirrored)
         for field in ("V", "omega", "x", "angle", "force", "torque"):
             assert np.array_equal(getattr(m, field), -getattr(other, field)), field
@@ -87,28 +88,28 @@ def test_mirror_symmetry():
 def test_how_a_schedule_is_written():
     """A number is a schedule of one piece; one cut in pieces, and a callable, are the same drive."""
     m = vr.roll(ROLLER, 0.2, 0.2, T, torque=0.05)
-    piece = vr.roll(ROLLER, 0.2, 0.2, T, torque=([0.0], [0.05]))
+    piece = vr.roll(ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0], [0.05]))
     assert np.array_equal(m.V, piece.V)
-    ramp = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 8.0], [0.0, 0.08]))
-    cut = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08]))
-    called = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=lambda t: 0.01 * t)
+    ramp = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=vr.Schedule([0.0, 8.0], [0.0, 0.08]))
+    cut = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=vr.Schedule([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08]))
+    called = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=lambda t: 0.01 * t)
     assert off(cut, ramp) <= 30e-9
     assert off(called, ramp) <= 30e-9
-    twice = vr.roll(ROLLER, 0.2, 0.2, T, 1e-9, torque=([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
-    first = vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=0.01)
-    assert (
-        off(first, vr.roll(ROLLER, 0.2, 0.2, T[T <= 2.0], 1e-9, torque=([0.0, 2.0, 2.0], [0.01, 0.01, 0.03]))) <= 1e-9
-    )
+    twice = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
+    begun = T[T <= 2.0]
+    first = vr.roll(ROLLER, 0.2, 0.2, begun, rtol=1e-9, torque=0.01)
+    jumps = vr.roll(ROLLER, 0.2, 0.2, begun, rtol=1e-9, torque=vr.Schedule([0.0, 2.0, 2.0], [0.01, 0.01, 0.03]))
+    assert off(first, jumps) <= 1e-9
     assert twice.torque[T == 2.0] == 0.03  # the later side
 
 
 @pytest.mark.parametrize("cut", [1e-4, 3e-4, 8e-4])
 def test_a_ramp_from_rest_cut_by_another_drive(cut):
     """A torque of 0 at the start is 0 in the part that it is cut to: 1e-18 in its place once held the motion up."""
-    ramp = ([0.0, 1e-3], [0.0, 0.2])
-    m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], 1e-9, torque=ramp, force=([cut, cut], [0.0, 0.01]))
+    ramp = vr.Schedule([0.0, 1e-3], [0.0, 0.2])
+    m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], rtol=1e-9, torque=ramp, force=vr.Schedule([cut, cut], [0.0, 0.01]))
     assert m.torque.size == 1
-    assert close(m.V[0], vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], 1e-9, torque=ramp).V[0], rel=30e-9)
+    assert close(m.V[0], vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], rtol=1e-9, torque=ramp).V[0], rel=30e-9)
 
 
 def test_a_sine():
@@ -117,11 +118,11 @@ def test_a_sine():
     m = vr.roll(ROLLER, 0.0, 0.0, t, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
     assert m.drive_error <= 1e-10
     grid = np.linspace(0.0, 10.0, 10_001)
-    table = vr.roll(ROLLER, 0.0, 0.0, t, torque=(grid, 0.1 * np.sin(2.0 * np.pi * grid)))
+    table = vr.roll(ROLLER, 0.0, 0.0, t, torque=vr.Schedule(grid, 0.1 * np.sin(2.0 * np.pi * grid)))
     assert np.abs(m.V - table.V).max() <= tol.DRIVE_TABLE * np.abs(m.V).max()
     assert m.reversals.size >= 1
     # rounding of the fit once passed for a jump
-    tight = vr.roll(ROLLER, 0.0, 0.0, t, 1e-12, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
+    tight = vr.roll(ROLLER, 0.0, 0.0, t, rtol=1e-12, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
     assert tight.drive_error <= 1e-14
     assert off(m, tight) <= 30.0 * 1e-8
 
@@ -129,7 +130,7 @@ def test_a_sine():
 def test_jump_of_traction_where_V_passes_0_in_stick():
     """Q jumps by -2 j |g| d/(1 + j)^2 to leading order (Q algebraic at V = 0); speeds only kink."""
     q, j, kappa, mu = -0.28, SCENE.j, SCENE.kappa, SCENE.mu
-    m = vr.roll(SCENE, 0.5, 0.5, 8.0, 1e-11, torque=q)
+    m = vr.roll(SCENE, 0.5, 0.5, 8.0, rtol=1e-11, torque=q)
     (turn,) = m.reversals
     near = m.at([turn * (1.0 - 1e-9), turn * (1.0 + 1e-9)])
     c = near.contact(fields=("Q",))
@@ -143,19 +144,19 @@ def test_jump_of_traction_where_V_passes_0_in_stick():
 
 
 def test_prescribed_omega_is_infinite_inertia():
-    schedule = ([0.0, 3.0, 8.0], [0.2, 1.0, -0.4])
-    m = vr.roll(ROLLER, 0.2, None, T, 1e-10, omega=schedule)
-    assert close(m.omega, np.interp(T, *schedule), rel=1e-10, scale=1.0)
+    schedule = vr.Schedule([0.0, 3.0, 8.0], [0.2, 1.0, -0.4])
+    m = vr.roll(ROLLER, 0.2, None, T, rtol=1e-10, omega=schedule)
+    assert close(m.omega, np.interp(T, schedule.times, schedule.values), rel=1e-10, scale=1.0)
     heavy, slopes = ROLLER.replace(j=1e9), (0.8 / 3.0, -1.4 / 5.0)
-    torque = ([0.0, 3.0, 3.0], [1e9 * slopes[0] / ROLLER.gamma] * 2 + [1e9 * slopes[1] / ROLLER.gamma])
-    other = vr.roll(heavy, 0.2, 0.2, T, 1e-10, torque=torque)
+    torque = vr.Schedule([0.0, 3.0, 3.0], [1e9 * slopes[0] / ROLLER.gamma] * 2 + [1e9 * slopes[1] / ROLLER.gamma])
+    other = vr.roll(heavy, 0.2, 0.2, T, rtol=1e-10, torque=torque)
     assert close(m.V, other.V, rel=tol.DRIVE_HEAVY, scale=1.0)
     assert balance(m) <= tol.DRIVE_BALANCE
 
 
 def test_towed_and_what_it_needs():
     """Towed at a speed: the force is V'/gamma - Q + M/2; freely Q = -M/2."""
-    m = vr.roll(ROLLER, None, 0.3, np.linspace(0.0, 200.0, 5), 1e-9, V=0.3)
+    m = vr.roll(ROLLER, None, 0.3, np.linspace(0.0, 200.0, 5), rtol=1e-9, V=0.3)
     s = vr.steady(ROLLER, V=0.3, torque=0.0)
     assert close(m.force[-1], float(np.ravel(s.M)[0]), rel=1e-7)
     c = m.contact(fields=("Q", "M"))
@@ -174,7 +175,7 @@ def test_brake_holds_slips_and_lets_go():
     slides = m.switches[1].t
     c = m.at([slides * 1.01]).contact(fields=("Q", "M"))
     assert abs(c.Q[0] + 0.5 * c.M[0]) <= 0.5
-    force = ([0.0, 10.0], [0.0, 0.2])
+    force = vr.Schedule([0.0, 10.0], [0.0, 0.2])
     away = vr.roll(ROLLER, 0.0, 0.0, np.linspace(0.0, 10.0, 41), force=force, brake=0.1)
     assert close(away.switches[0].t, 5.0, rel=1e-6)  # where the force exceeds the brake
     assert not away.V[away.t < 5.0].any()
@@ -197,16 +198,16 @@ def test_bodies_that_differ():
     scene = vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
     t = np.geomspace(0.1, 300.0, 20)
     t = np.append(0.0, t)
-    m = vr.roll(scene, 1.0, 0.4, t, 1e-9)
+    m = vr.roll(scene, 1.0, 0.4, t, rtol=1e-9)
     assert balance(m) <= 1e-7
     c = m.contact(fields=("M", "M_half_space", "M_cylinder"))
     assert close(c.M_half_space + c.M_cylinder, c.M, rel=1e-13)
     like = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5)
-    one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, 1e-10) for given in (like, BROAD))
+    one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (like, BROAD))
     assert np.array_equal(one.V, two.V)
     # on a plate of its own share, by the kernel of two bodies
     nearly = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5 + 1e-12)
-    three = vr.roll(scene.replace(material=nearly), 1.0, 0.4, t, 1e-10)
+    three = vr.roll(scene.replace(material=nearly), 1.0, 0.4, t, rtol=1e-10)
     assert off(three, two) <= tol.DRIVE_FREE
     e = vr.ensemble(scene, [1.0, 0.4], [0.4, 0.4], t, rtol=1e-9)
     assert np.array_equal(e.V[0], m.V)
@@ -231,7 +232,7 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
 def test_ten_humps_run_to_the_end():
     modes = vr.Prony(E=[0.5 * 2.0**n for n in range(10)], tau=[100.0**-n for n in range(10)])
     scene = vr.Scene(material=modes, kappa=10.0, mu=0.2, gamma=1.0, j=0.5)
-    m = vr.roll(scene, 1e6, 1e6, np.geomspace(1.0, 1e8, 30), 1e-8, force=1e-3)
+    m = vr.roll(scene, 1e6, 1e6, np.geomspace(1.0, 1e8, 30), rtol=1e-8, force=1e-3)
     assert m.status == vr.MotionStatus.DONE
     assert np.isfinite(m.V).all()
 
@@ -239,11 +240,11 @@ def test_ten_humps_run_to_the_end():
 def test_ensemble_is_roll():
     """Numbers and schedules each: bit for bit; zeros without a drive."""
     q = np.linspace(-0.2, 0.2, 7)
-    e = vr.ensemble(ROLLER, 0.1, 0.1, T, torque=([0.0, 8.0], np.stack([q, 0.5 * q], axis=1)), force=0.01, threads=1)
-    two = vr.ensemble(ROLLER, 0.1, 0.1, T, torque=([0.0, 8.0], np.stack([q, 0.5 * q], axis=1)), force=0.01, threads=2)
+    torque = vr.Schedule([0.0, 8.0], np.stack([q, 0.5 * q], axis=1))
+    e, two = (vr.ensemble(ROLLER, 0.1, 0.1, T, torque=torque, force=0.01, threads=threads) for threads in (1, 2))
     assert np.array_equal(e.V, two.V)
     for n in (0, 4):
-        m = vr.roll(ROLLER, 0.1, 0.1, T, torque=([0.0, 8.0], [q[n], 0.5 * q[n]]), force=0.01)
+        m = vr.roll(ROLLER, 0.1, 0.1, T, torque=vr.Schedule([0.0, 8.0], [q[n], 0.5 * q[n]]), force=0.01)
         assert np.array_equal(e.V[n], m.V)
         assert np.array_equal(e.x[n], m.x)
     free = vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields=("V", "force", "brake_loss"))
@@ -285,10 +286,8 @@ REFUSALS = {
     "both": ({"V": 1.0, "omega": 1.0}, "V and omega are both given"),
     "found": ({"omega": 1.0, "torque": 0.1}, "torque"),
     "start": ({"omega0": 2.0, "omega": 1.0}, "omega0 = 2"),
-    "jump": ({"omega0": None, "omega": ([0.0, 1.0, 1.0], [1.0, 1.0, 2.0])}, "a jump at t = 1"),
-    "falls": ({"force": ([0.0, 2.0, 1.0], [0.0, 0.0, 0.0])}, "times of force"),
-    "thrice": ({"force": ([0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 1.0, 2.0])}, "there once, or twice"),
-    "shapes": ({"force": ([0.0, 1.0], [0.0, 0.0, 1.0])}, "values (k,)"),
+    "jump": ({"omega0": None, "omega": vr.Schedule([0.0, 1.0, 1.0], [1.0, 1.0, 2.0])}, "a jump at t = 1"),
+    "pair": ({"force": ([0.0, 1.0], [0.0, 0.1])}, "force has shape (2, 2)"),
     "steep": ({"slope": 1.6}, "slope"),
     "nan": ({"torque": lambda t: math.nan}, "torque(t)"),
     "callable": ({"V0": None, "V": lambda t: float(t > 0.3)}, "a jump at t = 0.3"),
@@ -298,6 +297,23 @@ REFUSALS = {
     "brake": ({"brake": -1.0}, "brake"),
     "no start": ({"V0": None}, "V0"),
 }
+
+
+@pytest.mark.parametrize(
+    ("times", "values", "words"),
+    [
+        ([0.0, 2.0, 1.0], [0.0, 0.0, 0.0], "times = 2.0: must be in ascending order"),
+        ([0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 1.0, 2.0], "there once, or twice"),
+        ([0.0, 1.0], [0.0, 0.0, 1.0], "values (k,)"),
+        ([-1.0, 1.0], [0.0, 0.0], "times = -1.0 at row 0"),
+        ([0.0, 1.0], [0.0, math.nan], "values = nan at row 1"),
+        (0.0, 1.0, "times (k,)"),
+    ],
+)
+def test_schedules_that_are_none(times, values, words):
+    with pytest.raises(vr.ParameterError) as told:
+        vr.Schedule(times, values)
+    assert words in str(told.value)
 
 
 @pytest.mark.parametrize("name", REFUSALS)
@@ -324,7 +340,7 @@ def test_flow_is_refused_and_exceptions_pass():
 
 def test_small_beginnings():
     """Rest stays while nothing acts, and ends where a ramp begins; a push against friction below its limit moves."""
-    still = vr.roll(ROLLER, 0.0, 0.0, T, torque=([0.0, 4.0, 4.0, 8.0], [0.0, 0.0, 0.0, 0.1]))
+    still = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 4.0, 4.0, 8.0], [0.0, 0.0, 0.0, 0.1]))
     assert not still.V[T <= 4.0].any()
     assert (still.V[T > 4.0] > 0.0).all()
     assert (still.regime[T < 4.0] == 2).all()
@@ -337,7 +353,7 @@ def test_small_beginnings():
 
 def test_a_ramp_whose_start_is_rounding():
     """A start of 1e-18 of what the ramp reaches is 0: the motion does not set out the other way and turn at once."""
-    plain = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=([0.0, 1e-3], [0.0, 0.2]))
+    plain = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=vr.Schedule([0.0, 1e-3], [0.0, 0.2]))
     for first in (-1e-18, 1e-18, -1e-15):
         m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=lambda t, first=first: first + 200.0 * t)
         assert m.status == vr.MotionStatus.DONE

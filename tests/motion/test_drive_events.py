@@ -18,7 +18,7 @@ def test_a_brake_gives_way_at_its_capacity():
     """Held with all that the brake can take: it lets go where the torque begins to exceed that."""
     scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
     t = np.linspace(0.0, 2.0, 21)
-    m = vr.roll(scene, 0.0, 0.0, t, brake=0.1, torque=([0.0, 1.0, 2.0], [0.1, 0.1, 0.2]))
+    m = vr.roll(scene, 0.0, 0.0, t, brake=0.1, torque=vr.Schedule([0.0, 1.0, 2.0], [0.1, 0.1, 0.2]))
     assert not m.omega[t <= 1.0].any()
     assert (m.omega[t > 1.0] > 0.0).all()
 
@@ -27,8 +27,8 @@ def test_a_brake_gives_way_at_its_capacity():
 def test_a_faint_push_the_other_way(share):
     """A ramp that begins on the other side, by a share of what it reaches: V turns at twice the time of its zero."""
     scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5), np.linspace(0.0, 8.0, 33)
-    plain = vr.roll(scene, 0.0, 0.0, t, 1e-10, torque=([0.0, 8.0], [0.0, 0.2]))
-    m = vr.roll(scene, 0.0, 0.0, t, 1e-10, torque=([0.0, 8.0], [-0.2 * share, 0.2]))
+    plain = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [0.0, 0.2]))
+    m = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [-0.2 * share, 0.2]))
     assert m.status == vr.MotionStatus.DONE
     assert m.steps <= 3 * plain.steps
     assert close(m.reversals, [16.0 * share], rel=1e-3)
@@ -46,7 +46,7 @@ def test_a_brake_locks_just_before_v_is_zero(early):
     end = (np.sqrt(0.06) - 0.2) / 0.01  # of V = 1 - 0.2 t - 0.005 t^2
     stop = end - early  # omega' is (mu + brake)/j = 1
     t = np.concatenate([np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]), [end + 1.0]])
-    m = vr.roll(scene, 1.0, -stop, t, rtol, brake=0.3, force=([0.0, 10.0], [0.0, -0.1]))
+    m = vr.roll(scene, 1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1]))
     assert [s.regime for s in m.switches] == ["locked", "held"]
     assert close([s.t for s in m.switches], [stop, end], rel=BOUND * rtol)
     bound = BOUND * rtol * stop
@@ -62,7 +62,7 @@ def test_a_locked_cylinder_skids_to_rest(pull):
     V0 = 10.0 ** draw.uniform(-2.0, 1.0, count)
     scene = vr.Scene(alpha=1.0, kappa=10.0 ** draw.uniform(-1.0, 2.0, count), mu=mu, gamma=1.0, j=0.5)
     t = np.geomspace(0.01, 100.0, 400)
-    force = [0.0, t[-1]], [0.0, pull * t[-1]]
+    force = vr.Schedule([0.0, t[-1]], [0.0, pull * t[-1]])
     e = vr.ensemble(scene, V0, 0.0, t, rtol=rtol, brake=10.0, force=force, fields=("V", "regime"))
     end = 2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))  # of V = V0 - mu t + pull t^2/2
     skids = t < end[:, None]
@@ -78,7 +78,7 @@ def test_a_brake_that_begins_at_0():
     V goes on to 0.
     """
     scene, rtol, t = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), 1e-8, np.linspace(0.0, 6.0, 25)
-    m = vr.roll(scene, 1.0, -1.0, t, rtol, brake=([0.0, 6.0], [0.0, 1.8]))
+    m = vr.roll(scene, 1.0, -1.0, t, rtol=rtol, brake=vr.Schedule([0.0, 6.0], [0.0, 1.8]))
     stop = (np.sqrt(0.34) - 0.2) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
     assert [s.regime for s in m.switches] == ["locked", "held"]
     assert close([s.t for s in m.switches], [stop, 5.0], rel=BOUND * rtol)
@@ -91,9 +91,9 @@ def test_a_brake_gives_way_to_a_ramp(most):
     """What is left of the torque rises from 0: the motion is that of a ramp from 0 without a brake."""
     scene, t, rtol = vr.Scene(alpha=1.0, kappa=15.0, mu=0.05, gamma=12.0, j=0.66), np.linspace(0.0, 1.0, 21), 1e-8
     slope, free = -0.3, t >= most / 0.3
-    m = vr.roll(scene, 0.0, 0.0, t, rtol, brake=most, torque=([0.0, 1.0], [0.0, slope]))
+    m = vr.roll(scene, 0.0, 0.0, t, rtol=rtol, brake=most, torque=vr.Schedule([0.0, 1.0], [0.0, slope]))
     since = np.append(0.0, t[free] - most / 0.3)
-    plain = vr.roll(scene, 0.0, 0.0, since, rtol, torque=([0.0, 1.0], [0.0, slope]))
+    plain = vr.roll(scene, 0.0, 0.0, since, rtol=rtol, torque=vr.Schedule([0.0, 1.0], [0.0, slope]))
     assert m.status == vr.MotionStatus.DONE
     assert not m.V[~free].any()
     assert close(m.V[free], plain.V[1:], rel=BOUND * rtol)
@@ -106,10 +106,8 @@ def test_locked_cylinders_skid_to_rest(rtol):
     draw, count = np.random.default_rng(11), 200
     alpha, V0 = 1.0 + 10.0 ** draw.uniform(-2.0, 3.0, count), 10.0 ** draw.uniform(-2.0, 1.0, count)
     scene = vr.Scene(alpha=alpha, kappa=10.0 ** draw.uniform(0.0, 2.0, count), mu=0.2, gamma=1.0, j=0.5)
-    force = [0.0, 100.0], [0.05, -0.1]
-    e = vr.ensemble(
-        scene, V0, -V0, [0.0, 100.0], rtol=rtol, brake=([0.0, 100.0], [5.0, 6.0]), force=force, fields=("V", "regime")
-    )
+    force, brake = vr.Schedule([0.0, 100.0], [0.05, -0.1]), vr.Schedule([0.0, 100.0], [5.0, 6.0])
+    e = vr.ensemble(scene, V0, -V0, [0.0, 100.0], rtol=rtol, brake=brake, force=force, fields=("V", "regime"))
     assert (e.status == vr.MotionStatus.DONE).all()
     assert not e.V[:, -1].any()
     assert (e.regime[:, -1] == 4).all()
@@ -119,11 +117,11 @@ def test_locked_cylinders_skid_to_rest(rtol):
 def test_spun_on_the_spot(rtol):
     """V is prescribed to stay 0: omega' is what torque and brake leave of friction, over j."""
     scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), np.linspace(0.0, 2.0, 17)
-    m = vr.roll(scene, None, 1.0, t, rtol, V=0.0, brake=0.1)
+    m = vr.roll(scene, None, 1.0, t, rtol=rtol, V=0.0, brake=0.1)
     assert close(m.omega, np.maximum(1.0 - 0.6 * t, 0.0), rel=BOUND * rtol, scale=1.0)
-    m = vr.roll(scene, None, 0.0, t, rtol, V=0.0, brake=0.1, torque=([0.0, 2.0], [0.0, 0.6]))
+    m = vr.roll(scene, None, 0.0, t, rtol=rtol, V=0.0, brake=0.1, torque=vr.Schedule([0.0, 2.0], [0.0, 0.6]))
     assert close(m.omega, 0.3 * np.maximum(t - 1.0, 0.0) ** 2, rel=BOUND * rtol, scale=1.0)  # held up to 0.3
-    m = vr.roll(scene, None, -0.2, t, rtol, V=0.0, torque=0.3)
+    m = vr.roll(scene, None, -0.2, t, rtol=rtol, V=0.0, torque=0.3)
     assert close(m.omega, np.where(t < 0.2, t - 0.2, 0.2 * (t - 0.2)), rel=BOUND * rtol, scale=1.0)
 
 
@@ -132,14 +130,14 @@ def test_spun_on_the_spot(rtol):
 def test_a_prescribed_speed_stands_at_0(rtol, then):
     """What its integration leaves of it is 0: the other speed comes to rest too; then it sets out either way."""
     scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.05, gamma=1.0, j=0.5), np.linspace(0.0, 4.0, 17)
-    stands = ([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
-    turning = vr.roll(scene, None, -0.1, t, rtol, V=stands)
+    stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
+    turning = vr.roll(scene, None, -0.1, t, rtol=rtol, V=stands)
     # sliding at V = 0 it spins down by 0.1 a unit of time
-    assert close(turning.V, np.interp(t, *stands), rel=BOUND * rtol, scale=1.0)
-    moving = vr.roll(scene, 1.0, None, t, rtol, omega=stands)
-    assert close(moving.omega, np.interp(t, *stands), rel=BOUND * rtol, scale=1.0)
-    fast = vr.roll(scene, None, -2.0, t, rtol, V=stands, torque=-0.051)
-    assert close(fast.V, np.interp(t, *stands), rel=BOUND * rtol, scale=1.0)
+    assert close(turning.V, np.interp(t, stands.times, stands.values), rel=BOUND * rtol, scale=1.0)
+    moving = vr.roll(scene, 1.0, None, t, rtol=rtol, omega=stands)
+    assert close(moving.omega, np.interp(t, stands.times, stands.values), rel=BOUND * rtol, scale=1.0)
+    fast = vr.roll(scene, None, -2.0, t, rtol=rtol, V=stands, torque=-0.051)
+    assert close(fast.V, np.interp(t, stands.times, stands.values), rel=BOUND * rtol, scale=1.0)
     for m in (turning, moving, fast):
         assert m.status == vr.MotionStatus.DONE
     assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
@@ -152,7 +150,7 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
     """
     scene, t = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5), np.linspace(0.0, 2.0, 9)
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        drive = {"torque": ([0.0, 2.0], [-0.3, 0.5]), "brake": ([0.0, 2.0], [0.15, 0.05])}
-        m = vr.roll(scene, 1.0, 0.0, t, rtol, **drive)
+        drive = {"torque": vr.Schedule([0.0, 2.0], [-0.3, 0.5]), "brake": vr.Schedule([0.0, 2.0], [0.15, 0.05])}
+        m = vr.roll(scene, 1.0, 0.0, t, rtol=rtol, **drive)
         assert m.switches[0].regime == "full slip"
         assert close(m.switches[0].t, 0.25 / 0.45, rel=BOUND * rtol)

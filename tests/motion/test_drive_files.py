@@ -9,7 +9,7 @@ from refusals import refused
 import viscoroll as vr
 
 SCENE = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
-RAMP = ([0.0, 1.0, 1.0], [0.0, 0.2, 0.0])
+RAMP = vr.Schedule([0.0, 1.0, 1.0], [0.0, 0.2, 0.0])
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
@@ -32,8 +32,8 @@ def test_a_motion_carries_its_drive(tmp_path):
             assert data[name].attrs.keys() >= {"long_name", "units", "symbol"}
         assert data.attrs["drive_force"] == "a function of t"
         assert data.attrs["drive_error"] == m.drive_error > 0.0
-        assert data["drive_torque"].values.tolist() == RAMP[1]
-        assert data["drive_torque_time"].values.tolist() == RAMP[0]
+        assert data["drive_torque"].values.tolist() == RAMP.values.tolist()
+        assert data["drive_torque_time"].values.tolist() == RAMP.times.tolist()
         assert data["drive_torque"].attrs["gain_omega"] == -0.1
         assert data["drive_slope"].item() == -0.5
         assert data.attrs["kappa"] == m.scene.kappa > SCENE.kappa
@@ -72,7 +72,7 @@ def test_regimes_of_a_brake_have_names():
 
 
 def test_an_ensemble_carries_its_drives():
-    steps = ([0.0, 1.0, 1.0], [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
+    steps = vr.Schedule([0.0, 1.0, 1.0], [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
     e = vr.ensemble(SCENE, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING))
     data = e.to_xarray()
     assert data["drive_torque"].dims == ("motion", "drive_torque_time")
@@ -84,5 +84,5 @@ def test_an_ensemble_carries_its_drives():
 
 def test_one_motion_takes_the_drive_of_one():
     refused(lambda: vr.roll(SCENE, 0.0, 0.0, 1.0, force=[1.0, 2.0]), "force has shape (2,)")
-    schedules = ([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])
+    schedules = vr.Schedule([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])
     refused(lambda: vr.roll(SCENE, 0.0, 0.0, 1.0, force=schedules), "drive = of 2 motions: must be one")

@@ -194,7 +194,7 @@ def test_to_xarray_and_back_from_a_file(many, tmp_path):
 BAD_CALLS = [
     ({"V0": [1.0, math.nan]}, "V0 = nan at row 1: must be a finite number"),
     ({"V0": [1.0, 2.0], "omega0": [1.0, 2.0, 3.0]}, "V0 (2,), omega0 (3,): must be broadcastable"),
-    ({"scene": SCENE.replace(mu=[0.1, 0.2]), "V0": [1.0, 2.0, 3.0]}, "mu (2,), V0 (3,)"),
+    ({"roller": SCENE.replace(mu=[0.1, 0.2]), "V0": [1.0, 2.0, 3.0]}, "mu (2,), V0 (3,)"),
     ({"V0": [[1.0, 2.0]]}, "must be scalars or vectors (n,)"),
     ({"t": [1.0, 0.5]}, "must be in ascending order"),
     ({"fields": ("V", "speed")}, "fields: 'speed' is not a field; choose from V, omega"),
@@ -204,4 +204,4 @@ BAD_CALLS = [
 
 def test_bad_input():
     for change, text in BAD_CALLS:
-        refused(partial(vr.ensemble, **{"scene": SCENE, "V0": 1.0, "omega0": 0.5, "t": T} | change), text)
+        refused(partial(vr.ensemble, **{"roller": SCENE, "V0": 1.0, "omega0": 0.5, "t": T} | change), text)

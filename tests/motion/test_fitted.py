@@ -101,13 +101,13 @@ def course(m: Any) -> np.ndarray:
     return np.stack([m.V, m.omega])
 
 
-def table(name: str) -> tuple[np.ndarray, np.ndarray]:
+def table(name: str) -> vr.Schedule:
     """A callable as values at times that lie close where it is steep."""
     near = {"tanh": (1.0, 0.4), "erf": (1.0, 0.15), "Gauss pulse": (3.0, 0.6)}.get(name)
     t = np.linspace(0.0, END, 4001)
     if near:
         t = np.unique(np.r_[t, np.linspace(near[0] - near[1], near[0] + near[1], 6001)])
-    return t, np.array([CALLABLES[name](one) for one in t])
+    return vr.Schedule(t, [CALLABLES[name](one) for one in t])
 
 
 @pytest.mark.parametrize("start", [0.0, 0.5])
@@ -115,10 +115,10 @@ def table(name: str) -> tuple[np.ndarray, np.ndarray]:
 def test_motions_under_callables_are_those_under_tables(name, start):
     """At every tolerance, from rest and not."""
     t = np.linspace(0.0, END, 41)
-    best = vr.roll(ROLLER, start, start, t, 1e-9, torque=table(name))
+    best = vr.roll(ROLLER, start, start, t, rtol=1e-9, torque=table(name))
     fastest = np.abs(course(best)).max()
     for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
-        m = vr.roll(ROLLER, start, start, t, rtol, torque=CALLABLES[name])
+        m = vr.roll(ROLLER, start, start, t, rtol=rtol, torque=CALLABLES[name])
         assert m.status == vr.MotionStatus.DONE
         assert m.steps < tol.CALLABLE_STEPS
         assert close(course(m), course(best), rel=max(30.0 * rtol, tol.CALLABLE_TABLE), scale=fastest)
@@ -129,9 +129,9 @@ def test_speeds_prescribed_by_callables(name):
     """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""
     t = np.linspace(0.0, END, 41)
     exact = np.array([CALLABLES[name](one) for one in t])
-    best = vr.roll(ROLLER, 0.0, None, t, 1e-12, omega=CALLABLES[name])
+    best = vr.roll(ROLLER, 0.0, None, t, rtol=1e-12, omega=CALLABLES[name])
     for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
-        m = vr.roll(ROLLER, 0.0, None, t, rtol, omega=CALLABLES[name])
+        m = vr.roll(ROLLER, 0.0, None, t, rtol=rtol, omega=CALLABLES[name])
         assert m.status == vr.MotionStatus.DONE
         assert m.steps < tol.CALLABLE_STEPS
         assert close(m.omega, exact, rel=rtol, scale=np.abs(exact).max())
@@ -142,9 +142,9 @@ def test_speeds_prescribed_by_callables(name):
 def test_a_callable_that_jumps_is_a_schedule_that_jumps(rtol):
     t = np.linspace(0.0, END, 41)
     stairs = ([1.0, 1.0, 4.0, 4.0], [0.0, 0.1, 0.1, -0.05])
-    m = vr.roll(ROLLER, 0.0, 0.0, t, rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0))
-    other = vr.roll(ROLLER, 0.0, 0.0, t, rtol, torque=stairs)
+    m = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0))
+    other = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=stairs)
     assert np.array_equal(m.torque[t != 0.0], other.torque[t != 0.0])
     assert close(course(m), course(other), rel=tol.CALLABLE_JUMP, scale=np.abs(other.V).max())
     with pytest.raises(vr.ParameterError, match="jump"):
-        vr.roll(ROLLER, None, 0.0, t, rtol, V=lambda t: 0.1 * (t > 3.0))
+        vr.roll(ROLLER, None, 0.0, t, rtol=rtol, V=lambda t: 0.1 * (t > 3.0))

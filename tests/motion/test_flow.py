@@ -166,7 +166,7 @@ def test_onset_times():
 def test_within_the_boundary_layer():
     """Outputs a few stiff times behind an onset with omega > V, where creep falls from its limit through zero."""
     V0, omega0 = 0.2, 2.0
-    onset = vr.roll(SCENE, V0, omega0, [T[-1]], 1e-11).onset_time
+    onset = vr.roll(SCENE, V0, omega0, [T[-1]], rtol=1e-11).onset_time
     t = onset + np.geomspace(1e-12, 1e-4, 200)
     mapped = vr.ensemble(SCENE, [V0], [omega0], t, method="flow", fields=FIELDS)
     rolled = vr.ensemble(SCENE, [V0], [omega0], t, method="integrate", rtol=1e-11, fields=FIELDS)
@@ -182,7 +182,7 @@ def test_within_the_boundary_layer():
 def test_start_inside_the_stick_zone_is_a_point_of_an_earlier_motion():
     """Going on from a state in the boundary layer is the same as not having stopped there."""
     V0, omega0 = vr.PAPER_STARTS["IC1"]
-    onset = vr.roll(SCENE, V0, omega0, [T[-1]], 1e-11).onset_time
+    onset = vr.roll(SCENE, V0, omega0, [T[-1]], rtol=1e-11).onset_time
     between, end = onset + np.array([3e-7, 1e-6, 3e-6, 1e-5]), 2e-4
     whole = vr.ensemble(SCENE, [V0], [omega0], np.append(between, end), method="flow")
     for i, t in enumerate(between):

@@ -26,11 +26,11 @@ def test_as_at_the_tightest_tolerance(row):
     """Regimes, their ends and turns of V; speeds over the largest so far, of free motions over that of the time."""
     case = vr.Scene(*row["scene"]), *row["start"], row["t"]
     drive = {name: given(plain) for name, plain in row["drive"].items()}
-    best = vr.roll(*case, TIGHT, **drive)
+    best = vr.roll(*case, rtol=TIGHT, **drive)
     speed = np.maximum(np.abs(best.V), np.abs(best.omega))
     scale = np.maximum.accumulate(speed) if drive else speed
     for rtol in row["rtols"]:
-        m, bound = vr.roll(*case, rtol, **drive), row["bound"] * (rtol + TIGHT)
+        m, bound = vr.roll(*case, rtol=rtol, **drive), row["bound"] * (rtol + TIGHT)
         assert m.status == best.status == vr.MotionStatus.DONE
         assert m.steps <= row["steps"]
         assert [s.regime for s in m.switches] == [s.regime for s in best.switches]

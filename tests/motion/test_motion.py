@@ -504,7 +504,7 @@ BAD_CALLS = [
 def test_bad_input():
     for V0, omega0, t, options, text in BAD_CALLS:
         refused(partial(vr.roll, ROUNDED, V0, omega0, t, **options), text)
-    refused(lambda: vr.roll(ROUNDED.replace(mu=[0.1, 0.2]), 1.0, 1.0, 1e-3), "the scene has shape (2,): use ensemble")
+    refused(lambda: vr.roll(ROUNDED.replace(mu=[0.1, 0.2]), 1.0, 1.0, 1e-3), "mu has shape (2,): use ensemble")
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-11])

@@ -13,7 +13,7 @@ T = np.array([0.0, 0.5, 1.0, 5.0, 10.0, 20.0, 22.0, 25.0, 40.0, 80.0])
 
 def test_a_later_pulse_is_waited_for():
     """Pulses on [0, 1] and [20, 25]: between them V falls to a thousandth of the threshold."""
-    pulses = ([0.0, 0.0, 1.0, 1.0, 20.0, 20.0, 25.0, 25.0], [0.0, 0.05, 0.05, 0.0, 0.0, 0.05, 0.05, 0.0])
+    pulses = vr.Schedule([0.0, 0.0, 1.0, 1.0, 20.0, 20.0, 25.0, 25.0], [0.0, 0.05, 0.05, 0.0, 0.0, 0.05, 0.05, 0.0])
     m, whole = (vr.roll(SCENE, 0.0, 0.0, T, force=pulses, rest=rest) for rest in (1e-3, None))
     assert m.status == vr.MotionStatus.RESTED
     assert m.rest_time > 25.0
@@ -26,11 +26,12 @@ def test_a_later_pulse_is_waited_for():
 
 def test_force_after_rest_is_what_is_given():
     """A ramp that ends: what the threshold is above all the time ends the motion where the ramp does."""
-    ramp = ([0.0, 5.0], [0.004, 0.0])
+    ramp = vr.Schedule([0.0, 5.0], [0.004, 0.0])
     m = vr.roll(SCENE, 0.05, 0.05, T, force=ramp, rest=0.045)
     assert m.rest_time == 5.0
-    assert close(m.force, np.interp(T, *ramp), rel=1e-15, scale=0.004)
-    e = vr.ensemble(SCENE, 0.05, 0.05, T, force=([[0.0, 5.0], [0.0, 2.0]], [[0.004, 0.0], [0.002, 0.0]]), rest=0.045,
+    assert close(m.force, np.interp(T, ramp.times, ramp.values), rel=1e-15, scale=0.004)
+    force = vr.Schedule([[0.0, 5.0], [0.0, 2.0]], [[0.004, 0.0], [0.002, 0.0]])
+    e = vr.ensemble(SCENE, 0.05, 0.05, T, force=force, rest=0.045,
                     fields=("V", "force"))  # fmt: skip
     assert np.array_equal(e.rest_time, [5.0, 2.0])
     assert np.array_equal(e.force[0], m.force)
@@ -40,7 +41,7 @@ def test_force_after_rest_is_what_is_given():
 def test_rest_at_the_start_is_rest():
     """Nothing is given but zeros: as without a drive."""
     still = vr.roll(SCENE, 0.0, 0.0, T, rest=1e-3)
-    m = vr.roll(SCENE, 0.0, 0.0, T, rest=1e-3, force=([0.0, 1.0], [0.0, 0.0]))
+    m = vr.roll(SCENE, 0.0, 0.0, T, rest=1e-3, force=vr.Schedule([0.0, 1.0], [0.0, 0.0]))
     assert (m.status, m.rest_time, m.switches) == (still.status, still.rest_time, still.switches)
-    slow = vr.roll(SCENE, 1e-4, 1e-4, T, rest=1e-3, force=([0.0, 1.0], [0.0, 0.0]))
+    slow = vr.roll(SCENE, 1e-4, 1e-4, T, rest=1e-3, force=vr.Schedule([0.0, 1.0], [0.0, 0.0]))
     assert (slow.status, slow.rest_time) == (vr.MotionStatus.RESTED, 0.0)

@@ -23,7 +23,8 @@ def fastest(m: vr.Motion) -> float:
 def test_a_faint_drive_moves_as_much_less(faint):
     """At low speed the motion is linear in what drives it: by a push, a ramp, and a ramp that begins later."""
     for times, values in (([0.0], [1.0]), ([0.0, 2.0], [0.0, 1.0]), ([0.7, 2.0], [0.0, 1.0])):
-        m, plain = (vr.roll(ROLLER, 0.0, 0.0, T, torque=(times, np.multiply(values, size))) for size in (faint, 1e-9))
+        drives = (vr.Schedule(times, np.multiply(values, size)) for size in (faint, 1e-9))
+        m, plain = (vr.roll(ROLLER, 0.0, 0.0, T, torque=torque) for torque in drives)
         assert m.status == vr.MotionStatus.DONE
         assert close(m.V / faint, plain.V / 1e-9, rel=tol.FAINT)
 
@@ -31,8 +32,8 @@ def test_a_faint_drive_moves_as_much_less(faint):
 @pytest.mark.parametrize("faint", [1e-18, 1e-70, 1e-100, 1e-300])
 def test_what_follows_a_faint_beginning(faint):
     """A ramp up from next to nothing is one up from 0."""
-    plain = vr.roll(ROLLER, 0.0, 0.0, T, torque=([0.0, 0.5, 2.0], [0.0, 0.0, 0.1]))
-    m = vr.roll(ROLLER, 0.0, 0.0, T, torque=([0.0, 0.5, 2.0], [0.0, faint, 0.1]))
+    plain = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 0.5, 2.0], [0.0, 0.0, 0.1]))
+    m = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 0.5, 2.0], [0.0, faint, 0.1]))
     assert m.steps < 100
     assert close(m.V, plain.V, rel=30e-8, scale=fastest(plain))
 
@@ -42,7 +43,8 @@ def test_what_follows_a_faint_beginning(faint):
 def test_a_start_of_next_to_nothing(V0, creep):
     """Under a push, a push to come, a ramp, wheel spin: as from rest.  It ended in steps that were too small."""
     scene, t = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4), np.array([1e-3, 2e-3, 1e-2])
-    drives = ({"force": 0.01}, {"force": ([1e-3, 1e-3], [0.0, 0.01])}, {"force": ([0.0, 1e-3], [0.0, 0.01])},
+    pushes = vr.Schedule([1e-3, 1e-3], [0.0, 0.01]), vr.Schedule([0.0, 1e-3], [0.0, 0.01])
+    drives = ({"force": 0.01}, {"force": pushes[0]}, {"force": pushes[1]},
               {"torque": 1.0}, {"force": 0.01, "brake": 0.1})  # fmt: skip
     for drive in drives:
         m, plain = vr.roll(scene, V0, creep * V0, t, **drive), vr.roll(scene, 0.0, 0.0, t, **drive)
@@ -54,7 +56,7 @@ def test_sets_out_where_friction_is_strong():
     """mu > 2 kappa: V' has the sign of force + torque also where both ends of the search for the creep said no."""
     scene = vr.Scene(1.0776824878553917, 0.10214952795009324, 0.7166592317010853, 1.0, 0.7463498926925716)
     force, torque = -0.429422551677562, 0.497903837854678
-    m = vr.roll(scene, 0.0, 0.0, np.linspace(0.0, 6.0, 13), 1e-10, force=force, torque=torque)
+    m = vr.roll(scene, 0.0, 0.0, np.linspace(0.0, 6.0, 13), rtol=1e-10, force=force, torque=torque)
     assert m.status == vr.MotionStatus.DONE
     assert (m.V[1:] > 0.0).all()
     assert close((m.V + scene.j * m.omega)[1] / 0.5, force + torque, rel=0.1)  # M is small yet
@@ -72,7 +74,9 @@ def through_zero(prescribed: bool, count: int) -> list[tuple]:
         V0, force = draw.normal(), draw.normal() * mu * 10.0 ** draw.uniform(-3.0, -0.5) * (draw.random() < 0.5)
         size = np.copysign(10.0 ** draw.uniform(-1.0, 0.5), V0)
         drive = (
-            {"omega": ([0.0, 1.0], [size, -size])} if prescribed else {"torque": ([0.0, 1.0], [size * mu, -size * mu])}
+            {"omega": vr.Schedule([0.0, 1.0], [size, -size])}
+            if prescribed
+            else {"torque": vr.Schedule([0.0, 1.0], [size * mu, -size * mu])}
         )
         cases.append((vr.Scene(alpha, kappa, mu, gamma, j), V0, None if prescribed else size, drive | {"force": force}))
     return cases
@@ -83,7 +87,7 @@ def test_turns_where_friction_is_strong(prescribed):
     """With mu > 2 kappa the band of stick at V = 0 holds creep below -1; half of these ended at the step limit."""
     t = np.linspace(0.0, 1.0, 21)
     for scene, V0, omega0, drive in through_zero(prescribed, 60):
-        m, best = (vr.roll(scene, V0, omega0, t, rtol, max_steps=5000, **drive) for rtol in (1e-6, 1e-10))
+        m, best = (vr.roll(scene, V0, omega0, t, rtol=rtol, max_steps=5000, **drive) for rtol in (1e-6, 1e-10))
         assert (m.status, best.status) == (vr.MotionStatus.DONE, vr.MotionStatus.DONE), (scene, V0, drive)
         so_far = np.maximum.accumulate(np.maximum(np.abs(best.V), np.abs(best.omega)))
         assert close(m.V, best.V, rel=30e-6, scale=so_far)
@@ -98,7 +102,16 @@ def test_to_and_fro_where_friction_is_strong():
     sign = (-1.0) ** np.arange(jumps)
     force, torque = (np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1) for _ in range(2))
     found, best = (
-        vr.ensemble(scene, 0.0, 0.0, t, force=(times, force), torque=(times, torque), rtol=rtol, fields=("V", "omega"))
+        vr.ensemble(
+            scene,
+            0.0,
+            0.0,
+            t,
+            rtol=rtol,
+            force=vr.Schedule(times, force),
+            torque=vr.Schedule(times, torque),
+            fields=("V", "omega"),
+        )
         for rtol in (1e-6, 1e-10)
     )
     # where the law leaves two ways on it is said so
@@ -115,8 +128,8 @@ def test_infinite_inertia_where_friction_is_strong():
     """The same motion by a torque on an inertia of 10^9."""
     scene = vr.Scene(alpha=11.0, kappa=1.5, mu=3.1, gamma=20.0, j=0.3)
     t = np.linspace(0.0, 1.0, 21)
-    m = vr.roll(scene, 1.7, None, t, 1e-10, omega=([0.0, 1.0], [1.0, -1.0]))
-    other = vr.roll(scene.replace(j=1e9), 1.7, 1.0, t, 1e-10, torque=-2.0 * 1e9 / scene.gamma)
+    m = vr.roll(scene, 1.7, None, t, rtol=1e-10, omega=vr.Schedule([0.0, 1.0], [1.0, -1.0]))
+    other = vr.roll(scene.replace(j=1e9), 1.7, 1.0, t, rtol=1e-10, torque=-2.0 * 1e9 / scene.gamma)
     assert m.reversals.size == 1
     assert close(m.V, other.V, rel=tol.DRIVE_HEAVY, scale=1.7)
 
@@ -132,7 +145,7 @@ TWO_WAYS = {
 def test_two_ways_on_are_none(name):
     """Where the law lets V go either way it is said so; at mu <= 2 kappa there is one way on."""
     ratio, force, slope = TWO_WAYS[name]
-    drive = {"force": force, "omega": ([0.0, 1.0], [0.0, slope])}
+    drive = {"force": force, "omega": vr.Schedule([0.0, 1.0], [0.0, slope])}
     with pytest.warns(RuntimeWarning, match="two ways"):
         m = vr.roll(vr.Scene(11.0, 0.5 / ratio, 1.0, 1.0, 0.5), 0.0, None, [0.0, 1.0], **drive)
     assert m.status == vr.MotionStatus.UNDECIDED
@@ -163,7 +176,7 @@ def test_slight_friction_and_inertia():
     """The slow manifold lies near the edge of stick, where it was tried without end, in one case of six."""
     for scene, V0, omega0, end in slight_motions(100):
         t = end * np.array([0.1, 0.5, 0.9, 1.0])
-        m, best = (vr.roll(scene, V0, omega0, t, rtol, max_steps=1000) for rtol in (1e-8, 1e-10))
+        m, best = (vr.roll(scene, V0, omega0, t, rtol=rtol, max_steps=1000) for rtol in (1e-8, 1e-10))
         assert m.status == best.status == vr.MotionStatus.DONE, (scene, V0, omega0, end)
         fastest = np.maximum(np.abs(best.V), np.abs(best.omega))
         assert close(m.V, best.V, rel=30e-8, scale=fastest)

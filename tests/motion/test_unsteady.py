@@ -52,7 +52,7 @@ def share(scene, V):
 def test_beside_a_second_method(scene, start, t, drive):
     exact = second_method(scene, *start, t, **drive)
     for rtol in (1e-6, 1e-9):
-        m = vr.roll(scene, *start, t, rtol, unsteady=True, **drive)
+        m = vr.roll(scene, *start, t, rtol=rtol, unsteady=True, **drive)
         assert m.status == vr.MotionStatus.DONE
         assert close((m.V, m.omega), exact, rel=tol.MOTION_RTOL * rtol, scale=max(start))
     steady = vr.roll(scene, *start, t, **drive)
@@ -100,7 +100,7 @@ def test_from_rest_and_to_it():
     late = vr.roll(GENTLE, 1e-9, 1e-9, [10.0, 20.0], unsteady=True)
     rate = GENTLE.gamma * (2.0 / 3.0) / mass
     assert close(np.log(late.V[0] / late.V[1]), 10.0 * rate, rel=1e-6)
-    held = vr.roll(GENTLE, None, 0.1, T[:5], V=([0.0, 4.0], [0.1, 0.3]), unsteady=True)
+    held = vr.roll(GENTLE, None, 0.1, T[:5], V=vr.Schedule([0.0, 4.0], [0.1, 0.3]), unsteady=True)
     M = vr.contact(GENTLE, held.V, omega=held.omega, fields=("Q", "M", "N"))
     assert close(held.force, 0.05 / GENTLE.gamma - M.Q + 0.5 * (M.M + 0.05 * M.N), rel=1e-6, scale=0.01)
 
@@ -286,7 +286,7 @@ def test_in_run_files(tmp_path):
         values, motions = roll_block(run, 0)
         roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=0.5, T_sigma=0.1, mu=values["mu"])
         options = {"unsteady": run.settings.unsteady, "rested": run.settings.rested, "fields": run.fields}
-        e = roller.ensemble(1.0, 10.0, run.t, torque=([0.0, 2.0], [0.0, 0.5]), **options)
+        e = roller.ensemble(1.0, 10.0, run.t, torque=vr.Schedule([0.0, 2.0], [0.0, 0.5]), **options)
         for name in run.fields:
             found = getattr(motions, name) * scales(values)[name]
             assert close(found, getattr(e, name), rel=tol.SI_MOTION, scale=1.0), name

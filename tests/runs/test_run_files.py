@@ -212,7 +212,7 @@ def drawn(part, name, values, i):
     if "times" in part:
         times = drawn(part["times"], f"{name}_time", values, i)
         times = [times[k - 1] if time == "same" else time for k, time in enumerate(times)]
-        return times, drawn(part["values"], name, values, i)
+        return vr.Schedule(times, drawn(part["values"], name, values, i))
     found = {key: drawn(each, name + key, values, i) for key, each in part.items() if key not in ("prony", "creep")}
     for kind in part.keys() & {"prony", "creep"}:
         series = drawn(part[kind], name, values, i).values()

@@ -24,7 +24,7 @@ def test_the_state_in_other_units(cylinder):
     """Q over P, moments over P R, speeds over R/T, and ratios as they are; Eqs. (20) and (21)."""
     R, T, P = cylinder.R, cylinder.T_ref, cylinder.load
     V, omega = np.array([-0.2, 0.05, 0.3]), np.array([-2.05 * 0.97, 0.5, 3.1])
-    found = cylinder.contact(V, omega, slopes=True)
+    found = cylinder.contact(V, omega=omega, slopes=True)
     bare = vr.contact(cylinder.scene(), V * T / R, omega=omega * T, slopes=True)
     units = {"zeta": T, "Q": P, "M": P * R, "dQ_domega": P * T, "dQ_dV": P * T / R, "dQ_ddelta": P, "dM_dV": P * T}
     for name, value in bare.as_dict().items():
@@ -32,21 +32,17 @@ def test_the_state_in_other_units(cylinder):
             expected = value * units.get(name, P * R if name.startswith("M_") else 1.0)
             assert close(getattr(found, name), expected, rel=tol.SI_MOTION, what=name)
     assert close(found.length, bare.lam * cylinder.l0, rel=tol.SI_MOTION)
-    own = {"M_half_space": found.M_half_space, "M_cylinder": found.M_cylinder}
-    force = cylinder.traction_to_si(bare.Q, M_half_space=own["M_half_space"] / (P * R))
-    assert close(force, found.Q - own["M_half_space"] / R, rel=tol.SI_MOTION)
-    moment = cylinder.torque_to_si(bare.Q, M_cylinder=own["M_cylinder"] / (P * R))
-    assert close(moment, found.Q * R + own["M_cylinder"], rel=tol.SI_MOTION)
+    assert close(found.M_half_space + found.M_cylinder, found.M, rel=tol.SI_MOTION)
 
 
 def test_slopes_are_those_of_the_si_law():
     """Central differences in m/s and rad/s."""
     V, omega, h = 0.01, 0.099, 1e-7
-    found = ROLLER.contact(V, omega, slopes=True)
+    found = ROLLER.contact(V, omega=omega, slopes=True)
     for name, at in (("dQ_dV", (h, 0.0)), ("dQ_domega", (0.0, h))):
-        ahead, behind = (ROLLER.contact(V + s * at[0], omega + s * at[1], fields="Q").Q for s in (1.0, -1.0))
+        ahead, behind = (ROLLER.contact(V + s * at[0], omega=omega + s * at[1], fields="Q").Q for s in (1.0, -1.0))
         assert close(getattr(found, name), (ahead - behind) / (2.0 * h), rel=tol.SI_SLOPE)
-    unsteady = ROLLER.contact(V, omega, fields="N").N
+    unsteady = ROLLER.contact(V, omega=omega, fields="N").N
     scene = ROLLER.scene()
     bare = vr.contact(scene, V * ROLLER.T_ref / ROLLER.R, omega=omega * ROLLER.T_ref, fields="N").N
     assert close(unsteady, bare * ROLLER.load * ROLLER.T_ref**2, rel=tol.SI_MOTION)
@@ -121,8 +117,19 @@ def test_arrays_replace_and_refusals():
     assert ROLLER.replace(load=500.0).replace(m=70.0).load == 500.0
     assert ROLLER.replace(material=RUBBER).E is None
     assert ON_STEEL.replace(E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97).material is None
-    for call in (vr.contact, vr.stress, vr.roll, vr.ensemble, vr.steady, vr.humps):
-        arguments = {vr.contact: (0.1, 0.0), vr.stress: (0.0, 0.1, 0.0), vr.steady: (), vr.humps: ()}
-        told = refused(partial(call, ROLLER, *arguments.get(call, (0.1, 0.1, 1.0))))
-        assert told.startswith(f"{call.__name__} takes a Scene, not a Cylinder")
-        assert (f"or call .{call.__name__}(...) of it" in told) == hasattr(ROLLER, call.__name__), told
+
+
+def test_functions_are_the_methods():
+    """Of scene and cylinder, with one signature; what is neither is refused by name."""
+    for name in ("contact", "stress", "steady", "humps", "law", "roll", "ensemble", "validity"):
+        function = getattr(vr, name)
+        assert function is getattr(vr.Scene, name) is getattr(vr.Cylinder, name)
+        arguments = {"stress": (0.0, 0.1), "steady": (), "humps": (), "law": (), "roll": (0.1, 0.1, 1.0)}
+        arguments["ensemble"] = arguments["roll"]
+        said = refused(partial(function, "a roller", *arguments.get(name, (0.1,))))
+        assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
+    assert close(ROLLER.humps().V, vr.humps(ROLLER.scene()).V * ROLLER.scale["V"], rel=tol.SI_MOTION)
+    law, state = ROLLER.law()(0.01, 0.099, slopes=True), ROLLER.contact(0.01, omega=0.099, slopes=True)
+    for name in ("Q", "M", "M_half_space", "dQ_dV", "dQ_domega"):
+        assert close(getattr(law, name), state[name], rel=tol.SI_MOTION, what=name)
+    assert close(2.0 * law.dM_cylinder_dV, state.dM_dV, rel=tol.SI_MOTION)

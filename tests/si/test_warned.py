@@ -12,9 +12,9 @@ import xarray as xr
 from closeness import close
 
 import viscoroll as vr
+from viscoroll import known
 from viscoroll.plots import draw
 from viscoroll.runs import estimate, read_run
-from viscoroll.si import warned
 
 DATA = vr.Measured(0.06, 628.0, 0.01, "dma.csv")
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
@@ -28,7 +28,7 @@ def told(monkeypatch):
     """What a call, made twice, warns of."""
 
     def of(call) -> list[str]:
-        monkeypatch.setattr(warned, "_told", set())
+        monkeypatch.setattr(known, "_told", set())
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always")
             call()
@@ -87,7 +87,7 @@ def test_a_word_beyond_what_was_measured(told, call, said):
 
 
 def test_workers_are_quiet(told, monkeypatch):
-    monkeypatch.setattr(warned, "is_worker", lambda: True)
+    monkeypatch.setattr(known, "is_worker", lambda: True)
     assert told(lambda: BELT.contact(10.0, delta=0.0)) == []
 
 
@@ -140,7 +140,7 @@ UNSURE = '{ distribution = "lognorm", s = 0.1, scale = 2.0e6 }'
 @pytest.mark.parametrize("spread", [1.0, 9.0])
 def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
     """Of materials that are known and of uncertain ones, by the fastest start."""
-    monkeypatch.setattr(warned, "_told", set())
+    monkeypatch.setattr(known, "_told", set())
     (tmp_path / "run.toml").write_text(RUN.format(E=E, spread=spread), encoding="utf-8")
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")

@@ -83,7 +83,7 @@ def test_a_law_is_made_once_and_taken_as_it_is():
     table = law_table(SERIES)
     assert law_table(SERIES) is table
     assert table_of(table) is table
-    assert vr.Scene(kappa=20.0, mu=0.3, material=table).law is table
+    assert vr.Scene(kappa=20.0, mu=0.3, material=table).table is table
 
 
 @pytest.mark.parametrize("name", ["alpha", "series", "on steel"])
@@ -128,20 +128,20 @@ def test_a_cylinder_of_a_law(tmp_path, name):
     by_law = vr.Cylinder(R=0.1, m=30.0, mu=0.3, material=law, plane=pair.plane)
     own = by_law.replace(material=pair.cylinder, base=pair.base)
     assert by_law.scene() == own.scene()
-    assert by_law.scene().law is law
+    assert by_law.scene().table is law
     assert (by_law.T_ref, by_law.E_prime, by_law.l0) == (own.T_ref, own.E_prime, own.l0)
     for field, value in by_law.contact(0.3, delta=1e-3).as_dict().items():
         assert value == getattr(own.contact(0.3, delta=1e-3), field), field
     assert by_law.roll(0.2, 0.0, [1e-2]).V[-1] == own.roll(0.2, 0.0, [1e-2]).V[-1]
-    assert by_law.replace(mu=0.2).scene().law is law
+    assert by_law.replace(mu=0.2).scene().table is law
 
 
 def test_a_scene_keeps_its_law():
     table = law_table(SERIES)
     scene = vr.Scene(kappa=20.0, mu=0.3, material=table)
-    assert scene.replace(mu=0.2).law is table
-    assert scene.replace(alpha=3.0).law is None
-    assert scene.replace(material=vr.Prony([1.0], [1.0])).law is None
+    assert scene.replace(mu=0.2).table is table
+    assert scene.replace(alpha=3.0).table is None
+    assert scene.replace(material=vr.Prony([1.0], [1.0])).table is None
     assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
 
 

@@ -30,7 +30,7 @@ class Motion(NamedTuple):
         """As the package takes it."""
         end = self.t[-1]
         pairs = {"force": self.force, "torque": self.torque}
-        return {name: ([0.0, end], [value, value + slope * end]) for name, (value, slope) in pairs.items()}
+        return {name: vr.Schedule([0.0, end], [value, value + slope * end]) for name, (value, slope) in pairs.items()}
 
     def par(self) -> NDArray:
         """As the peer takes it."""
@@ -92,7 +92,7 @@ def _error(found: NDArray, best: NDArray) -> float:
 
 def _exact(motion: Motion) -> NDArray:
     """V and omega at a tight tolerance."""
-    m = vr.roll(motion.scene, *motion.start, motion.t, 1e-11, **motion.drive())
+    m = vr.roll(motion.scene, *motion.start, motion.t, rtol=1e-11, **motion.drive())
     return np.stack([m.V, m.omega], axis=1)
 
 

@@ -83,7 +83,7 @@ def paper_problems(times: int, end: float) -> dict[str, Problem]:
     """IC1-IC3 of the paper, rounded parameters, each until ``end`` or the speed ``LEAST_SPEED``, if that is first."""
     scene, problems = vr.PAPER_SECTION_5_ROUNDED, {}
     for name, start in vr.PAPER_STARTS.items():
-        rest = vr.roll(scene, *start, np.array([end]), REFERENCE_RTOL, rest=LEAST_SPEED).rest_time
+        rest = vr.roll(scene, *start, np.array([end]), rtol=REFERENCE_RTOL, rest=LEAST_SPEED).rest_time
         V0, omega0 = (np.array([value]) for value in start)
         problems[name] = Problem(scene, V0, omega0, output_times(np.fmin(rest, end), times))
     return problems

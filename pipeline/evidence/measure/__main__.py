@@ -122,11 +122,13 @@ def motion_errors(sizes: dict[str, Any]) -> dict[str, dict[str, Any]]:
         references = []
         for scene, V0, omega0 in cases:
             rest = LEAST_SPEED * max(abs(V0), abs(omega0))
-            end = vr.roll(scene, V0, omega0, np.array([1e6]), REFERENCE_RTOL, rest=rest).rest_time
-            references.append(vr.roll(scene, V0, omega0, np.geomspace(1e-6 * end, end, sizes["times"]), REFERENCE_RTOL))
+            end = vr.roll(scene, V0, omega0, np.array([1e6]), rtol=REFERENCE_RTOL, rest=rest).rest_time
+            references.append(
+                vr.roll(scene, V0, omega0, np.geomspace(1e-6 * end, end, sizes["times"]), rtol=REFERENCE_RTOL)
+            )
         results[group] = {}
         for rtol in tqdm(sizes["rtol"], desc=f"motions ({group})", delay=1.0, leave=False):
-            tried = [vr.roll(*case, best.t, rtol) for case, best in zip(cases, references, strict=True)]
+            tried = [vr.roll(*case, best.t, rtol=rtol) for case, best in zip(cases, references, strict=True)]
             pairs = [motion_difference(m, best) for m, best in zip(tried, references, strict=True)]
             worst = {name: max(pair[name] for pair in pairs) for name in pairs[0]}
             results[group][f"{rtol:.0e}"] = worst | {"steps": float(np.median([m.steps for m in tried]))}
@@ -180,7 +182,7 @@ def call_times(sizes: dict[str, Any]) -> dict[str, float]:
     contact("contact_direct_ns", scene, max(n // 20, 1), method="direct")
     calls["contact_single_us"] = 1e-6, lambda: vr.contact(scene, 0.5, delta=-0.01)
     for rtol in (1e-6, 1e-8):
-        calls[f"roll_{rtol:.0e}_us"] = 1e-6, lambda rtol=rtol: vr.roll(scene, 1.5, 0.5, end, rtol)
+        calls[f"roll_{rtol:.0e}_us"] = 1e-6, lambda rtol=rtol: vr.roll(scene, 1.5, 0.5, end, rtol=rtol)
         motions(f"ensemble_{rtol:.0e}_us", *starts[:, :m], rtol=rtol, method="integrate")
     motions("flow_us", *starts[:, m:], method="flow")
     for _, call in calls.values():

@@ -65,7 +65,10 @@ def random_case(
     force, torque = random.normal(size=(2, times.size)) * size
     if random.random() < 0.5:  # pieces that stay
         force, torque = np.repeat(force[::2], 2)[: times.size], np.repeat(torque[::2], 2)[: times.size]
-    drive = {"force": (times, force * (random.random() < 0.7)), "torque": (times, torque * (random.random() < 0.7))}
+    drive = {
+        "force": vr.Schedule(times, force * (random.random() < 0.7)),
+        "torque": vr.Schedule(times, torque * (random.random() < 0.7)),
+    }
     return scene, V0, omega0, np.linspace(0.0, end, 30), drive
 
 
@@ -74,11 +77,11 @@ def braked_case(random: np.random.Generator) -> Case:
     scene, V0, omega0, t, drive = random_case(random)
     if random.random() < 0.25:
         scene = scene.replace(alpha=1.0)
-    times, _ = drive["torque"]
+    times = drive["torque"].times
     brake = np.abs(random.normal(size=times.size)) * scene.mu * 10.0 ** random.uniform(-1.0, 0.5)
     brake *= np.repeat(random.random(times.size // 2) < 0.7, 2)
     V0, omega0 = ((V0, omega0), (V0, omega0), (V0, 0.0), (0.0, omega0))[random.integers(4)]
-    return scene, V0, omega0, t, drive | {"brake": (times, brake)}
+    return scene, V0, omega0, t, drive | {"brake": vr.Schedule(times, brake)}
 
 
 def fed_back_case(random: np.random.Generator) -> Case:
@@ -152,7 +155,7 @@ def rolled(case: Case, rtol: float) -> vr.Motion | None:
     scene, V0, omega0, t, drive = case
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
-        m = vr.roll(scene, V0, omega0, t, rtol, **drive)
+        m = vr.roll(scene, V0, omega0, t, rtol=rtol, **drive)
     return m if m.status == vr.MotionStatus.DONE else None
 
 
@@ -168,7 +171,7 @@ def precise_rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         )
         for row in content:
             case = motion_of(row)
-            m = vr.roll(case.scene, case.V0, case.omega0, row["t"], rtol, **case.drive)
+            m = vr.roll(case.scene, case.V0, case.omega0, row["t"], rtol=rtol, **case.drive)
             fastest = np.maximum.accumulate(np.maximum(np.abs(row["V"]), np.abs(row["omega"])))
             here = fastest > 0.0
             for name in ("V", "omega"):
@@ -204,7 +207,7 @@ def other_method(random: np.random.Generator, sizes: dict[str, Any]) -> list[Cla
             c = vr.contact(scene, state[0], omega=state[1], fields=("Q", "M"))
             return [c.Q - 0.5 * c.M + f, (q - c.Q - 0.5 * c.M) / scene.j]
 
-        m = vr.roll(scene, V0, omega0, t, TIGHT, force=f, torque=q)
+        m = vr.roll(scene, V0, omega0, t, rtol=TIGHT, force=f, torque=q)
         found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, rtol=OTHER_RTOL, atol=1e-3 * OTHER_RTOL)
         given_up += not found.success
         if found.success:

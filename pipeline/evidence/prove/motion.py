@@ -53,7 +53,7 @@ def rolled(motion: ChosenMotion, rtol: float, t: NDArray | None = None) -> Track
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         found = vr.roll(
-            motion.scene, motion.V0, motion.omega0, motion.t if t is None else t, rtol, max_steps=10 * STEPS
+            motion.scene, motion.V0, motion.omega0, motion.t if t is None else t, rtol=rtol, max_steps=10 * STEPS
         )
     if found.status != MotionStatus.DONE:
         return None
@@ -177,7 +177,7 @@ def reference_rows() -> list[dict[str, Any]]:
 def balances(motion: ChosenMotion, rtol: float) -> dict[str, float]:
     """What is missing in (V - j omega)' = 2 gamma Q and in the balance of energy, by Gauss's rule between the steps."""
     scene = motion.scene
-    found = vr.roll(scene, motion.V0, motion.omega0, motion.end, rtol)
+    found = vr.roll(scene, motion.V0, motion.omega0, motion.end, rtol=rtol)
     node, weight = np.polynomial.legendre.leggauss(12)
     edges = np.unique([*found.t, *(switch.t for switch in found.switches)])
     half = 0.5 * np.diff(edges)[:, None]
@@ -246,8 +246,8 @@ def long_rows(count: int, rtol: float, rng: np.random.Generator) -> list[dict[st
         c = (scene.alpha - 1.0) / scene.alpha
         slide = abs(motion.omega0 - motion.V0) / (scene.gamma * scene.mu * (1.0 + 1.0 / scene.j))
         t = slide + _LIVES * (1.0 + scene.j) / (scene.gamma * (c or 1.0))
-        found = vr.roll(scene, motion.V0, motion.omega0, t, rtol)
-        rested = vr.roll(scene, motion.V0, motion.omega0, t, rtol, rest=1e-6)
+        found = vr.roll(scene, motion.V0, motion.omega0, t, rtol=rtol)
+        rested = vr.roll(scene, motion.V0, motion.omega0, t, rtol=rtol, rest=1e-6)
         steps.add([found.steps, rested.steps], str(motion))
         gone = c == 0.0 or (found.V[-1] == 0.0 and found.omega[-1] == 0.0)
         stays = c == 0.0 or abs(found.x[-1] - found.x[-2]) <= FACTOR * rtol * abs(found.x).max()

@@ -63,7 +63,7 @@ def _series(p: vr.Prony) -> dict[str, list[float]]:
 def _plain(given: Any) -> Any:
     if isinstance(given, vr.Feedback):
         return {"value": given.value, "V": given.V, "omega": given.omega}
-    return {"times": given[0], "values": given[1]} if isinstance(given, tuple) else given
+    return {"times": given.times.tolist(), "values": given.values.tolist()} if isinstance(given, vr.Schedule) else given
 
 
 def motion_of(row: dict[str, Any]) -> Driven:
@@ -79,7 +79,7 @@ def motion_of(row: dict[str, Any]) -> Driven:
 def _given(plain: Any) -> Any:
     if not isinstance(plain, dict):
         return plain
-    return (plain["times"], plain["values"]) if "times" in plain else vr.Feedback(**plain)
+    return vr.Schedule(**plain) if "times" in plain else vr.Feedback(**plain)
 
 
 def difference(one: PreciseMotion, other: PreciseMotion) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from viscoroll.drive import Feedback
+from viscoroll.drive import Feedback, Schedule
 from viscoroll.errors import one_of
 
 Course = list[tuple[Any, Any]]
@@ -42,10 +42,10 @@ class Piece(NamedTuple):
 
 
 def course_of(arb: Any, given: Any, gamma: Any) -> Course:
-    """Corners (tau, value) of a number or of (times, values), exact doubles as they are."""
+    """Corners (tau, value) of a number or of a schedule, exact doubles as they are."""
     if isinstance(given, Feedback):
         given = given.value
-    times, values = given if isinstance(given, tuple) else ([0.0], [given])
+    times, values = (given.times, given.values) if isinstance(given, Schedule) else ([0.0], [given])
     return [((gamma * arb(float(t))).mid(), arb(float(v))) for t, v in zip(times, values, strict=True)]
 
 

@@ -87,7 +87,7 @@ def roll_precise(
     tolerance : what a step may leave out, relative to the largest speed in it.
     nodes : of the collocation, whose order is twice that less one.
     bits : working precision.
-    **drive : force, torque, brake, V, omega as for :func:`viscoroll.roll`: numbers, (times, values), Feedback.
+    **drive : force, torque, brake, V, omega as for :func:`viscoroll.roll`: numbers, schedules, Feedback.
 
     Raises
     ------

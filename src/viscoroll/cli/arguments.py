@@ -87,17 +87,6 @@ def body_of(text: str) -> Scene | Cylinder:
     return read_body(text) if text.endswith(".toml") else preset(text)
 
 
-def call(name: str, body: Scene | Cylinder, *given: Any, **options: Any) -> Any:
-    """A function of the package of a scene, or the method of that name of a cylinder."""
-    import viscoroll
-
-    from ..scene import Scene
-
-    if isinstance(body, Scene):
-        return getattr(viscoroll, name)(body, *given, **options)
-    return getattr(body, name)(*given, **options)
-
-
 def add_creep(parser: ArgumentParser, value: Callable[[str], Any]) -> None:
     """--V and one of --delta, --omega."""
     parser.add_argument("--V", type=value, required=True, help="velocity of the axis, any sign")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from .arguments import FORMATS, NUMBERS, add_creep, add_output_option, add_scene, body_of, call, number, numbers
+from .arguments import FORMATS, NUMBERS, add_creep, add_output_option, add_scene, body_of, number, numbers
 
 _POINTS = 101
 
@@ -44,21 +44,19 @@ def _contact(arguments: Namespace) -> int:
     name = "omega" if arguments.delta is None else "delta"
     V, creep = arguments.V, getattr(arguments, name)
     V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    deliver(arguments, call("contact", body_of(arguments.scene), V, **{name: creep}, slopes=arguments.slopes))
+    deliver(arguments, body_of(arguments.scene).contact(V, **{name: creep}, slopes=arguments.slopes))
     return 0
 
 
 def _stress(arguments: Namespace) -> int:
     import numpy as np
 
-    from ..scene import Scene
     from .output import deliver
 
     body, speeds = body_of(arguments.scene), {"V": arguments.V, "delta": arguments.delta, "omega": arguments.omega}
-    length = "lam" if isinstance(body, Scene) else "length"
-    state = call("contact", body, **speeds, fields=(length, "epsilon"))
+    state = body.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
     ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
-    x = 0.5 * getattr(state, length) * (ahead if arguments.V >= 0.0 else -ahead[::-1])
-    deliver(arguments, call("stress", body, x, **speeds))
+    x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
+    deliver(arguments, body.stress(x, **speeds))
     return 0

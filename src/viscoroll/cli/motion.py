@@ -6,7 +6,7 @@ import warnings
 from argparse import Namespace
 from typing import Any
 
-from .arguments import FORMATS, NUMBERS, add_output_option, add_scene, body_of, call, number, numbers
+from .arguments import FORMATS, NUMBERS, add_output_option, add_scene, body_of, number, numbers
 
 
 def add_commands(commands: Any) -> None:
@@ -37,9 +37,8 @@ def _roll(arguments: Namespace) -> int:
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
-        start = (arguments.V0, arguments.omega0, arguments.t, arguments.rtol)
-        options = {"unsteady": arguments.unsteady, "rested": arguments.rested}
-        motion = call("roll", body_of(arguments.scene), *start, **options)
+        options = {name: getattr(arguments, name) for name in ("rtol", "unsteady", "rested")}
+        motion = body_of(arguments.scene).roll(arguments.V0, arguments.omega0, arguments.t, **options)
     deliver(arguments, motion, str(motion).splitlines())
     if arguments.output is not None:
         print(motion)

@@ -65,15 +65,8 @@ def _of_scene(path: str) -> Any:
     import numpy as np
 
     from ..config import read_body
-    from ..cylinder import Cylinder
-    from ..equilibria import humps
-    from ..rolling_contact import contact
 
     body = read_body(path)
-    scene = body.scene() if isinstance(body, Cylinder) else body
-    found = humps(scene)
-    low, high = (found.V[0], found.V[-1]) if found.V.size else (1.0, 1.0)
-    V = np.geomspace(_BEYOND[0] * low, _BEYOND[1] * high, 301)
-    if isinstance(body, Cylinder):
-        return body.contact(body.V_to_si(V), delta=0.0).plot()
-    return contact(scene, V, delta=0.0).plot()
+    found = body.humps()
+    low, high = (found.V[0], found.V[-1]) if found.V.size else (body.scale["V"],) * 2
+    return body.contact(np.geomspace(_BEYOND[0] * low, _BEYOND[1] * high, 301), delta=0.0).plot()

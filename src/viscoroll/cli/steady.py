@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from .arguments import FORMATS, NUMBERS, add_output_option, add_scene, body_of, call, numbers
+from .arguments import FORMATS, NUMBERS, add_output_option, add_scene, body_of, numbers
 
 #: loads without an equilibrium that are told of
 _LINES = 3
@@ -36,7 +36,7 @@ def _steady(arguments: Namespace) -> int:
 
     given = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
     loads = {name: np.atleast_1d(value) for name, value in given.items() if value is not None}
-    found = call("steady", body_of(arguments.scene), **loads)
+    found = body_of(arguments.scene).steady(**loads)
     lines = [f"load {n + 1}: {reason}" for n, reason in enumerate(found.reason) if reason]
     more = len(lines) - _LINES
     deliver(arguments, found, lines if more <= 0 else [*lines[:_LINES], f"{more} more loads have none"])

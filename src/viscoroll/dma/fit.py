@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..assumptions import Assumption, measurement, passage
 from ..checks import checked, number
 from ..errors import ParameterError
 from ..materials.measured import Measured
@@ -19,7 +20,6 @@ from ..materials.prony import Prony
 from ..materials.prony_forms import MOST_MODES, WIDEST
 from ..rolling_contact import contact
 from ..typed import Numbers
-from ..validity import Assumption, measurement, passage
 from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
 from .shift import Shifts, master_curve

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assumptions import passage
 from ..materials.prony import Prony
 from ..rolling_contact import contact
 from ..scene import Scene
-from ..validity import passage
 from .choose import grid_of_times
 from .curve import Curve
 from .spectrum import misfits, on_times

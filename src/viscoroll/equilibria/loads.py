@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import broadcast_shape, checked
 from ..drive import Feedback, slope_factor
 from ..errors import ParameterError
-from ..scene import Scene
+from ..parameters import Parameters
 
 #: kappa |V| of a given speed
 FASTEST = 1e100
@@ -57,24 +57,24 @@ class Loads:
 
 
 def loads_of(
-    scene: Scene,
+    scene: Parameters,
     force: ArrayLike | Feedback | None,
     torque: ArrayLike | Feedback | None,
     slope: ArrayLike | None,
     V: ArrayLike | None,
 ) -> Loads:
-    """The loads of a call of ``steady``; errors as there."""
+    """The loads of a call of ``steady`` on the scene of a slope; errors as there."""
     if np.ndim(scene.alpha):
         raise ParameterError("alpha", f"an array of shape {np.shape(scene.alpha)}", "a single number")
     given = None if V is None else _given(force, torque, slope)
-    tangent, cosine = slope_factor(slope)
+    tangent, _ = slope_factor(slope)
     f, q = _feedback("force", force), _feedback("torque", torque)
     arrays = {"force": np.asarray(f.value), "torque": np.asarray(q.value), "slope": tangent}
     arrays |= {name: np.asarray(getattr(scene, name)) for name in ("kappa", "mu", "j")}
     if V is not None:
         arrays["V"] = checked("V", V)
     shape = broadcast_shape(**arrays)
-    kappa = arrays["kappa"] / np.sqrt(cosine)
+    kappa = arrays["kappa"]
     if V is not None:
         _refuse_overflow(kappa, arrays["V"])
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..scale import DIMENSIONLESS, Scale
 from .loads import Loads
 
 
@@ -17,7 +18,7 @@ class Reasons:
 
     shape : of the call.  count : equilibria.  total : force + torque at rest.  traction, speed : of the state that asks
     for the least friction, NaN where there is none.  mu : friction.  top : largest M, and its V; NaN with feedback.
-    elastic : whether nothing resists.  words : total and moment, units of both and of speeds.  factors : to these.
+    elastic : whether nothing resists.  scale : in which it is said.
     """
 
     shape: tuple[int, ...]
@@ -28,8 +29,7 @@ class Reasons:
     mu: NDArray[np.float64]
     top: tuple[NDArray[np.float64], NDArray[np.float64]]
     elastic: bool
-    words: tuple[str, str, str, str] = ("force + torque", "rolling moment", "", "")
-    factors: tuple[Any, Any] = (1.0, 1.0)
+    scale: Scale = DIMENSIONLESS
 
     def text(self) -> Any:
         """One string, or an array of them; empty where there is an equilibrium."""
@@ -37,8 +37,10 @@ class Reasons:
         return np.array(found, dtype=object).reshape(self.shape) if self.shape else found[0]
 
     def _of(self, n: int) -> str:
-        name, moment, of_load, of_speed = self.words
-        load, speed = (np.broadcast_to(factor, self.count.shape)[n] for factor in self.factors)
+        name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
+        if self.scale.si:
+            name, moment, of_load, of_speed = "force + torque/R", "rolling moment over R", " N/m", " m/s"
+        load, speed = (np.broadcast_to(self.scale[of], self.shape).ravel()[n] for of in ("force", "V"))
         total, needed, mu = self.total[n] * load, self.traction[n], self.mu[n]
         if not np.isnan(needed):
             at = f"at V = {self.speed[n] * speed:.6g}{of_speed}"

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..contact_table import states_of
 from ..errors import ParameterError
 from ..materials.law_table import LawTable, law_table
-from ..scene import Scene, checked_scene
+from ..parameters import Parameters, Rolls, framed
 from .zeros import zeros
 
 #: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
@@ -77,30 +77,31 @@ class Branches:
         return np.asarray(first + np.clip(at - 1, 0, last - first - 1))
 
 
-def humps(scene: Scene) -> Humps:
+def humps(roller: Rolls) -> Humps:
     """Every local maximum and minimum of the rolling resistance M over the speed.
 
     A rubber of widely spread relaxation times has several, one of one relaxation time a single maximum.
 
     Parameters
     ----------
-    scene : alpha or material, and kappa are used; numbers.
+    roller : a :class:`Scene`, of which alpha or material, and kappa are used, or a :class:`Cylinder`; numbers.
 
     Returns
     -------
     Humps
-        ``V``, ``M`` and ``top`` as arrays of one length, dimensionless; empty for an elastic material.
+        ``V``, ``M`` and ``top`` as arrays of one length, of a Cylinder in m/s and N m/m; empty for an elastic
+        material.
 
     Raises
     ------
     ParameterError
-        Arrays in the scene.
+        Arrays in what rolls.
 
     Notes
     -----
     M is good to 1e-14, V to 1e-11 (``tests/test_steady.py``).
     """
-    checked_scene(scene, "humps")
+    scene, scale = framed(roller, "humps")
     for name in ("alpha", "kappa"):
         if np.ndim(getattr(scene, name)):
             raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")
@@ -109,13 +110,13 @@ def humps(scene: Scene) -> Humps:
         return Humps(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
     V, M = found.u[found.flat] / scene.kappa, found.rise[found.flat] / scene.kappa
-    return Humps(V, M, np.arange(V.size) % 2 == 0)
+    return Humps(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
 
 
-def law_of(scene: Scene) -> LawTable:
+def law_of(scene: Parameters) -> LawTable:
     """The law of one material or pair."""
     given: Any = scene.alpha if scene.material is None else scene.material
-    return scene.law or law_table(given)
+    return scene.table or law_table(given)
 
 
 @lru_cache(maxsize=16)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..labels import Labels
 from ..results import Row, Shown, short, unit_of
+from ..scale import DIMENSIONLESS, DIMENSIONS, Scale
 from ..symbols import attributes
 from . import row
 from .loads import Loads
@@ -81,10 +81,25 @@ class Steady(Shown):
     loss: Loss
     count: Any
     reasons: Reasons
-    #: attributes of a quantity: without dimension, or in SI units
-    described: Callable[[str], dict[str, Any]] = attributes
+    scale: Scale = DIMENSIONLESS
     #: of the loads, where they came as arrays of xarray or pandas: all above but ``reasons`` have them then
     labels: Labels | None = None
+
+    def scaled(self, scale: Scale) -> Steady:
+        """The same in these units."""
+
+        def of(name: str, value: Any, behind: int = 1) -> Any:
+            """Units of loads, beside the axes of equilibria."""
+            unit = np.asarray(scale[name])
+            return value * (unit.reshape(unit.shape + (1,) * behind) if unit.ndim else unit)
+
+        found = {name: of(name, getattr(self, name)) for name in _FIELDS if name in DIMENSIONS}
+        powers = {name: of(f"loss_{name}", getattr(self.loss, name)) for name in ("slip", "half_space", "cylinder")}
+        rates = of("rate_fast", self.eigenvalues, 2)
+        return replace(
+            self, **found, eigenvalues=rates, loss=replace(self.loss, **powers), scale=scale,
+            reasons=replace(self.reasons, scale=scale),
+        )  # fmt: skip
 
     def labelled(self, labels: Labels | None) -> Steady:
         """The same with the labels of its loads."""
@@ -118,7 +133,7 @@ class Steady(Shown):
         return "Steady rolling", rows
 
     def _unit(self, name: str) -> str:
-        return unit_of(self.described(name))
+        return unit_of(attributes(name, self.scale.si))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over loads and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
@@ -129,15 +144,18 @@ class Steady(Shown):
         dims, coords = self.labels.beside((*_FIELDS, "count"), "load") if self.labels else (dims, {})
         over = (*dims, "equilibrium")
 
+        def described(name: str) -> dict[str, str]:
+            return attributes(name, self.scale.si)
+
         def variable(values: Any, about: dict[str, Any]) -> xr.Variable:
             return xr.Variable(over, np.asarray(values), about)
 
-        data = {name: variable(getattr(self, name), self.described(name)) for name in _FIELDS}
-        data["stable"] = variable(np.asarray(self.stable).astype(np.int8), self.described("stable"))
+        data = {name: variable(getattr(self, name), described(name)) for name in _FIELDS}
+        data["stable"] = variable(np.asarray(self.stable).astype(np.int8), described("stable"))
         for n, name in enumerate(("rate_fast", "rate_slow")):
-            data[name] = variable(np.asarray(self.eigenvalues)[..., n].real, self.described(name))
+            data[name] = variable(np.asarray(self.eigenvalues)[..., n].real, described(name))
         for name in ("slip", "half_space", "cylinder"):
-            data[f"loss_{name}"] = variable(getattr(self.loss, name), self.described(f"loss_{name}"))
+            data[f"loss_{name}"] = variable(getattr(self.loss, name), described(f"loss_{name}"))
         for name, words in (("coefficient", "rolling resistance over load"), ("efficiency", "power out over power in")):
             data[name] = variable(getattr(self.loss, name), {"long_name": words, "units": "1"})
         about = {"long_name": "number of equilibria", "units": "1"}

@@ -11,11 +11,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..drive import Feedback
+from ..drive import Feedback, over
 from ..errors import ParameterError
 from ..labels import unlabelled
 from ..materials.law_table import LawTable
-from ..scene import Scene, checked_scene
+from ..parameters import Rolls, framed
 from ..typed import Numbers
 from .loads import Loads, loads_of
 from .reason import reasons_of
@@ -26,7 +26,7 @@ from .solve import crossings, states_at
 
 
 def steady(
-    scene: Scene,
+    roller: Rolls,
     *,
     force: Numbers | Feedback | None = None,
     torque: Numbers | Feedback | None = None,
@@ -35,14 +35,16 @@ def steady(
 ) -> Steady:
     """Steady rolling: every pair of V and omega that force and torque hold, and whether it is stable.
 
-    Everything is dimensionless.  Arguments, kappa, mu and j broadcast against each other.
+    Arguments and what rolls broadcast against each other.
 
     Parameters
     ----------
-    scene : alpha or material, kappa, mu and j are used.
+    roller : a :class:`Scene`, of which alpha or material, kappa, mu and j are used; or a :class:`Cylinder`, in SI units
+        per m of its length: V in m/s, omega in rad/s, force and Q in N/m, torque and M in N m/m, ``eigenvalues`` in
+        1/s, powers of ``loss`` in W/m.
     force : over P, along V; torque : over P R, along omega; default 0.  Either may be a :class:`Feedback`.
-    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta): tan(theta) adds to
-        ``force``, kappa becomes kappa/sqrt(cos(theta)), and forces and torques are over that load.
+    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta): P sin(theta) adds to
+        ``force``; of a scene kappa becomes kappa/sqrt(cos(theta)), and forces and torques are over P cos(theta).
     V : the speed, in place of one of force and torque, which is found (a slope alone counts as the force given).
 
     Returns
@@ -74,9 +76,11 @@ def steady(
     Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
     to that over ``grip`` (``tests/test_steady.py``).
     """
-    checked_scene(scene, "steady")
+    framed(roller, "steady")
     plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
-    force, torque, slope, V = plain.values()
+    slope = plain["slope"]
+    scene, scale = framed(roller if slope is None else roller.tilted(slope), "steady")
+    force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
     loads = loads_of(scene, force, torque, slope, V)
     law = law_of(scene)
     elastic = law.alpha == 1.0
@@ -92,7 +96,11 @@ def steady(
     held = states.held()
     number = np.bincount(held.load, minlength=loads.mu.size)
     top = (math.nan, math.nan) if gained or elastic else _top(law)
-    return packed(loads, held, number, reasons_of(loads, number, states, top, neutral)).labelled(labels)
+    found = packed(loads, held, number, reasons_of(loads, number, states, top, neutral))
+    if scale.si:
+        found = found.scaled(scale)
+        roller.look(found.V)
+    return found.labelled(labels)
 
 
 def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:

@@ -209,7 +209,7 @@ class Identification(Shown):
         }
         places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
         units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
-        return Prediction(found, places, units, f"Prediction, {level:.0%} bands", record.labels)
+        return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
     def residuals(self, values: Mapping[str, float]) -> Vector:
         """Residuals over sigma of all records, in their order, and of the prior, at values by name.

@@ -128,4 +128,4 @@ class Coastdown(Record):
         if values.get("drag", 0.0) != 0.0:
             drive["torque"] = Feedback(0.0, omega=-values["drag"])
         rtol = _RTOL_DRIVEN if drive else _RTOL
-        return first, late, cylinder.roll(V0, first["omega"], t[late], rtol, **drive) if late.any() else None
+        return first, late, cylinder.roll(V0, first["omega"], t[late], rtol=rtol, **drive) if late.any() else None

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import flattened, run_blocks
 from ..checks import broadcast_shape, extent, number
-from ..drive import Feedback
+from ..drive import Feedback, Schedule, over
 from ..errors import MotionStatus, ParameterError, unknown
 from ..materials.bodies_array import BodiesArray
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
 from ..materials.prony_array import MaterialArray
-from ..scene import PARAMETERS, Scene, checked_scene
-from ..typed import Driving, Numbers
-from .checks import SPEED_RANGE, controls, output_times, start_speeds
+from ..parameters import PARAMETERS, Parameters, Rolls, framed
+from ..typed import Numbers
+from .checks import SPEED_RANGE, controls, in_words, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
 from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
@@ -27,6 +27,8 @@ from .rolling import NO_UNIT, law_of
 from .unsteady import climbed, refuse_unlike, time_of_rest
 from .warned import look
 
+#: a function of time of each motion
+Course = Numbers | Schedule | Callable[[float], float]
 FIELDS = ROWS
 #: motions a block: where all are integrated, and where most come from a map
 _BLOCK, _MAPPED_BLOCK = 256, 1 << 14
@@ -36,17 +38,17 @@ FLOW_PAYS = 4096
 
 
 def ensemble(
-    scene: Scene,
+    roller: Rolls,
     V0: Numbers | None,
     omega0: Numbers | None,
     t: Numbers,
     *,
-    force: Driving | Feedback = 0.0,
-    torque: Driving | Feedback = 0.0,
+    force: Course | Feedback = 0.0,
+    torque: Course | Feedback = 0.0,
     slope: Numbers | None = None,
-    brake: Driving | None = None,
-    omega: Driving | None = None,
-    V: Driving | None = None,
+    brake: Course | None = None,
+    omega: Course | None = None,
+    V: Course | None = None,
     method: Literal["auto", "flow", "integrate"] = "auto",
     rtol: float = 1e-8,
     rest: float | None = None,
@@ -62,11 +64,12 @@ def ensemble(
 
     Parameters
     ----------
-    scene : its fields may be arrays of n too: every motion can have a scene of its own.
+    roller : a :class:`Scene`, or a :class:`Cylinder` in SI units; its numbers may be arrays of n too: every motion can
+        have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
     t : output times, ascending, common to all; one number: the final state only.
     force, torque, slope, brake, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays of n,
-        times and values of (times, values) of shape (n, k).
+        times and values of a :class:`Schedule` of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
@@ -107,57 +110,101 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    checked_scene(scene, "ensemble", moves=True)
+    framed(roller, "ensemble", moves=True)
     times, names = output_times(t), _names(fields)
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
-    rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    (V0, omega0), drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
-    ready = prepared(drive, scene, V0, omega0, float(times[-1]), rtol)
-    refuse_rest(threshold, ready)
-    refuse_unlike(ready.scene, unsteady)
-    ready, caught = climbed(ready, time_of_rest(rested))
-    scene, V0, omega0 = ready.scene, ready.V0, ready.omega0
-    mapped = not (drive.acts or scene.shape or unsteady) and scene.like_bodies
+    starts, drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
+    roller = roller.tilted(drive.slope) if "slope" in drive.given else roller
+    scene, scale = framed(roller, "ensemble")
+    if rest is not None and np.ndim(scale["V"]):
+        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    own = [over(name, start, scale) for name, start in zip(("V0", "omega0"), starts, strict=True)]
+    roller.look_at_starts(*starts)
+    try:
+        limits = controls(rtol, over("rest", rest, scale), max_steps)
+        ready = prepared(drive.over(scale), own[0], own[1], float(times[-1] / scale["t"]), rtol)
+        refuse_rest(limits[1], ready)
+        refuse_unlike(scene, unsteady)
+        ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
+        bar = "motions" if progress else None
+        many = _Many(scene, ready, caught, drive, unsteady, times / scale["t"], limits, names, threads, bar)
+        answer, found = _answer(many, method, over("speed", speed, scale))
+    except ParameterError as error:
+        raise in_words(error, scale) from error
+    count, rows = answer.status.size, dict(zip(many.rows, answer.out, strict=True))
+    if scale.si:
+        for name, row in rows.items():
+            np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
+        answer = answer._replace(onset=answer.onset * scale["t"], rest=answer.rest * scale["t"])
+    kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names} | rows
+    V0, omega0 = (
+        np.broadcast_to(start * scale[name] if scale.si else start, (count,))
+        for name, start in zip(("V0", "omega0"), start_speeds(ready.V0, ready.omega0), strict=True)
+    )
+    result = Ensemble(
+        roller, V0, omega0, times, **kept, onset_time=answer.onset, rest_time=answer.rest,
+        status=answer.status, switches=answer.switches, **found, drive_error=ready.error, drive=drive, labels=labels,
+    )  # fmt: skip
+    if scale.si:
+        roller.look(V0)
+        roller.look(result.V)
+    return result
+
+
+class _Many(NamedTuple):
+    """Motions to be rolled, without dimension; ``caught``: those that a rest keeps."""
+
+    scene: Parameters
+    ready: Prepared
+    caught: NDArray[np.bool_]
+    drive: Drive
+    unsteady: bool
+    times: NDArray[np.float64]
+    limits: tuple[float, float, int]
+    names: tuple[str, ...]
+    threads: int | None
+    bar: str | None
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """What is computed: without a drive nothing acts."""
+        return self.names if self.drive.acts else tuple(name for name in self.names if name not in ACTING)
+
+
+def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict[str, Any]]:
+    """The motions, and by what they were found."""
+    scene, rows, (rtol, threshold, _), times = many.scene, many.rows, many.limits, many.times
+    mapped = not (many.drive.acts or scene.shape or many.unsteady) and scene.like_bodies
     if method == "flow" and not mapped:
-        alike = drive.acts or unsteady or not scene.like_bodies
+        alike = many.drive.acts or many.unsteady or not scene.like_bodies
         what = "motions are driven or unsteady, or bodies differ" if alike else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    arrays, count = _inputs(scene, (V0, omega0), drive, ready)
-    look(scene, arrays["V0"], arrays["omega0"], driven=drive.acts or unsteady)
+    arrays, count = _inputs(scene, many.drive, many.ready)
+    look(scene, arrays["V0"], arrays["omega0"], driven=many.drive.acts or many.unsteady)
     flat = [flattened(array, (count,)) for array in arrays.values()]
-    # without a drive nothing acts
-    found = names if drive.acts else tuple(name for name in names if name not in ACTING)
-    bar = "motions" if progress else None
     answer, chosen, error = None, None, np.nan
     unit = scene.in_own_time()[1] if mapped else 1.0
     own = flat if unit == 1.0 else [*flat[:5], flat[5] * unit, flat[6] * unit]  # no copy of 10^8 for nothing
     if mapped and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
-        chosen = _map_of(scene, own[5], own[6], speed and speed * unit, threads)
+        chosen = _map_of(scene, own[5], own[6], speed and speed * unit, many.threads)
     if chosen is not None:
-        error = chosen.stated_error(path=_among(names, "x", "angle"), loss=_among(names, *LOSSES))
+        error = chosen.stated_error(path=_among(rows, "x", "angle"), loss=_among(rows, *LOSSES))
         if error <= rtol:
-            rows = tuple((STATES + LOSSES).index(name) for name in found)
+            of = tuple((STATES + LOSSES).index(name) for name in rows)
             given = float(flat[3][0]) * unit * unit, threshold * unit, own[5], own[6], times / unit
-            answer = ask(chosen, *given, rows, threads=threads, progress=bar)
+            answer = ask(chosen, *given, of, threads=many.threads, progress=many.bar)
             if unit != 1.0:
-                to_unit(answer.out, found, unit)
+                to_unit(answer.out, rows, unit)
                 answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
     if answer is None:
-        answer = Answer.empty(len(found), count, times.size)
+        answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    if caught.any():
-        _keep_caught(answer, np.broadcast_to(caught, (count,)))
-    limits = rtol, threshold, max_steps
-    steps = _integrate_others(answer, flat, (scene, ready, unsteady), times, limits, found, threads, bar)
-    kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
-    kept |= dict(zip(found, answer.out, strict=True))
-    return Ensemble(
-        scene, np.broadcast_to(arrays["V0"], (count,)), np.broadcast_to(arrays["omega0"], (count,)), times, **kept,
-        onset_time=answer.onset, rest_time=answer.rest, status=answer.status, switches=answer.switches,
-        steps=steps, flow=flow, flow_error=error, flow_problem="" if chosen is None else chosen.problem,
-        drive_error=ready.error, drive=drive, labels=labels,
-    )  # fmt: skip
+    if many.caught.any():
+        _keep_caught(answer, np.broadcast_to(many.caught, (count,)))
+    steps = _integrate_others(answer, flat, many)
+    problem = "" if chosen is None else chosen.problem
+    return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": problem}
 
 
 def _keep_caught(answer: Answer, caught: NDArray[np.bool_]) -> None:
@@ -174,10 +221,10 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
     return names
 
 
-def _inputs(scene: Scene, starts: Any, drive: Drive, ready: Prepared) -> tuple[dict[str, NDArray], int]:
+def _inputs(scene: Parameters, drive: Drive, ready: Prepared) -> tuple[dict[str, NDArray], int]:
     """(Parameters and start speeds, how many motions they make)."""
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
-    arrays |= dict(zip(("V0", "omega0"), start_speeds(*starts), strict=True))
+    arrays |= dict(zip(("V0", "omega0"), start_speeds(ready.V0, ready.omega0), strict=True))
     counts = {"drive": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
     drives = drive.numbers | {name: np.zeros(count) for name, count in counts.items() if count > 1}
     shape = broadcast_shape(**arrays, **{name: each for name, each in drives.items() if name not in arrays})
@@ -186,7 +233,9 @@ def _inputs(scene: Scene, starts: Any, drive: Drive, ready: Prepared) -> tuple[d
     return arrays, shape[0] if shape else 1
 
 
-def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, threads: int | None) -> FlowMap | None:
+def _map_of(
+    scene: Parameters, V0: NDArray, omega0: NDArray, speed: float | None, threads: int | None
+) -> FlowMap | None:
     """The flow map for these starts; None where all are at rest."""
     if speed is None:
         speed = max((abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0)
@@ -195,16 +244,9 @@ def _map_of(scene: Scene, V0: NDArray, omega0: NDArray, speed: float | None, thr
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
-def _integrate_others(
-    answer: Answer, flat: list[NDArray], by: tuple[Scene, Prepared, bool], times: NDArray,
-    limits: tuple[float, float, int], names: tuple[str, ...], threads: int | None, bar: str | None,
-) -> NDArray[np.int64]:  # fmt: skip
-    """Integrate the motions without an answer; returns the steps of each.
-
-    ``by`` : their scene, or scenes, what drives them, and whether N adds to the mass.
-    """
-    scene, ready, unsteady = by
-    law = _law_of(scene, unsteady)
+def _integrate_others(answer: Answer, flat: list[NDArray], many: _Many) -> NDArray[np.int64]:
+    """Integrate the motions without an answer; returns the steps of each."""
+    law, names, times = _law_of(many.scene, many.unsteady), many.rows, many.times
     steps, rows = np.zeros(answer.status.size, dtype=np.int64), np.array([ROWS.index(name) for name in names], np.int64)
 
     def work(start: int, stop: int) -> None:
@@ -216,21 +258,21 @@ def _integrate_others(
         alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
         out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
         batch, notes = (*law(alpha, left), *inputs), (np.empty((0, 2)), np.empty(0))
-        motion_loop(batch, ready.for_kernel(left), times, limits, rows, out, info, notes)
+        motion_loop(batch, many.ready.for_kernel(left), times, many.limits, rows, out, info, notes)
         answer.out[:, left] = out
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = answer.status.max(initial=-1) >= 0
-    block = _MAPPED_BLOCK if mapped else 1 if unsteady and _many_materials(scene) else _BLOCK
-    run_blocks(work, steps.size, block, threads=threads, progress=bar)
+    block = _MAPPED_BLOCK if mapped else 1 if many.unsteady and _many_materials(many.scene) else _BLOCK
+    run_blocks(work, steps.size, block, threads=many.threads, progress=many.bar)
     return steps
 
 
-def _many_materials(scene: Scene) -> bool:
+def _many_materials(scene: Parameters) -> bool:
     return isinstance(scene.material, MaterialArray) or np.ndim(scene.alpha) > 0
 
 
-def _law_of(scene: Scene, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, NDArray, bool]]:
+def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, NDArray, bool]]:
     """(alphas of motions, which they are) -> the law that they share, or that of each in turn; what it counts times in;
     whether bodies differ.  ``unsteady``: of one motion, with N."""
     material = scene.in_own_time()[0]

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import broadcast_shape, checked, extent
 from ..errors import ParameterError
+from ..scale import Scale
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)
@@ -82,3 +83,14 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[NDArray[np.float64],
         if tiny.size:
             raise ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {SPEED_RANGE[0]:g}")
     return V, omega
+
+
+def in_words(error: ParameterError, scale: Scale) -> ParameterError:
+    """A refusal of what has no dimension any more, with what its values are over."""
+    if not scale.si:
+        return error
+    about = "dimensionless"
+    if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):
+        T, V, P = (f"{scale[name]:.6g} {unit}" for name, unit in (("t", "s"), ("V", "m/s"), ("force", "N/m")))
+        about += f": times over {T}, speeds over {V}, forces over {P}"
+    return ParameterError(error.name, error.value, error.allowed, f"{error} ({about})")

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import broadcast_shape, checked
-from ..drive import Feedback, slope_factor
+from ..drive import Feedback, Schedule, over, slope_factor
 from ..errors import ParameterError, one_of
 from ..labels import Labels, unlabelled
-from ..scene import Scene
-from .schedule import Curve, curve, is_schedule, pieces_of, slope_of, start_value
+from ..scale import Scale
+from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
@@ -37,16 +37,16 @@ class Drive(NamedTuple):
     @property
     def given(self) -> dict[str, Any]:
         """What acts, by name: all that is given but for a force, torque, slope or brake of 0."""
-        still = {name for name, each in self.numbers.items() if name not in ("V", "omega") and not each.any()}
-        return {name: each for name, each in self._asdict().items() if each is not None and name not in still}
+        return {name: each for name, each in self._asdict().items() if each is not None and not _still(name, each)}
 
     @property
     def numbers(self) -> dict[str, NDArray[np.float64]]:
         """What is given as a number, or as one a motion, by name."""
-        return {
-            name: checked(name, each) for name, each in self._asdict().items()
-            if not (each is None or callable(each) or isinstance(each, Feedback) or is_schedule(each))
-        }  # fmt: skip
+        return {name: checked(name, each) for name, each in self._asdict().items() if _is_number(each)}
+
+    def over(self, scale: Scale) -> Drive:
+        """The same without dimension."""
+        return Drive(*map(over, self._fields, self, (scale,) * len(self))) if scale.si else self
 
     @property
     def acts(self) -> bool:
@@ -59,6 +59,21 @@ class Drive(NamedTuple):
         return self.V is not None or self.omega is not None
 
 
+def _is_number(given: Any) -> bool:
+    return not (given is None or callable(given) or isinstance(given, Feedback | Schedule))
+
+
+def _still(name: str, given: Any) -> bool:
+    """Whether it is 0, and no prescribed speed."""
+    if name in ("V", "omega") or given is None:
+        return False
+    if type(given) is float:
+        return given == 0.0
+    if isinstance(given, Schedule):
+        return not np.any(given.values)
+    return _is_number(given) and not checked(name, given).any()
+
+
 def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, Labels | None]:
     """Start speeds and drive of many motions without labels of xarray and pandas, and these."""
     plain, labels = unlabelled({"V0": start[0], "omega0": start[1], **drive._asdict()})
@@ -66,13 +81,12 @@ def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, 
 
 
 class Prepared(NamedTuple):
-    """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, m), which speed is prescribed; the scene on
-    its slope, start speeds, and the largest difference between a callable and its fit."""
+    """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, m), which speed is prescribed; start speeds,
+    and the largest difference between a callable and its fit."""
 
     pieces: NDArray[np.float64]
     gains: NDArray[np.float64]
     prescribed: int
-    scene: Scene
     V0: Any
     omega0: Any
     error: float
@@ -92,20 +106,6 @@ def undriven() -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
     return np.zeros((1, 1, FIRST + FUNCTIONS)), np.zeros((4, 1)), NEITHER
 
 
-def tilted(scene: Scene, slope: Any) -> tuple[Scene, Any]:
-    """(The scene under the load P cos(slope), tan(slope)): force, torque, Q and M are over P cos(slope) then.
-
-    Raises
-    ------
-    ParameterError
-        A slope that is not within (-pi/2, pi/2).
-    """
-    if slope is None:
-        return scene, 0.0
-    tangent, cosine = slope_factor(slope)
-    return scene.replace(kappa=scene.kappa / np.sqrt(cosine), gamma=scene.gamma * cosine), tangent
-
-
 def _added(one: Curve, more: Any) -> Curve:
     """A curve with a number, or one a motion, added."""
     more = np.asarray(more, float).reshape(-1, 1)
@@ -115,8 +115,8 @@ def _added(one: Curve, more: Any) -> Curve:
     return one._replace(terms=terms)
 
 
-def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol: float) -> Prepared:
-    """A drive up to the time ``end``.
+def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Prepared:
+    """A drive without dimension up to the time ``end``.
 
     Raises
     ------
@@ -127,8 +127,8 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
     from ..kernels.motion.records import NEITHER, OMEGA, SPEED
 
     if not drive.acts:
-        return Prepared(*undriven(), scene, V0, omega0, 0.0)
-    scene, tangent = tilted(scene, drive.slope)
+        return Prepared(*undriven(), V0, omega0, 0.0)
+    tangent = slope_factor(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
         raise one_of("V", "omega", both=True)
     for name, found, own in (("omega", "torque", drive.omega), ("V", "force", drive.V)):
@@ -157,7 +157,7 @@ def prepared(drive: Drive, scene: Scene, V0: Any, omega0: Any, end: float, rtol:
             raise ParameterError(name, None, "a number", f"{name} is not given, and no {by}= prescribes it")
     pieces = pieces_of((force, torque, rate, brake), end)
     error = max(error, force.error, torque.error, brake.error)
-    return Prepared(pieces, _gains(drive), prescribed, scene, V0, omega0, error)
+    return Prepared(pieces, _gains(drive), prescribed, V0, omega0, error)
 
 
 def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.float64]) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..errors import MOTION_STATUS, ParameterError
 from ..materials.bodies_array import BodiesArray
 from ..materials.prony import Prony
 from ..materials.prony_array import PronyArray
-from ..scene import PARAMETERS
+from ..parameters import PARAMETERS, Rolls
 from ..symbols import attributes
 from .driven import ACTING
 from .export_drive import drive_variables
@@ -37,17 +37,16 @@ _OWN: dict[str, dict[str, Any]] = {
         "flag_meanings": "integrated flow_map",
     },
 }
-_STARTS = {"V0": "V", "omega0": "omega"}
 
 
-def column_attributes(name: str, described: Callable[[str], dict[str, Any]] = attributes) -> dict[str, Any]:
+def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
     """Attributes of a field, a start or another column of an ensemble."""
-    if name in _OWN:
-        return dict(_OWN[name])
-    if name in _STARTS:
-        found = described(_STARTS[name])
-        return found | {"long_name": "initial " + found["long_name"]}
-    return described(name)
+    return dict(_OWN[name]) if name in _OWN else dict(attributes(name, si))
+
+
+def _about(roller: Rolls) -> dict[str, Any]:
+    """Numbers of a cylinder."""
+    return {name: getattr(roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")} if roller.scale.si else {}
 
 
 def _globals(title: str) -> dict[str, str]:
@@ -92,8 +91,9 @@ def _modes(given: Prony | PronyArray, count: int, body: str, of: str) -> dict[st
     }  # fmt: skip
 
 
-def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
-    """One motion over t; under a drive with what acted, works and losses.  ``described``: attributes of a quantity."""
+def motion_dataset(motion: Any) -> xr.Dataset:
+    """One motion over t; under a drive with what acted, works and losses."""
+    described = partial(attributes, si=motion.scale.si)
     names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if motion.drive.acts else ()))
     data = {name: xr.Variable(("t",), getattr(motion, name), described(name)) for name in names}
     data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
@@ -117,12 +117,14 @@ def motion_dataset(motion: Any, described: Callable[[str], dict[str, Any]] = att
             "switches": "; ".join(f"t = {s.t:.15g}: {s.regime}" for s in motion.switches),
             "status": motion.message,
             "steps": motion.steps,
-        },
+        }
+        | _about(motion.roller),
     )
 
 
-def ensemble_dataset(result: Any, described: Callable[[str], dict[str, Any]] = attributes) -> xr.Dataset:
+def ensemble_dataset(result: Any) -> xr.Dataset:
     """All motions over (motion, t)."""
+    described = partial(column_attributes, si=result.scale.si)
     dims = ("motion", "t")
     data = {
         name: xr.Variable(dims, getattr(result, name), described(name))
@@ -137,8 +139,8 @@ def ensemble_dataset(result: Any, described: Callable[[str], dict[str, Any]] = a
         data[name] = xr.Variable(("motion",) if value.ndim else (), value, attributes(name))
     data |= _series(result.scene.material, len(result))
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
-        data[name] = xr.Variable("motion", getattr(result, name), column_attributes(name, described))
-    data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), column_attributes("flow"))
+        data[name] = xr.Variable("motion", getattr(result, name), described(name))
+    data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), described("flow"))
     given, texts = drive_variables(result.drive, described)
     data |= given
     attrs = (
@@ -147,16 +149,16 @@ def ensemble_dataset(result: Any, described: Callable[[str], dict[str, Any]] = a
         | texts
         | {"drive_error": result.drive_error}
         | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
+        | _about(result.roller)
     )
     own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
     coords = {name: values for name, values in own.items() if name not in data}
     return xr.Dataset(data, coords | {"t": xr.Variable(("t",), result.t, described("t"))}, attrs)
 
 
-def summary_dataset(
-    result: Any, quantiles: tuple[float, ...], described: Callable[[str], dict[str, Any]] = attributes
-) -> xr.Dataset:
+def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
+    described = partial(attributes, si=result.scale.si)
     if not len(result):
         raise ParameterError("motions", 0, "at least one: a summary is over motions")
     data: dict[str, xr.Variable] = {}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..drive import Feedback
+from ..drive import Feedback, Schedule
 from ..results import short
 from .driven import Drive
 
@@ -20,7 +20,7 @@ def drive_variables(
 ) -> tuple[dict[str, xr.Variable], dict[str, Any]]:
     """(variables ``drive_force`` and the like, with their times where they have some; attributes for callables).
 
-    Numbers stand over () or (motion), (times, values) over (drive_force_time) or (motion, drive_force_time), or where
+    Numbers stand over () or (motion), schedules over (drive_force_time) or (motion, drive_force_time), or where
     motions have times of their own over (motion, drive_force_corner); gains of a feedback are attributes.
     ``described``: attributes of a quantity.
     """
@@ -36,8 +36,8 @@ def drive_variables(
             continue
         about = described(name)
         about = about | {"long_name": f"given: {about['long_name']}"} | gains
-        if isinstance(given, tuple):
-            times, values = (np.asarray(part, np.float64) for part in given)
+        if isinstance(given, Schedule):
+            times, values = given.times, given.values
             along = {"long_name": f"times of the given {name}", "units": described("t")["units"]}
             corners = f"{key}_time" if times.ndim == 1 else f"{key}_corner"
             variables[f"{key}_time"] = xr.Variable(("motion", corners)[-times.ndim :], times, along)

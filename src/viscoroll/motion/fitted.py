@@ -178,7 +178,7 @@ def _pieces(given: _Given, end: float) -> list[Piece]:
         failed.add((start, stop))
         if given.taken > MOST or (cut is None and stop - start <= _NUMBERS * np.spacing(stop)):
             what = f"a callable that no polynomials follow near t = {start:.6g} ({given.taken} values of it were taken)"
-            raise ParameterError(given.name, what, "smooth but for jumps and corners; give it as (times, values)")
+            raise ParameterError(given.name, what, "smooth but for jumps and corners; give it as a Schedule")
         left, right = cut or (0.5 * (start + stop),) * 2
         todo += [part for part in ((right, stop), (start, left)) if part[0] < part[1]]
     return pieces

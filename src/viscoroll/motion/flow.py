@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import flattened, run_blocks
-from ..scene import Scene
+from ..parameters import Parameters
 from .flow_motions import motions
 from .flow_store import FlowMap, load, path_of, save
 
@@ -37,7 +37,7 @@ _BLOCK = 1 << 14
 _OCTAVES = 4
 
 
-def asked(scene: Scene, speed: float) -> tuple[tuple[Any, ...], int]:
+def asked(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
     """(parameters, octave) of the map for a scene and speeds up to ``speed`` > 0."""
     from ..kernels.flow.layout import OCTAVE_RANGE
 
@@ -46,7 +46,7 @@ def asked(scene: Scene, speed: float) -> tuple[tuple[Any, ...], int]:
     return parameters, min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
 
 
-def flow_map(scene: Scene, speed: float, *, threads: int | None = None) -> FlowMap:
+def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
     """The map of a scene for speeds up to ``speed`` > 0: from memory, from disk, or built.
 
     A map on disk that is damaged is built again, with a RuntimeWarning; where the disk cannot

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..assumptions import Validity
 from ..errors import MOTION_STATUS, MotionStatus
+from ..judged import validity
 from ..labels import Labels
-from ..materials.prony_array import MaterialArray
+from ..parameters import Parameters, Rolls
 from ..results import Row, Shown, unit_of
-from ..scene import Scene
+from ..scale import Scale
 from ..steadiness import Steadiness
 from ..symbols import attributes
-from ..validity import Validity
 from .driven import Drive
 
 if TYPE_CHECKING:
@@ -28,19 +29,21 @@ _JUDGED = 256
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ensemble(Shown):
-    """Motions 0 ... n - 1 at common output times; everything dimensionless.
+    """Motions 0 ... n - 1 at common output times, in the units of what rolled, as of a :class:`Motion`.
 
     Attributes
     ----------
+    roller : what rolled, on its slope.
     t : output times.
     V, omega, x, angle, delta, regime : shape (n, len(t)); those not asked for are None.
-    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2: the integrals of
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, over m (R/T_epsilon)^2 or in J/m: the integrals of
         gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what
         (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
-    rest_time : (n,), when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
-    status : (n,), a :class:`MotionStatus` each; outputs a motion did not reach are NaN.
+    rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
+    success, status : (n,), whether each came to its end, and its :class:`MotionStatus`; outputs a motion did not reach
+        are NaN.
     switches, steps : (n,), changes of regime, and integration steps taken.
     flow : (n,), whether the flow map gave this motion; the others were integrated.
     flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
@@ -52,7 +55,7 @@ class Ensemble(Shown):
     labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
     """
 
-    scene: Scene
+    roller: Rolls
     V0: NDArray[np.float64]
     omega0: NDArray[np.float64]
     t: NDArray[np.float64]
@@ -83,6 +86,26 @@ class Ensemble(Shown):
 
     def __len__(self) -> int:
         return self.status.size
+
+    @property
+    def scene(self) -> Parameters:
+        """The dimensionless scene, on its slope."""
+        return self.roller.scene()
+
+    @property
+    def scale(self) -> Scale:
+        """What 1 of each quantity is: in SI units of a cylinder."""
+        return self.roller.scale
+
+    @property
+    def success(self) -> NDArray[np.bool_]:
+        """Which reached the last output time, or rest."""
+        return self.status <= MotionStatus.RESTED
+
+    @property
+    def message(self) -> str:
+        """How they ended, in words."""
+        return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
 
     def messages(self) -> dict[str, int]:
         """How many motions ended in which way, in words."""
@@ -115,23 +138,20 @@ class Ensemble(Shown):
     def validity(self) -> Validity:
         """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.
 
-        ``steady`` looks at all speeds on the way.  See :meth:`Scene.validity`; arrays over the motions, of more than
-        256 over that many of them, evenly picked.
+        ``steady`` looks at all speeds on the way.  See :func:`viscoroll.validity`; arrays over the motions, of more
+        than 256 over that many of them, evenly picked.
         """
         some, V, omega = self.judged()
-        parts = {name: value[some] for name, value in self.scene.numbers.items() if np.ndim(value)}
-        if isinstance(self.scene.material, MaterialArray):
-            del parts["alpha"]
-            parts["material"] = self.scene.material[some]
-        scene = self.scene.replace(**parts) if parts else self.scene
-        found = scene.validity(V, omega=omega)
+        roller = self.roller.some(some, len(self))
+        scene, scale = roller.scene(), roller.scale
+        found = validity(roller, V, omega=omega)
         if self.V is None or not some.size:
             return found
         speeds = np.vstack([self.V0[some], self.V[some].T])
         rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[some]) & ~np.isnan(speeds)
         x = np.full(speeds.shape, np.nan) if self.x is None else np.vstack([np.zeros(some.size), self.x[some].T])
-        steady = Steadiness.along(scene.freely(np.nan_to_num(speeds)), rolls, x, ends=True)
-        return found._replace(steady=steady)
+        free = scene.freely(np.nan_to_num(speeds / scale["V"])).scaled(scale)
+        return found._replace(steady=Steadiness.along(free, rolls, x, ends=True))
 
     def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
         """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
@@ -143,27 +163,24 @@ class Ensemble(Shown):
         return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
 
     def _card(self) -> tuple[str, list[Row]]:
-        return card_of(self, attributes)
+        def unit(name: str) -> str:
+            return unit_of(attributes(name, self.scale.si))
+
+        ends = [Row("ended", f"{count}: {message}") for message, count in self.messages().items()]
+        rows = [Row("t", f"{self.t.size} times to {self.t[-1]:.6g}", unit("t"))]
+        for name in ("V", "omega", "x"):
+            if (values := getattr(self, name)) is not None and values.size:
+                last = values[:, -1][np.isfinite(values[:, -1])]
+                low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
+                text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
+                rows.append(Row(name, text, unit(name)))
+        rows.append(Row("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
+        if self.flow.any():
+            rows.append(Row("by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"))
+        return f"Ensemble of {len(self)} motions", rows + ends
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over (motion, t) with starts, outputs, onset and status."""
         from .export import ensemble_dataset
 
         return ensemble_dataset(self)
-
-
-def card_of(result: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
-    """What an ensemble says of itself, in either units; ``described``: attributes of a quantity."""
-    ends = [Row("ended", f"{count}: {message}") for message, count in result.messages().items()]
-    rows = [Row("t", f"{result.t.size} times to {result.t[-1]:.6g}", unit_of(described("t")))]
-    for name in ("V", "omega", "x"):
-        if (values := getattr(result, name)) is not None and values.size:
-            last = values[:, -1][np.isfinite(values[:, -1])]
-            low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
-            text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
-            rows.append(Row(name, text, unit_of(described(name))))
-    stuck = np.isfinite(result.onset_time).sum()
-    rows.append(Row("onset of partial slip", f"in {stuck}"))
-    if result.flow.any():
-        rows.append(Row("by the flow map", f"{result.flow.sum()}, stated error {result.flow_error:.2g}"))
-    return f"Ensemble of {len(result)} motions", rows + ends

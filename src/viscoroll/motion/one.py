@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..assumptions import Validity
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..judged import validity
+from ..parameters import Parameters, Rolls
 from ..results import Row, Shown, Values, unit_of
 from ..rolling_contact import contact
-from ..scale import DIMENSIONLESS, Scale
-from ..scene import Scene
+from ..scale import Scale
 from ..steadiness import Steadiness
 from ..symbols import attributes
-from ..validity import Validity
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS, Drive
 from .rolling import Inputs, rolled
@@ -39,31 +40,36 @@ class Switch(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion(Shown):
-    """One motion of the cylinder; everything dimensionless.
+    """One motion, in the units of what rolled: of a scene without dimension, of a cylinder in SI units per m of length.
 
     Attributes
     ----------
-    t, V, omega : output times and speeds.
-    x, angle : distance travelled over R, and angle turned in radians, both 0 at t = 0.
+    roller : what rolled, on its slope: the :class:`Scene` or :class:`Cylinder`.
+    drive : what was given to drive it.
+    t, V, omega : output times and speeds; s, m/s, rad/s.
+    x, angle : distance travelled, over R or in m, and angle turned in radians, both 0 at t = 0.
     delta : creep ratio (infinite where V = 0 while sliding).
     regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by a brake, or by a
         prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing stops: a driven motion is told to be
         at rest where V has decayed to less than doubles hold.
     switches : every change of regime, located to rounding; under a drive to a small part of ``rtol``.
     reversals : times at which V changes its sign under a drive.
-    force, torque : over P and P R: what acted, or what a prescribed speed needed; without the brake.
-    work_force, work_torque : work of either since t = 0, over m (R/T_epsilon)^2.
+    force, torque : over P and P R, or N/m and N m/m: what acted, the pull of a slope with it, or what a prescribed
+        speed needed; without the brake.
+    work_force, work_torque : work of either since t = 0, over m (R/T_epsilon)^2 or in J/m.
     brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling, likewise.  The works
         are the change of (V^2 + j omega^2)/2 plus the three losses.
-    drive_error : the largest difference seen between a callable and the polynomials it was fitted by.
+    power_force, power_torque : force V and torque omega, over P R/T_epsilon or in W/m.
+    drive_error : the largest difference seen between a callable and the polynomials it was fitted by, dimensionless.
     onset_time : first change from full to partial slip; NaN if there is none.
-    rest_time : when max(|V|, |omega|) fell below ``rest``; NaN if it did not.
-    status, message : how the motion ended, and where it stood if that was not its end; outputs it did not reach are
-        NaN.
+    rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
+    success, status, message : whether the motion came to its end, and how it ended, and where it stood if that was not
+        its end; outputs it did not reach are NaN.
     steps : integration steps taken, rejected ones included.
     """
 
-    scene: Scene
+    roller: Rolls
+    drive: Drive
     t: NDArray[np.float64]
     V: NDArray[np.float64]
     omega: NDArray[np.float64]
@@ -88,14 +94,32 @@ class Motion(Shown):
     _inputs: Inputs = field(repr=False)
 
     @property
-    def drive(self) -> Drive:
-        """What was given to drive it."""
-        return self._inputs.drive
+    def scene(self) -> Parameters:
+        """The dimensionless scene, on its slope."""
+        return self._inputs.scene
+
+    @property
+    def scale(self) -> Scale:
+        """What 1 of each quantity is: in SI units of a cylinder."""
+        return self.roller.scale
+
+    @property
+    def success(self) -> bool:
+        """Whether it reached the last output time, or rest."""
+        return self.status <= MotionStatus.RESTED
 
     @property
     def message(self) -> str:
         """The status in words; of a motion that was given up also where it stood."""
-        return message_of(self, DIMENSIONLESS)
+        words = MOTION_STATUS[self.status]
+        if self.success or self.status == MotionStatus.CAUGHT:
+            return words
+        stood = self._stood
+        t, V, omega = (
+            f"{name} = {float(stood[name][0]):.6g} {unit_of(attributes(name, self.scale.si))}".rstrip()
+            for name in ("t", "V", "omega")
+        )
+        return f"{words}; it stood at {t} in {REGIMES[stood.regime[0]]}, {V}, {omega}"
 
     @cached_property
     def _stood(self) -> Motion:
@@ -103,7 +127,19 @@ class Motion(Shown):
         ends = np.full(self.steps + 1, np.nan)
         rolled(self._inputs, np.array([self._inputs.end]), (np.empty((0, 2)), ends))
         reached = float(np.nanmax(np.append(ends, 0.0)))
-        return integrated(self._inputs._replace(end=reached), np.array([reached]))
+        return integrated(
+            self._inputs._replace(end=reached), np.array([reached * self.scale["t"]]), self.roller, self.drive
+        )
+
+    @property
+    def power_force(self) -> NDArray[np.float64]:
+        """Power of the force."""
+        return self.force * self.V
+
+    @property
+    def power_torque(self) -> NDArray[np.float64]:
+        """Power of the torque."""
+        return self.torque * self.omega
 
     def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
         """Contact state (:func:`viscoroll.contact`) along the motion.
@@ -129,25 +165,43 @@ class Motion(Shown):
         reached = self.regime >= 0
         V, delta = self.V[reached], self.delta[reached]
         delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
-        V = np.where((V == 0.0) & np.signbit(V), -SPEED_RANGE[0], V)  # -0: the limit from there
-        found = contact(self.scene, V, delta=delta, fields=fields, **options)
+        slowest = -SPEED_RANGE[0] * self.scale["V"]
+        V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
+        found = contact(self.roller, V, delta=delta, fields=fields, **options)
         whole = {name: _with_gaps(values, reached) for name, values in found.as_dict().items()}
-        return Values(whole, {"t": self.t}, title="Contact along a motion")
+        return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motion strains, at each output time that it reached.
 
-        See :meth:`Scene.validity`; ``creep`` is that of the motion, and ``steady`` looks at its speeds so far.
+        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` looks at its speeds so far.
         """
         reached = self.regime >= 0
-        found = self.scene.validity(self.V[reached], omega=self.omega[reached])
+        V = self.V[reached]
+        found = validity(self.roller, V, omega=self.omega[reached])
         if not reached.any():
             return found
-        free, rolls = self.scene.freely(self.V[reached]), self.regime[reached] > 0
+        free, rolls = self.scene.freely(V / self.scale["V"]).scaled(self.scale), self.regime[reached] > 0
         return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
 
     def _card(self) -> tuple[str, list[Row]]:
-        return card_of(self, attributes)
+        def unit(name: str) -> str:
+            return unit_of(attributes(name, self.scale.si))
+
+        rows = [Row("t", f"{self.t.size} times to {self.t[-1]:.6g}", unit("t"))]
+        rows += [Row(name, _course(self.t, getattr(self, name)), unit(name)) for name in ("V", "omega", "x")]
+        for name, given in self.drive.given.items():
+            rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", unit(name)))
+        if not np.isnan(self.onset_time):
+            rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", unit("t")))
+        if self.switches:
+            last = self.switches[-1]
+            died = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
+            when = f"t = {last.t:.6g} {unit('t')}".rstrip()
+            rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}"))
+        if self.reversals.size:
+            rows.append(Row("reversals of V", str(self.reversals.size)))
+        return "Motion", [*rows, Row("ended", f"{self.message} ({self.steps} steps)")]
 
     def at(self, t: ArrayLike) -> Motion:
         """The same motion at other times within [0, end]; by the continuous output of the methods.
@@ -167,10 +221,10 @@ class Motion(Shown):
             Times that are not ascending or lie beyond the end of the motion.
         """
         times = output_times(t)
-        end = self._inputs.end
-        if times[-1] > end:
+        end = self._inputs.end * self.scale["t"]
+        if times[-1] > end and times[-1] / self.scale["t"] > self._inputs.end:
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
-        return integrated(self._inputs, times)
+        return integrated(self._inputs, times, self.roller, self.drive)
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
@@ -179,56 +233,25 @@ class Motion(Shown):
         return motion_dataset(self)
 
 
-def integrated(inputs: Inputs, times: NDArray) -> Motion:
-    """The motion at ``times``, up to its end."""
-    asked = times if times[-1] == inputs.end else np.append(times, inputs.end)
+def integrated(inputs: Inputs, times: NDArray, roller: Rolls, drive: Drive) -> Motion:
+    """The motion at ``times``, up to its end, in the units of what rolled."""
+    scale = roller.scale
+    T, at = scale["t"], times / scale["t"]
+    asked = at if at[-1] == inputs.end else np.append(at, inputs.end)
     switches = np.full((_SWITCHES_KEPT, 2), np.nan)
-    scene, error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
+    error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
     whole = rows.pop("regime")
+    if scale.si:
+        rows = {name: row * scale[name] for name, row in rows.items()}
     regime = np.where(np.isnan(whole), -1, whole).astype(np.int8)
     noted = switches[~np.isnan(switches[:, 1])]
-    changes = tuple(Switch(float(when), REGIMES[int(what)]) for when, what in noted if what >= 0.0)
+    changes = tuple(Switch(float(when) * T, REGIMES[int(what)]) for when, what in noted if what >= 0.0)
     return Motion(
-        scene, times, **rows, regime=regime, switches=changes, onset_time=onset_time, rest_time=rest_time,
-        status=MotionStatus(int(status)), steps=int(steps), reversals=noted[noted[:, 1] < 0.0, 0],
-        drive_error=error, _inputs=inputs,
+        roller, drive, times, **rows, regime=regime, switches=changes, onset_time=onset_time * T,
+        rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
+        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=error, _inputs=inputs,
     )  # fmt: skip
-
-
-def message_of(motion: Motion, scale: Scale) -> str:
-    """How a motion ended, in these units."""
-    words = MOTION_STATUS[motion.status]
-    if motion.status <= MotionStatus.RESTED or motion.status == MotionStatus.CAUGHT:
-        return words
-    stood = motion._stood
-    t, V, omega = (
-        f"{name} = {scale.of(name, float(getattr(stood, name)[0])):.6g} {unit_of({'units': scale.unit(name)})}".rstrip()
-        for name in ("t", "V", "omega")
-    )
-    return f"{words}; it stood at {t} in {REGIMES[stood.regime[0]]}, {V}, {omega}"
-
-
-def card_of(motion: Any, described: Callable[[str], dict[str, Any]]) -> tuple[str, list[Row]]:
-    """What a motion says of itself, in either units; ``described``: attributes of a quantity."""
-
-    def unit(name: str) -> str:
-        return unit_of(described(name))
-
-    rows = [Row("t", f"{motion.t.size} times to {motion.t[-1]:.6g}", unit("t"))]
-    rows += [Row(name, _course(motion.t, getattr(motion, name)), unit(name)) for name in ("V", "omega", "x")]
-    for name, given in motion.drive.given.items():
-        rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", unit(name)))
-    if not np.isnan(motion.onset_time):
-        rows.append(Row("onset of partial slip", f"t = {motion.onset_time:.6g}", unit("t")))
-    if motion.switches:
-        last = motion.switches[-1]
-        died = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(motion.rest_time) else ""
-        when = f"t = {last.t:.6g} {unit('t')}".rstrip()
-        rows.append(Row("changes of regime", f"{len(motion.switches)}, the last to {last.regime} at {when}{died}"))
-    if motion.reversals.size:
-        rows.append(Row("reversals of V", str(motion.reversals.size)))
-    return "Motion", [*rows, Row("ended", f"{motion.message} ({motion.steps} steps)")]
 
 
 def _course(t: NDArray, values: NDArray) -> str:

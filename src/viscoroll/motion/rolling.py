@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import MotionStatus, ParameterError
 from ..materials.law_table import LawTable, law_table
-from ..scene import Scene
+from ..parameters import Parameters
 from .driven import ROWS, Drive, prepared, refuse_rest
 from .unsteady import climbed
 
@@ -19,9 +19,9 @@ NO_UNIT.flags.writeable = False
 
 
 class Inputs(NamedTuple):
-    """What a motion was rolled from."""
+    """What a motion was rolled from, without dimension."""
 
-    scene: Scene
+    scene: Parameters
     V0: Any
     omega0: Any
     end: float
@@ -33,38 +33,34 @@ class Inputs(NamedTuple):
     rested: float
 
 
-def law_of(scene: Scene) -> LawTable:
+def law_of(scene: Parameters) -> LawTable:
     """The law of a scene of one material."""
-    if scene.law is not None:
-        return scene.law
+    if scene.table is not None:
+        return scene.table
     material: Any = scene.material
     return law_table(float(np.asarray(scene.alpha).item()) if material is None else material)
 
 
-def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[Scene, float, NDArray, list[float]]:
-    """(Scene, error of the drive, rows of ``ROWS``, (status, steps, switches, onset time, rest time)) of one motion.
+def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[float, NDArray, list[float]]:
+    """(Error of the drive, rows of ``ROWS``, (status, steps, switches, onset time, rest time)) of one motion.
 
     ``notes``: room for the switches and for the ends of steps.
     """
     from ..kernels.motion.loop import INFO, motion_loop
 
-    ready = prepared(inputs.drive, inputs.scene, inputs.V0, inputs.omega0, inputs.end, inputs.rtol)
+    ready = prepared(inputs.drive, inputs.V0, inputs.omega0, inputs.end, inputs.rtol)
     refuse_rest(inputs.rest, ready)
     if (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
-    ready, caught = climbed(ready, inputs.rested)
+    ready, caught = climbed(ready, inputs.scene, inputs.rested)
     if caught:
-        return (
-            ready.scene,
-            ready.error,
-            np.full((len(ROWS), times.size), np.nan),
-            [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan],
-        )
-    scene, law = ready.scene, law_of(ready.scene)
+        nothing = np.full((len(ROWS), times.size), np.nan)
+        return ready.error, nothing, [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
+    scene, law = inputs.scene, law_of(inputs.scene)
     one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     limits = inputs.rtol, inputs.rest, inputs.max_steps
     out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
     batch = law.unsteady_record if inputs.unsteady else law.record, NO_UNIT, law.unlike, *one
     motion_loop(batch, ready.for_kernel(), times, limits, np.arange(len(ROWS)), out, info, notes)
-    return scene, ready.error, out[:, 0], info[0].tolist()
+    return ready.error, out[:, 0], info[0].tolist()

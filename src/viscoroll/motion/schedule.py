@@ -1,17 +1,17 @@
-"""What acts over time, as pieces that are polynomials: numbers, (times, values), callables, feedback.
+"""What acts over time, as pieces that are polynomials: numbers, schedules, callables, feedback.
 
 A piece runs from ``starts`` to ``ends``; in it x = -1 ... 1 and the value is sum terms[n] x^n.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checks import checked
-from ..drive import Feedback, refuse_more_than_t
+from ..drive import Feedback, Schedule, refuse_more_than_t
 from ..errors import ParameterError
 from .fitted import fitted
 
@@ -40,8 +40,8 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
     Raises
     ------
     ParameterError
-        What is neither a number, (times, values) nor a callable; values that are not finite or below ``low``, times
-        that fall or that come more than twice, arrays that do not fit, a callable that polynomials do not follow.
+        What is neither a number, a schedule nor a callable; values that are not finite or below ``low``, a callable
+        that polynomials do not follow.
     """
     if isinstance(given, Feedback):
         given = given.value
@@ -52,31 +52,18 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         after[0, 0] = terms[-1].sum()
         ends = np.r_[starts[1:], end, np.inf]
         return Curve(np.append(starts, end), ends, np.concatenate([terms, after])[None], error)
-    if is_schedule(given):
-        return _linear(name, *given, low)
+    if isinstance(given, Schedule):
+        return _linear(given.times, checked(f"values of {name}", given.values, low=low))
     values = checked(name, given, low=low)
     if values.ndim > 1:
-        raise ParameterError(name, f"array of shape {values.shape}", "a number, one a motion, or (times, values)")
+        raise ParameterError(
+            name, f"array of shape {values.shape}", "a number, one a motion, or a Schedule(times, values)"
+        )
     return Curve(np.zeros(1), np.array([np.inf]), values.reshape(-1, 1, 1))
 
 
-def is_schedule(given: Any) -> TypeGuard[tuple[Any, Any]]:
-    """Whether it is (times, values)."""
-    return isinstance(given, tuple) and len(given) == 2
-
-
-def _linear(name: str, times: Any, values: Any, low: float) -> Curve:
+def _linear(times: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
     """Linear between times, constant outside; a time given twice is a jump."""
-    times, values = checked(f"times of {name}", times, low=0.0), checked(f"values of {name}", values, low=low)
-    fits = {times.ndim, values.ndim} <= {1, 2} and times.size > 0 and values.shape[-1] == times.shape[-1]
-    if not fits or len({len(array) for array in (times, values) if array.ndim == 2}) > 1:
-        shapes = f"times {times.shape}, values {values.shape}"
-        raise ParameterError(name, shapes, "times (k,) and values (k,), or (n, k) for n motions")
-    if (np.diff(times) < 0.0).any():
-        raise ParameterError(f"times of {name}", times[..., :-1][np.diff(times) < 0.0][0], "in ascending order")
-    thrice = times[..., 2:] == times[..., :-2]
-    if thrice.any():
-        raise ParameterError(f"times of {name}", times[..., :-2][thrice][0], "there once, or twice for a jump")
     values = np.atleast_2d(values)
     if times.ndim == 2:
         return _linear_each(times, values)

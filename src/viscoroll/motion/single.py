@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..drive import Feedback
-from ..errors import MOTION_STATUS, MotionStatus
-from ..scene import Scene, checked_scene
+from ..checks import checked
+from ..drive import Feedback, Schedule, over
+from ..errors import MOTION_STATUS, ParameterError
+from ..materials.prony_array import MaterialArray
+from ..parameters import Parameters, Rolls, framed
+from ..scale import Scale
 from ..typed import Numbers
-from .checks import controls, output_times, refuse_many, start_speeds
+from .checks import controls, in_words, output_times, refuse_many, start_speeds
 from .driven import Drive
 from .one import Motion, integrated
 from .rolling import Inputs, rolled
@@ -23,23 +28,23 @@ from .warned import look
 _STEPS = 1000
 _NO_SWITCHES = np.empty((0, 2))
 #: a function of time
-Schedule = float | tuple[Numbers, Numbers] | Callable[[float], float]
-Acting = Schedule | Feedback
+Course = float | Schedule | Callable[[float], float]
+Acting = Course | Feedback
 
 
 def roll(
-    scene: Scene,
+    roller: Rolls,
     V0: float | None,
     omega0: float | None,
     t: Numbers,
-    rtol: float = 1e-8,
     *,
+    rtol: float = 1e-8,
     force: Acting = 0.0,
     torque: Acting = 0.0,
     slope: float | None = None,
-    brake: Schedule | None = None,
-    omega: Schedule | None = None,
-    V: Schedule | None = None,
+    brake: Course | None = None,
+    omega: Course | None = None,
+    V: Course | None = None,
     rest: float | None = None,
     unsteady: bool = False,
     rested: bool | float = False,
@@ -49,8 +54,9 @@ def roll(
 
     Parameters
     ----------
-    scene : one scene (no arrays).
-    V0, omega0 : start speeds, any sign; the larger of the two 0, or in [1e-300, 1e100] in size.
+    roller : a :class:`Scene`; or a :class:`Cylinder`, in SI units per m of its length: s, m/s, rad/s, m, N, N m, J.
+        One, no arrays.
+    V0, omega0 : start speeds, any sign; the larger of the two 0, or in [1e-300, 1e100] R/T_ref.
     t : output times, ascending, or one end time: then output falls on the steps taken.
     rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
@@ -59,18 +65,18 @@ def roll(
     force, torque : over P along V, and over P R along omega, what pushes the axis and turns the cylinder:
 
         - a number;
-        - (times, values): linear between, constant outside, a time given twice is a jump;
+        - ``vr.Schedule(times, values)``: linear between, constant outside, a time given twice is a jump;
         - a callable of t, smooth but for jumps and corners, fitted by polynomials to a tenth of ``rtol`` of its largest
           value so far, and of 1e-9 of its largest of all, below which it begins at 0 (``drive_error`` says how well).
-          It is looked at in a thousand places first: give what is narrower as (times, values);
+          It is looked at in a thousand places first: give what is narrower as a schedule;
         - ``vr.Feedback(value, V=gain, omega=gain)``: any of these and more with the speeds.
-    slope : angle in radians, > 0 pushes along +V: tan(slope) is added to ``force``.  The load is P cos(slope) then,
-        over which force, torque, Q and M are; ``scene`` of the result has kappa and gamma of that load.
+    slope : angle in radians, > 0 pushes along +V: P sin(slope) is added to ``force``.  The load is P cos(slope)
+        then, over which of a scene force, torque, Q and M are; ``scene`` of the result has kappa and gamma of it.
     brake : the most torque over P R that a brake takes, >= 0, as for ``force``.  It acts against omega, and holds
         omega = 0 while |Q + M_cylinder - torque| is no more.
     omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or what it starts at.
     V : prescribed speed of the axis, in place of ``force``; ``V0`` likewise.  A prescribed speed must not jump.
-    rest : end the motion where max(|V|, |omega|) falls below this once nothing drives any more; refused where
+    rest : end the motion where max(|V|, R |omega|) falls below this once nothing drives any more; refused where
         something drives to the end.  Nothing stops in finite time: at small V the speed decays like
         exp(-gamma c t/(1 + j)) with c = (alpha - 1)/alpha, and an elastic cylinder (alpha = 1) rolls for ever.
         From there on V = omega = 0 and x, angle stay; the distance so left out is close to (1 + j) V/(gamma c).
@@ -79,7 +85,7 @@ def roll(
         (docs/may_i.md).  The motion ends where gamma N is 1 + j or -(1 + j)/2, at least -1: below that speed the
         contact comes to stand in its own imprint.  A drive may jump; V' does too then, which the contact in truth
         follows late.  Refused where bodies differ.
-    rested : whether the contact had rested long before it starts to roll, or the time that it had, over T_ref.
+    rested : whether the contact had rested long before it starts to roll, or the time that it had.
         Leaving its imprint takes energy (``validity(V0).steady.start``): V0 and omega0 become what is left of them; a
         motion that would lose seven tenths is caught there.  It tells of free rolling: with a force it is near.
     max_steps : step limit, at most 10^7.
@@ -108,7 +114,7 @@ def roll(
     >>> import numpy as np, viscoroll as vr
     >>> scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
     >>> down = vr.roll(scene, 0.0, 0.0, 60.0, slope=np.radians(2.0))
-    >>> start = vr.roll(scene, 0.0, 0.0, 4.0, torque=([0.0, 1.0, 1.0], [0.0, 0.2, 0.0]))
+    >>> start = vr.roll(scene, 0.0, 0.0, 4.0, torque=vr.Schedule([0.0, 1.0, 1.0], [0.0, 0.2, 0.0]))
     >>> stop = vr.roll(scene, 0.5, 0.5, 10.0, brake=0.1)
 
     Warns
@@ -116,28 +122,56 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    checked_scene(scene, "roll", moves=True)
     times = output_times(t)
     drive = Drive(force, torque, slope, brake, omega, V)
-    given = [0.0 if value is None else value for value in (V0, omega0)] if drive.prescribes else [V0, omega0]
-    speeds = start_speeds(*given)
-    refuse_many("the scene", scene.shape)
-    for name, value in {"V0": speeds[0], "omega0": speeds[1], **drive.numbers}.items():
+    given = framed(roller, "roll", moves=True)[0]
+    starts: list[Any] = [0.0 if value is None and drive.prescribes else value for value in (V0, omega0)]
+    speeds = {name: checked(name, start) for name, start in zip(("V0", "omega0"), starts, strict=True)}
+    if given.shape:
+        _refuse_many(roller)
+    for name, value in (speeds | drive.numbers).items():
         refuse_many(name, value.shape)
-    rtol, threshold, max_steps = controls(rtol, rest, max_steps)
-    refuse_unlike(scene, unsteady)
-    V0, omega0 = (None if value is None else float(value) for value in (V0, omega0))
-    look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts or unsteady)
-    inputs = Inputs(
-        scene, V0, omega0, float(times[-1]), rtol, threshold, max_steps, drive, unsteady, time_of_rest(rested)
-    )
-    if np.ndim(t) == 0:
-        times = _step_times(inputs)
-    motion = integrated(inputs, times)
-    if motion.status > MotionStatus.RESTED:
+    roller = roller.tilted(drive.given["slope"]) if "slope" in drive.given else roller
+    scene, scale = framed(roller, "roll")
+    roller.look_at_starts(*speeds.values())
+    try:
+        limits = controls(rtol, over("rest", rest, scale), max_steps)
+        rest_before = time_of_rest(rested) / scale["t"]
+        inputs = _inputs(scene, scale, (V0, omega0), times[-1], limits, drive, unsteady, rest_before)
+        if np.ndim(t) == 0:
+            times = np.append(_step_times(inputs)[:-1] * scale["t"], times)
+        motion = integrated(inputs, times, roller, drive)
+    except ParameterError as error:
+        raise in_words(error, scale) from error
+    if scale.si:
+        roller.look(np.append(motion.V, speeds["V0"]))
+    if not motion.success:
         words = f"roll: {MOTION_STATUS[motion.status]}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)
     return motion
+
+
+def _refuse_many(roller: Any) -> None:
+    """Name what is an array of what rolls."""
+    if isinstance(roller.material, MaterialArray):
+        refuse_many("material", roller.material.alpha.shape)
+    for field in fields(roller):
+        refuse_many("load" if field.name == "pressed" else field.name, np.shape(getattr(roller, field.name)))
+
+
+def _inputs(
+    scene: Parameters, scale: Scale, starts: tuple[Any, Any], end: float, limits: tuple[float, float, int],
+    drive: Drive, unsteady: bool, rested: float,
+) -> Inputs:  # fmt: skip
+    """All of it without dimension, checked."""
+    V0, omega0 = (
+        None if start is None else float(start) / scale[name]
+        for name, start in zip(("V0", "omega0"), starts, strict=True)
+    )
+    speeds = start_speeds(*(0.0 if start is None else start for start in (V0, omega0)))
+    refuse_unlike(scene, unsteady)
+    look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts or unsteady)
+    return Inputs(scene, V0, omega0, float(end / scale["t"]), *limits, drive.over(scale), unsteady, rested)
 
 
 def _step_times(inputs: Inputs) -> NDArray:

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..checks import checked
 from ..errors import ParameterError
+from ..parameters import Parameters
 from ..rolling_contact import contact
-from ..scene import Scene
 from ..steadiness import CAUGHT
 from .driven import Prepared
 
@@ -30,14 +30,14 @@ def time_of_rest(rested: bool | float) -> float:
     return float(rested)
 
 
-def refuse_unlike(scene: Scene, unsteady: bool) -> None:
+def refuse_unlike(scene: Parameters, unsteady: bool) -> None:
     """Raise ParameterError where the added mass is asked for of bodies that differ."""
     if unsteady and not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
 
 
-def climbed(ready: Prepared, rested: float) -> tuple[Prepared, Any]:
+def climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepared, Any]:
     """(What is rolled once the cylinder has left the imprint of a rest, whether it was caught there).
 
     Raises
@@ -47,8 +47,8 @@ def climbed(ready: Prepared, rested: float) -> tuple[Prepared, Any]:
     """
     if rested == 0.0:
         return ready, np.zeros((), bool)
-    V, scene = np.asarray(ready.V0, np.float64), ready.scene
-    limit = np.abs(V) * contact(scene, V, 0.0, fields="delta_star").delta_star
+    V = np.asarray(ready.V0, np.float64)
+    limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     if ready.prescribed or np.any(np.abs(ready.omega0 - V) > limit):
         what = "a speed is prescribed" if ready.prescribed else "it starts in full slip"
         sentence = f"rested is given, but {what}: what leaving the imprint costs is not known then"

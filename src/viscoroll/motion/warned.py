@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelWarning
+from ..errors import ModelWarning, outside
 from ..free_rolling import curve
 from ..kernels.compile.notice import is_worker
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
 from ..materials.prony_array import MaterialArray
-from ..scene import PARAMETERS, Scene
+from ..parameters import PARAMETERS, Parameters
 from ..steadiness import STEADY_LIMIT
 
 #: kappa at which the contact at rest reaches half a radius from the axis
@@ -35,7 +35,7 @@ _PLAIN = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
 _LOOKED_AT = 256
 
 
-def look(scene: Scene, V0: Any, omega0: Any, *, driven: bool) -> None:
+def look(scene: Parameters, V0: Any, omega0: Any, *, driven: bool) -> None:
     """Warn where the model is grossly at fault for motions from these starts, checked ones; in workers never.
 
     Of one motion, two floats, it takes a microsecond or two; of many it looks at some, evenly picked.
@@ -51,7 +51,7 @@ def say(faults: list[str]) -> None:
     warnings.warn(text, ModelWarning, stacklevel=outside())
 
 
-def _faults(scene: Scene, V0: float, omega0: float, driven: bool) -> list[str]:
+def _faults(scene: Parameters, V0: float, omega0: float, driven: bool) -> list[str]:
     """Of one motion."""
     alpha, kappa, mu, gamma, j = scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j
     found: list[str] = []
@@ -77,7 +77,7 @@ def _faults(scene: Scene, V0: float, omega0: float, driven: bool) -> list[str]:
     return found
 
 
-def _faults_of_many(scene: Scene, V0: NDArray[np.float64], omega0: NDArray[np.float64], driven: bool) -> list[str]:
+def _faults_of_many(scene: Parameters, V0: NDArray[np.float64], omega0: NDArray[np.float64], driven: bool) -> list[str]:
     """Of the motions that are worst by bounds, among some."""
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
     count = max((array.size for array in arrays if array.ndim), default=1)
@@ -96,7 +96,7 @@ def _faults_of_many(scene: Scene, V0: NDArray[np.float64], omega0: NDArray[np.fl
         material = scene.material[some[worst]] if isinstance(scene.material, MaterialArray) else scene.material
         own = dict(zip((*PARAMETERS, "V0", "omega0"), picked[:, worst].tolist(), strict=True))
         start = own.pop("V0"), own.pop("omega0")
-        one = Scene(**(own if material is None else own | {"alpha": None, "material": material}))
+        one = Parameters(**(own if material is None else own | {"alpha": None, "material": material}))
         found += _faults(one, *start, driven)
     return list(dict.fromkeys(found))
 
@@ -105,19 +105,9 @@ def _faults_of_many(scene: Scene, V0: NDArray[np.float64], omega0: NDArray[np.fl
 def _slow_starts(material: float | Prony | Bodies, gamma: float, j: float) -> tuple[list[float], list[bool]]:
     """kappa V, upward, and whether a good part of the way of what is let go there is too slow for the law."""
     given = {"alpha": material} if isinstance(material, float) else {"material": material}
-    free = Scene(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given).freely(0.0)
+    free = Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given).freely(0.0)
     known = curve(free.materials[0])
     assert known is not None  # an elastic one is never slow
     free = replace(free, u=np.exp(known.s))
     slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.whole()
     return (free.u * free.speed).tolist(), slow.tolist()
-
-
-def outside() -> int:
-    """Frames up to the first one that is not of this package."""
-    import sys
-
-    depth, frame = 1, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "viscoroll":
-        depth, frame = depth + 1, frame.f_back
-    return depth

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cylinder import Cylinder
+from ..drive import Schedule
 from ..materials.pair import Pair
 from ..motion import ensemble
 from ..motion.many import Ensemble
+from ..scaling import scene_from_si, scene_of_law, scene_of_pair
 from ..scene import Scene
-from ..si.scaling import scene_from_si, scene_of_law, scene_of_pair
-from ..si.warned import look_at_motion
 from . import draws
 from .inputs.drives import drive_of
 from .inputs.ranges import CYLINDER, SCENE, SOLID, START
@@ -58,7 +58,10 @@ def roll_inputs(run: Run, values: Mapping[str, Any], threads: int | None = 1) ->
     if are_si(values) and (settings.unsteady or settings.rested):
         # gamma does more than scale time then
         T = unit_of_time(values)
-        drive = {name: (each[0] / T, each[1]) if isinstance(each, tuple) else each for name, each in drive.items()}
+        drive = {
+            name: Schedule(each.times / T, each.values) if isinstance(each, Schedule) else each
+            for name, each in drive.items()
+        }
     elif are_si(values):
         scene = scene.replace(gamma=scene.gamma / unit_of_time(values))
     V0, omega0 = (_column(dimensionless(values, name), motion_count) if name in values else None for name in START)
@@ -96,7 +99,8 @@ def look_at_materials(run: Run) -> None:
     settings = msgspec.structs.replace(run.settings, summaries=("V",), keep="summaries")
     motion = roll_inputs(replace(run, settings=settings), values)
     V0 = run.inputs.largest("V0") if "V0" in values else None
-    look_at_motion(cylinder, V0, motion.V, scales(values)["V"])
+    cylinder.look(V0)
+    cylinder.look(motion.V * scales(values)["V"])
 
 
 def _column(value: Any, count: int) -> NDArray[np.float64]:

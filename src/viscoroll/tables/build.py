@@ -15,9 +15,10 @@ from ..errors import ParameterError
 from ..materials.law_file import described, law_of
 from ..materials.law_store import content_of
 from ..materials.law_table import LawTable
+from ..materials.prony_forms import HIGHEST_ALPHA
 from ..rolling_contact import contact
 from ..scale import si_unit
-from ..scene import HIGHEST_ALPHA, Scene
+from ..scene import Scene
 from . import schema
 from .interpolate import Interpolant
 

@@ -28,8 +28,8 @@ def motion_checks(times: int) -> list[Check]:
 
 
 def _compare(name: str, scene: Scene, V0: float, omega0: float, times: int) -> list[Check]:
-    end = roll(scene, V0, omega0, np.array([1.0]), RTOL, rest=_LEAST_SPEED).rest_time
-    motion = roll(scene, V0, omega0, np.linspace(0.0, end, times), RTOL)
+    end = roll(scene, V0, omega0, np.array([1.0]), rtol=RTOL, rest=_LEAST_SPEED).rest_time
+    motion = roll(scene, V0, omega0, np.linspace(0.0, end, times), rtol=RTOL)
     direct = roll_direct(scene, V0, omega0, motion.t)
     size = np.maximum(np.abs(direct.V), np.abs(direct.omega))
     # a NaN on either side must fail the check

@@ -17,7 +17,7 @@ grip = (1.0 + scene.j) * scene.mu
 times = np.array([0.0, 5.0, 8.0, 8.0]) / scene.gamma
 torque = np.array([0.0, 2.0, 2.0, 0.25]) * grip
 t = np.unique(np.concatenate([np.linspace(0.0, 16.0 / scene.gamma, 801), times]))
-m = vr.roll(scene, 0.0, 0.0, t, torque=(times, torque))
+m = vr.roll(scene, 0.0, 0.0, t, torque=vr.Schedule(times, torque))
 
 figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(7.2, 5.6), sharex=True, layout="constrained"

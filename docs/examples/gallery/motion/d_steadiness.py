@@ -17,7 +17,7 @@ import viscoroll as vr
 rubber = vr.fit_prony(*vr.read_dma("../../dma.csv")).material(nu=0.49, density=1100.0)
 roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
 scene, V = roller.scene(), np.geomspace(1e-4, 10.0, 4000)  # m/s
-c = vr.contact(scene, roller.V_from_si(V), delta=0.0, fields=("M", "N"))
+c = vr.contact(scene, V / roller.scale["V"], delta=0.0, fields=("M", "N"))
 unsteady = scene.gamma * c.N / (1.0 + scene.j)
 bound = 0.084 * (1.0 - 1.0 / scene.alpha) * roller.g * roller.l0**2 / (roller.R * 1.5)
 
@@ -38,9 +38,11 @@ left.legend(frameon=False, fontsize="small")
 start = np.searchsorted(V, 1.0)
 for inertia, style in ((0.0, "-"), (1.0, ":")):
     rate = (1.0 + inertia * unsteady) * (1.0 + scene.j) / (scene.gamma * c.M)
-    t = cumulative_trapezoid(rate[:start], roller.V_from_si(V[:start]), initial=0.0)
+    t = cumulative_trapezoid(rate[:start], V[:start] / roller.scale["V"], initial=0.0)
     fast = V[:start] > roller.validity(1.0).steady.ten_percent.speed
-    right.semilogy(roller.t_to_si(t[-1] - t)[fast], V[:start][fast], style, color="C0")
+    right.semilogy(
+        (t[-1] - t)[fast] * roller.scale["t"], V[:start][fast], style, color="C0"
+    )
 right.set(xlabel="t, s", ylabel="speed, m/s", title="rolling from 1 m/s; dotted: with N")
 print(roller.validity(1.0).steady.sentence)
 print(cold.validity(1.0).steady.sentence)

@@ -7,6 +7,7 @@ the status is not 0.  Nothing is written but ``out``: any number of threads may 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -27,10 +28,10 @@ from .record import PARTS, WIDTH, Law
 FASTEST = 1e300
 OUT = 8
 #: address of the function; whether slopes are asked for, whether the bodies differ; addresses of the rows and of the
-#: marks of the law, and how many these are; kappa, mu
+#: marks of the law, and how many these are; kappa, mu; what 1 of V, omega, Q and M is to the caller
 SCENE = np.dtype(
     [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count")]
-    + [("kappa", np.float64), ("mu", np.float64)]
+    + [(name, np.float64) for name in ("kappa", "mu", "V", "omega", "Q", "M")]
 )
 _DOUBLES = types.CPointer(types.float64)
 _SIGNATURE = types.int32(types.float64, types.float64, _DOUBLES, types.CPointer(numba.from_dtype(SCENE)))
@@ -42,8 +43,9 @@ def _law_of(scene):
 
 
 @kernel(allocates=True)
-def _loads(V, omega, to, scenes):
+def _loads(speed_of_axis, spin, to, scenes):
     out, scene = carray(to, OUT), carray(scenes, 1)[0]
+    V, omega = speed_of_axis / scene.V, spin / scene.omega
     u = scene.kappa * abs(V)
     if not (u <= FASTEST and abs(V) < np.inf and abs(omega) < np.inf):
         for n in range(OUT):
@@ -64,15 +66,22 @@ def _loads(V, omega, to, scenes):
         out[6] = out[7] = 0.5 * rise
         if scene.unlike:
             out[6], out[7] = body_slopes(here, u, law)
+        out[4], out[5] = out[4] * scene.Q / scene.V, out[5] * scene.Q / scene.omega
+        out[6], out[7] = out[6] * scene.M / scene.V, out[7] * scene.M / scene.V
+    out[0] *= scene.Q
+    for n in range(1, 4):
+        out[n] *= scene.M
     return 0
 
 
-def bind(law: Law, unlike: bool, kappa: float, mu: float) -> NDArray[Any]:
+def bind(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
     """Scenes without slopes and with; the law is to outlive them."""
     found = np.zeros(2, SCENE)
     found["function"], found["slopes"] = function(), [0, 1]
     found["rows"], found["marks"], found["count"] = law.rows.ctypes.data, law.marks.ctypes.data, law.rows.size // WIDTH
     found["unlike"], found["kappa"], found["mu"] = unlike, kappa, mu
+    for name in ("V", "omega", "Q", "M"):
+        found[name] = scale[name]
     return found
 
 

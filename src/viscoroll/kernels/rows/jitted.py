@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, NoReturn
 
@@ -65,9 +66,9 @@ class Jitted:
 
     _numba_type_ = LawType()
 
-    def __init__(self, law: Law, unlike: bool, kappa: float, mu: float) -> None:
+    def __init__(self, law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> None:
         self._law = law  # whose rows the scenes point to
-        self._scenes = bind(law, unlike, kappa, mu)
+        self._scenes = bind(law, unlike, kappa, mu, scale)
         self.plain, self.address = (int(self._scenes[n:].ctypes.data) for n in (0, 1))
         # with the GIL: to release it takes longer than the law
         self.function_address = function()

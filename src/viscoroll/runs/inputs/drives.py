@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...drive import Schedule
 from ...errors import ParameterError
 from ...motion.schedule import curve
 from .ranges import DRIVE, TIME
@@ -39,11 +40,11 @@ class Course:
     times: tuple[float | str, ...]
     names: tuple[str, ...]
 
-    def of(self, values: Mapping[str, Any], unit: Any) -> tuple[Any, Any]:
-        """(times, values over ``unit``) of a block's inputs, each (k,) or (n, k)."""
+    def of(self, values: Mapping[str, Any], unit: Any) -> Schedule:
+        """Over times, values over ``unit``, of a block's inputs, each (k,) or (n, k)."""
         times = [values[time] if isinstance(time, str) else time for time in self.times]
         corners = _together([values[name] for name in self.names])
-        return _together(times), corners / np.asarray(unit)[..., np.newaxis]
+        return Schedule(_together(times), corners / np.asarray(unit)[..., np.newaxis])
 
 
 def _together(columns: list[Any]) -> Any:
@@ -76,7 +77,7 @@ def _course(reader: Reader, name: str, given: dict[str, Any], allowed: Range) ->
         float(np.median(spread(reader, time, np.array([0.5])))) if isinstance(time, str) else time for time in times
     ]
     try:
-        curve(name, (middle, medians), 1.0, 1.0)
+        curve(name, Schedule(middle, medians), 1.0, 1.0)
     except ParameterError as error:
         raise reader.fault(name, str(error)) from error
     return Course(times, names)

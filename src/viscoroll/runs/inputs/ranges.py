@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...scene import HIGHEST_ALPHA
+from ...materials.prony_forms import HIGHEST_ALPHA
 
 
 class Range(NamedTuple):

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ..materials.pair import Pair, effective_modulus
-from ..materials.prony import Prony
-from ..scene import Scene
+from .materials.pair import Pair, effective_modulus
+from .materials.prony import Prony
+from .scene import Scene
 
 
 def contact_length(R: Any, load: Any, E_prime: Any) -> Any:

@@ -1,0 +1,270 @@
+"""What rolls, as the functions of the package see it: :class:`Rolls`, and its dimensionless :class:`Parameters`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .assumptions import Validity
+from .checks import broadcast_shape, checked, checked_extent
+from .drive import slope_factor
+from .errors import ParameterError, one_of
+from .free_rolling import Free
+from .materials.bodies import Bodies
+from .materials.bodies_array import BodiesArray
+from .materials.law_table import LawTable
+from .materials.prony import Prony
+from .materials.prony_array import MaterialArray
+from .materials.prony_forms import HIGHEST_ALPHA
+from .scale import DIMENSIONLESS, Scale
+
+
+def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
+    """A number, or a copy that nobody can write to."""
+    if array.ndim == 0:
+        return float(array)
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two parameters are equal, arrays or not."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other)
+    return bool(one == other)
+
+
+#: of mu/kappa, in which delta_star is measured
+RATIO_RANGE = (1e-290, 1e290)
+
+
+def _in_own_time(series: Prony) -> tuple[float | Prony, float]:
+    return series.in_own_time() if series.E.size else (1.0, 1.0)
+
+
+def _short(value: Any) -> str:
+    """A number, or what an array holds, in few words."""
+    if not isinstance(value, np.ndarray):
+        return f"{value:.12g}" if isinstance(value, float) else repr(value)
+    return f"<{value.shape} in [{value.min():.6g}, {value.max():.6g}]>" if value.size else f"<{value.shape}>"
+
+
+class Rolls:
+    """What rolls: a scene, or a cylinder.  Functions take its parameters, and answer in the units of its scale."""
+
+    scale: Scale
+    #: attributes of datasets
+    about: ClassVar[dict[str, Any]] = {}
+
+    def scene(self) -> Parameters:
+        """The dimensionless parameters."""
+        raise NotImplementedError
+
+    def tilted(self, slope: Any) -> Self:
+        """The same on a slope, under the load P cos(slope).
+
+        Raises
+        ------
+        ParameterError
+            A slope that is not within (-pi/2, pi/2).
+        """
+        raise NotImplementedError
+
+    def some(self, which: NDArray[np.int64], count: int) -> Self:
+        """Some of ``count``, by their numbers."""
+        raise NotImplementedError
+
+    def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
+        """What it adds of itself to the validity of a state, of which ``lam`` is."""
+        if density is not None:
+            raise ParameterError(
+                "density", density, "None", "density needs a Cylinder: a Scene knows no speed of waves"
+            )
+        return found
+
+    def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
+        """Warn where a contact at V asks more of a material than was measured; ``extent`` of V, where it is known."""
+
+    def look_at_starts(self, V0: Any, omega0: Any) -> None:
+        """Warn of starts that are beyond the speed of waves."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Parameters(Rolls):
+    """Dimensionless parameters: what a :class:`viscoroll.Scene` is given."""
+
+    alpha: Any = None
+    kappa: Any = None
+    mu: Any = None
+    gamma: Any = None
+    j: Any = 0.5
+    material: Prony | Bodies | MaterialArray | LawTable | None = None
+    _law: ClassVar[LawTable | None] = None
+    scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
+
+    def __post_init__(self) -> None:
+        if self.material is not None:
+            if self.alpha is not None:
+                raise one_of("alpha", "material", both=True)
+            if isinstance(self.material, LawTable):
+                object.__setattr__(self, "_law", self.material)
+                material = self.material.material
+                of_alpha = not isinstance(material, Prony | Bodies)
+                object.__setattr__(self, "alpha", material if of_alpha else None)
+                object.__setattr__(self, "material", None if of_alpha else material)
+        if self.material is not None:
+            if not isinstance(self.material, Prony | Bodies | MaterialArray):
+                raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
+            object.__setattr__(self, "alpha", self.material.alpha)
+        if self.alpha is None:
+            raise one_of("alpha", "material", both=False)
+        arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
+        extents = {}
+        for name in ("kappa", "mu", "gamma", "j") if self.gamma is not None else ("kappa", "mu", "j"):
+            arrays[name], extents[name] = checked_extent(name, getattr(self, name), low=0.0, strict=True)
+        broadcast_shape(**arrays)
+        if arrays["mu"].size and arrays["kappa"].size:
+            low, high = RATIO_RANGE
+            (least_mu, most_mu), (least_kappa, most_kappa) = extents["mu"], extents["kappa"]
+            if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
+                _refuse_ratio(arrays["mu"], arrays["kappa"])
+        for name, array in arrays.items():
+            object.__setattr__(self, name, frozen(array))
+
+    @property
+    def table(self) -> LawTable | None:
+        """The law that was given in place of its material."""
+        return self._law
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape that the parameters broadcast to; () for one scene."""
+        return np.broadcast_shapes(*map(np.shape, self.numbers.values()))
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """alpha, kappa, mu, gamma and j by name, those that are given."""
+        values = {name: getattr(self, name) for name in PARAMETERS}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def scene(self) -> Self:
+        return self
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
+        if self._law is not None and not changes.keys() & {"alpha", "material"}:
+            changes["material"] = self._law
+        if "material" in changes and "alpha" not in changes:
+            changes["alpha"] = None
+        elif "alpha" in changes and "material" not in changes:
+            changes["material"] = None
+        elif self.material is not None and "alpha" not in changes:
+            changes["alpha"] = None
+        return replace(self, **changes)
+
+    @property
+    def series(self) -> Prony | None:
+        """The series of the material, or of both bodies together; None of an alpha and of a material each."""
+        if isinstance(self.material, Bodies):
+            return self.material.total
+        return self.material if isinstance(self.material, Prony) else None
+
+    def in_own_time(self) -> tuple[Any, float]:
+        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
+
+        Of a material each as they are.
+        """
+        if self.series is None:
+            if isinstance(self.material, BodiesArray) and self.material.like:
+                return self.material.cylinder, 1.0
+            return self.alpha if self.material is None else self.material, 1.0
+        return _in_own_time(self.series)
+
+    @property
+    def like_bodies(self) -> bool:
+        """Whether cylinder and half-space deform alike, each taking half of M."""
+        return not isinstance(self.material, Bodies | BodiesArray) or self.material.like
+
+    def tilted(self, slope: Any) -> Self:
+        cosine = slope_factor(slope)[1]
+        return self.replace(
+            kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine
+        )
+
+    def some(self, which: NDArray[np.int64], count: int) -> Self:
+        parts = {name: value[which] for name, value in self.numbers.items() if np.shape(value) == (count,)}
+        if isinstance(self.material, MaterialArray):
+            del parts["alpha"]
+            parts["material"] = self.material[which]
+        return self.replace(**parts) if parts else self
+
+    def freely(self, V: Any) -> Free:
+        """What rolls at V, let go."""
+        materials: Any
+        unit: Any
+        if isinstance(self.material, MaterialArray):
+            each = (_in_own_time(one.total if isinstance(one, Bodies) else one) for one in self.material)
+            materials, unit = np.array([*each], object).reshape(-1, 2).T
+            which, unit = np.arange(unit.size), unit.astype(np.float64)
+        else:
+            given, unit = self.in_own_time()
+            materials, which = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))
+            which = which.reshape(np.shape(given))
+        gamma = np.nan if self.gamma is None else self.gamma
+        with np.errstate(over="ignore"):
+            u = np.asarray(self.kappa * np.abs(V) * unit + 0.0 * which)
+            g = gamma * unit * unit / (1.0 + np.asarray(self.j))
+        shape = np.broadcast_shapes(u.shape, np.shape(g))
+        u, which = np.broadcast_to(u, shape), np.broadcast_to(which, shape)
+        return Free(materials, which, u, g, 1.0 / (self.kappa * unit), unit, 1.0 / self.kappa)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Parameters):
+            return NotImplemented
+        return all(same(getattr(self, name), getattr(other, name)) for name in (*PARAMETERS, "material"))
+
+    def __hash__(self) -> int:
+        parts = [np.asarray(value, np.float64) for value in self.numbers.values()]
+        # + 0.0: -0 and 0 are equal
+        return hash((*((part.shape, (part + 0.0).tobytes()) for part in parts), self.material))
+
+    def __repr__(self) -> str:
+        given = self.numbers if self.material is None else {"material": self.material} | self.numbers
+        if self.material is not None:
+            del given["alpha"]
+        return f"Scene({', '.join(f'{name}={_short(value)}' for name, value in given.items())})"
+
+
+def framed(given: Any, call: str, *, moves: bool = False) -> tuple[Parameters, Scale]:
+    """The parameters of what rolls, and its scale; ``moves``: with a gamma.
+
+    Raises
+    ------
+    ParameterError
+        What is no scene and no cylinder.
+    """
+    if not isinstance(given, Rolls):
+        sentence = f"{call} takes a Scene or a Cylinder, not {given!r:.60}"
+        raise ParameterError("roller", type(given).__name__, "a Scene or a Cylinder", sentence)
+    scene = given.scene()
+    if moves and scene.gamma is None:
+        sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
+        raise ParameterError("gamma", None, "a number > 0", sentence)
+    return scene, given.scale
+
+
+def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
+    """Raise ParameterError where mu/kappa, and with it delta_star, leaves the range of doubles, or nearly."""
+    low, high = RATIO_RANGE
+    with np.errstate(over="ignore", under="ignore"):
+        ratio = np.asarray(mu / kappa)
+    wrong = ratio[~((low <= ratio) & (ratio <= high))]
+    if wrong.size:
+        raise ParameterError("mu/kappa", f"{wrong.flat[0]:g}", f"in [{low:g}, {high:g}]")

@@ -1,1 +1,0 @@
-"""SI units: what a :class:`viscoroll.Cylinder` takes and gives, by way of the dimensionless scene."""
