@@ -91,7 +91,7 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         with pytest.raises(
-            vr.ParameterError, match=r"^torque = a callable that no polynomials follow near t = .*times"
+            vr.ParameterError, match=r"^torque = a callable that no polynomials follow near t = .*Schedule"
         ):
             vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
         assert function.calls <= 2 * fitted.MOST
@@ -141,7 +141,7 @@ def test_speeds_prescribed_by_callables(name):
 @pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-8, 1e-11])
 def test_a_callable_that_jumps_is_a_schedule_that_jumps(rtol):
     t = np.linspace(0.0, END, 41)
-    stairs = ([1.0, 1.0, 4.0, 4.0], [0.0, 0.1, 0.1, -0.05])
+    stairs = vr.Schedule([1.0, 1.0, 4.0, 4.0], [0.0, 0.1, 0.1, -0.05])
     m = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0))
     other = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=stairs)
     assert np.array_equal(m.torque[t != 0.0], other.torque[t != 0.0])
