@@ -59,7 +59,7 @@ def main() -> int:
         from .figures import draw
 
         draw(arguments.output, arguments.figures)
-        print(report.headline(Results(arguments.output)))
+        print(report.peers(Results(arguments.output)))
 
     if arguments.quick:
         timing.shortest = 0.0

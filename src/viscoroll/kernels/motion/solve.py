@@ -57,8 +57,9 @@ _MOST_ITERATIONS = 12
 #: leave
 SHARE, _NEWTON, _LEAST = 0.4, 0.01, 1e-14
 #: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, which
-#: nothing tells yet
-_ANEW, _SLOWED, _FIRST_GAIN = 1e-2, 1e-3, 0.1
+#: nothing tells yet; share of the tolerance that the last change may be of: what is integrated stays as it was before,
+#: and a loss from rest takes a creep as small as errors of it may be (1 left 100 rtol of a loss, this leaves 1, for 5 %)
+_ANEW, _SLOWED, _FIRST_GAIN, _LAST = 1e-2, 1e-3, 0.1, 0.02
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
 #: the last term's share of the error: the next one over this one, and the coefficient of a power over that
@@ -174,8 +175,7 @@ def solve(panel, slope, track, frame, case):
         gain = _FIRST_GAIN if n == 0 else change / before
         if not (change < 1e6 and gain < 2.0):
             return False
-        # what is integrated stays as it was before this change
-        if change <= tolerance and change * gain <= left:
+        if change <= _LAST * tolerance and change * gain <= left:
             rise_terms(V, work.nodes, OF_V, work.powers)
             rise_terms(SECOND, work.nodes, OF_SECOND, work.powers)
             return True
