@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
+from functools import partial
 
 import numpy as np
 import pytest
@@ -208,3 +210,22 @@ def test_a_contact_tells_the_coefficient_of_rolling_resistance():
     refused(lambda: ROLLER.contact(V=1.0, delta=0.0, fields="Crr"), "'Crr' is not a field", "length, C_rr")
     for shown in (c, bare):
         assert "coefficient of rolling resistance" in {axes.get_title() for axes in shown.plot().axes}
+
+
+@pytest.mark.parametrize(("roller", "most"), [(SCENE, 90), (ROLLER, 120)], ids=["scene", "cylinder"])
+def test_the_way_of_one_state_is_short(roller, most):
+    """Calls of Python and of C for one state, as a profiler counts them: people loop over states."""
+    call = partial(roller.contact, 0.01, delta=1e-3)
+    call()  # what is made once
+    count = 0
+
+    def counted(frame, event, arg):
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(counted)
+    try:
+        call()
+    finally:
+        sys.setprofile(None)
+    assert count <= most

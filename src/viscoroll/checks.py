@@ -27,6 +27,8 @@ def checked_extent(
     name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
     """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array."""
+    if type(value) is float and low < value < high:
+        return np.asarray(value), (value, value)
     allowed = "a finite number" if low == -math.inf else f"finite and {'>' if strict else '>='} {low:g}"
     allowed += "" if high == math.inf else f", <= {high:g}"
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ from .materials.prony_array import MaterialArray
 _BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
 #: states of one law that a kernel works on side by side
 _TOGETHER = 64
+_NO_ORDER = np.empty(0, np.int64)
 
 
 def states_of(
@@ -31,41 +34,69 @@ def states_of(
 
     ``given``: one law for all; many materials, with their numbers in place of the alphas; or, None, alphas.
     """
-    from .kernels.law.states import ROWS, States
-    from .kernels.rows.contact import Asked, slopes_loop, table_loop, unsteady_loop
-
-    count, slopes = int(np.prod(shape)), set(names) & set(SLOPES + SLOPES_OF_BODIES)
-    values = set(names) - slopes - {UNSTEADY}
-    to, out = np.full(len(ROWS), -1), np.empty((len(names), count))
-    for row, name in enumerate(names):
-        if name != UNSTEADY:
-            to[ROWS.index(name)] = row
-    own, *parts = (elements(array, shape) for array in arrays)
+    if shape == () and isinstance(given, LawTable):
+        return _of_one(given, arrays, creep_is_omega, names)
+    count = math.prod(shape)
+    out, parts = np.empty((len(names), count)), [elements(np.asarray(array), shape) for array in arrays]
 
     def work(start: int, stop: int) -> None:
-        kappa, mu, V, creep = (part(start, stop) for part in parts)
-        each, order = own(start, stop), np.empty(0, np.int64)
+        each, *others = [part(start, stop) for part in parts]
+        order = _NO_ORDER
         if isinstance(given, LawTable):
             law: Any = given.record
         elif given is None:
-            law, order = law_of_alphas(each), order_of_alphas(each, kappa, V)
+            law, order = law_of_alphas(each), order_of_alphas(each, others[0], others[2])
         else:
             law = law_of_materials(given, each.astype(np.int64))
             order = np.argsort(each, kind="stable") if each.size > 1 else order
-        asked = Asked(States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
-        room = np.empty((2, _TOGETHER if isinstance(given, LawTable) else 1))
-        if values:
-            table_loop(law, asked, room, stop - start)
-        if slopes:
-            slopes_loop(law, asked, stop - start)
-        if UNSTEADY in names:
-            N = names.index(UNSTEADY)
-            if isinstance(given, LawTable):
-                unsteady_loop(law, given.unsteady_rows, asked.states, out[N], start, stop)
-            else:
-                to_N = np.where(np.arange(len(ROWS)) == ROWS.index("zeta"), N, -1)
-                table_loop(law, asked._replace(to=to_N), room, stop - start)
-                out[N, start:stop] = unsteadiness(each, out[N, start:stop])
+        _fill(given, law, (each, *others), order, creep_is_omega, names, out, start, stop)
 
     run_blocks(work, count, _BLOCK_EACH if isinstance(given, MaterialArray) else _BLOCK)
     return out
+
+
+def _of_one(law: LawTable, arrays: list[Any], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
+    """Of one state: no blocks."""
+    state = np.array(arrays, np.float64)
+    state.flags.writeable = False  # as all that a kernel reads, see elements
+    parts = state[0:1], state[1:2], state[2:3], state[3:4], state[4:5]
+    out = np.empty((len(names), 1))
+    _fill(law, law.record, parts, _NO_ORDER, creep_is_omega, names, out, 0, 1)
+    return out
+
+
+def _fill(
+    given: LawTable | MaterialArray | None, law: Any, parts: tuple[NDArray, ...], order: NDArray, creep_is_omega: bool,
+    names: tuple[str, ...], out: NDArray, start: int, stop: int,
+) -> None:  # fmt: skip
+    """The fields of some states."""
+    k, States, to, values, slopes = _asked(names)
+    each, kappa, mu, V, creep = parts
+    asked = k.Asked(States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
+    room = np.empty((2, _TOGETHER if isinstance(given, LawTable) else 1))
+    if values:
+        k.table_loop(law, asked, room, stop - start)
+    if slopes:
+        k.slopes_loop(law, asked, stop - start)
+    if UNSTEADY in names:
+        N = names.index(UNSTEADY)
+        if isinstance(given, LawTable):
+            k.unsteady_loop(law, given.unsteady_rows, asked.states, out[N], start, stop)
+        else:
+            to_N = np.where(_asked(("zeta",))[2] == 0, N, -1)
+            k.table_loop(law, asked._replace(to=to_N), room, stop - start)
+            out[N, start:stop] = unsteadiness(each, out[N, start:stop])
+
+
+@lru_cache(maxsize=64)
+def _asked(names: tuple[str, ...]) -> tuple[Any, Any, NDArray, bool, bool]:
+    """(The kernels, what they take, the row of each of their fields or -1, whether there are values, and slopes)."""
+    from .kernels.law.states import ROWS, States
+    from .kernels.rows import contact as kernels
+
+    to = np.full(len(ROWS), -1)
+    for row, name in enumerate(names):
+        if name != UNSTEADY:
+            to[ROWS.index(name)] = row
+    slopes = set(names) & set(SLOPES + SLOPES_OF_BODIES)
+    return kernels, States, to, bool(set(names) - slopes - {UNSTEADY}), bool(slopes)

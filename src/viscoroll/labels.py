@@ -48,6 +48,10 @@ class Labels(NamedTuple):
         }
 
 
+#: what bears no labels
+_BARE = frozenset((float, int, np.float64, type(None)))
+
+
 def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], Labels | None]:
     """Plain arrays in place of labelled ones, and what gives a result their labels; None where nothing has any.
 
@@ -56,6 +60,8 @@ def unlabelled(given: dict[str, Any]) -> tuple[dict[str, Any], Labels | None]:
     ParameterError
         Arrays of xarray beside plain ones, series of pandas with unlike indices, both kinds at once.
     """
+    if _BARE.issuperset(map(type, given.values())):
+        return given, None
     xarray, pandas = sys.modules.get("xarray"), sys.modules.get("pandas")
     arrays = {name: value for name, value in given.items() if xarray and isinstance(value, xarray.DataArray)}
     series = {name: value for name, value in given.items() if pandas and isinstance(value, pandas.Series)}

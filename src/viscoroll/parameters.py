@@ -144,6 +144,11 @@ class Parameters(Rolls):
         return self._law
 
     @property
+    def single(self) -> bool:
+        """Whether alpha, kappa and mu are numbers."""
+        return type(self.alpha) is type(self.kappa) is type(self.mu) is float
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Shape that the parameters broadcast to; () for one scene."""
         return np.broadcast_shapes(*map(np.shape, self.numbers.values()))

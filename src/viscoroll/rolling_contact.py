@@ -6,7 +6,8 @@ the fields that were named.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -23,6 +24,7 @@ from .materials.law_table import LawTable, law_table
 from .materials.prony_array import MaterialArray
 from .parameters import Parameters, Rolls, framed
 from .results import Values
+from .scale import DIMENSIONS
 from .typed import Numbers
 
 #: of bodies that are alike, half of each
@@ -143,18 +145,24 @@ def contact(
         creep = creep / scale["omega"] if delta is None else creep
     found = states(scene, speed, creep, delta is None, names, method)
     if scale.si:
-        found = {name: scale.of(name, value) for name, value in found.items()}
+        found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}
     return Values(found, given, si=scale.si, labels=labels, about=about)
 
 
 def states(
-    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: Sequence[str], method: str = "table"
+    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...], method: str = "table"
 ) -> dict[str, Any]:
     """Fields without dimension, at checked speeds, and creeps or angular velocities."""
-    arrays = {"alpha": np.asarray(scene.alpha), "kappa": np.asarray(scene.kappa), "mu": np.asarray(scene.mu), "V": V}
+    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
     arrays["omega" if creep_is_omega else "delta"] = creep
-    shape = broadcast_shape(**arrays)
-    refuse_overflow(arrays["kappa"], V, _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST)
+    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST
+    shape: tuple[int, ...] = ()
+    if V.ndim or creep.ndim or not scene.single:
+        arrays = {name: np.asarray(value) for name, value in arrays.items()}
+        shape = broadcast_shape(**arrays)
+        refuse_overflow(arrays["kappa"], V, fastest)
+    elif not abs(scene.kappa * V) <= fastest:
+        refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     one = None if method == "direct" else one_material(scene)
@@ -164,14 +172,23 @@ def states(
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
     unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, BodiesArray)
-    made = SAME if unlike else SAME | _HALVES
-    solved = tuple(dict.fromkeys([made.get(name, name) for name in names]))
-    broadcast = list(arrays.values()), shape, creep_is_omega, solved
-    rows = dict(zip(solved, _direct(*broadcast) if method == "direct" else states_of(one, *broadcast), strict=True))
-    for name in names:
-        if name not in rows:
-            rows[name] = rows[made[name]] if name in SAME else 0.5 * rows[made[name]]
+    solved = _solved(names, unlike)
+    broadcast = [*arrays.values()], shape, creep_is_omega, solved
+    found = _direct(*broadcast) if method == "direct" else states_of(one, *broadcast)
+    rows: dict[str, Any] = dict(zip(solved, found if shape else found[:, 0].tolist(), strict=True))
+    if solved != names:
+        rows |= {name: 0.5 * rows[of] for name, of in _HALVES.items() if name in names and name not in rows}
+        rows |= {name: rows[of] for name, of in SAME.items() if name in names}
+    if not shape:
+        return {name: rows[name] != 0.0 if name == "full_slip" else rows[name] for name in names}
     return {name: shaped(name, rows[name], shape) for name in names}
+
+
+@lru_cache(maxsize=64)
+def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
+    """What the kernels are asked for: not what is half of it, or the same in other units."""
+    made = SAME if unlike else SAME | _HALVES
+    return tuple(dict.fromkeys(made.get(name, name) for name in names))
 
 
 def one_material(scene: Parameters) -> LawTable | MaterialArray | None:
@@ -179,7 +196,9 @@ def one_material(scene: Parameters) -> LawTable | MaterialArray | None:
     if scene.table is not None:
         return scene.table
     if scene.material is None:
-        return law_table(float(np.asarray(scene.alpha).item())) if np.size(scene.alpha) == 1 else None
+        if type(scene.alpha) is float:
+            return law_table(scene.alpha)
+        return law_table(float(scene.alpha.item())) if scene.alpha.size == 1 else None
     return scene.in_own_time()[0] if isinstance(scene.material, MaterialArray) else law_table(scene.material)
 
 
@@ -204,7 +223,7 @@ def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool,
     count = int(np.prod(shape))
     rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
     out = np.empty((len(names), count))
-    alphas, *parts = (elements(array, shape) for array in arrays)
+    alphas, *parts = (elements(np.asarray(array, np.float64), shape) for array in arrays)
 
     def solve(start: int, stop: int) -> int:
         found = np.empty((len(names), stop - start))
