@@ -58,7 +58,7 @@ _MOST_ITERATIONS = 12
 SHARE, _NEWTON, _LEAST = 0.4, 0.01, 1e-14
 #: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, which
 #: nothing tells yet; share of the tolerance that the last change may be of: what is integrated stays as it was before,
-#: and a loss from rest takes a creep as small as errors of it may be (1 left 100 rtol of a loss, this leaves 1, for 5 %)
+#: and a loss from rest takes a creep as small as errors of it may be (1 left 100 rtol of a loss, this leaves 1)
 _ANEW, _SLOWED, _FIRST_GAIN, _LAST = 1e-2, 1e-3, 0.1, 0.02
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
