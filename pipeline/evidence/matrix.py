@@ -30,7 +30,7 @@ from typing import NamedTuple
 
 from packaging.requirements import Requirement
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 #: what the tests below import beside the package and its extra
 TOOLS = ("hypothesis", "mpmath", "pytest", "python-flint")
 ASKED = ("roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3")
