@@ -536,6 +536,8 @@ CALLABLE_SHARE = 0.2
 #: Of the largest value of all: what counts as no less than so large; five times what the rounding of t = 1 makes of the
 #: steepest slope, 5e5 of that value.
 CALLABLE_FOOT, CALLABLE_ROUNDING = 1e-6, 5e-10
+#: Balance of the late creep's traction, of which rounding is left where V has died out; measured 4e-16.
+LATE_CREEP = 1e-14
 #: Place of a corner between two straight lines.
 CALLABLE_CORNER = 1e-13
 #: Steps of motions under callables, up to 330; those from rest once took 100,000.

@@ -516,3 +516,12 @@ def test_last_output_on_a_switch(rtol):
     beyond = vr.roll(ROUNDED, *start, [onset, 1e-3], rtol=rtol)
     for name in ("V", "omega", "x", "angle", "delta"):
         assert close(getattr(motion, name)[0], getattr(beyond, name)[0], rel=30 * rtol)
+
+
+@pytest.mark.parametrize("j", [0.3, 0.5, 1.7])
+def test_late_creep_is_what_both_equations_ask(j):
+    """V and omega fall together at last: Q (1 + j) = (j - 1) M/2, down to speeds of 1e-119."""
+    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=j)
+    late = vr.ensemble(scene, [1.0], [0.2], [200.0, 400.0], fields=("V", "delta"), method="integrate")
+    state = vr.contact(scene, late.V[0], delta=late.delta[0])
+    assert close((1.0 + j) * state.Q, 0.5 * (j - 1.0) * state.M, rel=tol.LATE_CREEP)

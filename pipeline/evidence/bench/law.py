@@ -143,8 +143,8 @@ def law(sizes: dict[str, Any]) -> dict[str, Any]:
         part = few if method == "direct" else slice(None)
         own = which if which.shape == () else which.replace(alpha=alpha[part])
         delta = s[part] * vr.contact(own, V[part], delta=0.0, fields="delta_star").delta_star
-        given = {"scene": own, "V": V[part], "delta": delta, "fields": FIELDS, "method": method}
-        calls[name] = lambda given=given: vr.contact(**given).as_dict()
+        given = {"V": V[part], "delta": delta, "fields": FIELDS, "method": method}
+        calls[name] = lambda own=own, given=given: vr.contact(own, **given).as_dict()
         states[name] = np.broadcast_arrays(own.alpha, scene.kappa, scene.mu, V[part], delta)
     state = vr.contact(each, V, delta=star, fields=("zeta", "beta"))
     zeta, eta, found = state.zeta, state.beta * state.zeta, dict(zip(FIELDS, np.empty((2, n))))
