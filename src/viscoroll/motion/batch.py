@@ -23,7 +23,7 @@ from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepare
 from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
-from .rolling import NO_UNIT, law_of
+from .rolling import law_of
 from .unsteady import climbed, refuse_unlike, time_of_rest
 from .warned import look
 
@@ -272,28 +272,28 @@ def _many_materials(scene: Parameters) -> bool:
     return isinstance(scene.material, MaterialArray) or np.ndim(scene.alpha) > 0
 
 
-def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, NDArray, bool]]:
-    """(alphas of motions, which they are) -> the law that they share, or that of each in turn; what it counts times in;
-    whether bodies differ.  ``unsteady``: of one motion, with N."""
+def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, bool]]:
+    """(alphas of motions, which they are) -> the law that they share, or that of each in turn; whether bodies
+    differ.  ``unsteady``: of one motion, with N."""
     material = scene.in_own_time()[0]
 
-    def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
+    def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
         found = law_of_materials(material, np.minimum(which, len(material) - 1))
-        return found, NO_UNIT, isinstance(material, BodiesArray)
+        return found, isinstance(material, BodiesArray)
 
-    def own(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, NDArray, bool]:
+    def own(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
         given: Any = scene.material
         one = law_table(alpha.item() if given is None else given[min(which.item(), len(given) - 1)])
-        return one.unsteady_record, NO_UNIT, False
+        return one.unsteady_record, False
 
     if unsteady and _many_materials(scene):
         return own
     if isinstance(material, MaterialArray):
         return each
     if scene.material is None and np.ndim(scene.alpha):
-        return lambda alpha, which: (law_of_alphas(alpha), NO_UNIT, False)
+        return lambda alpha, which: (law_of_alphas(alpha), False)
     one = law_of(scene)
-    return lambda alpha, which: (one.unsteady_record if unsteady else one.record, NO_UNIT, one.unlike)
+    return lambda alpha, which: (one.unsteady_record if unsteady else one.record, one.unlike)
 
 
 def _among(names: tuple[str, ...], *some: str) -> bool:

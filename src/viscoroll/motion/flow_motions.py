@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ..blocks import flattened, run_blocks
 from ..materials.law_table import law_table
 from .driven import LOSSES, ROWS, STATES, undriven
-from .rolling import NO_UNIT
 
 Floats = NDArray[np.float64]
 
@@ -40,10 +39,9 @@ def motions(
     out, info = np.empty((len(rows), starts[0].size, t.size)), np.empty((starts[0].size, len(INFO)))
 
     def work(start: int, stop: int) -> None:
-        which, notes = np.arange(start, stop), (np.empty((0, 2)), np.empty(0))
-        own = (flattened(a[which], which.shape) if a.size > 1 else a for a in arrays)
-        found = np.empty((len(rows), which.size, t.size))
-        batch, limits = (law.record, NO_UNIT, law.unlike, *own), (_RTOL, 0.0, _MOST_STEPS)
+        own = (array[start:stop] if array.size > 1 else array for array in arrays)
+        found, notes = np.empty((len(rows), stop - start, t.size)), (np.empty((0, 2)), np.empty(0))
+        batch, limits = (law.record, law.unlike, *own), (_RTOL, 0.0, _MOST_STEPS)
         motion_loop(batch, undriven(), t, limits, rows, found, info[start:stop], notes)
         out[:, start:stop] = found
 

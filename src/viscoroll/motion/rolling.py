@@ -13,10 +13,6 @@ from ..parameters import Parameters
 from .driven import ROWS, Drive, prepared, refuse_rest
 from .unsteady import climbed
 
-#: of a law that counts times in T_ref
-NO_UNIT = np.ones(1)
-NO_UNIT.flags.writeable = False
-
 
 class Inputs(NamedTuple):
     """What a motion was rolled from, without dimension."""
@@ -61,6 +57,6 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[float, NDArray
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     limits = inputs.rtol, inputs.rest, inputs.max_steps
     out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
-    batch = law.unsteady_record if inputs.unsteady else law.record, NO_UNIT, law.unlike, *one
+    batch = law.unsteady_record if inputs.unsteady else law.record, law.unlike, *one
     motion_loop(batch, ready.for_kernel(), times, limits, np.arange(len(ROWS)), out, info, notes)
     return ready.error, out[:, 0], info[0].tolist()

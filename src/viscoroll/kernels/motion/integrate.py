@@ -111,7 +111,7 @@ def note(what, noted, clock, case):
     """Note a change of regime or of the sign of V; how many there were."""
     switches = case.notes.switches
     if noted < switches.shape[0]:
-        switches[noted, 0], switches[noted, 1] = clock.tau / case.pace, what
+        switches[noted, 0], switches[noted, 1] = clock.tau / case.scene.gamma, what
     return noted + 1
 
 
@@ -222,7 +222,7 @@ def follow(moving, fresh, state, frame, clock, case):
         if event == SLOW:
             if regime >= 0 and regime != REST:
                 turns, noted = turns + 1, note(REST, noted, clock, case)
-            rest_time, omega = clock.tau / case.pace, speeds(state, frame, case.scene)[0]
+            rest_time, omega = clock.tau / case.scene.gamma, speeds(state, frame, case.scene)[0]
             case.work.totals[PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
             return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
         if event != NO_EVENT and not spent(event, state, frame, case):
@@ -235,30 +235,27 @@ def follow(moving, fresh, state, frame, clock, case):
         if now != regime and (moving or event == NO_EVENT):
             if regime >= 0:
                 turns, noted = turns + 1, note(now, noted, clock if moving else before, case)
-            onset_time = clock.tau / case.pace if fresh and np.isnan(onset_time) else onset_time
+            onset_time = clock.tau / case.scene.gamma if fresh and np.isnan(onset_time) else onset_time
             regime = now
     return DONE, clock, turns, onset_time, np.nan
 
 
 @kernel(allocates=True)
-def integrate(scene, drive, units, V0, omega0, t, limits, sink):
+def integrate(scene, drive, V0, omega0, t, limits, sink):
     """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
-
-    ``units`` : tau over t, and what the law counts times in.
 
     ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, and room for the changes of
     regime and for the ends of panels (Notes).
     """
     out, asked, switches, ends = sink
-    pace, unit = units
     tau = np.empty(t.size)
     for i in range(tau.size):
-        tau[i] = t[i] * pace
+        tau[i] = t[i] * scene.gamma
     nodes = np.zeros(NUMBERS)
     for i in range(WIDE):
         nodes[ONES + i] = 1.0
     work = Work(nodes, np.empty(INTERPOLANTS), np.zeros(WIDE * WIDE), np.zeros(WIDE * WIDE), np.zeros(PATHS))
-    case = Case(scene, drive, limits, tau, out, pace, unit, asked, Notes(switches, ends), work)
+    case = Case(scene, drive, limits, tau, out, asked, Notes(switches, ends), work)
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), V0 != 0.0 or omega0 != 0.0
     fresh = False

@@ -33,18 +33,18 @@ def _own(array, i):
 
 
 @kernel
-def _drive_of(drives, pace, unit, i, pieces):
-    """The gains of motion i, and its drive in ``pieces``: over tau = ``pace`` t, speeds over 1/``unit``."""
+def _drive_of(drives, gamma, i, pieces):
+    """The gains of motion i, and its drive in ``pieces``: over tau = gamma t."""
     source = drives.pieces[min(i, drives.pieces.shape[0] - 1)]
     for k in range(pieces.shape[0]):
         copy(source[k], pieces[k])
-        pieces[k, START] *= pace
-        pieces[k, SCALE] /= pace
+        pieces[k, START] *= gamma
+        pieces[k, SCALE] /= gamma
         terms = terms_of(pieces[k])
         for n in range(RATE * terms, (RATE + 1) * terms):
-            pieces[k, FIRST + n] *= unit / pace
+            pieces[k, FIRST + n] *= 1.0 / gamma
     n, gains = min(i, drives.gains.shape[1] - 1), drives.gains
-    return Gains(gains[0, n] / unit, gains[1, n] / unit, gains[2, n] / unit, gains[3, n] / unit)
+    return Gains(gains[0, n], gains[1, n], gains[2, n], gains[3, n])
 
 
 @kernel(allocates=True)
@@ -60,18 +60,12 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
         for row in one:
             fill(np.nan, row)
         hold(motions.law, i)
-        kappa, mu, gamma, j = (
-            _own(motions.kappa, i),
-            _own(motions.mu, i),
-            _own(motions.gamma, i),
-            _own(motions.j, i),
-        )
+        kappa, mu = _own(motions.kappa, i), _own(motions.mu, i)
+        gamma, j = _own(motions.gamma, i), _own(motions.j, i)
         scene = Scene(motions.law, motions.unlike, kappa, mu, gamma, j)
-        unit = _own(motions.unit, i)
-        pace, V0, omega0 = gamma * unit, _own(motions.V0, i) * unit, _own(motions.omega0, i) * unit
-        drive = Drive(pieces, _drive_of(drives, pace, unit, i, pieces), drives.prescribed)
-        own = Limits(limits.rtol, limits.rest * unit, limits.max_steps)
-        result = integrate(scene, drive, (pace, unit), V0, omega0, t, own, (one, asked, switches, ends))
+        drive = Drive(pieces, _drive_of(drives, gamma, i, pieces), drives.prescribed)
+        V0, omega0 = _own(motions.V0, i), _own(motions.omega0, i)
+        result = integrate(scene, drive, V0, omega0, t, limits, (one, asked, switches, ends))
         for n in range(rows.size):
             copy(one[rows[n]], out[n, i])
         info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

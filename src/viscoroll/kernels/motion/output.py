@@ -38,7 +38,7 @@ def regime_of(frame):
 def _put_moving(column, moving, regime, case):
     """(V, omega, delta) and the regime, in one column."""
     out, (speed, omega, delta) = case.out, moving
-    out[0, column], out[1, column], out[4, column], out[5, column] = speed / case.unit, omega / case.unit, delta, regime
+    out[0, column], out[1, column], out[4, column], out[5, column] = speed, omega, delta, regime
 
 
 @kernel(inline=True)
@@ -50,9 +50,9 @@ def _put_acting(column, force, torque, out):
 def _put_path(column, n, value, case):
     """Number ``n`` of what adds up, in one column; distance and angle are integrals over t, the rest are energies."""
     if n < 2:
-        case.out[PATH_FROM + n, column] = value / (case.pace * case.unit)
+        case.out[PATH_FROM + n, column] = value / case.scene.gamma
     else:
-        case.out[WORK + n - 2, column] = value / (case.unit * case.unit)
+        case.out[WORK + n - 2, column] = value
 
 
 @kernel
@@ -144,7 +144,7 @@ def pass_panel(end, v, panel, frame, clock, case):
             _put(at, 2.0 * (share if panel.power == 1 else share ** (1.0 / panel.power)), panel, frame, case)
             at += 1
     if clock.ends < case.notes.ends.size:
-        case.notes.ends[clock.ends] = end / case.pace
+        case.notes.ends[clock.ends] = end / case.scene.gamma
     for n in range(paths):
         way = _way(n, v, panel, case.work) if v < 2.0 else risen(PATH + WIDE * n, panel, case.work.nodes)
         case.work.totals[n] += frame.direction * way if n < 2 else way
@@ -191,4 +191,4 @@ def coast(state, frame, clock, case):
         _put_path(at, PATHS - 1, totals[PATHS - 1] + energy * (1.0 - decay * decay if moves else 1.0), case)
     last = case.tau[case.tau.size - 1]
     clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
-    return clock, end / case.pace if end <= last else np.nan
+    return clock, end / case.scene.gamma if end <= last else np.nan

@@ -138,18 +138,13 @@ class Asked(NamedTuple):
 
 
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion; times in tau.
-
-    pace : tau over t; unit : what the law counts times in, speeds are over 1/unit
-    """
+    """All that stays the same from start to end of a motion; times in tau = gamma t."""
 
     scene: Scene
     drive: Drive
     limits: Limits
     tau: Any
     out: Any
-    pace: float
-    unit: float
     asked: Asked
     notes: Notes
     work: Work
@@ -158,12 +153,11 @@ class Case(NamedTuple):
 class Batch(NamedTuple):
     """Parameters and starts of many motions: arrays of one value, or of one a motion.
 
-    law : of one material for all, or of that of each in turn (:mod:`..rows.record`); unit : what it counts times in
+    law : of one material for all, or of that of each in turn (:mod:`..rows.record`)
     unlike : as in ``Scene``
     """
 
     law: Any
-    unit: Any
     unlike: bool
     kappa: Any
     mu: Any
