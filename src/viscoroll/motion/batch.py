@@ -127,6 +127,8 @@ def ensemble(
         refuse_rest(limits[1], ready)
         refuse_unlike(scene, unsteady)
         ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
+        begun = start_speeds(ready.V0, ready.omega0)
+        ready = ready._replace(V0=begun[0], omega0=begun[1])
         bar = "motions" if progress else None
         many = _Many(scene, ready, caught, drive, unsteady, times / scale["t"], limits, names, threads, bar)
         answer, found = _answer(many, method, over("speed", speed, scale))
@@ -140,7 +142,7 @@ def ensemble(
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names} | rows
     V0, omega0 = (
         np.broadcast_to(start * scale[name] if scale.si else start, (count,))
-        for name, start in zip(("V0", "omega0"), start_speeds(ready.V0, ready.omega0), strict=True)
+        for name, start in zip(("V0", "omega0"), begun, strict=True)
     )
     result = Ensemble(
         roller, V0, omega0, times, **kept, onset_time=answer.onset, rest_time=answer.rest,
@@ -224,7 +226,7 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
 def _inputs(scene: Parameters, drive: Drive, ready: Prepared) -> tuple[dict[str, NDArray], int]:
     """(Parameters and start speeds, how many motions they make)."""
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
-    arrays |= dict(zip(("V0", "omega0"), start_speeds(ready.V0, ready.omega0), strict=True))
+    arrays |= {"V0": ready.V0, "omega0": ready.omega0}
     counts = {"drive": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
     drives = drive.numbers | {name: np.zeros(count) for name, count in counts.items() if count > 1}
     shape = broadcast_shape(**arrays, **{name: each for name, each in drives.items() if name not in arrays})
