@@ -79,13 +79,13 @@ class Rows:
         row = np.maximum(exponent - self.e0, 0)
         slow = row == 0
         t = np.where(slow, np.ldexp(x, -self.e0), 4.0 * mantissa - 3.0)
-        by_power = np.moveaxis(powers, -1, 0)
-        value, slope = by_power[TERMS - 1][:, row], np.zeros((len(powers), x.size))
+        by_power = np.take(np.ascontiguousarray(np.moveaxis(powers, -1, 0)), row, axis=-1)
+        value, slope = by_power[TERMS - 1], np.zeros((len(powers), x.size))
         for k in range(TERMS - 2, -1, -1):
             slope *= t
             slope += value
             value *= t
-            value += by_power[k][:, row]
+            value += by_power[k]
         return value, slope * np.where(slow, t, t + 3.0)
 
     def fit(self, values: Floats, terms: int = TERMS, rounding: float = _ROUNDING) -> Floats:
