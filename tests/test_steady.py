@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from functools import partial
 
 import mpmath as mp
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 from pipeline.evidence.truth.series import functions, rates
@@ -567,28 +565,3 @@ def test_shapes_broadcast():
 
 
 # --- bad input ---
-
-
-def test_refusals():
-    refuse = partial(partial, vr.steady, SCENE)
-    refused(refuse(force=math.nan), "force = nan")
-    refused(refuse(torque="fast"), "torque = 'fast'")
-    refused(refuse(slope=[0.1, 0.5 * math.pi]), "slope = 1.5708", "(-pi/2, pi/2)")
-    refused(refuse(slope=-2.0), "slope = -2")
-    refused(refuse(V=0.1), "V is given alone", "one of force, torque and slope")
-    refused(refuse(V=0.1, force=0.0, torque=0.0), "V, force and torque are all given", "two of them")
-    refused(refuse(V=0.1, torque=vr.Feedback(0.0, V=1.0)), "torque = a feedback")
-    refused(refuse(torque=vr.Feedback(math.sin, V=-1.0)), "torque = a feedback on a schedule", "constant in time")
-    refused(refuse(V=math.inf, torque=0.0), "V = inf")
-    refused(refuse(V=1e200, torque=0.0), "kappa |V| = 2.91e+200")
-    refused(refuse(force=[0.1, 0.2], torque=[0.1, 0.2, 0.3]), "force (2,)", "torque (3,)")
-    refused(refuse(force=1e-200), "kappa (force + torque)", "1e-120")
-    refused(refuse(torque=vr.Feedback(0.1, V=1e20)), "gain on V = 1e+20")
-    refused(partial(vr.steady, vr.Scene([2.0, 3.0], KAPPA, MU)), "alpha = an array")
-    refused(partial(vr.humps, SCENE.replace(kappa=np.ones(2))), "kappa = an array")
-    refused(partial(vr.Feedback, math.nan), "value = nan")
-    refused(partial(vr.Feedback, 0.0, V=[[1.0, 2.0]]), "V = of shape (1, 2)", "a number, or one a motion")
-    refused(refuse(torque=vr.Feedback(0.0, V=[1.0, 2.0])), "torque = a feedback with gains of shape (2,)")
-    refused(partial(vr.Feedback, 0.0, omega=math.inf), "omega = inf")
-    controlled = partial(vr.PAPER_CYLINDER.steady, torque=vr.Feedback(1.0, V=-1.0), slope=[0.0, 0.1])
-    refused(controlled, "torque = a feedback with gains of shape (2,)", "numbers for gains")

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import tolerances as tol
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.assumptions import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
@@ -78,14 +76,6 @@ def test_a_sentence_each():
     assert [line.split()[0] for line in lines] == list(SCENE.validity(1.0)._fields)
     assert "plane strain" in lines[-1]
     assert SCENE.validity(1.0).bodies.holds is None
-
-
-def test_bad_input():
-    for density in (0.0, -1.0, math.nan, [1.0, 2.0], "heavy"):
-        refused(partial(vr.PAPER_CYLINDER.validity, 1.0, density=density), "density")
-    refused(partial(SCENE.validity, 1.0, density=1130.0), "a Scene knows no speed of waves")
-    refused(lambda: SCENE.validity(math.nan), "V = nan")
-    refused(lambda: SCENE.replace(alpha=[1.0, 2.0]).validity([1.0, 2.0, 3.0]), "broadcast")
 
 
 # --- pairs ---

@@ -1,15 +1,12 @@
-"""The proofs at their quick size, and what they were made of."""
+"""What the proofs are made of; the claims themselves are in tests/test_claims.py."""
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
-import pytest
 import tolerances as tol
 import xarray as xr
 from places import DATA, PIPELINE, RESULTS
-from processes import made, printed, stage
+from processes import made, printed
 
 CHECK_VALUES = DATA / "reference/check_values.csv"
 
@@ -22,26 +19,6 @@ def test_check_values_are_made_again(tmp_path):
     again = (tmp_path / "check_values.csv").read_text(encoding="utf-8").splitlines()
     assert len(again) == 41
     assert again == CHECK_VALUES.read_text(encoding="utf-8").splitlines()[:41]
-
-
-@pytest.fixture(scope="module")
-def quick(tmp_path_factory):
-    output = tmp_path_factory.mktemp("prove") / "proofs.json"
-    assert stage("evidence.prove", "--quick", "-o", output).returncode == 0
-    return {name: part["rows"] for name, part in json.loads(output.read_text(encoding="utf-8"))["parts"].items()}
-
-
-def test_quick_proofs_hold(quick):
-    broken = [row["claim"] for rows in quick.values() for row in rows if not row["worst"] <= row["bound"]]
-    assert broken == []
-
-
-def test_committed_proofs_are_of_the_same_claims(quick):
-    committed = json.loads((RESULTS / "proofs.json").read_text(encoding="utf-8"))["parts"]
-    for name, rows in quick.items():
-        held = [(row["claim"], row["bound"]) for row in committed[name]["rows"]]
-        assert all((row["claim"], row["bound"]) in held for row in rows)
-        assert all(row["points"] > 0 for row in rows)
 
 
 def test_a_planted_error_of_1e_9_fails_the_proof():

@@ -282,51 +282,6 @@ def test_a_prescribed_speed_of_many_motions():
         vr.ensemble(ROLLER, [1.0, 2.0], 0.5, T, V=1.0)
 
 
-REFUSALS = {
-    "both": ({"V": 1.0, "omega": 1.0}, "V and omega are both given"),
-    "found": ({"omega": 1.0, "torque": 0.1}, "torque"),
-    "start": ({"omega0": 2.0, "omega": 1.0}, "omega0 = 2"),
-    "jump": ({"omega0": None, "omega": vr.Schedule([0.0, 1.0, 1.0], [1.0, 1.0, 2.0])}, "a jump at t = 1"),
-    "pair": ({"force": ([0.0, 1.0], [0.0, 0.1])}, "force has shape (2, 2)"),
-    "steep": ({"slope": 1.6}, "slope"),
-    "nan": ({"torque": lambda t: math.nan}, "torque(t)"),
-    "callable": ({"V0": None, "V": lambda t: float(t > 0.3)}, "a jump at t = 0.3"),
-    "of the speeds": ({"torque": lambda t, V, w: -V}, "torque is called with t alone, this function takes (t, V, w)"),
-    "of nothing": ({"force": vr.Feedback(lambda: 0.1, V=-1.0)}, "force is called with t alone"),
-    "rest": ({"force": 0.1, "rest": 1e-3}, "rest"),
-    "brake": ({"brake": -1.0}, "brake"),
-    "no start": ({"V0": None}, "V0"),
-}
-
-
-@pytest.mark.parametrize(
-    ("times", "values", "words"),
-    [
-        ([0.0, 2.0, 1.0], [0.0, 0.0, 0.0], "times = 2.0: must be in ascending order"),
-        ([0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 1.0, 2.0], "there once, or twice"),
-        ([0.0, 1.0], [0.0, 0.0, 1.0], "values (k,)"),
-        ([-1.0, 1.0], [0.0, 0.0], "times = -1.0 at row 0"),
-        ([0.0, 1.0], [0.0, math.nan], "values = nan at row 1"),
-        (0.0, 1.0, "times (k,)"),
-    ],
-)
-def test_schedules_that_are_none(times, values, words):
-    with pytest.raises(vr.ParameterError) as told:
-        vr.Schedule(times, values)
-    assert words in str(told.value)
-
-
-@pytest.mark.parametrize("name", REFUSALS)
-def test_refusals(name):
-    given, words = REFUSALS[name]
-    start = {"V0": 1.0, "omega0": 1.0} | {key: given[key] for key in ("V0", "omega0") if key in given}
-    rest = {key: value for key, value in given.items() if key not in start}
-    with pytest.raises(vr.ParameterError) as told:
-        vr.roll(ROLLER, start["V0"], start["omega0"], T, **rest)
-    assert words in str(told.value)
-    assert "\n" not in str(told.value)
-
-
 def test_flow_is_refused_and_exceptions_pass():
     with pytest.raises(vr.ParameterError, match="driven"):
         vr.ensemble(ROLLER, 1.0, 1.0, T, force=0.1, method="flow")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from refusals import refused
 
 import viscoroll as vr
 
@@ -80,9 +79,3 @@ def test_an_ensemble_carries_its_drives():
     for name in ACTING:
         assert np.array_equal(data[name].values, getattr(e, name))
         assert np.array_equal(e.summary()[f"{name}_mean"].values, getattr(e, name).mean(axis=0))
-
-
-def test_one_motion_takes_the_drive_of_one():
-    refused(lambda: vr.roll(SCENE, 0.0, 0.0, 1.0, force=[1.0, 2.0]), "force has shape (2,)")
-    schedules = vr.Schedule([0.0, 1.0], [[0.0, 1.0], [0.0, 2.0]])
-    refused(lambda: vr.roll(SCENE, 0.0, 0.0, 1.0, force=schedules), "drive = of 2 motions: must be one")

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from functools import partial
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -49,7 +46,7 @@ def equal(a, b) -> bool:
 
 @pytest.mark.parametrize("many", [SCENE, scenes(40).replace(alpha=4.3)], ids=["one scene", "a scene each"])
 def test_ensemble_is_roll_bit_for_bit_at_one_alpha(many):
-    """At an alpha each the law is read from another place: ``test_material_tables.py``."""
+    """At an alpha each the law is read from another place: ``materials/test_each.py``."""
     V0, omega0 = starts(40)
     result = vr.ensemble(many, V0, omega0, T, fields=FIELDS)
     for i in range(V0.size):
@@ -189,19 +186,3 @@ def test_to_xarray_and_back_from_a_file(many, tmp_path):
     assert again.alpha.dims == (("motion",) if many.shape else ())
     assert again.attrs["Conventions"] == "CF-1.11"
     assert equal(again.V.values, result.V)
-
-
-BAD_CALLS = [
-    ({"V0": [1.0, math.nan]}, "V0 = nan at row 1: must be a finite number"),
-    ({"V0": [1.0, 2.0], "omega0": [1.0, 2.0, 3.0]}, "V0 (2,), omega0 (3,): must be broadcastable"),
-    ({"roller": SCENE.replace(mu=[0.1, 0.2]), "V0": [1.0, 2.0, 3.0]}, "mu (2,), V0 (3,)"),
-    ({"V0": [[1.0, 2.0]]}, "must be scalars or vectors (n,)"),
-    ({"t": [1.0, 0.5]}, "must be in ascending order"),
-    ({"fields": ("V", "speed")}, "fields: 'speed' is not a field; choose from V, omega"),
-    ({"rtol": 1.0}, "rtol = 1.0: must be a number in"),
-]
-
-
-def test_bad_input():
-    for change, text in BAD_CALLS:
-        refused(partial(vr.ensemble, **{"roller": SCENE, "V0": 1.0, "omega0": 0.5, "t": T} | change), text)

@@ -11,7 +11,6 @@ import tolerances as tol
 from closeness import close
 from memory import forget
 from processes import printed
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll import stored
@@ -347,11 +346,6 @@ def test_auto():
     assert vr.ensemble(SCENE, V0, omega0, 1e-3).flow.mean() > 0.99
     own = SCENE.replace(mu=np.linspace(0.2, 0.3, V0.size))
     assert not vr.ensemble(own, V0, omega0, 1e-3, rtol=1e-3).flow.any()
-
-
-def test_bad_requests():
-    refused(lambda: vr.ensemble(SCENE, [1.0], [1.0], 1.0, method="spline"), "method")
-    refused(lambda: vr.ensemble(SCENE.replace(mu=[0.2, 0.3]), 1.0, 1.0, 1.0, method="flow"), "scenes of their own")
 
 
 def test_kept_on_disk_and_built_once(monkeypatch):

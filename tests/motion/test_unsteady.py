@@ -198,29 +198,6 @@ def test_at_other_times():
 PAIR = vr.Bodies(cylinder=DMA, half_space=vr.Prony([1.0], [1.0]), share=0.7)
 
 
-@pytest.mark.parametrize("rolled", [vr.roll, vr.ensemble])
-@pytest.mark.parametrize(
-    ("scene", "start", "options", "words"),
-    [
-        (ROLLER.replace(material=PAIR), (30.0, 30.0), {"unsteady": True}, "the bodies differ"),
-        (vr.Scene(alpha=11.0, kappa=10.0, mu=0.3), (1.0, 1.0), {"unsteady": True}, "needs the scene's gamma"),
-        (ROLLER, (30.0, 30.0), {"rested": -1.0}, "rested = -1.0: must be finite and >= 0"),
-        (ROLLER, (30.0, 30.0), {"rested": [1.0, 2.0]}, "one time >= 0, or True"),
-        (ROLLER, (30.0, 0.0), {"rested": True}, "it starts in full slip"),
-        (ROLLER, (30.0, None), {"rested": True, "omega": 30.0}, "a speed is prescribed"),
-    ],
-)  # fmt: skip
-def test_refused(rolled, scene, start, options, words):
-    with pytest.raises(vr.ParameterError, match=words) as refused:
-        rolled(scene, *start, T, **options)
-    assert "\n" not in str(refused.value)
-
-
-def test_no_flow_map_has_an_added_mass():
-    with pytest.raises(vr.ParameterError, match="'auto' or 'integrate' where motions are driven or unsteady"):
-        vr.ensemble(RUBBER, 1.0, 0.0, T, method="flow", unsteady=True)
-
-
 def test_in_si_units():
     """A rest in s: the dimensionless motion in other units; ensembles likewise."""
     roller, times = vr.RUBBER_CYLINDER, np.linspace(0.0, 3.0, 5)

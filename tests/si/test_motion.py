@@ -139,36 +139,6 @@ def test_a_free_motion_in_si():
     )
 
 
-REFUSED = [
-    ({"V0": np.nan}, "V0 = nan"),
-    ({"V0": [1.0, 2.0]}, "V0 has shape (2,): use ensemble"),
-    ({"V0": None}, "V0 = None: must be a finite number"),
-    ({"t": -1.0}, "t = -1.0"),
-    ({"t": [1.0, 0.5]}, "in ascending order"),
-    ({"rtol": 1.0}, "rtol = 1.0"),
-    ({"slope": 1.6}, "slope = 1.6: must be an angle below pi/2"),
-    ({"slope": [0.1, 0.2]}, "slope has shape (2,): use ensemble"),
-    ({"force": "1 N"}, "force = '1 N'"),
-    ({"force": [1.0, 2.0]}, "force has shape (2,)"),
-    ({"force": ([0.0, 1.0], [0.0, 1.0])}, "force has shape (2, 2)"),
-    ({"brake": vr.Schedule([1.0, 2.0], [0.0, -1.0])}, "values of brake = -1.0 at row 1"),
-    ({"omega": vr.Schedule([1.0, 1.0], [0.0, 1.0])}, "a jump at t = 0.09", "(dimensionless: times over 10.7 s"),
-    ({"torque": lambda t: np.nan}, "torque(t) = nan"),
-    ({"brake": -1.0}, "brake = -1.0: must be finite and >= 0"),
-    ({"rest": 0.0}, "rest = 0.0"),
-    ({"rest": 1e-3, "force": 1.0}, "rest = "),
-    ({"V": 0.1, "omega": 1.0}, "V and omega are both given"),
-    ({"V": 0.1, "force": 1.0}, "force is given beside V="),
-    ({"torque": lambda t, V, omega: -V}, "torque is called with t alone, this function takes (t, V, omega)"),
-]
-
-
-def test_refusals():
-    for given, *words in REFUSED:
-        call = {"V0": 0.0, "omega0": 0.0, "t": 1.0} | given
-        refused(lambda call=call: ROLLER.roll(**call), *words)
-
-
 def test_validity_of_many_compares_with_waves():
     """As of each cylinder at its highest speeds; of many motions over some of them."""
     rubber = vr.Material(E=3e6, nu=0.5, prony=vr.Prony(E=[0.3], tau=[1e-3]), density=1130.0)

@@ -1,0 +1,36 @@
+"""The table of claims, each held against truth of another making: that of ``make prove``, at the sizes of a test.
+
+Claim, domain, bound and truth stand in pipeline/evidence/prove/, the sizes in [prove.quick] of sizes.toml beside it.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+import pytest
+from places import RESULTS
+
+from pipeline.evidence.prove.__main__ import PROOFS, beyond
+from pipeline.evidence.results import SIZES, read_sizes
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # scenes of all kinds, beyond the model too
+
+
+@cache
+def rows(proof: str) -> list[dict]:
+    return PROOFS[proof](read_sizes(SIZES, "prove", quick=True))
+
+
+@pytest.mark.parametrize("proof", PROOFS)
+def test_claims(proof):
+    assert [text for row in rows(proof) if (text := beyond(row))] == []
+
+
+@pytest.mark.parametrize("proof", PROOFS)
+def test_what_is_committed_is_of_these_claims(proof):
+    """The worst that was found at full size, of the same claims and bounds."""
+    committed = json.loads((RESULTS / "proofs.json").read_text(encoding="utf-8"))["parts"][proof]["rows"]
+    held = {(row["claim"], row["bound"]) for row in committed}
+    assert held >= {(row["claim"], row["bound"]) for row in rows(proof) if row["points"]}
+    assert [text for row in committed if (text := beyond(row))] == []

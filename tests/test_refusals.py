@@ -1,0 +1,37 @@
+"""The table of refusals, refusals.txt: bad input is answered by an error of the package's own, in one line."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from refusals import refused
+
+import viscoroll as vr
+
+TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
+LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]
+#: what the calls see
+NAMES = {
+    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "partial": partial,
+    "PAPER": vr.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.RUBBER_CYLINDER,
+}  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@pytest.mark.parametrize(("call", "answer"), [*zip(LINES[::2], LINES[1::2], strict=True)], ids=LINES[::2])
+def test_refused(call, answer, tmp_path):
+    def file(content: str | bytes, name: str = "file.toml") -> Path:
+        (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        return tmp_path / name
+
+    words = [word.strip() for word in answer.split(" | ")]
+    kind, _, first = words[0].rpartition("! ")
+    refused(lambda: eval(call, NAMES | {"file": file}), first, *words[1:], error=getattr(vr, kind or "ParameterError"))
+
+
+def test_errors_of_input_are_value_errors():
+    assert issubclass(vr.ParameterError, ValueError)
