@@ -1,4 +1,4 @@
-"""Steady rolling under load: humps, all equilibria, stability, feedback, limits of existence, and bad input."""
+"""Steady rolling under load: humps, all equilibria, stability, feedback, limits of existence."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import re
 
 import mpmath as mp
 import numpy as np
-import pytest
 import tolerances as tol
 from closeness import close
+from scipy.optimize import brentq
 
 import viscoroll as vr
 from pipeline.evidence.truth.series import functions, rates
-from viscoroll.equilibria.zeros import zeros
+from viscoroll.contact_fields import SLOPES_OF_BODIES
 
 SCENE = vr.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
@@ -45,27 +45,51 @@ def test_humps_of_several_modes():
     assert vr.humps(vr.Scene(1.0, KAPPA, MU)).V.size == 0
 
 
-def test_zeros_finds_close_pairs():
-    x = np.linspace(-1.0, 1.0, 30)
-    for apart in (1e-2, 1e-3, 1e-5):
-        found = zeros(lambda x, apart=apart: (x - 0.1234) ** 2 - apart**2, x)
-        assert close(found, [0.1234 - apart, 0.1234 + apart], rel=tol.STEADY_PAIR, scale=1.0)
-    assert zeros(lambda x: (x - 0.1234) ** 2 + 1e-6, x).size == 0
+# --- accuracy ---
 
 
-# --- one mode ---
+def test_speeds_against_extended_precision():
+    """Also close to the fold: an error of 1e-16 of the load is one of its square root there."""
+    scene = vr.Scene(11.0, KAPPA, 10.0)
+    hump = vr.humps(scene)
+    with mp.workdps(50):
+        known = rates(mp, [10.0], [1.0 / 11.0])
+
+        def curve(x):
+            """kappa V and kappa M over ln zeta."""
+            z = mp.exp(x)
+            f = functions(mp, known, z)
+            u = 1 / (2 * z * mp.sqrt(1 + 2 * f.h / z))
+            return u, u * f.m
+
+        start = -mp.log(2 * mp.mpf(hump.V[0] * KAPPA))
+        x_top = mp.findroot(
+            lambda x: mp.diff(lambda y: curve(y)[1], x, h=mp.mpf(10) ** -15), (start - 0.3, start), tol=1e-25
+        )
+        u_top, top = curve(x_top)
+        assert abs(hump.V[0] * KAPPA / u_top - 1) < tol.STEADY_HUMP_V
+        assert abs(hump.M[0] * KAPPA / top - 1) < tol.STEADY
+        for short in (0.4, 1e-5, 1e-9, 1e-12):
+            force = float(top * (1 - mp.mpf(short)) / mp.mpf(KAPPA))
+
+            def missing(x, load=mp.mpf(force) * mp.mpf(KAPPA)):
+                return curve(x)[1] - load
+
+            for found, end in zip(vr.steady(scene, force=force).V, (x_top + 4, x_top - 4), strict=True):
+                x = mp.findroot(missing, (x_top, end), solver="anderson", tol=1e-50, maxsteps=200)
+                assert abs(mp.mpf(found) * mp.mpf(KAPPA) / curve(x)[0] - 1) * mp.sqrt(short) < tol.STEADY, short
 
 
-def test_small_loads():
-    """M = c V (1 - (1 + 1/alpha) kappa |V| + O(V^3)): V1 = g/c and its next term, whatever kappa and mu."""
-    for alpha in (1.5, 11.0, 200.0):
-        g = np.array([1e-2, 1e-3]) / KAPPA * (alpha - 1.0) / alpha
-        s, V0 = vr.steady(vr.Scene(alpha, KAPPA, 50.0), torque=g), g * alpha / (alpha - 1.0)
-        error = s.V[:, 0] / (V0 * (1.0 + (1.0 + 1.0 / alpha) * KAPPA * V0)) - 1.0
-        assert abs(error[1]) < tol.STEADY_SECOND_ORDER * (KAPPA * V0[1]) ** 2
-        assert close(error[0] / error[1], 100.0, rel=0.1)
-    tiny = vr.steady(SCENE, force=1e-100)
-    assert close(tiny.V[0], 1.1e-100, rel=tol.STEADY)
+def test_creep_has_its_traction():
+    """From slight creep to friction all but spent, relative."""
+    torque = 0.2 + 0.5 * vr.contact(series_scene(TWO), 0.3, delta=0.0, fields="M").M
+    for part in (1e-12, 1e-6, 1e-3, 0.3, 0.9, 1.0 - 1e-6, 1.0 - 1e-10):
+        scene = series_scene(TWO, mu=0.2 / part)
+        s = vr.steady(scene, V=0.3, torque=torque)
+        state = vr.contact(scene, 0.3, delta=s.delta, fields=("Q", "beta"))
+        assert close(s.Q, 0.2, rel=tol.STEADY)
+        assert close(state.Q, s.Q, rel=tol.STEADY)
+        assert close(state.beta, s.beta, rel=tol.STEADY / s.grip)
 
 
 def test_signs():
@@ -78,77 +102,6 @@ def test_signs():
 
 
 # --- accuracy ---
-
-
-def exact_curve(E: list[float], tau: list[float]):
-    """ln zeta -> (kappa V, kappa M) in extended precision."""
-    with mp.workdps(100):
-        known = rates(mp, E, tau)
-
-    def of(x):
-        z = mp.exp(x)
-        f = functions(mp, known, z)
-        u = 1 / (2 * z * mp.sqrt(1 + 2 * f.h / z))
-        return u, u * f.m
-
-    return of
-
-
-def exact_speed(curve, near, far, load):
-    """kappa V at which kappa M is ``load``, between an extremum and beyond; bisection in ln zeta."""
-    for _ in range(110):
-        middle = (near + far) / 2
-        near, far = (middle, far) if (curve(middle)[1] - load) * (curve(near)[1] - load) > 0 else (near, middle)
-    return curve((near + far) / 2)[0]
-
-
-@pytest.mark.parametrize(("E", "tau"), [([10.0], [1.0 / 11.0]), ([2.0, 6.0], [1.0, 1e-2])])
-def test_speeds_against_extended_precision(E, tau):
-    """Also close to the fold: an error of 1e-16 of the load is one of its square root there."""
-    with mp.workdps(35):
-        curve = exact_curve(E, tau)
-        scene = vr.Scene(material=vr.Prony(E, tau), kappa=KAPPA, mu=10.0)
-        hump = vr.humps(scene)
-        start = mp.log(mp.mpf(1) / (2 * mp.mpf(hump.V[0] * KAPPA)))
-        x_top = mp.findroot(
-            lambda x: mp.diff(lambda y: curve(y)[1], x, h=mp.mpf(10) ** -12), (start - 0.3, start), tol=1e-18
-        )
-        u_top, top = curve(x_top)
-        assert abs(hump.V[0] * KAPPA / u_top - 1) < tol.STEADY_HUMP_V
-        assert abs(hump.M[0] * KAPPA / top - 1) < tol.STEADY
-        bottom = vr.contact(scene, hump.V[1], delta=0.0).zeta if hump.V.size > 1 else 0.01
-        ends = x_top + 4, mp.log(mp.mpf(bottom))
-        for short in (0.4, 1e-2, 1e-5, 1e-9, 1e-12):
-            force = float(top * (1 - mp.mpf(short)) / mp.mpf(KAPPA))
-            load = mp.mpf(force) * mp.mpf(KAPPA)
-            s = vr.steady(scene, force=force)
-            for n in range(2):
-                exact = exact_speed(curve, x_top, ends[n], load) / mp.mpf(KAPPA)
-                assert abs(mp.mpf(s.V[n]) / exact - 1) * mp.sqrt(short) < tol.STEADY, (short, n)
-
-
-def test_creep_against_extended_precision():
-    """(1 - |Q|/mu) H(zeta) = H(eta): from slight creep to friction all but spent."""
-    E, tau = [2.0, 6.0], [1.0, 1e-2]
-    with mp.workdps(100):
-        known = rates(mp, E, tau)
-    with mp.workdps(35):
-
-        def F_H(z):
-            f = functions(mp, known, z)
-            return z + f.g, z * z + 2 * z * f.h
-
-        for part in (1e-12, 1e-6, 1e-3, 0.3, 0.9, 1.0 - 1e-6, 1.0 - 1e-10):
-            for mu in (0.2 / part,):
-                scene = vr.Scene(material=vr.Prony(E, tau), kappa=KAPPA, mu=mu)
-                s = vr.steady(scene, V=0.3, torque=0.2 + vr.contact(scene, 0.3, delta=0.0, fields="M").M / 2.0)
-                zeta = mp.findroot(lambda z: F_H(z)[1] * (2 * mp.mpf(KAPPA) * mp.mpf(0.3)) ** 2 - 1, 0.5)
-                rest = 1 - mp.mpf(s.Q[0]) / mp.mpf(mu)
-                F, H = F_H(zeta)
-                eta = mp.findroot(lambda z, H=rest * H: F_H(z)[1] / H - 1, zeta * mp.sqrt(rest))
-                delta = mp.mpf(mu) * mp.mpf(0.3) * (F - F_H(eta)[0])
-                assert abs(mp.mpf(s.delta[0]) / delta - 1) < tol.STEADY / s.grip[0], part
-                assert abs(mp.mpf(s.beta[0]) * zeta / eta - 1) < tol.STEADY / s.grip[0], part
 
 
 # --- several modes, two bodies ---
@@ -224,62 +177,28 @@ def test_unlike_bodies_need_friction_of_their_own():
 # --- stability ---
 
 
-def jacobian(scene: vr.Scene, V: float, omega: float, force, torque) -> np.ndarray:
-    """Of (V', omega') over gamma t by central differences of the contact law."""
-
-    def rate(V, omega):
-        c = vr.contact(scene, V, omega=omega, fields=("Q", "M_half_space", "M_cylinder"))
-        f = force.value + force.V * V + force.omega * omega
-        q = torque.value + torque.V * V + torque.omega * omega
-        return np.array([c.Q - c.M_half_space + f, (-c.Q - c.M_cylinder + q) / scene.j])
-
-    step = 1e-6 * abs(omega - V) + 1e-9 * abs(V)
-    columns = [
-        (rate(V + dV, omega + dw) - rate(V - dV, omega - dw)) / (2.0 * step) for dV, dw in ((step, 0), (0, step))
-    ]
-    return np.stack(columns, axis=1)
-
-
-def test_eigenvalues_by_differences():
-    for scene in (SCENE.replace(j=0.3), series_scene(TWO), series_scene(UNLIKE, j=2.0)):
+def test_eigenvalues_are_those_of_the_slopes_of_the_contact_law():
+    """Of (V', omega') over gamma t by V and omega; the falling branch of every hump is a saddle."""
+    for scene in (SCENE.replace(j=0.3), series_scene(TWO), series_scene(UNLIKE, j=2.0), series_scene(TEN)):
         g = 0.6 * vr.humps(scene).M[0]
-        for force, torque in (
-            (vr.Feedback(0.3 * g), vr.Feedback(0.7 * g)),
-            (vr.Feedback(0.3 * g, V=-0.02), vr.Feedback(0.7 * g, V=0.01)),
-            (vr.Feedback(0.3 * g, V=-0.02, omega=0.01), vr.Feedback(0.7 * g, V=0.01, omega=-0.05)),
-        ):
+        for gains in (np.zeros((2, 2)), np.array([[-0.02, 0.01], [0.01, -0.05]])):
+            force, torque = (vr.Feedback(part * g, *row) for part, row in zip((0.3, 0.7), gains, strict=True))
             s = vr.steady(scene, force=force, torque=torque)
             assert s.count >= 1
-            for n in range(s.count):
-                numeric = np.linalg.eigvals(jacobian(scene, s.V[n], s.omega[n], force, torque))
-                numeric = numeric[np.argsort(numeric.real)]
-                assert close(s.eigenvalues[n], numeric, rel=tol.STEADY_DIFFERENCES)
-                assert s.stable[n] == (numeric.real < 0.0).all()
-
-
-def test_determinant_is_b_times_the_slope_of_M():
-    """Hence the falling branch of every hump is a saddle, of unlike bodies too."""
-    for scene in (SCENE, series_scene(TEN), series_scene(UNLIKE, j=1.7)):
-        s = vr.steady(scene, force=0.3 * vr.humps(scene).M[0])
-        c = vr.contact(scene, s.V, omega=s.omega, fields=("dQ_domega", "dM_dV"))
-        det = s.eigenvalues.prod(axis=-1)
-        assert close(det.real, c.dQ_domega * c.dM_dV / scene.j, rel=tol.STEADY_DETERMINANT)
-        assert (det.imag == 0.0).all()
-        assert ((c.dM_dV < 0.0) == ~s.stable).all()
-
-
-def test_trace_by_the_slopes_of_the_contact_law():
-    """Of unlike bodies the share of M that the half-space takes turns with V; in det it cancels."""
-    scene = series_scene(UNLIKE, j=1.7)
-    s = vr.steady(scene, force=0.3 * vr.humps(scene).M[0])
-    names = ("dQ_dV", "dQ_domega", "dM_half_space_dV")
-    c = vr.contact(scene, s.V, omega=s.omega, fields=names)
-    trace = c.dQ_dV - c.dM_half_space_dV - c.dQ_domega / scene.j
-    assert close(s.eigenvalues.sum(axis=-1).real, trace, rel=tol.STEADY_DETERMINANT)
+            c = vr.contact(scene, s.V, omega=s.omega, fields=("dQ_dV", "dQ_domega", *SLOPES_OF_BODIES, "dM_dV"))
+            a, b = c.dQ_dV - c.dM_half_space_dV + force.V, c.dQ_domega + force.omega
+            p, q = (-c.dQ_dV - c.dM_cylinder_dV + torque.V) / scene.j, (-c.dQ_domega + torque.omega) / scene.j
+            trace, det = s.eigenvalues.sum(axis=-1), s.eigenvalues.prod(axis=-1)
+            assert close(trace.real, a + q, rel=tol.STEADY_DETERMINANT, scale=np.abs(a))
+            assert close(det.real, a * q - b * p, rel=tol.STEADY_DETERMINANT, scale=np.abs(a * q))
+            assert not np.any([trace.imag, det.imag])
+            assert np.array_equal(s.stable, (s.eigenvalues.real < 0.0).all(axis=-1))
+            assert gains.any() or np.array_equal(c.dM_dV < 0.0, ~s.stable)
 
 
 def test_slow_rate_of_slow_rolling():
-    """(1 + j) V' = -M' V at last."""
+    """(1 + j) V' = -M' V at last, M' = 1 - 1/alpha."""
+    assert close(vr.steady(SCENE, force=1e-100).V[0], 1.1e-100, rel=tol.STEADY)
     s = vr.steady(SCENE, force=1e-6)
     assert close(s.eigenvalues[0, 1].real, -(10.0 / 11.0) / 1.5, rel=tol.STEADY_SLOW_RATE)
     rest = vr.steady(SCENE)
@@ -331,25 +250,16 @@ def test_a_saddle_repels_at_its_rate():
 # --- slope ---
 
 
-def critical_slope(scene: vr.Scene) -> float:
-    """tan(theta) = M_top of kappa/sqrt(cos(theta)), by bisection of the definition."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        theta = 0.5 * (low + high)
-        top = vr.humps(scene.replace(kappa=scene.kappa / math.sqrt(math.cos(theta)))).M[0]
-        low, high = (theta, high) if math.tan(theta) < top else (low, theta)
-    return 0.5 * (low + high)
-
-
 def test_critical_slope():
-    theta = critical_slope(SCENE)
+    """tan(theta) = M_top of kappa/sqrt(cos(theta)): the definition."""
+    turned = lambda theta: SCENE.replace(kappa=KAPPA / np.sqrt(np.cos(theta)))  # noqa: E731
+    theta = brentq(lambda theta: math.tan(theta) - vr.humps(turned(theta)).M[0], 0.0, 1.0, xtol=1e-16)
     assert close(math.degrees(theta), 4.8, rel=0.05 / 4.8)
     s = vr.steady(SCENE, slope=theta * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
     assert s.count.tolist() == [2, 0]
     assert s.reason[0] == ""
     assert "exceeds the largest rolling moment" in s.reason[1]
-    turned = SCENE.replace(kappa=SCENE.kappa / np.sqrt(np.cos(0.05)))
-    np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned, force=np.tan(0.05)).V)
+    np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned(0.05), force=np.tan(0.05)).V)
 
 
 # --- prescribed speeds ---
@@ -421,15 +331,6 @@ def test_feedback_on_omega_misses_none():
         assert within.sum() == brute_feedback(scene, force, torque, V), n
         several += s.count > 2
     assert several > 2
-
-
-def test_feedback_on_omega_tends_to_none():
-    """Small gains: the equilibria of the loads alone, and beyond them those that only a gain makes."""
-    bare = vr.steady(SCENE, torque=0.05)
-    gained = vr.steady(SCENE, torque=vr.Feedback(0.05, omega=-1e-9))
-    assert close(gained.V[:2], bare.V, rel=tol.STEADY_SMALL_GAIN)
-    assert gained.stable[:2].tolist() == [True, False]
-    assert gained.V[2] > 1e6
 
 
 def test_opposite_gains_on_omega():
@@ -518,34 +419,14 @@ def test_losses_are_what_the_loads_put_in():
     assert math.isnan(vr.steady(SCENE).loss.efficiency[0])
 
 
-def test_si_units():
-    cylinder, scene = vr.PAPER_CYLINDER, vr.PAPER_SECTION_5
-    theta = np.array([0.01, 0.03])
-    s = cylinder.steady(force=-2.0, torque=0.15, slope=theta)
-    P, R = cylinder.load * np.cos(theta), cylinder.R
-    bare = vr.steady(scene, force=-2.0 / P, torque=0.15 / (P * R), slope=theta)
-    assert close(s.V, bare.V * cylinder.scale["V"], rel=tol.SCENE)
-    assert close(s.omega, bare.omega * cylinder.scale["omega"], rel=tol.SCENE)
-    assert close(s.torque, 0.15, rel=tol.SCENE)
-    assert close(s.force[:, 0], cylinder.load * np.sin(theta) - 2.0, rel=tol.STEADY)
-    lost = s.loss.slip + s.loss.half_space + s.loss.cylinder
-    assert close(lost, s.force * s.V + s.torque * s.omega, rel=tol.STEADY_POWER)
-    # the slow rate of faint loads: c/(T_epsilon (1 + j)) gamma
-    faint = cylinder.steady(slope=1e-6).eigenvalues[0, 1].real
-    rate = cylinder.load * cylinder.T_epsilon / (cylinder.m * R) * (1.0 - 1.0 / scene.alpha) / 1.5
-    assert close(faint, -rate, rel=tol.STEADY_SLOW_RATE)
-    damped = cylinder.steady(torque=vr.Feedback(2.0, V=-100.0, omega=-10.0))
-    assert close(damped.torque, 2.0 - 100.0 * damped.V - 10.0 * damped.omega, rel=tol.STEADY)
-
-
 # --- arrays ---
 
 
 def test_many_loads_are_single_calls_bit_for_bit():
     scene = series_scene(TEN)
-    f = np.random.default_rng(5).uniform(-0.011, 0.011, 100_000)
+    f = np.random.default_rng(5).uniform(-0.011, 0.011, 20_000)
     s = vr.steady(scene, force=f)
-    assert s.V.shape == (100_000, s.count.max())
+    assert s.V.shape == (20_000, s.count.max())
     assert (np.isfinite(s.V).sum(axis=1) == s.count).all()
     for n in range(0, f.size, 997):
         one, held = vr.steady(scene, force=f[n]), slice(0, s.count[n])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -11,6 +9,7 @@ from closeness import close
 from scipy.optimize import brentq
 
 import viscoroll as vr
+from pipeline.evidence.prove.driven import balance, off
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -19,70 +18,6 @@ ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 T = np.linspace(0.0, 8.0, 33)
 BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
 PAIR = vr.Bodies(cylinder=BROAD, half_space=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
-#: starts and drives that meet every regime: wheel spin and grip again, lock-up, V = 0 in stick and in slip, runaway
-SPIN = vr.Schedule([0.0, 3.0, 3.0, 4.5, 4.5], [0.0, 0.375, 0.375, 0.075, 0.0])
-CASES = {
-    "wheel spin and grip again": (0.0, 0.0, {"torque": SPIN}),
-    "up a slope and back": (0.3, 0.3, {"force": -0.05}),
-    "down a slope": (0.0, 0.0, {"force": 0.05}),
-    "turned in stick": (0.5, 0.5, {"torque": -0.2}),
-    "locked up and turned": (1.0, 1.0, {"torque": -0.6}),
-    "sliding under both": (1.0, -1.0, {"force": 0.1, "torque": vr.Schedule([0.0, 8.0], [0.05, 0.13])}),
-    "sliding from rest": (0.0, 1e-6, {"torque": vr.Schedule([0.0, 8.0], [0.5, -1.1])}),
-    "runaway": (2.0, 2.0, {"force": 0.2}),
-    "speed controller": (0.2, 0.2, {"torque": vr.Feedback(0.3, V=-0.5)}),
-}
-
-
-def kinetic(m) -> np.ndarray:
-    return 0.5 * (m.V**2 + m.scene.j * m.omega**2)
-
-
-def fastest(m) -> np.ndarray:
-    return np.maximum.accumulate(np.maximum(np.abs(m.V), np.abs(m.omega)))
-
-
-def balance(m) -> float:
-    """What is missing in the balance of energy, over the largest of its terms."""
-    energy, work = kinetic(m), m.work_force + m.work_torque
-    lost = m.brake_loss + m.slip_loss + m.rolling_loss
-    scale = max(np.abs(part).max() for part in (energy, work, lost))
-    return float(np.abs(work - (energy - energy[0]) - lost).max() / scale)
-
-
-def off(one, other) -> float:
-    """Largest difference of V and omega, over the largest speed so far."""
-    scale = np.maximum(fastest(other), np.finfo(float).tiny)
-    return float(np.max(np.maximum(np.abs(one.V - other.V), np.abs(one.omega - other.omega)) / scale))
-
-
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
-def test_tolerance_and_energy(rtol):
-    """V and omega within 30 rtol of the largest speed so far; works are energy gained and lost."""
-    for name, (V0, omega0, drive) in CASES.items():
-        tight = vr.roll(SCENE, V0, omega0, T, rtol=1e-11, **drive)
-        m = vr.roll(SCENE, V0, omega0, T, rtol=rtol, **drive)
-        assert off(m, tight) <= 30.0 * rtol, name
-        assert balance(m) <= 30.0 * rtol, name
-        assert balance(tight) <= tol.DRIVE_BALANCE, name
-        assert [s.regime for s in m.switches] == [s.regime for s in tight.switches], name
-        for one, other in zip(m.switches, tight.switches, strict=True):
-            assert close(one.t, other.t, rel=30.0 * rtol, scale=1.0, what=name)
-
-
-def test_mirror_symmetry():
-    """(V, omega, f, q) -> minus all: the same bits."""
-    for V0, omega0, drive in CASES.values():
-        mirrored = {}
-        for name, given in drive.items():
-            if isinstance(given, vr.Feedback):
-                mirrored[name] = vr.Feedback(-given.value, V=given.V, omega=given.omega)
-            else:
-                mirrored[name] = vr.Schedule(given.times, -given.values) if isinstance(given, vr.Schedule) else -given
-        m, other = vr.roll(SCENE, V0, omega0, T, **drive), vr.roll(SCENE, -V0, -omega0, T, **mirrored)
-        for field in ("V", "omega", "x", "angle", "force", "torque"):
-            assert np.array_equal(getattr(m, field), -getattr(other, field)), field
-        assert np.array_equal(m.delta, other.delta)
 
 
 def test_how_a_schedule_is_written():
@@ -110,21 +45,6 @@ def test_a_ramp_from_rest_cut_by_another_drive(cut):
     m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], rtol=1e-9, torque=ramp, force=vr.Schedule([cut, cut], [0.0, 0.01]))
     assert m.torque.size == 1
     assert close(m.V[0], vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], rtol=1e-9, torque=ramp).V[0], rel=30e-9)
-
-
-def test_a_sine():
-    """Ten periods, fitted to a tenth of rtol, against a table of 10^4 points."""
-    t = np.linspace(0.0, 10.0, 21)
-    m = vr.roll(ROLLER, 0.0, 0.0, t, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
-    assert m.drive_error <= 1e-10
-    grid = np.linspace(0.0, 10.0, 10_001)
-    table = vr.roll(ROLLER, 0.0, 0.0, t, torque=vr.Schedule(grid, 0.1 * np.sin(2.0 * np.pi * grid)))
-    assert np.abs(m.V - table.V).max() <= tol.DRIVE_TABLE * np.abs(m.V).max()
-    assert m.reversals.size >= 1
-    # rounding of the fit once passed for a jump
-    tight = vr.roll(ROLLER, 0.0, 0.0, t, rtol=1e-12, torque=lambda t: 0.1 * math.sin(2.0 * math.pi * t))
-    assert tight.drive_error <= 1e-14
-    assert off(m, tight) <= 30.0 * 1e-8
 
 
 def test_jump_of_traction_where_V_passes_0_in_stick():
@@ -194,26 +114,23 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
 
 
 def test_bodies_that_differ():
-    """Their own parts of M: energy closes; swapped bodies swap the parts; a rigid base leaves M to the cylinder."""
-    scene = vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
-    t = np.geomspace(0.1, 300.0, 20)
-    t = np.append(0.0, t)
-    m = vr.roll(scene, 1.0, 0.4, t, rtol=1e-9)
-    assert balance(m) <= 1e-7
-    c = m.contact(fields=("M", "M_half_space", "M_cylinder"))
-    assert close(c.M_half_space + c.M_cylinder, c.M, rel=1e-13)
-    like = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5)
-    one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (like, BROAD))
-    assert np.array_equal(one.V, two.V)
-    # on a plate of its own share, by the kernel of two bodies
+    """Energy closes; by the kernel of two bodies a pair that hardly differs rolls as one material."""
+    scene, t = (
+        vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5),
+        np.append(0.0, np.geomspace(0.1, 300.0, 20)),
+    )
+    assert balance(vr.roll(scene, 1.0, 0.4, t, rtol=1e-9)) <= 1e-7
     nearly = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5 + 1e-12)
-    three = vr.roll(scene.replace(material=nearly), 1.0, 0.4, t, rtol=1e-10)
-    assert off(three, two) <= tol.DRIVE_FREE
-    e = vr.ensemble(scene, [1.0, 0.4], [0.4, 0.4], t, rtol=1e-9)
-    assert np.array_equal(e.V[0], m.V)
-    swapped = vr.Bodies(cylinder=PAIR.half_space, half_space=PAIR.cylinder, share=1.0 - PAIR.share)
-    d = vr.contact(scene.replace(material=swapped), m.V, omega=m.omega, fields=("M_half_space", "M_cylinder"))
-    assert close(d.M_half_space, c.M_cylinder, rel=1e-12)
+    one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (nearly, BROAD))
+    assert off(one, two) <= tol.DRIVE_FREE
+
+
+def test_an_exception_of_a_callable_passes():
+    def fails(t):
+        raise RuntimeError("sensor")
+
+    with pytest.raises(RuntimeError, match="sensor"):
+        vr.roll(ROLLER, 1.0, 1.0, T, force=fails)
 
 
 def test_the_end_of_a_motion_of_bodies_that_differ():
@@ -240,13 +157,9 @@ def test_ten_humps_run_to_the_end():
 def test_ensemble_is_roll():
     """Numbers and schedules each: bit for bit; zeros without a drive."""
     q = np.linspace(-0.2, 0.2, 7)
-    torque = vr.Schedule([0.0, 8.0], np.stack([q, 0.5 * q], axis=1))
-    e, two = (vr.ensemble(ROLLER, 0.1, 0.1, T, torque=torque, force=0.01, threads=threads) for threads in (1, 2))
-    assert np.array_equal(e.V, two.V)
-    for n in (0, 4):
-        m = vr.roll(ROLLER, 0.1, 0.1, T, torque=vr.Schedule([0.0, 8.0], [q[n], 0.5 * q[n]]), force=0.01)
-        assert np.array_equal(e.V[n], m.V)
-        assert np.array_equal(e.x[n], m.x)
+    e = vr.ensemble(ROLLER, 0.1, 0.1, T, torque=vr.Schedule([0.0, 8.0], np.stack([q, 0.5 * q], axis=1)), force=0.01)
+    m = vr.roll(ROLLER, 0.1, 0.1, T, torque=vr.Schedule([0.0, 8.0], [q[4], 0.5 * q[4]]), force=0.01)
+    assert np.array_equal((e.V[4], e.x[4]), (m.V, m.x))
     free = vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields=("V", "force", "brake_loss"))
     assert free.force.shape == free.V.shape
     assert not free.force.any()
@@ -266,8 +179,6 @@ def test_nothing_is_no_drive():
         e = vr.ensemble(ROLLER, 1.5, 0.5, T, **nothing)
         assert len(e) == 3
         assert np.array_equal(e.V[2], free.V)
-    with pytest.raises(vr.ParameterError, match="force has shape"):
-        vr.roll(ROLLER, 1.5, 0.5, T, force=np.zeros(3))
 
 
 def test_a_prescribed_speed_of_many_motions():
@@ -278,19 +189,6 @@ def test_a_prescribed_speed_of_many_motions():
         assert e.V.shape == (3, T.size)
         assert np.array_equal(e.V, np.broadcast_to(m.V, e.V.shape))
         assert getattr(e, f"{name}0").shape == (3,)
-    with pytest.raises(vr.ParameterError, match="V0"):
-        vr.ensemble(ROLLER, [1.0, 2.0], 0.5, T, V=1.0)
-
-
-def test_flow_is_refused_and_exceptions_pass():
-    with pytest.raises(vr.ParameterError, match="driven"):
-        vr.ensemble(ROLLER, 1.0, 1.0, T, force=0.1, method="flow")
-
-    def fails(t):
-        raise RuntimeError("sensor")
-
-    with pytest.raises(RuntimeError, match="sensor"):
-        vr.roll(ROLLER, 1.0, 1.0, T, force=fails)
 
 
 def test_small_beginnings():

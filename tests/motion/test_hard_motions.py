@@ -1,4 +1,4 @@
-"""Motions that once went wrong: each ends as at the tightest tolerance, in few steps (hard_motions.json)."""
+"""Motions of every regime, and that once went wrong: as at the tightest tolerance, in few steps (hard_motions.json)."""
 
 from __future__ import annotations
 
@@ -19,6 +19,29 @@ pytestmark = [
 #: scene, start, drive, times; tolerances, and how many of each the error may be; steps at most
 MOTIONS = json.loads(Path(__file__).with_name("hard_motions.json").read_text(encoding="utf-8"))
 TIGHT = 1e-12
+
+
+def mirrored(name: str, drive):
+    """What drives the other way: all but a brake, and gains."""
+    if isinstance(drive, vr.Feedback):
+        return vr.Feedback(mirrored(name, drive.value), V=drive.V, omega=drive.omega)
+    sign = 1.0 if name == "brake" else -1.0
+    return vr.Schedule(drive.times, sign * drive.values) if isinstance(drive, vr.Schedule) else sign * drive
+
+
+@pytest.mark.parametrize("row", MOTIONS, ids=[row["name"] for row in MOTIONS])
+def test_mirrored(row):
+    """Start and drive the other way: the same bits, the other way."""
+    scene, (V0, omega0), rtol = vr.Scene(*row["scene"]), row["start"], row["rtols"][0]
+    drive = {name: given(plain) for name, plain in row["drive"].items()}
+    other = {name: mirrored(name, each) for name, each in drive.items()}
+    m, back = (
+        vr.roll(scene, V0, omega0, row["t"], rtol=rtol, **drive),
+        vr.roll(scene, -V0, -omega0, row["t"], rtol=rtol, **other),
+    )
+    for field in ("V", "omega", "x", "angle", *(("force", "torque") if drive else ())):
+        assert np.array_equal(getattr(m, field), -getattr(back, field)), field
+    assert np.array_equal(m.delta, back.delta)
 
 
 @pytest.mark.parametrize("row", MOTIONS, ids=[row["name"] for row in MOTIONS])
