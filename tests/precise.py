@@ -1,4 +1,4 @@
-"""Truth for the tests: the printed law of pipeline.evidence.truth, its slopes, and distances in ULP."""
+"""Truth for the tests: the printed law of pipeline.evidence.truth, and its slopes."""
 
 from __future__ import annotations
 
@@ -11,21 +11,6 @@ from pipeline.evidence.truth import precise
 DIGITS = 50
 #: digits that the printed forms may lose (see pipeline.evidence.truth.precise)
 GUARD = 30
-
-
-def ratio_r(x: mp.mpf) -> mp.mpf:
-    """I1/I0."""
-    return precise.ratio_r(mp, x)
-
-
-def ratio_k(z: mp.mpf) -> mp.mpf:
-    """K0/K1."""
-    return precise.ratio_k(mp, z)
-
-
-def ratio_i2(x: mp.mpf) -> mp.mpf:
-    """I2/I0."""
-    return mp.besseli(2, x) / mp.besseli(0, x)
 
 
 class State(NamedTuple):
@@ -57,9 +42,3 @@ def slope(alpha: float, kappa: float, mu: float, V: float, delta: float, by: str
         h = base[by] * mp.mpf(10) ** -15
         up, down = (state(alpha, kappa, mu, **(base | {by: base[by] + sign * h})) for sign in (1, -1))
         return {name: (getattr(up, name) - getattr(down, name)) / (2 * h) for name in ("Q", "M")}
-
-
-def ulps(value: float, exact: mp.mpf) -> float:
-    """Distance in units in the last place of the exact value."""
-    spacing = mp.mpf(2) ** max(int(mp.floor(mp.log(abs(exact), 2))) - 52, -1074)
-    return float(abs(mp.mpf(float(value)) - exact) / spacing)

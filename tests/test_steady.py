@@ -72,7 +72,9 @@ def test_speeds_against_extended_precision():
         for short in (0.4, 1e-5, 1e-9, 1e-12):
             force = float(top * (1 - mp.mpf(short)) / mp.mpf(KAPPA))
 
-            def missing(x, load=mp.mpf(force) * mp.mpf(KAPPA)):
+            load = mp.mpf(force) * mp.mpf(KAPPA)
+
+            def missing(x, load=load):
                 return curve(x)[1] - load
 
             for found, end in zip(vr.steady(scene, force=force).V, (x_top + 4, x_top - 4), strict=True):
