@@ -212,10 +212,22 @@ def test_a_contact_tells_the_coefficient_of_rolling_resistance():
         assert "coefficient of rolling resistance" in {axes.get_title() for axes in shown.plot().axes}
 
 
-@pytest.mark.parametrize(("roller", "most"), [(SCENE, 90), (ROLLER, 120)], ids=["scene", "cylinder"])
-def test_the_way_of_one_state_is_short(roller, most):
+@pytest.mark.parametrize(
+    ("call", "most"),
+    [
+        (partial(SCENE.contact, 0.01, delta=1e-3), 90),
+        (partial(ROLLER.contact, 0.01, delta=1e-3), 120),
+        (partial(SCENE.roll, 1.5, 0.5, [1e-3]), 120),
+        (partial(ROLLER.roll, 0.05, 0.5, [1e-3]), 150),
+        (partial(SCENE.steady, force=0.01), 220),
+        (partial(SCENE.steady, V=0.5, torque=0.0), 220),
+        (partial(ROLLER.steady, force=2.0), 260),
+        (partial(ROLLER.steady, V=0.05, torque=0.0), 260),
+    ],
+    ids=lambda given: given.func.__name__ + "/" + type(given.func.__self__).__name__ if callable(given) else "",
+)
+def test_the_way_of_one_state_is_short(call, most):
     """Calls of Python and of C for one state, as a profiler counts them: people loop over states."""
-    call = partial(roller.contact, 0.01, delta=1e-3)
     call()  # what is made once
     count = 0
 

@@ -109,9 +109,9 @@ def run_blocks(
 
     ``progress`` names a progress bar, drawn on standard error after the first second.
     """
-    edges = ((start, min(start + block, count)) for start in range(0, count, block))
+    edges: Iterable[tuple[int, int]] = ((start, min(start + block, count)) for start in range(0, count, block))
     blocks = -(-count // block)
-    workers = min(thread_count(threads), blocks)
+    workers = min(thread_count(threads), blocks) if blocks > 1 or threads is not None else blocks
     if workers <= 1 and progress is None:
         ended = getattr(_heeded, "event", None)
         for start, stop in edges:

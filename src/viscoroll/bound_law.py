@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import checked
+from .contact_table import refuse_overflow
 from .errors import ParameterError
 from .kernels.rows.loads import Loads, LoadsAndSlopes
-from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
 from .parameters import Rolls, framed
-from .rolling_contact import contact, one_material, refuse_overflow
+from .rolling_contact import contact
 from .typed import Numbers
 
 Array: TypeAlias = NDArray[np.float64]
@@ -38,9 +38,9 @@ class Law:
 
         if SWITCHED_OFF:
             raise ParameterError("NUMBA_DISABLE_JIT", 1, "0: a bound law is machine code")
-        scene, scale = framed(roller, "law")
-        table = one_material(scene)
-        assert isinstance(table, LawTable)
+        _, scene, scale = framed(roller, "law")
+        table = scene.table
+        assert table is not None
         self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
         self._jitted = jitted = Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale)
         self._function, self._plain, self._sloped, self._room = jitted.function, jitted.plain, jitted.address, Room
@@ -148,7 +148,7 @@ def law(roller: Rolls) -> Law:
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
     """
-    scene, _ = framed(roller, "law")
+    _, scene, _ = framed(roller, "law")
     if isinstance(scene.material, MaterialArray):
         raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
     for name in ("alpha", "kappa", "mu"):

@@ -76,6 +76,8 @@ def number(
     ParameterError
         As there, or for an array.
     """
+    if type(value) is float and low < value < high:
+        return value
     array = checked(name, value, low=low, strict=strict, high=high)
     if array.ndim:
         raise ParameterError(name, f"{value!r:.60}", "a single number")
@@ -90,8 +92,9 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     ParameterError
         Naming the shapes, where they do not broadcast.
     """
+    known = {array.shape for array in arrays.values()} - {()}
     try:
-        return np.broadcast_shapes(*(a.shape for a in arrays.values()))
+        return np.broadcast_shapes(*known) if len(known) > 1 else known.pop() if known else ()
     except ValueError:
         shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
         raise ParameterError("shapes", shapes, "broadcastable against each other") from None

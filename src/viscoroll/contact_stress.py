@@ -60,7 +60,7 @@ def stress(
     """
     from .kernels.law.stress import Points, stress_loop
 
-    scene, scale = framed(roller, "stress")
+    _, scene, scale = framed(roller, "stress")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     creep_name = "omega" if delta is None else "delta"

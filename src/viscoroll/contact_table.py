@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks
+from .checks import extent
 from .contact_fields import SLOPES, SLOPES_OF_BODIES, UNSTEADY
+from .errors import ParameterError
 from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from .materials.law_modes import unsteadiness
 from .materials.law_table import LawTable
@@ -18,14 +20,16 @@ from .materials.prony_array import MaterialArray
 
 #: states of a block, where each has a material of its own, which takes some kilobytes, and where not
 _BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
-#: states of one law that a kernel works on side by side
+#: states of one law that a kernel works on side by side; up to so many take no blocks
 _TOGETHER = 64
 _NO_ORDER = np.empty(0, np.int64)
+#: kappa |V|, where zeta is 0 in doubles, or nearly
+FASTEST = 1e300
 
 
 def states_of(
     given: LawTable | MaterialArray | None,
-    arrays: list[NDArray],
+    arrays: list[Any],
     shape: tuple[int, ...],
     creep_is_omega: bool,
     names: tuple[str, ...],
@@ -34,10 +38,17 @@ def states_of(
 
     ``given``: one law for all; many materials, with their numbers in place of the alphas; or, None, alphas.
     """
-    if shape == () and isinstance(given, LawTable):
-        return _of_one(given, arrays, creep_is_omega, names)
     count = math.prod(shape)
-    out, parts = np.empty((len(names), count)), [elements(np.asarray(array), shape) for array in arrays]
+    out = np.empty((len(names), count))
+    if count <= _TOGETHER and isinstance(given, LawTable):
+        states = np.empty((len(arrays), *(shape or (1,))))
+        for row, array in zip(states, arrays, strict=True):
+            row[...] = array
+        states = states.reshape(len(arrays), count)
+        states.flags.writeable = False  # as all that a kernel reads, see elements
+        _fill(given, given.record, tuple(states), _NO_ORDER, creep_is_omega, names, out, 0, count)
+        return out
+    parts = [elements(np.asarray(array), shape) for array in arrays]
 
     def work(start: int, stop: int) -> None:
         each, *others = [part(start, stop) for part in parts]
@@ -52,16 +63,6 @@ def states_of(
         _fill(given, law, (each, *others), order, creep_is_omega, names, out, start, stop)
 
     run_blocks(work, count, _BLOCK_EACH if isinstance(given, MaterialArray) else _BLOCK)
-    return out
-
-
-def _of_one(law: LawTable, arrays: list[Any], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
-    """Of one state: no blocks."""
-    state = np.array(arrays, np.float64)
-    state.flags.writeable = False  # as all that a kernel reads, see elements
-    parts = state[0:1], state[1:2], state[2:3], state[3:4], state[4:5]
-    out = np.empty((len(names), 1))
-    _fill(law, law.record, parts, _NO_ORDER, creep_is_omega, names, out, 0, 1)
     return out
 
 
@@ -100,3 +101,16 @@ def _asked(names: tuple[str, ...]) -> tuple[Any, Any, NDArray, bool, bool]:
             to[ROWS.index(name)] = row
     slopes = set(names) & set(SLOPES + SLOPES_OF_BODIES)
     return kernels, States, to, bool(set(names) - slopes - {UNSTEADY}), bool(slopes)
+
+
+def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
+    """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly (zeta would be 0), or that given."""
+    if not (kappa.size and V.size):
+        return
+    low, high = extent(V)
+    if extent(kappa)[1] * max(-low, high) <= fastest:
+        return
+    with np.errstate(over="ignore"):
+        largest = (kappa * np.abs(V)).max(initial=0.0)
+    if largest > fastest:
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")

@@ -269,7 +269,8 @@ class Cylinder(Methods):
             known.tell(self._measured, passage(np.array(rates), lam))
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
-        """Warn of starts beyond the speed of shear waves where a density is known."""
+        """Warn of starts beyond what was measured, and beyond the speed of shear waves where a density is known."""
+        self.look(V0)
         if self._wave_speed is None:
             return
         V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))

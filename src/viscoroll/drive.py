@@ -8,7 +8,7 @@ from inspect import signature
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .checks import checked
 from .errors import ParameterError
@@ -110,7 +110,7 @@ def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:
         raise ParameterError(name, function, "a function of t", sentence) from None
 
 
-def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def slope_factor(slope: ArrayLike | None) -> tuple[Any, Any]:
     """(tan(theta), cos(theta)) of a slope in rad; (0, 1) without.
 
     Raises
@@ -118,7 +118,9 @@ def slope_factor(slope: ArrayLike | None) -> tuple[NDArray[np.float64], NDArray[
     ParameterError
         A slope that is not in (-pi/2, pi/2).
     """
-    theta = checked("slope", 0.0 if slope is None else slope)
+    if slope is None:
+        return 0.0, 1.0
+    theta = checked("slope", slope)
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
         allowed = "an angle below pi/2 in size: radians in (-pi/2, pi/2), as np.radians(degrees) gives"

@@ -36,7 +36,7 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
     ParameterError
         NaN or infinite speeds, a density that is not one positive number, shapes that do not broadcast.
     """
-    scene, scale = framed(roller, "validity")
+    _, scene, scale = framed(roller, "validity")
     given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
     speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})

@@ -15,7 +15,7 @@ from .errors import ParameterError, one_of
 from .free_rolling import Free
 from .materials.bodies import Bodies
 from .materials.bodies_array import BodiesArray
-from .materials.law_table import LawTable
+from .materials.law_table import LawTable, law_table
 from .materials.prony import Prony
 from .materials.prony_array import MaterialArray
 from .materials.prony_forms import HIGHEST_ALPHA
@@ -107,6 +107,8 @@ class Parameters(Rolls):
     j: Any = 0.5
     material: Prony | Bodies | MaterialArray | LawTable | None = None
     _law: ClassVar[LawTable | None] = None
+    #: that the parameters broadcast to; () for one scene
+    shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
     def __post_init__(self) -> None:
@@ -129,7 +131,7 @@ class Parameters(Rolls):
         extents = {}
         for name in ("kappa", "mu", "gamma", "j") if self.gamma is not None else ("kappa", "mu", "j"):
             arrays[name], extents[name] = checked_extent(name, getattr(self, name), low=0.0, strict=True)
-        broadcast_shape(**arrays)
+        object.__setattr__(self, "shape", broadcast_shape(**arrays))
         if arrays["mu"].size and arrays["kappa"].size:
             low, high = RATIO_RANGE
             (least_mu, most_mu), (least_kappa, most_kappa) = extents["mu"], extents["kappa"]
@@ -140,18 +142,14 @@ class Parameters(Rolls):
 
     @property
     def table(self) -> LawTable | None:
-        """The law that was given in place of its material."""
-        return self._law
-
-    @property
-    def single(self) -> bool:
-        """Whether alpha, kappa and mu are numbers."""
-        return type(self.alpha) is type(self.kappa) is type(self.mu) is float
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape that the parameters broadcast to; () for one scene."""
-        return np.broadcast_shapes(*map(np.shape, self.numbers.values()))
+        """The law of its one material: the one that was given, or made; None of an alpha or a material each."""
+        if self._law is not None:
+            return self._law
+        if self.material is None:
+            if type(self.alpha) is float:
+                return law_table(self.alpha)
+            return law_table(self.alpha.item()) if self.alpha.size == 1 else None
+        return None if isinstance(self.material, MaterialArray) else law_table(self.material)
 
     @property
     def numbers(self) -> dict[str, Any]:
@@ -181,16 +179,17 @@ class Parameters(Rolls):
             return self.material.total
         return self.material if isinstance(self.material, Prony) else None
 
-    def in_own_time(self) -> tuple[Any, float]:
-        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref).
+    @property
+    def each(self) -> MaterialArray | None:
+        """Many materials, of pairs that are alike their series."""
+        given: Any = self.material
+        if isinstance(given, BodiesArray) and given.like:
+            given = given.cylinder
+        return given if isinstance(given, MaterialArray) else None
 
-        Of a material each as they are.
-        """
-        if self.series is None:
-            if isinstance(self.material, BodiesArray) and self.material.like:
-                return self.material.cylinder, 1.0
-            return self.alpha if self.material is None else self.material, 1.0
-        return _in_own_time(self.series)
+    def in_own_time(self) -> tuple[Any, float]:
+        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
+        return (self.alpha, 1.0) if self.series is None else _in_own_time(self.series)
 
     @property
     def like_bodies(self) -> bool:
@@ -247,22 +246,23 @@ class Parameters(Rolls):
         return f"Scene({', '.join(f'{name}={_short(value)}' for name, value in given.items())})"
 
 
-def framed(given: Any, call: str, *, moves: bool = False) -> tuple[Parameters, Scale]:
-    """The parameters of what rolls, and its scale; ``moves``: with a gamma.
+def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:
+    """What rolls, on its slope, its parameters and its scale; ``moves``: with a gamma.
 
     Raises
     ------
     ParameterError
-        What is no scene and no cylinder.
+        What is no scene and no cylinder, a slope out of range.
     """
     if not isinstance(given, Rolls):
         sentence = f"{call} takes a Scene or a Cylinder, not {given!r:.60}"
         raise ParameterError("roller", type(given).__name__, "a Scene or a Cylinder", sentence)
-    scene = given.scene()
+    roller = given if slope is None else given.tilted(slope)
+    scene = roller.scene()
     if moves and scene.gamma is None:
         sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
         raise ParameterError("gamma", None, "a number > 0", sentence)
-    return scene, given.scale
+    return roller, scene, roller.scale
 
 
 def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:

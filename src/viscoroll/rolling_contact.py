@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import elements, solve_blocks
-from .checks import broadcast_shape, checked, checked_extent, extent
+from .checks import broadcast_shape, checked, checked_extent
 from .contact_fields import OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
-from .contact_table import states_of
+from .contact_table import FASTEST, refuse_overflow, states_of
 from .errors import ParameterError, one_of
 from .labels import unlabelled
 from .materials.bodies_array import BodiesArray
-from .materials.law_table import LawTable, law_table
+from .materials.law_table import LawTable
 from .materials.prony_array import MaterialArray
 from .parameters import Parameters, Rolls, framed
 from .results import Values
@@ -30,7 +30,6 @@ from .typed import Numbers
 #: of bodies that are alike, half of each
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _BLOCK = 1 << 15
-_FASTEST = 1e300
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
 
@@ -129,7 +128,7 @@ def contact(
     Beside float64 input and its result a call takes a few megabytes, whatever the sizes and
     however they broadcast (``tests/test_invariance.py``).
     """
-    scene, scale = framed(roller, "contact")
+    _, scene, scale = framed(roller, "contact")
     if (delta is None) == (omega is None):
         raise one_of("delta", "omega", both=delta is not None)
     names = field_names(fields, scene.like_bodies, scale.si, slopes, method)
@@ -155,9 +154,9 @@ def states(
     """Fields without dimension, at checked speeds, and creeps or angular velocities."""
     arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
     arrays["omega" if creep_is_omega else "delta"] = creep
-    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else _FASTEST
+    fastest = _FASTEST_DIRECT if method == "direct" and "Q" in names else FASTEST
     shape: tuple[int, ...] = ()
-    if V.ndim or creep.ndim or not scene.single:
+    if V.ndim or creep.ndim or scene.shape:
         arrays = {name: np.asarray(value) for name, value in arrays.items()}
         shape = broadcast_shape(**arrays)
         refuse_overflow(arrays["kappa"], V, fastest)
@@ -165,7 +164,7 @@ def states(
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
-    one = None if method == "direct" else one_material(scene)
+    one = None if method == "direct" else scene.table or scene.each
     if isinstance(one, MaterialArray):
         if UNSTEADY in names:
             raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
@@ -189,30 +188,6 @@ def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
     """What the kernels are asked for: not what is half of it, or the same in other units."""
     made = SAME if unlike else SAME | _HALVES
     return tuple(dict.fromkeys(made.get(name, name) for name in names))
-
-
-def one_material(scene: Parameters) -> LawTable | MaterialArray | None:
-    """The table that serves all states; many series or pairs; or, None, alphas."""
-    if scene.table is not None:
-        return scene.table
-    if scene.material is None:
-        if type(scene.alpha) is float:
-            return law_table(scene.alpha)
-        return law_table(float(scene.alpha.item())) if scene.alpha.size == 1 else None
-    return scene.in_own_time()[0] if isinstance(scene.material, MaterialArray) else law_table(scene.material)
-
-
-def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = _FASTEST) -> None:
-    """Raise ParameterError where kappa |V| leaves the range of doubles, or nearly (zeta would be 0), or that given."""
-    if not (kappa.size and V.size):
-        return
-    low, high = extent(V)
-    if extent(kappa)[1] * max(-low, high) <= fastest:
-        return
-    with np.errstate(over="ignore"):
-        largest = (kappa * np.abs(V)).max(initial=0.0)
-    if largest > fastest:
-        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
 
 
 def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import broadcast_shape, checked
+from ..contact_table import refuse_overflow
 from ..drive import Feedback, slope_factor
 from ..errors import ParameterError
 from ..parameters import Parameters
@@ -17,8 +18,7 @@ from ..parameters import Parameters
 FASTEST = 1e100
 
 
-@dataclass(frozen=True)
-class Gains:
+class Gains(NamedTuple):
     """Of force and torque on V and omega."""
 
     force_V: float = 0.0
@@ -37,8 +37,7 @@ class Gains:
         return self.force_omega != 0.0 or self.torque_omega != 0.0
 
 
-@dataclass(frozen=True)
-class Loads:
+class Loads(NamedTuple):
     """Loads of one material as vectors of one length.
 
     shape : that of the call.  force, torque : at rest, 0 where it is to be found; ``given`` names the one that is
@@ -46,14 +45,14 @@ class Loads:
     """
 
     shape: tuple[int, ...]
-    force: NDArray[np.float64]
-    torque: NDArray[np.float64]
     gains: Gains
     given: str | None
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
     kappa: NDArray[np.float64]
     mu: NDArray[np.float64]
     j: NDArray[np.float64]
-    V: NDArray[np.float64] | None
+    V: NDArray[np.float64] | None = None
 
 
 def loads_of(
@@ -64,45 +63,33 @@ def loads_of(
     V: ArrayLike | None,
 ) -> Loads:
     """The loads of a call of ``steady`` on the scene of a slope; errors as there."""
-    if np.ndim(scene.alpha):
+    if type(scene.alpha) is not float:
         raise ParameterError("alpha", f"an array of shape {np.shape(scene.alpha)}", "a single number")
     given = None if V is None else _given(force, torque, slope)
-    tangent, _ = slope_factor(slope)
-    f, q = _feedback("force", force), _feedback("torque", torque)
-    arrays = {"force": np.asarray(f.value), "torque": np.asarray(q.value), "slope": tangent}
-    arrays |= {name: np.asarray(getattr(scene, name)) for name in ("kappa", "mu", "j")}
+    tangent = slope_factor(slope)[0]
+    push, *of_force = _parts("force", force)
+    turn, *of_torque = _parts("torque", torque)
+    arrays = {"force": push, "torque": turn, "kappa": scene.kappa, "mu": scene.mu, "j": scene.j, "slope": tangent}
     if V is not None:
         arrays["V"] = checked("V", V)
-    shape = broadcast_shape(**arrays)
-    kappa = arrays["kappa"]
-    if V is not None:
-        _refuse_overflow(kappa, arrays["V"])
-
-    def flat(array: Any) -> NDArray[np.float64]:
-        return np.broadcast_to(array, shape).ravel()
-
-    return Loads(
-        shape, flat(arrays["force"] + tangent), flat(arrays["torque"]), Gains(f.V, f.omega, q.V, q.omega), given,
-        flat(kappa), flat(arrays["mu"]), flat(arrays["j"]), flat(arrays["V"]) if V is not None else None,
-    )  # fmt: skip
+        refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
+    shape = broadcast_shape(**{name: np.asarray(each) for name, each in arrays.items()})
+    arrays["force"] = push + arrays.pop("slope")
+    rows = np.empty((len(arrays), *(shape or (1,))))
+    for row, array in zip(rows, arrays.values(), strict=True):
+        row[...] = array
+    return Loads(shape, Gains(*of_force, *of_torque), given, *rows.reshape(len(arrays), math.prod(shape)))
 
 
-def _refuse_overflow(kappa: NDArray, V: NDArray) -> None:
-    with np.errstate(over="ignore"):
-        largest = (kappa * np.abs(V)).max(initial=0.0)
-    if largest > FASTEST:
-        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {FASTEST:g}")
-
-
-def _feedback(name: str, value: ArrayLike | Feedback | None) -> Feedback:
-    """Any load as one with gains."""
+def _parts(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
+    """(What acts at rest, its gains on V and omega)."""
     if not isinstance(value, Feedback):
-        return Feedback(checked(name, 0.0 if value is None else value))
+        return checked(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
         raise ParameterError(name, "a feedback on a schedule", "constant in time")
     if value.shape:
         raise ParameterError(name, f"a feedback with gains of shape {value.shape}", "one with numbers for gains")
-    return value
+    return value.value, value.V, value.omega
 
 
 def _given(force: ArrayLike | Feedback | None, torque: ArrayLike | Feedback | None, slope: ArrayLike | None) -> str:

@@ -2,57 +2,55 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..scale import DIMENSIONLESS, Scale
+from ..scale import Scale
 from .loads import Loads
 
 
-@dataclass(frozen=True, eq=False)
-class Reasons:
-    """What is needed to say why; vectors over the loads of a call.
+class Reasons(NamedTuple):
+    """What is needed to say why.
 
-    shape : of the call.  count : equilibria.  total : force + torque at rest.  traction, speed : of the state that asks
-    for the least friction, NaN where there is none.  mu : friction.  top : largest M, and its V; NaN with feedback.
-    elastic : whether nothing resists.  scale : in which it is said.
+    states : load, V and Q of all that were found, friction sufficing or not.  number : equilibria of each load.
+    top : largest kappa M, and its kappa V; NaN with feedback.  elastic : whether nothing resists.  scale : in which it
+    is said.
     """
 
-    shape: tuple[int, ...]
-    count: NDArray[np.int64]
-    total: NDArray[np.float64]
-    traction: NDArray[np.float64]
-    speed: NDArray[np.float64]
-    mu: NDArray[np.float64]
-    top: tuple[NDArray[np.float64], NDArray[np.float64]]
+    loads: Loads
+    states: tuple[NDArray, NDArray, NDArray]
+    number: NDArray[np.int64]
+    top: tuple[float, float]
     elastic: bool
-    scale: Scale = DIMENSIONLESS
+    scale: Scale
 
     def text(self) -> Any:
         """One string, or an array of them; empty where there is an equilibrium."""
-        found = [self._of(n) if self.count[n] == 0 else "" for n in range(self.count.size)]
-        return np.array(found, dtype=object).reshape(self.shape) if self.shape else found[0]
+        shape = self.loads.shape
+        found = [self._of(n) if self.number[n] == 0 else "" for n in range(self.number.size)]
+        return np.array(found, dtype=object).reshape(shape) if shape else found[0]
 
     def _of(self, n: int) -> str:
         name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
         if self.scale.si:
             name, moment, of_load, of_speed = "force + torque/R", "rolling moment over R", " N/m", " m/s"
-        load, speed = (np.broadcast_to(self.scale[of], self.shape).ravel()[n] for of in ("force", "V"))
-        total, needed, mu = self.total[n] * load, self.traction[n], self.mu[n]
-        if not np.isnan(needed):
-            at = f"at V = {self.speed[n] * speed:.6g}{of_speed}"
-            if abs(needed) == mu:
+        loads = self.loads
+        load, speed = (np.broadcast_to(self.scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
+        at_rest, mu, kappa = loads.force[n] + loads.torque[n], loads.mu[n], loads.kappa[n]
+        total, (of_state, asked) = at_rest * load, self._least(n)
+        if asked is not None:
+            at = f"at V = {of_state * speed:.6g}{of_speed}"
+            if abs(asked) == mu:
                 beyond = f"{at} any omega beyond the stick limit is steady"
-                return f"a continuum: Q = {needed:.6g} is all of the friction, and {beyond}"
-            return f"Q = {needed:.6g} is needed {at}, beyond the friction mu = {mu:.6g}"
+                return f"a continuum: Q = {asked:.6g} is all of the friction, and {beyond}"
+            return f"Q = {asked:.6g} is needed {at}, beyond the friction mu = {mu:.6g}"
         if self.elastic:
-            if self.total[n] == 0.0:
+            if at_rest == 0.0:
                 return "a continuum: elastic bodies roll without resistance, so that any V is steady"
             return f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without resistance"
-        M, V = (values[n] for values in self.top)
+        M, V = (value / kappa for value in self.top)
         if np.isnan(M):
             return f"{name} with its feedback, {total:.6g}{of_load} at rest, meets the rolling moment at no speed"
         return (
@@ -60,17 +58,11 @@ class Reasons:
             f" (at V = {V * speed:.6g}{of_speed})"
         )
 
-
-def reasons_of(loads: Loads, number: NDArray, states: Any, top: tuple[float, float], elastic: bool) -> Reasons:
-    """From the states that were found, friction sufficing or not.
-
-    number : equilibria of each load.  top : kappa M and kappa V at the largest M, NaN with feedback.
-    """
-    traction, speed = np.full(number.size, np.nan), np.full(number.size, np.nan)
-    without = np.flatnonzero(number[states.load] == 0)
-    asked = without[np.argsort(-np.abs(states.Q[without]), kind="stable")]  # the least is written last
-    traction[states.load[asked]], speed[states.load[asked]] = states.Q[asked], states.V[asked]
-    total = loads.force + loads.torque
-    return Reasons(
-        loads.shape, number, total, traction, speed, loads.mu, (top[0] / loads.kappa, top[1] / loads.kappa), elastic
-    )
+    def _least(self, n: int) -> tuple[float, float | None]:
+        """V and Q of the state that asks for the least friction; None without."""
+        own = self.states[0] == n
+        if not own.any():
+            return 0.0, None
+        V, Q = (each[own] for each in self.states[1:])
+        least = int(np.argmin(np.abs(Q)))
+        return float(V[least]), float(Q[least])

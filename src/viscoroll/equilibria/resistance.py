@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ..contact_table import states_of
 from ..errors import ParameterError
-from ..materials.law_table import LawTable, law_table
-from ..parameters import Parameters, Rolls, framed
+from ..materials.law_table import LawTable
+from ..parameters import Rolls, framed
 from .zeros import zeros
 
 #: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
@@ -52,29 +52,40 @@ class Branches:
     first: NDArray[np.int64]
     last: NDArray[np.int64]
 
-    @property
+    @cached_property
     def curve(self) -> Any:
         """The nodes as kernels take them."""
         from ..kernels.rows.steady import Curve
 
         return Curve(self.u, self.rise, self.flat, self.gain)
 
-    def crossed(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which loads meet this branch; an extremum, and loads next to it, belong to the branch that ends in it."""
+    @cached_property
+    def top(self) -> tuple[float, float]:
+        """The largest value, and kappa V there."""
+        n = int(np.argmax(self.rise))
+        return float(self.rise[n]), float(self.u[n])
+
+    def met(self, load: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """(Which loads meet a branch, the node behind which they do).
+
+        An extremum, and loads next to it, belong to the branch that ends in it.
+        """
         from ..kernels.rows.steady import SNAP
 
-        first, last = self.rise[self.first[branch]], self.rise[self.last[branch]]
-        inside = (load > min(first, last)) & (load < max(first, last))
-        if self.flat[self.first[branch]]:
-            inside &= np.abs(load - first) > SNAP * np.abs(load)
-        return inside | (np.abs(load - last) <= SNAP * np.abs(load)) if self.flat[self.last[branch]] else inside
-
-    def nodes(self, branch: int, load: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The node of this branch behind which it meets each load."""
-        first, last = self.first[branch], self.last[branch]
-        rise = self.rise[first : last + 1]
-        at = np.searchsorted(rise, load, "right") if rise[-1] > rise[0] else np.searchsorted(-rise, -load)
-        return np.asarray(first + np.clip(at - 1, 0, last - first - 1))
+        which, nodes, near = [], [], SNAP * np.abs(load)
+        for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
+            rise = self.rise[first : last + 1]
+            rises = rise[-1] > rise[0]
+            low, high = (rise[0], rise[-1]) if rises else (rise[-1], rise[0])
+            inside = (load > low) & (load < high)
+            if self.flat[first]:
+                inside &= np.abs(load - rise[0]) > near
+            if self.flat[last]:
+                inside |= np.abs(load - rise[-1]) <= near
+            which.append(of := inside.nonzero()[0])
+            at = rise.searchsorted(load[of], "right") if rises else (-rise).searchsorted(-load[of])
+            nodes.append(first + np.minimum(np.maximum(at - 1, 0), last - first - 1))
+        return np.concatenate(which), np.concatenate(nodes)
 
 
 def humps(roller: Rolls) -> Humps:
@@ -101,22 +112,17 @@ def humps(roller: Rolls) -> Humps:
     -----
     M is good to 1e-14, V to 1e-11 (``tests/test_steady.py``).
     """
-    scene, scale = framed(roller, "humps")
+    _, scene, scale = framed(roller, "humps")
     for name in ("alpha", "kappa"):
         if np.ndim(getattr(scene, name)):
             raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")
-    law = law_of(scene)
+    law = scene.table
+    assert law is not None
     if law.alpha == 1.0:
         return Humps(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
     V, M = found.u[found.flat] / scene.kappa, found.rise[found.flat] / scene.kappa
     return Humps(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
-
-
-def law_of(scene: Parameters) -> LawTable:
-    """The law of one material or pair."""
-    given: Any = scene.alpha if scene.material is None else scene.material
-    return scene.table or law_table(given)
 
 
 @lru_cache(maxsize=16)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,7 @@ from ..results import Row, Shown, short, unit_of
 from ..scale import DIMENSIONLESS, DIMENSIONS, Scale
 from ..symbols import attributes
 from . import row
-from .loads import Loads
+from .loads import Gains, Loads
 from .reason import Reasons
 
 if TYPE_CHECKING:
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 
 _FIELDS = (
-    "V", "omega", "delta", "Q", "M", "M_half_space", "M_cylinder", "beta", "grip", "force", "torque",
+    "V", "delta", "Q", "M_half_space", "M_cylinder", "beta", "omega", "M", "grip", "force", "torque",
 )  # fmt: skip
 
 
@@ -78,39 +80,45 @@ class Steady(Shown):
     eigenvalues: NDArray[np.complex128]
     force: NDArray[np.float64]
     torque: NDArray[np.float64]
-    loss: Loss
     count: Any
     reasons: Reasons
     scale: Scale = DIMENSIONLESS
     #: of the loads, where they came as arrays of xarray or pandas: all above but ``reasons`` have them then
     labels: Labels | None = None
 
-    def scaled(self, scale: Scale) -> Steady:
-        """The same in these units."""
-
-        def of(name: str, value: Any, behind: int = 1) -> Any:
-            """Units of loads, beside the axes of equilibria."""
-            unit = np.asarray(scale[name])
-            return value * (unit.reshape(unit.shape + (1,) * behind) if unit.ndim else unit)
-
-        found = {name: of(name, getattr(self, name)) for name in _FIELDS if name in DIMENSIONS}
-        powers = {name: of(f"loss_{name}", getattr(self.loss, name)) for name in ("slip", "half_space", "cylinder")}
-        rates = of("rate_fast", self.eigenvalues, 2)
-        return replace(
-            self, **found, eigenvalues=rates, loss=replace(self.loss, **powers), scale=scale,
-            reasons=replace(self.reasons, scale=scale),
-        )  # fmt: skip
+    def keys(self) -> Iterable[str]:
+        return [*super().keys(), "loss", "reason"]
 
     def labelled(self, labels: Labels | None) -> Steady:
         """The same with the labels of its loads."""
         if labels is None or labels.shape != np.shape(self.count):
             return self
-        names = (*_FIELDS, "stable")
-        found = {name: labels.of(name, getattr(self, name), "equilibrium") for name in names}
+        found = {name: labels.of(name, getattr(self, name), "equilibrium") for name in (*_FIELDS, "stable")}
         found["eigenvalues"] = labels.of("eigenvalues", self.eigenvalues, "equilibrium", "rate")
-        found["count"] = labels.of("count", self.count)
-        loss = Loss(*(labels.of(f.name, getattr(self.loss, f.name), "equilibrium") for f in fields(Loss)))
-        return replace(self, **found, loss=loss, labels=labels)
+        return replace(self, **found, count=labels.of("count", self.count), labels=labels)
+
+    @cached_property
+    def loss(self) -> Loss:
+        """Powers, coefficient of rolling resistance, efficiency."""
+        V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
+            np.asarray(getattr(self, name)) for name in _FIELDS
+        )
+        R, P = (behind(self.scale[name]) for name in ("R", "P"))
+        moving = V != 0.0
+        slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
+        half_space, cylinder = V * M_half_space / R, omega * M_cylinder
+        whole, speed = slip + half_space + cylinder, np.where(moving, np.abs(V), 1.0)
+        with np.errstate(invalid="ignore"):
+            coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
+        by_force, by_torque = force * V, torque * omega
+        taken = np.maximum(-by_force, 0.0) + np.maximum(-by_torque, 0.0)
+        put_in = np.maximum(by_force, 0.0) + np.maximum(by_torque, 0.0)
+        efficiency = np.divide(taken, put_in, out=np.full(V.shape, np.nan), where=put_in > 0.0)
+        found = slip, half_space, cylinder, coefficient, efficiency
+        if self.labels is None:
+            return Loss(*found)
+        names = (field.name for field in fields(Loss))
+        return Loss(*(self.labels.of(*each, "equilibrium") for each in zip(names, found, strict=True)))
 
     @property
     def reason(self) -> Any:
@@ -164,32 +172,28 @@ class Steady(Shown):
         return xr.Dataset(data, apart, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
 
 
-@dataclass(frozen=True)
-class States:
-    """Steady states one after another: which load each belongs to, and what was found; speeds in R/T_ref.
+def behind(unit: Any) -> Any:
+    """A unit of each load, as of all its equilibria."""
+    return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
+
+
+class States(NamedTuple):
+    """Steady states one after another: which load each belongs to, and the rows of :mod:`row`; speeds in R/T_ref.
 
     Where friction does not suffice, delta and omega are NaN.
     """
 
     load: NDArray[np.int64]
-    V: NDArray[np.float64]
-    omega: NDArray[np.float64]
-    delta: NDArray[np.float64]
-    Q: NDArray[np.float64]
-    M_half_space: NDArray[np.float64]
-    M_cylinder: NDArray[np.float64]
-    beta: NDArray[np.float64]
-    eigenvalues: NDArray[np.complex128]
+    rows: NDArray[np.float64]
 
     @classmethod
-    def of(cls, loads: Loads, load: NDArray, sign: NDArray, rows: NDArray) -> States:
-        """From the rows of :mod:`row`."""
-        slopes = rows[[row.DQ_DV, row.DQ_DOMEGA, row.DM_HALF_SPACE, row.DM_CYLINDER]]
-        V, delta = sign * rows[row.V], rows[row.DELTA]
-        return cls(
-            load, V, V * (1.0 + delta), delta, sign * rows[row.Q], sign * rows[row.M_HALF_SPACE],
-            sign * rows[row.M_CYLINDER], rows[row.BETA], _eigenvalues(slopes, loads, loads.j[load]),
-        )  # fmt: skip
+    def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
+        """From rows with answers."""
+        rows = answers.copy()
+        rows[[row.V, row.Q, row.M_HALF_SPACE, row.M_CYLINDER]] *= sign
+        rows[row.OMEGA] = rows[row.V] * (1.0 + rows[row.DELTA])
+        rows[row.FAST :] = _eigenvalues(answers[row.DQ_DV :], loads.gains, loads.j[load])
+        return cls(load, rows)
 
     @classmethod
     def at_rest(cls, loads: Loads, load: NDArray, T_mean: float) -> States:
@@ -197,45 +201,36 @@ class States:
         Q, kappa, mu, j = (values[load] for values in (loads.torque, loads.kappa, loads.mu, loads.j))
         if loads.given == "force":
             Q = -loads.force[load]
-        part = np.abs(Q) / mu
-        beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
+        part, rows = np.abs(Q) / mu, np.zeros((row.IMAGINARY + 1, load.size))
+        rows[row.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         delta = 0.5 * mu / kappa * part / (1.0 + beta)
-        gains, slow = loads.gains, np.full(load.size, -np.inf)
+        rows[row.OMEGA], rows[row.DELTA], rows[row.Q] = 0.0 * beta, np.sign(Q) * delta, Q
+        rows[row.FAST] = rows[row.SLOW] = -np.inf
+        gains = loads.gains
         for creep in (delta, -delta):  # to either side omega = V (1 + delta) or V (1 - delta)
             rate = T_mean - gains.V - (gains.force_omega + gains.torque_omega) * (1.0 + creep)
-            slow = np.maximum(slow, -rate / (1.0 + j * (1.0 + creep)))
-        zero = np.zeros(load.size)
-        eigenvalues = np.stack([np.full(load.size, -np.inf), slow], axis=-1).astype(np.complex128)
-        return cls(load, zero, 0.0 * beta, np.sign(Q) * delta, Q, zero, zero, beta, eigenvalues)
+            rows[row.SLOW] = np.maximum(rows[row.SLOW], -rate / (1.0 + j * (1.0 + creep)))
+        return cls(load, rows)
 
     @classmethod
     def none(cls) -> States:
         """No state."""
-        empty = np.empty(0)
-        return cls(
-            np.empty(0, np.int64), empty, empty, empty, empty, empty, empty, empty, np.empty((0, 2), np.complex128)
-        )
+        return cls(np.empty(0, np.int64), np.empty((row.IMAGINARY + 1, 0)))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
         """All of them, one after another."""
-        return cls(*(np.concatenate(values) for values in zip(*(part._values() for part in parts), strict=True)))
+        return cls(np.concatenate([each.load for each in parts]), np.concatenate([each.rows for each in parts], axis=1))
 
     def held(self) -> States:
         """Those that friction holds, by load and rising |V|."""
-        held = np.flatnonzero(np.isfinite(self.omega))
-        held = held[np.lexsort((np.abs(self.V[held]), self.load[held]))]
-        return States(*(values[held] for values in self._values()))
-
-    def _values(self) -> tuple[NDArray, ...]:
-        return (
-            self.load, self.V, self.omega, self.delta, self.Q, self.M_half_space, self.M_cylinder, self.beta,
-            self.eigenvalues,
-        )  # fmt: skip
+        held = np.isfinite(self.rows[row.OMEGA]).nonzero()[0]
+        held = held[np.lexsort((np.abs(self.rows[row.V, held]), self.load[held]))]
+        return States(self.load[held], self.rows[:, held])
 
 
-def _eigenvalues(slopes: NDArray, loads: Loads, j: NDArray) -> NDArray[np.complex128]:
-    """Of (V, omega) over gamma t, the faster first.
+def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> NDArray[np.float64]:
+    """Of (V, omega) over gamma t: real parts of the faster and of the other, and the imaginary part of the other.
 
     slopes : a, b of Q over V and omega, then those of both moments over V.
 
@@ -243,7 +238,6 @@ def _eigenvalues(slopes: NDArray, loads: Loads, j: NDArray) -> NDArray[np.comple
     on omega.
     """
     a, b, d_half_space, d_cylinder = slopes
-    gains = loads.gains
     with np.errstate(invalid="ignore"):
         det = b * (d_half_space + d_cylinder - gains.V)
         det += gains.torque_omega * (a - d_half_space + gains.force_V)
@@ -252,62 +246,43 @@ def _eigenvalues(slopes: NDArray, loads: Loads, j: NDArray) -> NDArray[np.comple
         spread = half * half - det
         root = np.sqrt(np.abs(spread))
         larger = half + np.copysign(root, half)
-        other = np.divide(det, larger, out=np.zeros_like(det), where=larger != 0.0)
+        other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
         real = spread >= 0.0
-        first = np.where(real, np.minimum(larger, other), half) - 1j * np.where(real, 0.0, root)
-        second = np.where(real, np.maximum(larger, other), half) + 1j * np.where(real, 0.0, root)
-    return np.stack([first, second], axis=-1)
+        return np.array([
+            np.where(real, np.minimum(larger, other), half), np.where(real, np.maximum(larger, other), half),
+            np.where(real, 0.0, root),
+        ])  # fmt: skip
 
 
-def packed(loads: Loads, states: States, count: NDArray, reasons: Reasons) -> Steady:
-    """States in order as arrays over loads and equilibria."""
-    number = states.load
-    place = np.arange(number.size) - (np.cumsum(count) - count)[number]
-    most = int(count.max(initial=0))
-    shape = (*loads.shape, most)
-    at = number * most + place
-
-    def spread(values: NDArray, empty: Any = np.nan) -> NDArray:
-        out = np.full((loads.mu.size * most, *values.shape[1:]), empty, dtype=values.dtype)
-        out[at] = values
-        return out.reshape(shape + values.shape[1:])
-
-    V, omega, Q = states.V, states.omega, states.Q
-    M = states.M_half_space + states.M_cylinder
-    force, torque = _acting(loads, states)
-    loss = Loss(*map(spread, _losses(states, force * V, torque * omega)))
-    stable = np.all(states.eigenvalues.real < 0.0, axis=-1)
-    grip = 1.0 - np.abs(Q) / loads.mu[number]
-    return Steady(
-        V=spread(V), omega=spread(omega), delta=spread(states.delta), Q=spread(Q), M=spread(M),
-        M_half_space=spread(states.M_half_space), M_cylinder=spread(states.M_cylinder), beta=spread(states.beta),
-        grip=spread(grip), stable=spread(stable, False), eigenvalues=spread(states.eigenvalues), force=spread(force),
-        torque=spread(torque), loss=loss, count=count.reshape(loads.shape) if loads.shape else int(count[0]),
-        reasons=reasons,
-    )  # fmt: skip
-
-
-def _losses(states: States, by_force: NDArray, by_torque: NDArray) -> tuple[NDArray, ...]:
-    """What :class:`Loss` holds, from the powers put in by force and torque."""
-    V, omega, Q, delta = states.V, states.omega, states.Q, states.delta
-    moving = V != 0.0
-    slip = np.where(moving, V, omega) * np.where(moving, delta, 1.0) * Q
-    half_space, cylinder = V * states.M_half_space, omega * states.M_cylinder
-    speed = np.where(moving, np.abs(V), 1.0)
-    coefficient = np.where(moving, (slip + half_space + cylinder) / speed, np.abs(Q * delta))
-    taken = np.maximum(-by_force, 0.0) + np.maximum(-by_torque, 0.0)
-    put_in = np.maximum(by_force, 0.0) + np.maximum(by_torque, 0.0)
-    efficiency = np.divide(taken, put_in, out=np.full(V.size, np.nan), where=put_in > 0.0)
-    return slip, half_space, cylinder, coefficient, efficiency
-
-
-def _acting(loads: Loads, states: States) -> tuple[NDArray, NDArray]:
-    """Force and torque of each state."""
-    gains, V, omega = loads.gains, states.V, states.omega
-    force = loads.force[states.load] + gains.force_V * V + gains.force_omega * omega
-    torque = loads.torque[states.load] + gains.torque_V * V + gains.torque_omega * omega
+def packed(loads: Loads, states: States, reasons: Reasons, scale: Scale) -> Steady:
+    """States in order as arrays over loads and equilibria, in these units."""
+    number, count, gains = states.load, reasons.number, loads.gains
+    V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows
+    force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
+    torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
     if loads.given == "torque":
-        force = states.M_half_space - states.Q
+        force = M_half_space - Q
     elif loads.given == "force":
-        torque = states.M_cylinder + states.Q
-    return force, torque
+        torque = M_cylinder + Q
+    grip = 1.0 - np.abs(Q) / loads.mu[number]
+    more = np.array([M_half_space + M_cylinder, grip, force, torque, fast, slow, imaginary])
+    rows = np.concatenate([states.rows[: row.FAST], more])
+    most = int(count.max(initial=0))
+    if most * count.size > number.size:  # some have fewer
+        place = np.arange(number.size) - (np.cumsum(count) - count)[number]
+        padded = np.full((len(rows), count.size * most), np.nan)
+        padded[:, number * most + place] = rows
+        rows = padded
+    rows = rows.reshape(len(rows), *loads.shape, most)
+    found: dict[str, Any] = {
+        name: values * behind(scale[name]) if name in DIMENSIONS else values
+        for name, values in zip(_FIELDS, rows, strict=False)
+    }
+    fast, slow, imaginary = rows[-3:] * behind(scale["rate_fast"])
+    eigenvalues = np.empty((*fast.shape, 2), np.complex128)
+    eigenvalues.real[..., 0], eigenvalues.real[..., 1] = fast, slow
+    eigenvalues.imag[..., 0], eigenvalues.imag[..., 1] = -imaginary, imaginary
+    return Steady(
+        **found, stable=(fast < 0.0) & (slow < 0.0), eigenvalues=eigenvalues,
+        count=count.reshape(loads.shape) if loads.shape else int(count[0]), reasons=reasons, scale=scale,
+    )  # fmt: skip

@@ -17,9 +17,10 @@ from ..labels import unlabelled
 from ..materials.law_table import LawTable
 from ..parameters import Rolls, framed
 from ..typed import Numbers
+from . import row
 from .loads import Loads, loads_of
-from .reason import reasons_of
-from .resistance import LEAST_LOAD, MOST_LOAD, branches, law_of
+from .reason import Reasons
+from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import States, Steady, packed
 from .scan import scanned
 from .solve import crossings, states_at
@@ -76,13 +77,13 @@ def steady(
     Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
     to that over ``grip`` (``tests/test_steady.py``).
     """
-    framed(roller, "steady")
     plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
     slope = plain["slope"]
-    scene, scale = framed(roller if slope is None else roller.tilted(slope), "steady")
+    roller, scene, scale = framed(roller, "steady", slope=slope)
     force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
     loads = loads_of(scene, force, torque, slope, V)
-    law = law_of(scene)
+    law = scene.table
+    assert law is not None  # loads_of refuses many
     elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
     if loads.given is not None:
@@ -92,30 +93,24 @@ def steady(
     else:
         rolling = _under_load(law, loads)
     neutral = elastic and loads.given is None and not gained
-    states = States.joined(rolling, States.at_rest(loads, _resting(loads, neutral), law.T_mean))
-    held = states.held()
-    number = np.bincount(held.load, minlength=loads.mu.size)
-    top = (math.nan, math.nan) if gained or elastic else _top(law)
-    found = packed(loads, held, number, reasons_of(loads, number, states, top, neutral))
-    if scale.si:
-        found = found.scaled(scale)
-        roller.look(found.V)
+    resting = _resting(loads, neutral)
+    if resting.size:
+        rolling = States.joined(rolling, States.at_rest(loads, resting, law.T_mean))
+    held = rolling.held()
+    count = np.bincount(held.load, minlength=loads.mu.size)
+    top = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).top
+    states = rolling.load, rolling.rows[row.V], rolling.rows[row.Q]
+    found = packed(loads, held, Reasons(loads, states, count, top, neutral, scale), scale)
+    roller.look(found.V)
     return found.labelled(labels)
 
 
 def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:
     """Loads that leave the cylinder at rest, if friction does; where ``neutral`` it need not be at rest under them."""
     if loads.V is not None:
-        return np.flatnonzero(loads.V == 0.0)
-    total = loads.force + loads.torque
-    return np.flatnonzero((total == 0.0) & ((np.abs(loads.torque) > loads.mu) | (not neutral)))
-
-
-def _top(law: LawTable) -> tuple[float, float]:
-    """The largest kappa M, and kappa V there."""
-    found = branches(law, 0.0)
-    n = int(np.argmax(found.rise))
-    return float(found.rise[n]), float(found.u[n])
+        return (loads.V == 0.0).nonzero()[0]
+    rests = loads.force + loads.torque == 0.0
+    return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
 def _under_load(law: LawTable, loads: Loads) -> States:

@@ -12,7 +12,6 @@ the sum fixes V, and R is an equation in omega.  All here is in a frame where V 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -100,8 +99,8 @@ def _on_the_spot(law: LawTable, loads: Loads, n: int) -> list[States]:
     case = _Case(law, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, loads.kappa[n], loads.mu[n])
     slowest = case.rows(np.exp2(grid(law)[:1]) / case.kappa, np.ones(1))
     spinning = States.of(loads, np.array([n]), np.array([side]), slowest)
-    zero, speed, creep = np.zeros(1), np.array([omega]), np.array([math.inf])
-    return [replace(spinning, V=zero, omega=speed, delta=creep, M_half_space=zero, M_cylinder=zero)]
+    spinning.rows[[row.V, row.DELTA, row.M_HALF_SPACE, row.M_CYLINDER, row.OMEGA], 0] = 0.0, math.inf, 0.0, 0.0, omega
+    return [spinning]
 
 
 def _over_V(case: _Case) -> tuple[NDArray, NDArray]:

@@ -23,18 +23,19 @@ _BLOCK = 1 << 12
 #: |Q|/mu up to which delta is first taken from its slope at 0, and up to which a step of Newton's iteration makes it
 #: exact: the difference cancels
 _SLIGHT, _CANCELS = 1e-8, 0.2
+#: what :mod:`row` has of the contact
+_ROWS = "Q", "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV"
 
 
 def contact_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> NDArray[np.float64]:
     """Fields of the contact, a row each."""
-    given = [np.asarray(value, dtype=np.float64) for value in (1.0, kappa, mu, V, delta)]
-    return states_of(law, given, V.shape, False, names)
+    return states_of(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
 
 def rows_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> NDArray[np.float64]:
     """The rows of :mod:`row` at V > 0 and a creep."""
-    moments = "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV"
-    rows = np.stack([V, delta, *contact_at(law, kappa, mu, V, delta, "Q", *moments)])
+    rows = np.empty((2 + len(_ROWS), V.size))
+    rows[row.V], rows[row.DELTA], rows[2:] = V, delta, contact_at(law, kappa, mu, V, delta, *_ROWS)
     rows[row.DQ_DV] -= rows[row.DQ_DOMEGA] * (1.0 + delta)
     return rows
 
@@ -44,19 +45,15 @@ def crossings(law: LawTable, gain: float, total: NDArray[np.float64]) -> tuple[N
     from ..kernels.rows.steady import crossing_loop
 
     found = branches(law, gain)
-    pairs = []
-    for sign in (1.0, -1.0):
-        for branch in range(found.first.size):
-            of = np.flatnonzero(found.crossed(branch, sign * total))
-            pairs.append((of, np.full(of.size, sign), found.nodes(branch, sign * total[of])))
-    load, sign_of, node = (np.concatenate(each) for each in zip(*pairs, strict=True))
-    met, curve, u = sign_of * total[load], found.curve, np.empty(load.size)
+    signed = np.concatenate([total, -total])
+    which, node = found.met(signed)
+    met, curve, u = signed[which], found.curve, np.empty(which.size)
 
     def work(start: int, stop: int) -> None:
         crossing_loop(law.record, curve, met, node, u, start, stop)
 
-    run_blocks(work, load.size, _BLOCK)
-    return load, sign_of, u
+    run_blocks(work, which.size, _BLOCK)
+    return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 
 
 def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: NDArray[np.float64]) -> States:

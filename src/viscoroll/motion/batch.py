@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import flattened, run_blocks
+from ..blocks import flattened, run_blocks, thread_count
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback, Schedule, over
 from ..errors import MotionStatus, ParameterError, unknown
@@ -17,13 +17,12 @@ from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
 from ..materials.prony_array import MaterialArray
 from ..parameters import PARAMETERS, Parameters, Rolls, framed
+from ..scale import OF_TIME
 from ..typed import Numbers
 from .checks import SPEED_RANGE, controls, in_words, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
-from .each import to_unit
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
-from .rolling import law_of
 from .unsteady import climbed, refuse_unlike, time_of_rest
 from .warned import look
 
@@ -43,8 +42,8 @@ def ensemble(
     omega0: Numbers | None,
     t: Numbers,
     *,
-    force: Course | Feedback = 0.0,
-    torque: Course | Feedback = 0.0,
+    force: Course | Feedback | None = None,
+    torque: Course | Feedback | None = None,
     slope: Numbers | None = None,
     brake: Course | None = None,
     omega: Course | None = None,
@@ -110,57 +109,62 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    framed(roller, "ensemble", moves=True)
     times, names = output_times(t), _names(fields)
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
-    starts, drive, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
-    roller = roller.tilted(drive.slope) if "slope" in drive.given else roller
-    scene, scale = framed(roller, "ensemble")
+    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
+    numbers, drive = given.numbers, given.acting
+    roller, scene, scale = framed(roller, "ensemble", moves=True, slope=drive.slope)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    own = [over(name, start, scale) for name, start in zip(("V0", "omega0"), starts, strict=True)]
     roller.look_at_starts(*starts)
     try:
         limits = controls(rtol, over("rest", rest, scale), max_steps)
-        ready = prepared(drive.over(scale), own[0], own[1], float(times[-1] / scale["t"]), rtol)
+        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
+        ready = prepared(drive.over(scale), *own, float(times[-1] / scale["t"]), rtol)
         refuse_rest(limits[1], ready)
-        refuse_unlike(scene, unsteady)
+        if unsteady:
+            refuse_unlike(scene)
         ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
-        begun = start_speeds(ready.V0, ready.omega0)
-        ready = ready._replace(V0=begun[0], omega0=begun[1])
-        bar = "motions" if progress else None
-        many = _Many(scene, ready, caught, drive, unsteady, times / scale["t"], limits, names, threads, bar)
+        inputs, count = _inputs(scene, numbers, ready)
+        many = _Many(
+            scene, inputs, np.broadcast_to(caught, (count,)), ready, drive.acts, unsteady, times / scale["t"], limits,
+            names, thread_count(threads), "motions" if progress else None,
+        )  # fmt: skip
         answer, found = _answer(many, method, over("speed", speed, scale))
     except ParameterError as error:
         raise in_words(error, scale) from error
-    count, rows = answer.status.size, dict(zip(many.rows, answer.out, strict=True))
+    rows: dict[str, Any] = {name: np.zeros((count, times.size)) for name in names}
+    rows |= dict(zip(many.rows, answer.out, strict=True))
+    notes: dict[str, Any] = {
+        "onset_time": answer.onset,
+        "rest_time": answer.rest,
+        "V0": inputs["V0"],
+        "omega0": inputs["omega0"],
+    }
     if scale.si:
         for name, row in rows.items():
             np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
-        answer = answer._replace(onset=answer.onset * scale["t"], rest=answer.rest * scale["t"])
-    kept: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names} | rows
-    V0, omega0 = (
-        np.broadcast_to(start * scale[name] if scale.si else start, (count,))
-        for name, start in zip(("V0", "omega0"), begun, strict=True)
-    )
-    result = Ensemble(
-        roller, V0, omega0, times, **kept, onset_time=answer.onset, rest_time=answer.rest,
-        status=answer.status, switches=answer.switches, **found, drive_error=ready.error, drive=drive, labels=labels,
-    )  # fmt: skip
-    if scale.si:
-        roller.look(V0)
-        roller.look(result.V)
+        notes = {name: each * scale[name] for name, each in notes.items()}
+    notes = {name: np.broadcast_to(each, (count,)) for name, each in notes.items()}
+    notes |= {"status": answer.status, "switches": answer.switches, "drive_error": ready.error} | found
+    kept: dict[str, Any] = dict.fromkeys(FIELDS) | rows | notes
+    result = Ensemble(roller=roller, t=times, drive=drive, labels=labels, **kept)
+    roller.look(result.V)
     return result
 
 
 class _Many(NamedTuple):
-    """Motions to be rolled, without dimension; ``caught``: those that a rest keeps."""
+    """Motions to be rolled, without dimension.
+
+    inputs : parameters and start speeds, one for all or one a motion.  caught : those that a rest keeps.
+    """
 
     scene: Parameters
-    ready: Prepared
+    inputs: dict[str, NDArray]
     caught: NDArray[np.bool_]
-    drive: Drive
+    ready: Prepared
+    driven: bool
     unsteady: bool
     times: NDArray[np.float64]
     limits: tuple[float, float, int]
@@ -171,20 +175,19 @@ class _Many(NamedTuple):
     @property
     def rows(self) -> tuple[str, ...]:
         """What is computed: without a drive nothing acts."""
-        return self.names if self.drive.acts else tuple(name for name in self.names if name not in ACTING)
+        return self.names if self.driven else tuple(name for name in self.names if name not in ACTING)
 
 
 def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict[str, Any]]:
     """The motions, and by what they were found."""
     scene, rows, (rtol, threshold, _), times = many.scene, many.rows, many.limits, many.times
-    mapped = not (many.drive.acts or scene.shape or many.unsteady) and scene.like_bodies
+    mapped = not (many.driven or scene.shape or many.unsteady) and scene.like_bodies
     if method == "flow" and not mapped:
-        alike = many.drive.acts or many.unsteady or not scene.like_bodies
+        alike = many.driven or many.unsteady or not scene.like_bodies
         what = "motions are driven or unsteady, or bodies differ" if alike else "motions have scenes of their own"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    arrays, count = _inputs(scene, many.drive, many.ready)
-    look(scene, arrays["V0"], arrays["omega0"], driven=many.drive.acts or many.unsteady)
-    flat = [flattened(array, (count,)) for array in arrays.values()]
+    look(scene, many.inputs["V0"], many.inputs["omega0"], driven=many.driven or many.unsteady)
+    flat, count = [*many.inputs.values()], many.caught.size
     answer, chosen, error = None, None, np.nan
     unit = scene.in_own_time()[1] if mapped else 1.0
     own = flat if unit == 1.0 else [*flat[:5], flat[5] * unit, flat[6] * unit]  # no copy of 10^8 for nothing
@@ -197,14 +200,15 @@ def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict
             given = float(flat[3][0]) * unit * unit, threshold * unit, own[5], own[6], times / unit
             answer = ask(chosen, *given, of, threads=many.threads, progress=many.bar)
             if unit != 1.0:
-                to_unit(answer.out, rows, unit)
+                for n, name in enumerate(rows):
+                    answer.out[n] *= unit ** OF_TIME.get(name, 0)
                 answer = answer._replace(onset=answer.onset * unit, rest=answer.rest * unit)
     if answer is None:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
     if many.caught.any():
-        _keep_caught(answer, np.broadcast_to(many.caught, (count,)))
-    steps = _integrate_others(answer, flat, many)
+        _keep_caught(answer, many.caught)
+    steps = _integrate_others(answer, many)
     problem = "" if chosen is None else chosen.problem
     return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": problem}
 
@@ -223,16 +227,16 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
     return names
 
 
-def _inputs(scene: Parameters, drive: Drive, ready: Prepared) -> tuple[dict[str, NDArray], int]:
-    """(Parameters and start speeds, how many motions they make)."""
+def _inputs(scene: Parameters, drives: dict[str, NDArray], ready: Prepared) -> tuple[dict[str, NDArray], int]:
+    """(Parameters and start speeds, how many motions they and the ``drives`` make)."""
     arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
-    arrays |= {"V0": ready.V0, "omega0": ready.omega0}
-    counts = {"drive": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
-    drives = drive.numbers | {name: np.zeros(count) for name, count in counts.items() if count > 1}
-    shape = broadcast_shape(**arrays, **{name: each for name, each in drives.items() if name not in arrays})
+    arrays |= zip(("V0", "omega0"), map(np.asarray, start_speeds(ready.V0, ready.omega0)), strict=True)
+    counts = {"pieces": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
+    shape = broadcast_shape(**arrays, **drives, **{name: np.zeros(n) for name, n in counts.items() if n > 1})
     if len(shape) > 1:
         raise ParameterError("V0, omega0", f"arrays of shape {shape}", "scalars or vectors (n,)")
-    return arrays, shape[0] if shape else 1
+    count = shape[0] if shape else 1
+    return {name: flattened(array, (count,)) for name, array in arrays.items()}, count
 
 
 def _map_of(
@@ -246,7 +250,7 @@ def _map_of(
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
-def _integrate_others(answer: Answer, flat: list[NDArray], many: _Many) -> NDArray[np.int64]:
+def _integrate_others(answer: Answer, many: _Many) -> NDArray[np.int64]:
     """Integrate the motions without an answer; returns the steps of each."""
     law, names, times = _law_of(many.scene, many.unsteady), many.rows, many.times
     steps, rows = np.zeros(answer.status.size, dtype=np.int64), np.array([ROWS.index(name) for name in names], np.int64)
@@ -257,7 +261,8 @@ def _integrate_others(answer: Answer, flat: list[NDArray], many: _Many) -> NDArr
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
-        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in flat)
+        parts = many.inputs.values()
+        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in parts)
         out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
         batch, notes = (*law(alpha, left), *inputs), (np.empty((0, 2)), np.empty(0))
         motion_loop(batch, many.ready.for_kernel(left), times, many.limits, rows, out, info, notes)
@@ -277,7 +282,7 @@ def _many_materials(scene: Parameters) -> bool:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, bool]]:
     """(alphas of motions, which they are) -> the law that they share, or that of each in turn; whether bodies
     differ.  ``unsteady``: of one motion, with N."""
-    material = scene.in_own_time()[0]
+    material: Any = scene.each
 
     def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
         found = law_of_materials(material, np.minimum(which, len(material) - 1))
@@ -290,11 +295,11 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.
 
     if unsteady and _many_materials(scene):
         return own
-    if isinstance(material, MaterialArray):
+    if material is not None:
         return each
     if scene.material is None and np.ndim(scene.alpha):
         return lambda alpha, which: (law_of_alphas(alpha), False)
-    one = law_of(scene)
+    one: Any = scene.table
     return lambda alpha, which: (one.unsteady_record if unsteady else one.record, one.unlike)
 
 

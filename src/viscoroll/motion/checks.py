@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import broadcast_shape, checked, extent
+from ..checks import broadcast_shape, checked, extent, number
 from ..errors import ParameterError
 from ..scale import Scale
 
@@ -23,22 +25,23 @@ def output_times(t: ArrayLike) -> NDArray[np.float64]:
     ParameterError
         Otherwise.
     """
-    times = np.atleast_1d(checked("t", t, low=0.0)).copy()  # contiguous, and the result's own
+    times = np.array(checked("t", t, low=0.0), ndmin=1)  # contiguous, and the result's own
     if times.ndim != 1 or times.size == 0:
         raise ParameterError("t", f"array of shape {times.shape}", "one end time or a vector of output times")
-    backward = np.flatnonzero(np.diff(times) < 0.0)
-    if backward.size:
-        at = backward[0]
+    backward = times[1:] < times[:-1]
+    if backward.any():
+        at = int(np.argmax(backward))
         place = f"{times[at]:.6g}, {times[at + 1]:.6g} at rows {at}, {at + 1}"
         raise ParameterError("t", place, "in ascending order")
     return times
 
 
-def refuse_many(name: str, shape: tuple[int, ...]) -> None:
+def refuse_many(**given: Any) -> None:
     """Raise ParameterError for an array where roll wants one number."""
-    if shape:
-        sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
-        raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
+    for name, each in given.items():
+        if type(each) is not float and (shape := np.shape(each)):
+            sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
+            raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
 
 
 def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, float, int]:
@@ -50,17 +53,15 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
         rtol outside [1e-12, 1e-2], rest not positive, max_steps outside [1, 10^7].
     """
     low, high = RTOL_RANGE
-    asked = checked("rtol", rtol)
-    if asked.ndim or not low <= asked <= high:
+    if not low <= number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    if rest is not None and checked("rest", rest, low=0.0, strict=True).ndim:
-        raise ParameterError("rest", rest, "one positive number, or None")
     if not (isinstance(max_steps, (int, np.integer)) and 1 <= max_steps <= MOST_STEPS):
         raise ParameterError("max_steps", max_steps, f"a whole number >= 1, <= {MOST_STEPS}")
-    return float(rtol), 0.0 if rest is None else float(rest), int(max_steps)
+    threshold = 0.0 if rest is None else number("rest", rest, low=0.0, strict=True)
+    return float(rtol), threshold, int(max_steps)
 
 
-def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     """Start velocities: finite, no more than 1e100, and the larger of the two 0 or no less than 1e-300.
 
     Beyond, intermediate results leave the range of doubles.
@@ -70,6 +71,8 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[NDArray[np.float64],
     ParameterError
         Otherwise.
     """
+    if type(V0) is type(omega0) is float and SPEED_RANGE[0] <= max(abs(V0), abs(omega0)) <= SPEED_RANGE[1]:
+        return V0, omega0
     V, omega = checked("V0", V0), checked("omega0", omega0)
     broadcast_shape(V0=V, omega0=omega)
     for name, array in (("V0", V), ("omega0", omega)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,33 +26,39 @@ _GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V",
 
 
 class Drive(NamedTuple):
-    """What a caller gave to drive a motion or many."""
+    """What a caller gave to drive a motion or many; None is nothing."""
 
-    force: Any = 0.0
-    torque: Any = 0.0
+    force: Any = None
+    torque: Any = None
     slope: Any = None
     brake: Any = None
     omega: Any = None
     V: Any = None
 
     @property
+    def acting(self) -> Drive:
+        """The same without a force, torque, slope or brake of 0."""
+        gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(each)}
+        return self._replace(**gone)
+
+    @property
     def given(self) -> dict[str, Any]:
-        """What acts, by name: all that is given but for a force, torque, slope or brake of 0."""
-        return {name: each for name, each in self._asdict().items() if each is not None and not _still(name, each)}
+        """What there is, by name."""
+        return {name: each for name, each in zip(self._fields, self, strict=True) if each is not None}
 
     @property
     def numbers(self) -> dict[str, NDArray[np.float64]]:
         """What is given as a number, or as one a motion, by name."""
-        return {name: checked(name, each) for name, each in self._asdict().items() if _is_number(each)}
+        return {name: checked(name, each) for name, each in self.given.items() if _is_number(each)}
 
     def over(self, scale: Scale) -> Drive:
         """The same without dimension."""
-        return Drive(*map(over, self._fields, self, (scale,) * len(self))) if scale.si else self
+        return Drive(*map(over, self._fields, self, (scale,) * len(self))) if scale.si and self.acts else self
 
     @property
     def acts(self) -> bool:
         """Whether anything does."""
-        return bool(self.given)
+        return not (self.force is self.torque is self.slope is self.brake is self.omega is self.V is None)
 
     @property
     def prescribes(self) -> bool:
@@ -60,18 +67,14 @@ class Drive(NamedTuple):
 
 
 def _is_number(given: Any) -> bool:
-    return not (given is None or callable(given) or isinstance(given, Feedback | Schedule))
+    return not (callable(given) or isinstance(given, Feedback | Schedule))
 
 
-def _still(name: str, given: Any) -> bool:
-    """Whether it is 0, and no prescribed speed."""
-    if name in ("V", "omega") or given is None:
-        return False
-    if type(given) is float:
-        return given == 0.0
-    if isinstance(given, Schedule):
-        return not np.any(given.values)
-    return _is_number(given) and not checked(name, given).any()
+def _still(given: Any) -> bool:
+    """Whether it is 0 at all times."""
+    if isinstance(given, Feedback):
+        return not (np.any(given.V) or np.any(given.omega)) and _still(given.value)
+    return not (callable(given) or np.any(given.values if isinstance(given, Schedule) else given))
 
 
 def bare(start: tuple[Any, Any], drive: Drive) -> tuple[tuple[Any, Any], Drive, Labels | None]:
@@ -98,6 +101,7 @@ class Prepared(NamedTuple):
         return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), self.prescribed
 
 
+@cache
 def undriven() -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
     """Pieces and gains of nothing that drives, and which speed is prescribed."""
     from ..kernels.motion.load import FIRST, FUNCTIONS
@@ -133,7 +137,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
         raise one_of("V", "omega", both=True)
     for name, found, own in (("omega", "torque", drive.omega), ("V", "force", drive.V)):
         given = getattr(drive, found)
-        if own is not None and found in drive.given:
+        if own is not None and given is not None:
             sentence = f"{found} is given beside {name}=: leave it out, it is what the prescribed {name} needs"
             raise ParameterError(found, given, "left out", sentence)
     if drive.brake is not None and drive.omega is not None:
@@ -141,8 +145,8 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
         raise ParameterError("brake", drive.brake, "left out", sentence)
     force = _added(curve("force", drive.force, end, rtol), tangent)
     torque = curve("torque", drive.torque, end, rtol)
-    brake = curve("brake", 0.0 if drive.brake is None else drive.brake, end, rtol, low=0.0)
-    rate, prescribed, error = curve("rate", 0.0, end, rtol), NEITHER, 0.0
+    brake = curve("brake", drive.brake, end, rtol, low=0.0)
+    rate, prescribed, error = curve("rate", None, end, rtol), NEITHER, 0.0
     for code, name in ((OMEGA, "omega"), (SPEED, "V")):
         given = getattr(drive, name)
         if given is not None:
@@ -183,8 +187,7 @@ def refuse_rest(rest: float, drives: Prepared) -> None:
 
     Where nothing does, speeds below the threshold stay there.
     """
-    acting = drives.prescribed or drives.gains.any() or drives.pieces[:, -1, 2:].any()
-    if rest > 0.0 and acting:
+    if rest > 0.0 and (drives.prescribed or drives.gains.any() or drives.pieces[:, -1, 2:].any()):
         sentence = f"rest = {rest:g} is given, but something drives the motion to its end: leave it out"
         sentence += " (what a brake stops and holds is at rest in finite time: switches say when)"
         raise ParameterError("rest", rest, "None", sentence)

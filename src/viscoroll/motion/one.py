@@ -238,7 +238,8 @@ def integrated(inputs: Inputs, times: NDArray, roller: Rolls, drive: Drive) -> M
     scale = roller.scale
     T, at = scale["t"], times / scale["t"]
     asked = at if at[-1] == inputs.end else np.append(at, inputs.end)
-    switches = np.full((_SWITCHES_KEPT, 2), np.nan)
+    switches = np.empty((_SWITCHES_KEPT, 2))
+    switches.fill(np.nan)
     error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
     whole = rows.pop("regime")

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MotionStatus, ParameterError
-from ..materials.law_table import LawTable, law_table
 from ..parameters import Parameters
 from .driven import ROWS, Drive, prepared, refuse_rest
 from .unsteady import climbed
+
+_ALL = np.arange(len(ROWS))
 
 
 class Inputs(NamedTuple):
@@ -21,20 +22,11 @@ class Inputs(NamedTuple):
     V0: Any
     omega0: Any
     end: float
-    rtol: float
-    rest: float
-    max_steps: int
+    #: rtol, rest, max_steps
+    limits: tuple[float, float, int]
     drive: Drive
     unsteady: bool
     rested: float
-
-
-def law_of(scene: Parameters) -> LawTable:
-    """The law of a scene of one material."""
-    if scene.table is not None:
-        return scene.table
-    material: Any = scene.material
-    return law_table(float(np.asarray(scene.alpha).item()) if material is None else material)
 
 
 def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[float, NDArray, list[float]]:
@@ -44,19 +36,19 @@ def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[float, NDArray
     """
     from ..kernels.motion.loop import INFO, motion_loop
 
-    ready = prepared(inputs.drive, inputs.V0, inputs.omega0, inputs.end, inputs.rtol)
-    refuse_rest(inputs.rest, ready)
+    ready = prepared(inputs.drive, inputs.V0, inputs.omega0, inputs.end, inputs.limits[0])
+    refuse_rest(inputs.limits[1], ready)
     if (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
         raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     ready, caught = climbed(ready, inputs.scene, inputs.rested)
     if caught:
         nothing = np.full((len(ROWS), times.size), np.nan)
         return ready.error, nothing, [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
-    scene, law = inputs.scene, law_of(inputs.scene)
+    scene, law = inputs.scene, inputs.scene.table
+    assert law is not None
     one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
     one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
-    limits = inputs.rtol, inputs.rest, inputs.max_steps
-    out, info = np.empty((len(ROWS), 1, times.size)), np.empty((1, len(INFO)))
+    out, info = np.empty((_ALL.size, 1, times.size)), np.empty((1, len(INFO)))
     batch = law.unsteady_record if inputs.unsteady else law.record, law.unlike, *one
-    motion_loop(batch, ready.for_kernel(), times, limits, np.arange(len(ROWS)), out, info, notes)
+    motion_loop(batch, ready.for_kernel(), times, inputs.limits, _ALL, out, info, notes)
     return ready.error, out[:, 0], info[0].tolist()

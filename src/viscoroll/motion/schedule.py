@@ -54,7 +54,7 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         return Curve(np.append(starts, end), ends, np.concatenate([terms, after])[None], error)
     if isinstance(given, Schedule):
         return _linear(given.times, checked(f"values of {name}", given.values, low=low))
-    values = checked(name, given, low=low)
+    values = checked(name, 0.0 if given is None else given, low=low)
     if values.ndim > 1:
         raise ParameterError(
             name, f"array of shape {values.shape}", "a number, one a motion, or a Schedule(times, values)"

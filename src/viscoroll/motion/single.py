@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import checked
+from ..checks import number
 from ..drive import Feedback, Schedule, over
 from ..errors import MOTION_STATUS, ParameterError
 from ..materials.prony_array import MaterialArray
-from ..parameters import Parameters, Rolls, framed
-from ..scale import Scale
+from ..parameters import Rolls, framed
 from ..typed import Numbers
 from .checks import controls, in_words, output_times, refuse_many, start_speeds
 from .driven import Drive
@@ -39,8 +38,8 @@ def roll(
     t: Numbers,
     *,
     rtol: float = 1e-8,
-    force: Acting = 0.0,
-    torque: Acting = 0.0,
+    force: Acting | None = None,
+    torque: Acting | None = None,
     slope: float | None = None,
     brake: Course | None = None,
     omega: Course | None = None,
@@ -122,29 +121,32 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    times = output_times(t)
-    drive = Drive(force, torque, slope, brake, omega, V)
-    given = framed(roller, "roll", moves=True)[0]
-    starts: list[Any] = [0.0 if value is None and drive.prescribes else value for value in (V0, omega0)]
-    speeds = {name: checked(name, start) for name, start in zip(("V0", "omega0"), starts, strict=True)}
-    if given.shape:
+    times, drive = output_times(t), Drive(force, torque, slope, brake, omega, V)
+    if drive.acts:
+        refuse_many(**drive.numbers)
+        drive = drive.acting
+    roller, scene, scale = framed(roller, "roll", moves=True, slope=drive.slope)
+    if scene.shape:
         _refuse_many(roller)
-    for name, value in (speeds | drive.numbers).items():
-        refuse_many(name, value.shape)
-    roller = roller.tilted(drive.given["slope"]) if "slope" in drive.given else roller
-    scene, scale = framed(roller, "roll")
-    roller.look_at_starts(*speeds.values())
+    refuse_many(V0=V0, omega0=omega0)
+    given: list[Any] = [("V0", V0), ("omega0", omega0)]
+    V0, omega0 = (None if start is None and drive.prescribes else number(name, start) for name, start in given)
+    roller.look_at_starts(V0, omega0)
     try:
         limits = controls(rtol, over("rest", rest, scale), max_steps)
-        rest_before = time_of_rest(rested) / scale["t"]
-        inputs = _inputs(scene, scale, (V0, omega0), times[-1], limits, drive, unsteady, rest_before)
+        end, rest_before = float(times[-1] / scale["t"]), time_of_rest(rested) / scale["t"]
+        starts = None if V0 is None else V0 / scale["V"], None if omega0 is None else omega0 / scale["omega"]
+        speeds = start_speeds(starts[0] or 0.0, starts[1] or 0.0)
+        if unsteady:
+            refuse_unlike(scene)
+        look(scene, *map(float, speeds), driven=drive.acts or unsteady)
+        inputs = Inputs(scene, *starts, end, limits, drive.over(scale), unsteady, rest_before)
         if np.ndim(t) == 0:
             times = np.append(_step_times(inputs)[:-1] * scale["t"], times)
         motion = integrated(inputs, times, roller, drive)
     except ParameterError as error:
         raise in_words(error, scale) from error
-    if scale.si:
-        roller.look(np.append(motion.V, speeds["V0"]))
+    roller.look(motion.V)
     if not motion.success:
         words = f"roll: {MOTION_STATUS[motion.status]}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)
@@ -154,30 +156,16 @@ def roll(
 def _refuse_many(roller: Any) -> None:
     """Name what is an array of what rolls."""
     if isinstance(roller.material, MaterialArray):
-        refuse_many("material", roller.material.alpha.shape)
-    for field in fields(roller):
-        refuse_many("load" if field.name == "pressed" else field.name, np.shape(getattr(roller, field.name)))
-
-
-def _inputs(
-    scene: Parameters, scale: Scale, starts: tuple[Any, Any], end: float, limits: tuple[float, float, int],
-    drive: Drive, unsteady: bool, rested: float,
-) -> Inputs:  # fmt: skip
-    """All of it without dimension, checked."""
-    V0, omega0 = (
-        None if start is None else float(start) / scale[name]
-        for name, start in zip(("V0", "omega0"), starts, strict=True)
+        refuse_many(material=roller.material.alpha)
+    refuse_many(
+        **{"load" if field.name == "pressed" else field.name: getattr(roller, field.name) for field in fields(roller)}
     )
-    speeds = start_speeds(*(0.0 if start is None else start for start in (V0, omega0)))
-    refuse_unlike(scene, unsteady)
-    look(scene, float(speeds[0]), float(speeds[1]), driven=drive.acts or unsteady)
-    return Inputs(scene, V0, omega0, float(end / scale["t"]), *limits, drive.over(scale), unsteady, rested)
 
 
 def _step_times(inputs: Inputs) -> NDArray:
     """0, the ends of the steps and places between them, and the end time."""
     ends, end = np.empty(0), inputs.end
-    while ends.size < inputs.max_steps and not np.isnan(ends).any():  # full: there may be more
-        ends = np.full(min(max(4 * ends.size, _STEPS), inputs.max_steps), np.nan)
+    while ends.size < inputs.limits[2] and not np.isnan(ends).any():  # full: there may be more
+        ends = np.full(min(max(4 * ends.size, _STEPS), inputs.limits[2]), np.nan)
         rolled(inputs, np.array([end]), (_NO_SWITCHES, ends))
     return np.unique(np.concatenate(([0.0], ends[ends < end], [end])))

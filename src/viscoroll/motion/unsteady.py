@@ -30,9 +30,9 @@ def time_of_rest(rested: bool | float) -> float:
     return float(rested)
 
 
-def refuse_unlike(scene: Parameters, unsteady: bool) -> None:
+def refuse_unlike(scene: Parameters) -> None:
     """Raise ParameterError where the added mass is asked for of bodies that differ."""
-    if unsteady and not scene.like_bodies:
+    if not scene.like_bodies:
         sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
         raise ParameterError("unsteady", True, "False where bodies differ", sentence)
 
@@ -46,7 +46,7 @@ def climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepared
         A prescribed speed, or a start in full slip, of which the cost is not known.
     """
     if rested == 0.0:
-        return ready, np.zeros((), bool)
+        return ready, False
     V = np.asarray(ready.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     if ready.prescribed or np.any(np.abs(ready.omega0 - V) > limit):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from bisect import bisect
 from dataclasses import replace
@@ -80,7 +81,7 @@ def _faults(scene: Parameters, V0: float, omega0: float, driven: bool) -> list[s
 def _faults_of_many(scene: Parameters, V0: NDArray[np.float64], omega0: NDArray[np.float64], driven: bool) -> list[str]:
     """Of the motions that are worst by bounds, among some."""
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
-    count = max((array.size for array in arrays if array.ndim), default=1)
+    count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))
     some = np.linspace(0, count - 1, min(count, _LOOKED_AT)).astype(np.int64)
     picked = np.array([np.broadcast_to(array, (count,))[some] for array in arrays])
     if not some.size:
