@@ -3,8 +3,6 @@ flushed subnormals, little memory."""
 
 from __future__ import annotations
 
-import importlib
-import json
 import os
 import pickle
 import platform
@@ -24,7 +22,6 @@ import tolerances as tol
 from closeness import close
 from many import MATERIALS
 from memory import forget
-from places import RESULTS
 from processes import printed
 from refusals import refused
 
@@ -411,21 +408,3 @@ def test_empty():
             assert vr.contact(SCENE, np.empty(shape), delta=0.1, method=method).Q.shape == shape
     refused(lambda: vr.ensemble(SCENE, 1.0, 1.0, nothing), "t = ")
     refused(lambda: vr.tables.build(SCENE, nothing, [0.0]), "V = ")
-
-
-@pytest.mark.parametrize("name", ["grid", "flow map", "integrated"])
-def test_large_arrays_in_bounded_memory(name):
-    """Beside input and result a call takes the same few megabytes whatever its size (10^8 elements: make prove)."""
-    measured = importlib.import_module("pipeline.evidence.measure.large").measured
-    if not Path("/proc/self/status").exists():
-        pytest.skip("the system does not tell a process its peak")
-    found = measured(name, 200_000 if name == "integrated" else 2_000_000)
-    assert found["result_bytes"] >= 8 * found["elements"]
-    assert found["extra_bytes"] <= tol.MEMORY_SLACK
-
-
-def test_committed_memory_is_bounded():
-    """As measured at full size."""
-    rows = json.loads((RESULTS / "large.json").read_text(encoding="utf-8"))["rows"]
-    assert max(row["elements"] for row in rows) == 100_000_000
-    assert all(row["extra_bytes"] <= tol.MEMORY_SLACK for row in rows)

@@ -1,4 +1,4 @@
-"""What takes long to make, on disk: the numbers that were made, or made anew; damage is in test_flow.py."""
+"""What takes long to make, on disk: the numbers that were made, or made anew."""
 
 from __future__ import annotations
 
@@ -49,6 +49,36 @@ def test_what_others_may_have_written_is_not_read(folder):
     folder.chmod(0o755)
     with pytest.warns(RuntimeWarning, match="is damaged"):
         assert not kept(folder, 2.0)
+    assert kept(folder, 2.0)
+
+
+DAMAGE = {
+    "bit": lambda content, _: content[:200] + bytes([content[200] ^ 4]) + content[201:],
+    "truncated": lambda content, _: content[: len(content) // 2],
+    "empty": lambda content, _: b"",
+    "other": lambda _, other: other,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_what_is_damaged_is_made_anew(folder, damage):
+    for number in (2.0, 3.0):
+        kept(folder, number)
+    path, other = (folder / stored.file_name([number]) for number in (2.0, 3.0))
+    path.write_bytes(DAMAGE[damage](path.read_bytes(), other.read_bytes()))
+    with pytest.warns(RuntimeWarning, match=r"table is damaged \(.+\); it is built anew"):
+        assert not kept(folder, 2.0)
+    assert kept(folder, 2.0)
+
+
+def test_a_read_only_folder_is_used(folder, monkeypatch):
+    """The time of use cannot be noted there; that is no reason to make it again."""
+
+    def refuse(*_):
+        raise PermissionError(13, "Permission denied")
+
+    kept(folder, 2.0)
+    monkeypatch.setattr(Path, "touch", refuse)
     assert kept(folder, 2.0)
 
 

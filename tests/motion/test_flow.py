@@ -10,7 +10,6 @@ import pytest
 import tolerances as tol
 from closeness import close
 from memory import forget
-from processes import printed
 
 import viscoroll as vr
 from viscoroll import stored
@@ -29,18 +28,6 @@ pytestmark = [
 ]
 
 
-def random_scenes(count: int, seed: int) -> list[vr.Scene]:
-    rng = np.random.default_rng(seed)
-
-    def log_uniform(low: float, high: float) -> float:
-        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-    return [
-        vr.Scene(log_uniform(1.001, 1e4), log_uniform(0.5, 200), log_uniform(0.05, 3), 1.0, rng.uniform(0.1, 2.0))
-        for _ in range(count)
-    ]
-
-
 def decay_time(scene: vr.Scene) -> float:
     T_mean = (scene.alpha - 1.0) / scene.alpha if scene.series is None else scene.series.T_mean
     return (1.0 + scene.j) / T_mean / scene.gamma
@@ -56,76 +43,58 @@ def starts(count: int, seed: int, scene: vr.Scene, top: float = 2.0) -> tuple[np
     return V0, omega0
 
 
-def compare(
-    scene: vr.Scene, count: int, seed: int, t: np.ndarray, top: float = 2.0
-) -> tuple[vr.Ensemble, float, float, float]:
-    """(flow's result, largest difference of speeds, path and losses to the integrator's at rtol 1e-12)."""
-    V0, omega0 = starts(count, seed, scene, top)
-    mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
-    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
-    speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
-    moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
-    speeds = np.maximum(np.abs(mapped.V - rolled.V), np.abs(mapped.omega - rolled.omega)) / speed
-    # what is left to rest is at most V times the decay time
-    whole = 1e-5 * decay_time(scene) * speed[:, :1]
-    paths = np.maximum(np.abs(mapped.x - rolled.x), np.abs(mapped.angle - rolled.angle)) / (moved + whole)
-    energy = np.maximum(0.5 * (V0**2 + scene.j * omega0**2), np.finfo(float).tiny)[:, None]
-    losses = np.maximum(*(np.abs(getattr(mapped, name) - getattr(rolled, name)) for name in LOSSES)) / energy
-    assert np.array_equal(mapped.regime[mapped.flow], rolled.regime[mapped.flow])
-    assert np.array_equal(mapped.switches, rolled.switches)
-    assert np.array_equal(np.isnan(mapped.onset_time), np.isnan(rolled.onset_time))
-    return mapped, *(errors[mapped.flow].max(initial=0.0) for errors in (speeds, paths, losses))
-
-
-def test_paper_scene_to_its_stated_error():
-    mapped, speeds, paths, losses = compare(SCENE, 500, 1, T)
-    built = flow.flow_map(SCENE, 2.0)
-    assert mapped.flow.mean() > 0.99
-    assert built.error < tol.FLOW_SPEED
-    assert speeds < built.error
-    assert paths < built.path_error
-    assert losses < built.loss_error < tol.FLOW_LOSS
-
-
-def test_random_scenes_to_their_stated_error():
-    """Every start of every scene is served, by the map or by the integrator."""
-    for scene in random_scenes(12, 5):
-        mapped, *errors = compare(scene, 60, 2, np.geomspace(1e-3, 5.0, 12) * decay_time(scene))
-        assert (mapped.status == MotionStatus.DONE).all(), scene
-        if mapped.flow.any():
-            built = flow.flow_map(scene, 2.0)
-            stated = (built.error, built.path_error, built.loss_error)
-            assert all(error < bound for error, bound in zip(errors, stated, strict=True)), (scene, errors, stated)
+def any_scene(seed: int) -> vr.Scene:
+    rng = np.random.default_rng(seed)
+    alpha, kappa, mu = np.exp(rng.uniform(np.log([1.001, 0.5, 0.05]), np.log([1e4, 200.0, 3.0])))
+    return vr.Scene(alpha, kappa, mu, 1.0, rng.uniform(0.1, 2.0))
 
 
 PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0)
 THREE = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
-#: scenes apart from the paper's, and the highest speed
-OTHERS = {
-    "kappa 29": (PAPER.replace(kappa=29.1), 2.0),
-    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0),
-    "alpha 2": (PAPER.replace(alpha=2.0), 2.0),
-    "j 1": (PAPER.replace(j=1.0), 2.0),
-    "j 1.5": (PAPER.replace(j=1.5), 2.0),
-    "rubber": (vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0), 2.0),
-    "pair": (vr.Scene(material=vr.Bodies(THREE, THREE, 0.5), kappa=20.0, mu=0.3, gamma=1.0), 2.0),
-    "slow": (PAPER, 1e-4),
-    "fast": (PAPER, 2000.0),
-}
+RUBBER = vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0)
+#: scene, highest speed, and whether a map that serves it to a billionth is sure
+SCENES = {
+    "paper": (SCENE, 2.0, True), "kappa 29": (PAPER.replace(kappa=29.1), 2.0, True),
+    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0, True), "alpha 2": (PAPER.replace(alpha=2.0), 2.0, True),
+    "j 1": (PAPER.replace(j=1.0), 2.0, True), "j 1.5": (PAPER.replace(j=1.5), 2.0, True), "rubber": (RUBBER, 2.0, True),
+    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0, True), "slow": (PAPER, 1e-4, True),
+    "fast": (PAPER, 2000.0, True), **{f"any {n}": (any_scene(n), 2.0, False) for n in range(10)},
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", OTHERS)
-def test_other_scenes_to_a_billionth(name):
-    scene, top = OTHERS[name]
+@pytest.mark.parametrize("name", SCENES)
+def test_as_the_integrator_to_its_stated_error(name):
+    """Speeds, way, losses, onset, regimes, against rtol 1e-12; what has no entry in the map is integrated."""
+    scene, top, sure = SCENES[name]
+    V0, omega0 = starts(60, 2, scene, top)
     t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
-    mapped, *errors = compare(scene, 60, 2, t, top)
-    built = flow.flow_map(scene, np.abs(mapped.omega0).max())
-    stated = (built.error, built.path_error, built.loss_error)
-    assert mapped.flow.mean() > 0.9
-    assert built.error < tol.FLOW_SPEED
-    assert built.path_error < tol.FLOW_PATH
-    assert built.loss_error < tol.FLOW_LOSS
-    assert all(error < bound for error, bound in zip(errors, stated, strict=True)), (errors, stated)
+    mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
+    rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
+    assert (mapped.status == MotionStatus.DONE).all()
+    assert np.array_equal(mapped.switches, rolled.switches)
+    assert np.array_equal(np.isnan(mapped.onset_time), np.isnan(rolled.onset_time))
+    if sure:
+        assert close(mapped.onset_time, rolled.onset_time, rel=tol.FLOW_ONSET, scale=6e-3 * decay_time(scene))
+    by = mapped.flow
+    assert np.array_equal(mapped.regime[by], rolled.regime[by])
+    assert not sure or by.mean() > 0.9
+    if not by.any():
+        return
+    built = flow.flow_map(scene, max(np.abs(V0).max(), np.abs(omega0).max()))
+    stated = {"speed": built.error, "path": built.path_error, "loss": built.loss_error}
+    allowed = {"speed": tol.FLOW_SPEED, "path": tol.FLOW_PATH, "loss": tol.FLOW_LOSS}
+    assert not sure or all(stated[kind] < allowed[kind] for kind in stated), stated
+    speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
+    moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
+    # what is left to rest is at most V times the decay time
+    path = moved + 1e-5 * decay_time(scene) * speed[:, :1]
+    energy = np.broadcast_to(0.5 * (V0**2 + scene.j * omega0**2)[:, None], path.shape)
+    for kind, size, fields in (
+        ("speed", speed, ("V", "omega")), ("path", path, ("x", "angle")), ("loss", energy, LOSSES),
+    ):  # fmt: skip
+        for field in fields:
+            found, exact = (getattr(many, field)[by] for many in (mapped, rolled))
+            assert close(found, exact, rel=stated[kind], scale=size[by], what=field)
 
 
 def test_starts_deep_inside_the_stick_zone_are_served_within_their_layer():
@@ -155,13 +124,6 @@ def test_a_map_follows_the_sources_that_fill_it(tmp_path):
     assert before == stored._digest.__wrapped__(package) != stored._digest.__wrapped__(tmp_path)
 
 
-def test_onset_times():
-    V0, omega0 = starts(200, 3, SCENE)
-    mapped = vr.ensemble(SCENE, V0, omega0, T, method="flow")
-    rolled = vr.ensemble(SCENE, V0, omega0, T, method="integrate", rtol=1e-11)
-    assert close(mapped.onset_time, rolled.onset_time, rel=tol.FLOW_ONSET, scale=1e-6)
-
-
 def test_within_the_boundary_layer():
     """Outputs a few stiff times behind an onset with omega > V, where creep falls from its limit through zero."""
     V0, omega0 = 0.2, 2.0
@@ -176,21 +138,6 @@ def test_within_the_boundary_layer():
     assert close(mapped.omega, rolled.omega, rel=tol.FLOW_SPEED)
     for name in LOSSES:
         assert close(getattr(mapped, name), getattr(rolled, name), rel=tol.FLOW_LOSS, scale=1.0)
-
-
-def test_start_inside_the_stick_zone_is_a_point_of_an_earlier_motion():
-    """Going on from a state in the boundary layer is the same as not having stopped there."""
-    V0, omega0 = vr.PAPER_STARTS["IC1"]
-    onset = vr.roll(SCENE, V0, omega0, [T[-1]], rtol=1e-11).onset_time
-    between, end = onset + np.array([3e-7, 1e-6, 3e-6, 1e-5]), 2e-4
-    whole = vr.ensemble(SCENE, [V0], [omega0], np.append(between, end), method="flow")
-    for i, t in enumerate(between):
-        rest = vr.ensemble(SCENE, whole.V[:, i], whole.omega[:, i], end - t, method="flow")
-        assert rest.flow.all()
-        assert np.isnan(rest.onset_time).all()
-        assert close(rest.V, whole.V[:, -1:], rel=tol.FLOW_SPEED)
-        assert close(rest.omega, whole.omega[:, -1:], rel=tol.FLOW_SPEED)
-        assert close(rest.x, whole.x[:, -1:] - whole.x[:, i : i + 1], rel=tol.FLOW_PATH)
 
 
 #: scenes in which the stiff rate at onset is not far above the slow one
@@ -217,49 +164,22 @@ def test_start_near_the_slow_manifold_where_rates_are_near():
         assert off[mapped.flow].max(initial=0.0) < mapped.flow_error, (scene, kappa_V)
 
 
-def test_mirror_and_gamma():
-    V0, omega0 = starts(300, 4, SCENE)
-    there = vr.ensemble(SCENE, V0, omega0, T, method="flow", fields=FIELDS)
-    back = vr.ensemble(SCENE, -V0, -omega0, T, method="flow", fields=FIELDS)
-    for name in ("V", "omega", "x", "angle"):
-        assert np.array_equal(getattr(there, name), -getattr(back, name)), name
-    slow = vr.ensemble(SCENE.replace(gamma=SCENE.gamma / 1024), V0, omega0, T * 1024, method="flow")
-    assert np.array_equal(slow.V, there.V)
-    assert np.array_equal(slow.x, there.x * 1024)
-
-
-def test_same_bits_for_any_number_of_threads():
-    V0, omega0 = starts(40_000, 6, SCENE)
-    one, two = (vr.ensemble(SCENE, V0, omega0, T[1:3], threads=n) for n in (1, 2))
-    assert one.flow.mean() > 0.998
-    assert np.array_equal(one.V, two.V)
-    assert np.array_equal(one.x, two.x)
-
-
-def test_rest():
+@pytest.mark.parametrize("rest", [1e-12, 1e-3, 1.0, 1e4, 1e9])
+def test_rest(rest):
+    """Of any threshold: one above all speeds of the tables leaves every motion to the integrator."""
     V0, omega0 = starts(100, 7, SCENE)
     V0[:2], omega0[:2] = 1e-4, -1e-4
     t = np.linspace(0.0, 2e-2, 9)
     mapped, rolled = (
-        vr.ensemble(SCENE, V0, omega0, t, rest=1e-3, method=method, fields=FIELDS, rtol=rtol)
+        vr.ensemble(SCENE, V0, omega0, t, rest=rest, method=method, fields=FIELDS, rtol=rtol)
         for method, rtol in (("flow", 1e-8), ("integrate", 1e-11))
     )
-    assert mapped.flow.any()
+    assert mapped.flow.any() or rest >= 1.0
     assert np.array_equal(mapped.status, rolled.status)
     assert np.array_equal(mapped.regime, rolled.regime)
     assert close(mapped.rest_time, rolled.rest_time, rel=tol.FLOW_PATH)
     assert close(mapped.x, rolled.x, rel=tol.FLOW_PATH, scale=5e-8)
     assert close(mapped.angle, rolled.angle, rel=tol.FLOW_PATH, scale=5e-8)
-
-
-def test_any_threshold_of_rest():
-    """One above all speeds of the tables leaves every motion to the integrator."""
-    for rest in (1e-12, 1.0, 1e4, 1e9):
-        mapped, rolled = (
-            vr.ensemble(SCENE, [0.5, 1.5], [1.0, 0.3], T, rest=rest, method=method) for method in ("flow", "integrate")
-        )
-        assert np.array_equal(mapped.status, rolled.status)
-        assert close(mapped.x, rolled.x, rel=tol.FLOW_PATH, scale=5e-8)
 
 
 def test_long_life():
@@ -320,19 +240,6 @@ def test_a_layer_that_decays_to_rounding_is_in_the_map():
         assert close(getattr(mapped, name), exact, rel=mapped.flow_error)
 
 
-def test_a_map_is_filled_within_its_arrays():
-    """For any kappa, and any octave that is served: with numba's check of every index, in a process of its own."""
-    script = """
-from viscoroll.motion.flow import build
-for kappa in (1e250, 1e300, 1e-250, 2.9):
-    for octave in (-16, 0, 14):
-        made = build((11.0, kappa, 0.2, 0.5), octave)
-        assert (made.problem == "") == (kappa == 2.9), (kappa, octave, made.problem)
-        assert made.problem or 0.0 < made.error < 1e-8, (octave, made.error)
-"""
-    printed(script, NUMBA_BOUNDSCHECK="1")
-
-
 def test_the_map_gives_way_to_a_tighter_tolerance():
     V0, omega0 = starts(10, 9, SCENE)
     tight = vr.ensemble(SCENE, V0, omega0, T, method="flow", rtol=1e-12)
@@ -362,56 +269,6 @@ def test_kept_on_disk_and_built_once(monkeypatch):
     assert again.error == first.error
     (path,) = flow_store.folder().iterdir()
     assert path.stat().st_size < 3_000_000
-
-
-@pytest.mark.parametrize("damage", ["bit", "truncated", "empty", "other"])
-def test_damaged_file_is_built_again(damage):
-    first = flow.flow_map(SCENE, 2.0)
-    (path,) = flow_store.folder().iterdir()
-    content = bytearray(path.read_bytes())
-    if damage == "bit":
-        content[len(content) // 2] ^= 4
-    elif damage == "truncated":
-        content = content[: len(content) // 2]
-    elif damage == "empty":
-        content = bytearray()
-    else:
-        forget()
-        flow.flow_map(SCENE.replace(mu=0.21), 2.0)
-        content = bytearray(next(p for p in flow_store.folder().iterdir() if p != path).read_bytes())
-    path.write_bytes(content)
-    forget()
-    with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\); it is built anew"):
-        again = flow.flow_map(SCENE, 2.0)
-    assert np.array_equal(again.table, first.table)
-    forget()
-    assert flow_store.load(path, first.parameters) is not None
-
-
-def test_a_map_in_a_read_only_folder_is_used(monkeypatch):
-    """Its time of use cannot be noted there; that is no reason to build it again."""
-    first = flow.flow_map(SCENE, 2.0)
-    forget()
-
-    def refuse(*_):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(flow, "build", None)
-    monkeypatch.setattr(Path, "touch", refuse)
-    assert np.array_equal(flow.flow_map(SCENE, 2.0).table, first.table)
-
-
-def test_a_disk_that_cannot_be_written_is_no_obstacle(tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("")
-    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "file" / "maps")
-    assert flow.flow_map(SCENE, 2.0).error < tol.FLOW_SPEED
-
-
-def test_old_maps_are_removed(monkeypatch):
-    monkeypatch.setattr(stored, "KEPT", 2)
-    for mu in (0.2, 0.3, 0.4):
-        flow.flow_map(SCENE.replace(mu=mu), 2.0)
-    assert len(list(flow_store.folder().iterdir())) == 2
 
 
 def test_distance_is_not_looked_up_unless_asked_for(monkeypatch):
