@@ -164,7 +164,7 @@ def test_start_near_the_slow_manifold_where_rates_are_near():
         assert off[mapped.flow].max(initial=0.0) < mapped.flow_error, (scene, kappa_V)
 
 
-@pytest.mark.parametrize("rest", [1e-12, 1e-3, 1.0, 1e4, 1e9])
+@pytest.mark.parametrize("rest", [1e-12, 1e-3, 1e4, 1e9])
 def test_rest(rest):
     """Of any threshold: one above all speeds of the tables leaves every motion to the integrator."""
     V0, omega0 = starts(100, 7, SCENE)
