@@ -14,7 +14,6 @@ from .checks import checked
 from .contact_table import refuse_overflow
 from .errors import ParameterError
 from .kernels.rows.loads import Loads, LoadsAndSlopes
-from .materials.prony_array import MaterialArray
 from .parameters import Rolls, framed
 from .rolling_contact import contact
 from .typed import Numbers
@@ -149,7 +148,7 @@ def law(roller: Rolls) -> Law:
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
     """
     _, scene, _ = framed(roller, "law")
-    if isinstance(scene.material, MaterialArray):
+    if scene.each is not None:
         raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
     for name in ("alpha", "kappa", "mu"):
         value = np.asarray(getattr(scene, name))

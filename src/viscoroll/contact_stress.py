@@ -14,7 +14,7 @@ from .errors import one_of
 from .labels import unlabelled
 from .materials.bodies import Bodies
 from .materials.law_modes import kernel_series
-from .materials.prony_array import MaterialArray
+from .materials.prony import Prony
 from .parameters import Rolls, framed
 from .results import Values
 from .rolling_contact import shaped, states
@@ -72,7 +72,7 @@ def stress(
     state = states(scene, speed, creep, delta is None, ("lam", "epsilon", "beta", "zeta", "delta"))
     # for V < 0 everything is mirrored, tau once more
     mirror = np.where(speed < 0.0, -1.0, 1.0)
-    many = scene.material if isinstance(scene.material, MaterialArray) else None
+    many = scene.each
     given = {"x": at, "kappa": scene.kappa, "mu": scene.mu}
     given |= {name: state[name] for name in ("lam", "epsilon", "beta", "zeta")}
     given |= {"alpha": scene.alpha if many is None else np.arange(len(many), dtype=np.float64)}
@@ -99,7 +99,7 @@ def stress(
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 
-def _of_each(materials: MaterialArray, numbers: Array, points: Any, out: tuple[Array, Array]) -> None:
+def _of_each(materials: Prony | Bodies, numbers: Array, points: Any, out: tuple[Array, Array]) -> None:
     """The stresses at points with a material each, which lie together where they share one."""
     from .kernels.law.stress import stress_loop
 

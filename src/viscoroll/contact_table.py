@@ -13,10 +13,11 @@ from .blocks import elements, run_blocks
 from .checks import extent
 from .contact_fields import SLOPES, SLOPES_OF_BODIES, UNSTEADY
 from .errors import ParameterError
+from .materials.bodies import Bodies
 from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from .materials.law_modes import unsteadiness
 from .materials.law_table import LawTable
-from .materials.prony_array import MaterialArray
+from .materials.prony import Prony
 
 #: states of a block, where each has a material of its own, which takes some kilobytes, and where not
 _BLOCK, _BLOCK_EACH = 1 << 15, 1 << 8
@@ -28,7 +29,7 @@ FASTEST = 1e300
 
 
 def states_of(
-    given: LawTable | MaterialArray | None,
+    given: LawTable | Prony | Bodies | None,
     arrays: list[Any],
     shape: tuple[int, ...],
     creep_is_omega: bool,
@@ -62,12 +63,12 @@ def states_of(
             order = np.argsort(each, kind="stable") if each.size > 1 else order
         _fill(given, law, (each, *others), order, creep_is_omega, names, out, start, stop)
 
-    run_blocks(work, count, _BLOCK_EACH if isinstance(given, MaterialArray) else _BLOCK)
+    run_blocks(work, count, _BLOCK_EACH if isinstance(given, Prony | Bodies) else _BLOCK)
     return out
 
 
 def _fill(
-    given: LawTable | MaterialArray | None, law: Any, parts: tuple[NDArray, ...], order: NDArray, creep_is_omega: bool,
+    given: LawTable | Prony | Bodies | None, law: Any, parts: tuple[NDArray, ...], order: NDArray, creep_is_omega: bool,
     names: tuple[str, ...], out: NDArray, start: int, stop: int,
 ) -> None:  # fmt: skip
     """The fields of some states."""

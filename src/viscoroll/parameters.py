@@ -14,10 +14,8 @@ from .drive import slope_factor
 from .errors import ParameterError, one_of
 from .free_rolling import Free
 from .materials.bodies import Bodies
-from .materials.bodies_array import BodiesArray
 from .materials.law_table import LawTable, law_table
 from .materials.prony import Prony
-from .materials.prony_array import MaterialArray
 from .materials.prony_forms import HIGHEST_ALPHA
 from .scale import DIMENSIONLESS, Scale
 
@@ -105,7 +103,7 @@ class Parameters(Rolls):
     mu: Any = None
     gamma: Any = None
     j: Any = 0.5
-    material: Prony | Bodies | MaterialArray | LawTable | None = None
+    material: Prony | Bodies | LawTable | None = None
     _law: ClassVar[LawTable | None] = None
     #: that the parameters broadcast to; () for one scene
     shape: ClassVar[tuple[int, ...]] = ()
@@ -122,7 +120,7 @@ class Parameters(Rolls):
                 object.__setattr__(self, "alpha", material if of_alpha else None)
                 object.__setattr__(self, "material", None if of_alpha else material)
         if self.material is not None:
-            if not isinstance(self.material, Prony | Bodies | MaterialArray):
+            if not isinstance(self.material, Prony | Bodies):
                 raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
             object.__setattr__(self, "alpha", self.material.alpha)
         if self.alpha is None:
@@ -149,7 +147,7 @@ class Parameters(Rolls):
             if type(self.alpha) is float:
                 return law_table(self.alpha)
             return law_table(self.alpha.item()) if self.alpha.size == 1 else None
-        return None if isinstance(self.material, MaterialArray) else law_table(self.material)
+        return law_table(self.material) if self.each is None else None
 
     @property
     def numbers(self) -> dict[str, Any]:
@@ -175,17 +173,16 @@ class Parameters(Rolls):
     @property
     def series(self) -> Prony | None:
         """The series of the material, or of both bodies together; None of an alpha and of a material each."""
-        if isinstance(self.material, Bodies):
-            return self.material.total
-        return self.material if isinstance(self.material, Prony) else None
+        given: Any = None if self.each is not None else self.material
+        return given.total if isinstance(given, Bodies) else given
 
     @property
-    def each(self) -> MaterialArray | None:
+    def each(self) -> Prony | Bodies | None:
         """Many materials, of pairs that are alike their series."""
         given: Any = self.material
-        if isinstance(given, BodiesArray) and given.like:
-            given = given.cylinder
-        return given if isinstance(given, MaterialArray) else None
+        if given is None or not given.shape:
+            return None
+        return given.cylinder if isinstance(given, Bodies) and given.like else given
 
     def in_own_time(self) -> tuple[Any, float]:
         """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
@@ -194,7 +191,7 @@ class Parameters(Rolls):
     @property
     def like_bodies(self) -> bool:
         """Whether cylinder and half-space deform alike, each taking half of M."""
-        return not isinstance(self.material, Bodies | BodiesArray) or self.material.like
+        return not isinstance(self.material, Bodies) or self.material.like
 
     def tilted(self, slope: Any) -> Self:
         cosine = slope_factor(slope)[1]
@@ -204,19 +201,19 @@ class Parameters(Rolls):
 
     def some(self, which: NDArray[np.int64], count: int) -> Self:
         parts = {name: value[which] for name, value in self.numbers.items() if np.shape(value) == (count,)}
-        if isinstance(self.material, MaterialArray):
+        if self.each is not None:
             del parts["alpha"]
-            parts["material"] = self.material[which]
+            parts["material"] = self.each[which]
         return self.replace(**parts) if parts else self
 
     def freely(self, V: Any) -> Free:
         """What rolls at V, let go."""
         materials: Any
         unit: Any
-        if isinstance(self.material, MaterialArray):
-            each = (_in_own_time(one.total if isinstance(one, Bodies) else one) for one in self.material)
-            materials, unit = np.array([*each], object).reshape(-1, 2).T
-            which, unit = np.arange(unit.size), unit.astype(np.float64)
+        if self.each is not None:
+            each = [_in_own_time(one.total if isinstance(one, Bodies) else one) for one in self.each]
+            materials, unit = [one for one, _ in each], np.array([unit for _, unit in each], np.float64)
+            which = np.arange(unit.size)
         else:
             given, unit = self.in_own_time()
             materials, which = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))

@@ -19,9 +19,9 @@ from .contact_fields import OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_n
 from .contact_table import FASTEST, refuse_overflow, states_of
 from .errors import ParameterError, one_of
 from .labels import unlabelled
-from .materials.bodies_array import BodiesArray
+from .materials.bodies import Bodies
 from .materials.law_table import LawTable
-from .materials.prony_array import MaterialArray
+from .materials.prony import Prony
 from .parameters import Parameters, Rolls, framed
 from .results import Values
 from .scale import DIMENSIONS
@@ -165,12 +165,12 @@ def states(
     if scene.material is not None and method == "direct":
         raise ParameterError("method", "'direct'", "'table': the printed equations know one relaxation time")
     one = None if method == "direct" else scene.table or scene.each
-    if isinstance(one, MaterialArray):
+    if isinstance(one, Prony | Bodies):
         if UNSTEADY in names:
             raise ParameterError("fields", repr(UNSTEADY), "asked for with one material, as material[i]")
         arrays["alpha"] = np.arange(len(one), dtype=np.float64)
     # what the kernels are asked for, and what is half of it
-    unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, BodiesArray)
+    unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, Bodies)
     solved = _solved(names, unlike)
     broadcast = [*arrays.values()], shape, creep_is_omega, solved
     found = _direct(*broadcast) if method == "direct" else states_of(one, *broadcast)

@@ -89,7 +89,7 @@ def test_validity(name):
 def test_like_bodies_are_one_series():
     """Given as a pair they are the array of their series; with other shares the sum of both."""
     one = rubbers(np.random.default_rng(1), 3)
-    for pair in (vr.Bodies(one, one), vr.Bodies(one, vr.Prony(*one.given), np.full(COUNT, 0.5))):
+    for pair in (vr.Bodies(one, one), vr.Bodies(one, vr.Prony(one.E, one.tau), np.full(COUNT, 0.5))):
         assert pair.like
         for call in (
             lambda scene: vr.ensemble(scene, 1.0, 0.2, T, rtol=1e-6).V,
@@ -114,7 +114,7 @@ def test_memory_is_bounded_by_a_block():
 def test_exported():
     many = MATERIALS["3 modes"]()
     stored = vr.ensemble(scene_of(many), 1.0, 0.0, T[:3]).to_xarray()
-    assert np.array_equal(stored.relaxation_times, many.given[1])
+    assert np.array_equal(stored.relaxation_times, many.tau)
     assert stored.relaxation_strengths.dims == ("motion", "mode")
     stored = vr.ensemble(scene_of(pairs("one base")), 1.0, 0.0, T[:3]).to_xarray()
     assert stored.cylinder_relaxation_times.dims == ("motion", "cylinder_mode")
@@ -178,3 +178,24 @@ def test_refused():
         (lambda: vr.contact(far, 1.0, delta=0.0), "times", "1e-100 to 1e+100"),
     ):
         refused(call, *words)
+
+
+def test_arrays_of_materials_are_materials():
+    """They once were classes of their own, whose names nobody had given."""
+    many = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
+    pairs = vr.Bodies(many, vr.Prony.elastic())
+    assert isinstance(many, vr.Prony)
+    assert isinstance(many[:1], vr.Prony)
+    assert isinstance(pairs, vr.Bodies)
+    assert (vr.Prony([1.0], [1.0]).shape, many.shape, pairs.shape) == ((), (2,), (2,))
+    with pytest.raises(TypeError):
+        len(many[0])
+
+
+def test_both_forms_of_many_are_those_of_each():
+    for many in (MATERIALS["3 modes"](), MATERIALS["3 modes, creep"]()):
+        for i, one in enumerate(many):
+            for name in ("E", "tau", "J", "T"):
+                whole = getattr(many, name)[i]
+                assert np.array_equal(whole[: one.E.size], getattr(one, name)), (name, i)
+        assert np.array_equal(many.T_mean, [one.T_mean for one in many])

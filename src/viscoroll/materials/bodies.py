@@ -6,6 +6,7 @@ rolling resistance M takes of each body is the share of its creep modes in M.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,78 +14,130 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import number
+from ..checks import broadcast_shape, checked
 from ..errors import ParameterError
-from .bodies_array import BodiesArray
-from .prony import Prony
-from .prony_array import PronyArray
+from .prony import Block, OneOrMany, Prony, descending
+from .prony_forms import MOST_MODES
 
 
-@dataclass(frozen=True)
-class Bodies:
-    """A pair of materials whose tangential and normal contact do not couple (Dundurs' second constant is 0).
+@dataclass(frozen=True, eq=False, repr=False)
+class Bodies(OneOrMany):
+    """A pair of materials whose tangential and normal contact do not couple (Dundurs' second constant is 0); or n.
 
     Parameters
     ----------
     cylinder, half_space : their series, times over one T_ref.
     share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), in [0, 1]; 0: the cylinder is
         rigid, 1: the half-space is.
-        Where a body is n series (a :class:`PronyArray`), or ``share`` is an array (n,), these are n pairs, a
-        :class:`BodiesArray`; what is single is that of all.
+        Where a body is n series, or ``share`` is an array (n,), these are n pairs, ``p[i]`` one of them and ``p[i:k]``
+        some; what is single is that of all.
+
+    Attributes
+    ----------
+    shape : (), or (n,).
+    alpha : instantaneous over long-time stiffness of the pair, of each.
 
     Raises
     ------
     ParameterError
-        What is no series, or a share outside [0, 1].
+        What is no series, numbers of them that differ, a share outside [0, 1], n pairs of more than 64 modes.
 
     Notes
     -----
     Plane strain, constant Poisson ratios.  No coupling: like bodies, both incompressible, or an incompressible body on
-    a rigid one.
+    a rigid one.  Immutable, hashable, equal where what was given is.
     """
 
     cylinder: Prony
     half_space: Prony
-    share: Any = 0.5  # a number: arrays make a BodiesArray
-
-    def __new__(cls, cylinder: Any = None, half_space: Any = None, share: Any = 0.5) -> Any:
-        if not any(isinstance(body, PronyArray) for body in (cylinder, half_space)) and not np.ndim(share):
-            return super().__new__(cls)
-        return BodiesArray(cylinder, half_space, share, one=cls)
+    share: Any = 0.5
 
     def __post_init__(self) -> None:
-        for name in ("cylinder", "half_space"):
-            if not isinstance(getattr(self, name), Prony):
-                raise ParameterError(name, f"{getattr(self, name)!r:.60}", "a Prony series, or one for each pair")
-        share = number("share", self.share, low=0.0)
-        if share > 1.0:
-            raise ParameterError("share", share, "in [0, 1]")
-        object.__setattr__(self, "share", share)
+        bodies = {"cylinder": self.cylinder, "half_space": self.half_space}
+        for name, body in bodies.items():
+            if not isinstance(body, Prony):
+                raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
+        share = checked("share", self.share, low=0.0, high=1.0)
+        if share.ndim > 1:
+            raise ParameterError("share", f"of shape {share.shape}", "a number, or one for each pair, (n,)")
+        many = {name: np.empty(body.shape) for name, body in bodies.items()}
+        object.__setattr__(self, "shape", broadcast_shape(**many, share=share))
+        modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
+        if modes > MOST_MODES:
+            raise ParameterError("cylinder, half_space", f"of {modes} modes together", f"at most {MOST_MODES}")
+        kept = share.copy()
+        kept.flags.writeable = False
+        object.__setattr__(self, "share", kept if kept.ndim else float(kept))
+
+    @property
+    def _same(self) -> bool:
+        return self.cylinder == self.half_space
 
     @property
     def like(self) -> bool:
-        """Whether the two deform alike: M is shared evenly, as the paper has it."""
-        return self.cylinder == self.half_space and self.share == 0.5
+        """Whether the two deform alike, in every pair: M is shared evenly, as the paper has it, and one series is that
+        of both."""
+        return self.cylinder.shape == self.shape and self._same and bool(np.all(self.share == 0.5))
+
+    @cached_property
+    def alpha(self) -> Any:
+        """Instantaneous over long-time stiffness of the pair, of each."""
+        first, second = self.cylinder.alpha, self.half_space.alpha
+        found = first if self._same else 1.0 / (self.share / first + (1.0 - self.share) / second)
+        return np.broadcast_to(found, self.shape) if self.shape else found
+
+    def __getitem__(self, which: Any) -> Bodies:
+        cylinder, half_space, share = (
+            each[which] if np.shape(each) else each for each in (self.cylinder, self.half_space, self.share)
+        )
+        return Bodies(cylinder, half_space, share)
+
+    @cached_property
+    def _both(self) -> tuple[NDArray, ...]:
+        """Creep of both bodies together, strengths and times, and what of the strengths is the half-space's."""
+        share, rest = (np.asarray(part)[..., np.newaxis] for part in (self.share, 1.0 - np.asarray(self.share)))
+        parts = share * self.cylinder.J, rest * self.half_space.J
+        bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.half_space.T)
+        own, J, T = (
+            np.concatenate([np.broadcast_to(e, (*self.shape, e.shape[-1])) for e in each], -1) for each in bodies
+        )
+        return tuple(descending(J, T, own))
 
     @cached_property
     def total(self) -> Prony:
         """The series that stands for both in the contact law."""
-        if self.cylinder == self.half_space:
-            return self.cylinder
-        first, second = self.cylinder, self.half_space
-        J = np.concatenate([self.share * first.J, (1.0 - self.share) * second.J])
-        alpha = 1.0 / (self.share / first.alpha + (1.0 - self.share) / second.alpha)
-        return Prony.creep(J, np.concatenate([first.T, second.T]), alpha=alpha)
+        if not self._same:
+            return Prony.creep(*self._both[:2], alpha=self.alpha)
+        one = self.cylinder
+        return one if one.shape == self.shape else one.repeated(len(self))
 
     @cached_property
     def half_space_weights(self) -> NDArray[np.float64]:
         """What of the strength of each creep mode of ``total``, slowest first, is the half-space's."""
-        own = dict(zip(self.half_space.T.tolist(), ((1.0 - self.share) * self.half_space.J).tolist(), strict=True))
-        if self.cylinder == self.half_space:
-            return np.full(self.total.T.size, 1.0 - self.share)
-        return np.array([own.get(T, 0.0) for T in self.total.T.tolist()]) / self.total.J
+        J = self.total.J
+        if self._same:
+            return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape)
+        own = self._both[2][..., : J.shape[-1]]
+        return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
-    @property
-    def alpha(self) -> float:
-        """Instantaneous over long-time stiffness of the pair."""
-        return self.total.alpha
+    def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
+        """The pairs ``which``, those of as many modes together."""
+        some = self[which]
+        for block in some.total.blocks(np.arange(len(some))):
+            yield block._replace(weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]])
+
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        return self.cylinder, self.half_space, np.shape(self.share), np.asarray(self.share).tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        return self._key == other._key if isinstance(other, Bodies) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __repr__(self) -> str:
+        if self.shape:
+            modes = (body.E.shape[-1] for body in (self.cylinder, self.half_space))
+            return f"<{len(self)} pairs of {' and '.join(map(str, modes))} modes>"
+        return f"Bodies(cylinder={self.cylinder!r}, half_space={self.half_space!r}, share={self.share!r})"

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .bodies import Bodies
 from .law_axis import OCTAVES, tables_of, to_chebyshev
 from .law_modes import refuse_far, series_of
 from .law_table import Floats
-from .prony_array import Block, MaterialArray
+from .prony import Block, Prony
 
 _lock = threading.Lock()
 #: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.axis`), never dropped again, and
@@ -92,7 +93,7 @@ def _octave(octave: int) -> tuple[Floats, int]:
     return _read_only(np.ascontiguousarray(np.moveaxis(found, 0, 2))), rows
 
 
-def law_of_materials(materials: MaterialArray, which: NDArray[np.int64]) -> Any:
+def law_of_materials(materials: Prony | Bodies, which: NDArray[np.int64]) -> Any:
     """The record of states or motions that have the materials ``which``.
 
     For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import ParameterError
 from .bodies import Bodies
 from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
 from .law_modes import refuse_far, series_of, unsteadiness
@@ -104,10 +105,12 @@ def law_table(given: float | Prony | Bodies | LawTable) -> LawTable:
     Raises
     ------
     ParameterError
-        Times beyond 1e-100 to 1e100 of their unit.
+        Many materials; times beyond 1e-100 to 1e100 of their unit.
     """
     if isinstance(given, LawTable):
         return given
+    if isinstance(given, Prony | Bodies) and given.shape:
+        raise ParameterError("material", repr(given), "one material, as material[i]")
     if isinstance(given, Bodies) and (given.like or given.alpha == 1.0):
         given = given.total if given.total.E.size else 1.0
     with _lock:

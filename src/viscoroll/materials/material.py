@@ -60,7 +60,7 @@ class Material(FromPrograms):
     measured: Measured | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.prony, Prony):
+        if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
         if isinstance(self.E, (int, float, np.floating)) and float(self.E) == math.inf:
             object.__setattr__(self, "E", math.inf)

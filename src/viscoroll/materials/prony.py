@@ -1,4 +1,4 @@
-"""A linear viscoelastic material as a Prony series: :class:`Prony`, in relaxation and in creep form.
+"""Linear viscoelastic materials as Prony series: :class:`Prony`, one or many, in relaxation and in creep form.
 
 With moduli over the long-time modulus and times over a time T_ref of the user's,
 
@@ -11,51 +11,89 @@ with b_1 < a_1 < b_2 < ... < b_N < a_N (:mod:`prony_forms`).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import checked
+from ..checks import broadcast_shape, checked
 from ..errors import ParameterError
-from .prony_array import PronyArray
 from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
 
 
-class Prony:
-    """A linear viscoelastic material by its relaxation modulus, a Prony series.
+class Block(NamedTuple):
+    """Materials of equal numbers of modes, along the last axis.
+
+    rows : which they are
+    weights : of pairs, what of the strength of each creep mode is the half-space's
+    """
+
+    rows: NDArray[np.int64]
+    modes: Modes
+    weights: NDArray[np.float64] | None = None
+
+
+class OneOrMany:
+    """A material, of shape (), or materials 0 ... n - 1, of shape (n,), which index and iteration give."""
+
+    #: of the materials
+    shape: tuple[int, ...]
+
+    def __getitem__(self, which: Any) -> Any:
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single material has no length")
+        return self.shape[0]
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[Any]:
+        return (self[i] for i in range(len(self)))
+
+
+class Prony(OneOrMany):
+    """A linear viscoelastic material by its relaxation modulus, a Prony series; or n of them.
 
     Parameters
     ----------
     E : strengths of the modes over the long-time modulus, >= 0; zeros are dropped.
     tau : their relaxation times over T_ref, > 0; strengths of equal times are added.
-        Of arrays (n, N), one of which may be (N,), it makes n materials: a :class:`PronyArray`.
+        Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them, ``p[i:k]`` are some.
+
+    Attributes
+    ----------
+    shape : (), or (n,).
+    alpha : instantaneous over long-time modulus, of each.
+    by_creep : whether it was given by its creep compliance.
 
     Raises
     ------
     ParameterError
         Negative strengths, times that are not positive, more than 64 modes, times that span more than
-        32 decades, or 1 + sum E above 1e12.
+        32 decades, or 1 + sum E above 1e12; of any of them.
 
     Notes
     -----
     Immutable, hashable, equal where modes and ``alpha`` are.  Nothing that is given is rescaled.
     """
 
-    def __new__(cls, E: ArrayLike = (), tau: ArrayLike = ()) -> Any:
-        many = _array_of(E, tau, cls, creep=False)
-        return super().__new__(cls) if many is None else many
+    alpha: Any
+    by_creep: bool
 
-    def __init__(self, E: ArrayLike, tau: ArrayLike) -> None:
-        self._relaxation: tuple[tuple[float, ...], tuple[float, ...]] | None = _series("E", E, "tau", tau)
-        self._creep: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-        self._alpha = 1.0 + math.fsum(self._relaxation[0])
-        if self._alpha > HIGHEST_ALPHA:
-            raise ParameterError("E", f"{self._relaxation[0]}", f"of a sum up to {HIGHEST_ALPHA:g}")
+    def __init__(self, E: ArrayLike = (), tau: ArrayLike = ()) -> None:
+        strengths, times = self._given(False, E, tau)
+        alpha = 1.0 + _sums(strengths)
+        if (np.asarray(alpha) > HIGHEST_ALPHA).any():
+            raise ParameterError("E", f"of a sum of {np.max(alpha) - 1.0:g}", f"of a sum up to {HIGHEST_ALPHA:g}")
+        self._keep(False, strengths, times, alpha)
 
     @classmethod
-    def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: Any = None) -> Any:
+    def creep(cls, J: ArrayLike, T: ArrayLike, *, alpha: Any = None) -> Prony:
         """The material by its creep compliance.
 
         Parameters
@@ -66,30 +104,28 @@ class Prony:
             has lost digits; what is given here takes its place, and must agree with it to rounding of J.
             Of arrays (n, N) a number or (n,).
 
-        Returns
-        -------
-        Prony
-            Or, of arrays (n, N), a :class:`PronyArray`.
-
         Raises
         ------
         ParameterError
             As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
         """
-        many = _array_of(J, T, cls, alpha, creep=True)
-        if many is not None:
-            return many
-        J, T = _series("J", J, "T", T)
-        rest = 1.0 - math.fsum(J)
-        if not rest > 0.0:
-            raise ParameterError("J", f"{J}", "of a sum below 1: the instantaneous modulus would be infinite")
-        given = 1.0 / rest if alpha is None else float(checked("alpha", alpha, low=1.0, high=HIGHEST_ALPHA))
-        if abs(1.0 / given - rest) > 1e-14 * (1 + len(J)):
-            raise ParameterError("alpha", alpha, f"1/(1 - sum J), here {1.0 / rest!r} to rounding")
-        if given > HIGHEST_ALPHA:
-            raise ParameterError("J", f"{J}", f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}")
         made = cls.__new__(cls)
-        made._relaxation, made._creep, made._alpha = None, (J, T), given
+        strengths, times = made._given(True, J, T)
+        rest = np.asarray(1.0 - _sums(strengths))
+        if not (rest > 0.0).all():
+            found = f"of a sum of {1.0 - rest.min()!s}"
+            raise ParameterError("J", found, "of a sum below 1: the instantaneous modulus would be infinite")
+        given = 1.0 / rest if alpha is None else checked("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
+        if given.shape not in ((), rest.shape):
+            raise ParameterError("alpha", f"of shape {given.shape}", f"a number, or one a material, {rest.shape}")
+        given = np.broadcast_to(given, rest.shape)
+        off = np.abs(1.0 / given - rest) > 1e-14 * (1.0 + np.count_nonzero(strengths, axis=-1))
+        if off.any():
+            here = f"1/(1 - sum J), here {1.0 / rest[off].flat[0]!s} to rounding"
+            raise ParameterError("alpha", given[off].flat[0], here)
+        if (given > HIGHEST_ALPHA).any():
+            raise ParameterError("J", strengths.tolist(), f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}")
+        made._keep(True, strengths, times, given if given.ndim else float(given))
         return made
 
     @classmethod
@@ -97,71 +133,125 @@ class Prony:
         """No modes: alpha = 1."""
         return cls([], [])
 
+    def _given(self, by_creep: bool, strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
+        """Strengths and times as they are kept, refused by name."""
+        names = ("J", "T") if by_creep else ("E", "tau")
+        values, each = checked(names[0], strengths, low=0.0), checked(names[1], times, low=0.0, strict=True)
+        if values.ndim == each.ndim == 1 and values.shape != each.shape:
+            allowed = f"one time for each {names[0]}, of shape {values.shape}"
+            raise ParameterError(names[1], f"of shape {each.shape}", allowed)
+        shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
+        if len(shape) not in (1, 2):
+            raise ParameterError(", ".join(names), f"of shape {shape}", "(modes,) or (materials, modes)")
+        values, each = descending(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
+        there = values > 0.0
+        most = int(there.sum(axis=-1).max(initial=0))
+        if most > MOST_MODES:
+            raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
+        longest, shortest = each.max(axis=-1, initial=0.0, where=there), each.min(axis=-1, initial=np.inf, where=there)
+        wide = longest > WIDEST * shortest
+        if wide.any():
+            ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
+            raise ParameterError(names[1], ends, f"within a factor of {WIDEST:g}")
+        return values[..., :most], each[..., :most]
+
+    def _keep(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
+        self.by_creep, self.alpha, self.shape = by_creep, alpha, strengths.shape[:-1]
+        self._strengths, self._times = (_read_only(np.ascontiguousarray(each)) for each in (strengths, times))
+        if isinstance(alpha, np.ndarray):
+            self.alpha = _read_only(np.ascontiguousarray(alpha))
+
+    def __getitem__(self, which: Any) -> Prony:
+        strengths, times, alpha = self._strengths[which], self._times[which], self.alpha[which]
+        if strengths.ndim == 1:
+            count = np.count_nonzero(strengths)
+            strengths, times, alpha = strengths[:count], times[:count], float(alpha)
+        made = Prony.__new__(Prony)
+        made._keep(self.by_creep, strengths, times, alpha)
+        return made
+
+    def repeated(self, count: int) -> Prony:
+        """A single one as ``count`` that are alike."""
+        made = Prony.__new__(Prony)
+        strengths, times = (np.broadcast_to(each, (count, each.size)) for each in (self._strengths, self._times))
+        made._keep(self.by_creep, strengths, times, np.full(count, self.alpha))
+        return made
+
     @cached_property
     def modes(self) -> Modes:
-        """Both forms, and the gaps between their rates."""
-        if self._relaxation is not None:
-            E, tau = (np.array(values) for values in self._relaxation)
-            return of_relaxation(E, tau, self._alpha)
-        assert self._creep is not None
-        J, T = (np.array(values) for values in self._creep)
-        return of_creep(J, T, self._alpha)
+        """Both forms of a single one, and the gaps between their rates."""
+        return (of_creep if self.by_creep else of_relaxation)(self._strengths, self._times, self.alpha)
 
-    @property
-    def by_creep(self) -> bool:
-        """Whether it was given by its creep compliance."""
-        return self._creep is not None
+    def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
+        """The materials ``which``, those of as many modes together."""
+        counts, form = self._counts[which], of_creep if self.by_creep else of_relaxation
+        for count in np.unique(counts).tolist():
+            rows = np.flatnonzero(counts == count)
+            own = which[rows]
+            strengths, times = (np.ascontiguousarray(each[own, :count]) for each in (self._strengths, self._times))
+            yield Block(rows, form(strengths, times, self.alpha[own]))
 
-    @property
-    def alpha(self) -> float:
-        """Instantaneous over long-time modulus."""
-        return self._alpha
+    @cached_property
+    def _counts(self) -> NDArray[np.int64]:
+        return np.count_nonzero(self._strengths, axis=-1)
+
+    @cached_property
+    def _other(self) -> tuple[NDArray, NDArray]:
+        """Strengths and times of the form that was not given; of many behind the last mode 0 and 1."""
+        names = ("E", "a") if self.by_creep else ("J", "b")
+        if not self.shape:
+            strengths, rates = (getattr(self.modes, name) for name in names)
+            return _read_only(strengths), _read_only(1.0 / rates)
+        strengths, rates = np.zeros(self._strengths.shape), np.ones(self._strengths.shape)
+        for block in self.blocks(np.arange(len(self))):
+            count = block.modes.a.shape[-1]
+            strengths[block.rows, :count], rates[block.rows, :count] = (getattr(block.modes, name) for name in names)
+        return _read_only(strengths), _read_only(1.0 / rates)
 
     @property
     def E(self) -> NDArray[np.float64]:
         """Strengths of relaxation over the long-time modulus, slowest mode first."""
-        return _read_only(self.modes.E)
+        return self._other[0] if self.by_creep else self._strengths
 
     @property
     def tau(self) -> NDArray[np.float64]:
         """Relaxation times over T_ref, longest first."""
-        return _read_only(np.array(self._relaxation[1]) if self._relaxation is not None else 1.0 / self.modes.a)
+        return self._other[1] if self.by_creep else self._times
 
     @property
     def J(self) -> NDArray[np.float64]:
         """Strengths of creep over the long-time compliance, slowest mode first."""
-        return _read_only(self.modes.J)
+        return self._strengths if self.by_creep else self._other[0]
 
     @property
     def T(self) -> NDArray[np.float64]:
         """Retardation times over T_ref, longest first."""
-        return _read_only(np.array(self._creep[1]) if self._creep is not None else 1.0 / self.modes.b)
+        return self._times if self.by_creep else self._other[1]
 
     @property
-    def T_mean(self) -> float:
+    def T_mean(self) -> Any:
         """sum J_j T_j = sum E_i tau_i over T_ref: M = V T_mean at low speed."""
-        return math.fsum(self.E * self.tau) if self._relaxation is not None else math.fsum(self.J * self.T)
+        return _sums(self._strengths * self._times)
 
     @property
-    def second_moments(self) -> tuple[float, float]:
+    def second_moments(self) -> tuple[Any, Any]:
         """(sum E_i tau_i^2, sum J_j T_j^2) over T_ref^2."""
-        return math.fsum(self.E * self.tau**2), math.fsum(self.J * self.T**2)
+        return _sums(self.E * self.tau**2), _sums(self.J * self.T**2)
 
     @property
     def slow_time(self) -> float:
         """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean over T_ref: kappa V beside its inverse tells slow from fast."""
         return sum(self.second_moments) / self.T_mean if self.E.size else 1.0
 
-    def slower(self, factor: float) -> Prony:
-        """All times longer by a factor, as a colder rubber has them."""
-        factor = float(checked("factor", factor, low=0.0, strict=True))
-        if self._relaxation is not None:
-            return Prony(self._relaxation[0], np.array(self._relaxation[1]) * factor)
-        assert self._creep is not None
-        return Prony.creep(self._creep[0], np.array(self._creep[1]) * factor, alpha=self._alpha)
+    def slower(self, factor: ArrayLike) -> Prony:
+        """All times longer by a factor, or by one each, as a colder rubber has them."""
+        times = self._times * checked("factor", factor, low=0.0, strict=True)[..., np.newaxis]
+        if self.by_creep:
+            return Prony.creep(self._strengths, times, alpha=self.alpha)
+        return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:
-        """(The material with its slow time near 1, the time that this is counted in), a power of two: exact."""
+        """(A single one with its slow time near 1, the time that this is counted in), a power of two: exact."""
         return self._own
 
     @cached_property
@@ -169,51 +259,47 @@ class Prony:
         unit = 2.0 ** round(math.log2(self.slow_time))  # of no modes it is 1
         return (self, 1.0) if unit == 1.0 else (self.slower(1.0 / unit), unit)
 
+    @cached_property
     def _key(self) -> tuple[Any, ...]:
-        return self._relaxation, self._creep, self._alpha
+        alpha = np.asarray(self.alpha).tobytes()
+        return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
 
     def __eq__(self, other: object) -> bool:
-        return self._key() == other._key() if isinstance(other, Prony) else NotImplemented
+        return self._key == other._key if isinstance(other, Prony) else NotImplemented
 
     def __hash__(self) -> int:
-        return hash(self._key())
+        return hash(self._key)
 
     def __repr__(self) -> str:
-        if self._relaxation is not None:
-            E, tau = map(list, self._relaxation)
-            return f"Prony(E={E}, tau={tau})"
-        assert self._creep is not None
-        J, T = map(list, self._creep)
-        return f"Prony.creep(J={J}, T={T}, alpha={self._alpha!r})"
+        if self.shape:
+            form = "creep" if self.by_creep else "relaxation"
+            return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"
+        strengths, times = self._strengths.tolist(), self._times.tolist()
+        if self.by_creep:
+            return f"Prony.creep(J={strengths}, T={times}, alpha={self.alpha!r})"
+        return f"Prony(E={strengths}, tau={times})"
 
 
-def _array_of(strengths: ArrayLike, times: ArrayLike, one: type[Prony], alpha: Any = None, *, creep: bool) -> Any:
-    """Materials, one each, of arrays (n, N); None of others."""
-    try:
-        if max(np.ndim(strengths), np.ndim(times)) < 2:
-            return None
-    except ValueError:  # ragged: refused where it is checked
-        return None
-    return PronyArray(strengths, times, alpha, creep=creep, one=one)
+def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[NDArray[np.float64]]:
+    """Strengths and times by falling times: those of equal times added up, those of no strength behind the others.
+
+    ``more`` : parts of the strengths, likewise.
+    """
+    order = np.argsort(-times, axis=-1, kind="stable")
+    values, each, *parts = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *more))
+    for n in range(each.shape[-1] - 1):
+        equal = each[..., n] == each[..., n + 1]
+        for given in (values, *parts) if equal.any() else ():
+            given[..., n + 1] += np.where(equal, given[..., n], 0.0)
+            given[..., n] *= ~equal
+    order = np.argsort(values == 0.0, axis=-1, kind="stable")
+    return [np.take_along_axis(given, order, axis=-1) for given in (values, each, *parts)]
 
 
-def _series(
-    strength: str, strengths: ArrayLike, time: str, times: ArrayLike
-) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Strengths and times as given, times descending; without zeros, equal times added up."""
-    values, each = checked(strength, strengths, low=0.0), checked(time, times, low=0.0, strict=True)
-    if values.ndim != 1 or values.shape != each.shape:
-        raise ParameterError(time, f"of shape {each.shape}", f"one time for each {strength}, of shape {values.shape}")
-    total: dict[float, float] = {}
-    for value, at in zip(values.tolist(), each.tolist(), strict=True):
-        if value > 0.0:
-            total[at] = total.get(at, 0.0) + value
-    ordered = sorted(total, reverse=True)
-    if len(ordered) > MOST_MODES:
-        raise ParameterError(time, f"{len(ordered)} times", f"at most {MOST_MODES}")
-    if ordered and not ordered[0] <= WIDEST * ordered[-1]:
-        raise ParameterError(time, f"from {ordered[-1]:g} to {ordered[0]:g}", f"within a factor of {WIDEST:g}")
-    return tuple(total[at] for at in ordered), tuple(ordered)
+def _sums(values: NDArray) -> Any:
+    """Along the modes, without an error of rounding but the last."""
+    rows = values.tolist()
+    return math.fsum(rows) if values.ndim == 1 else np.array([math.fsum(row) for row in rows])
 
 
 def _read_only(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,10 +12,9 @@ from ..blocks import flattened, run_blocks, thread_count
 from ..checks import broadcast_shape, extent, number
 from ..drive import Feedback, Schedule, over
 from ..errors import MotionStatus, ParameterError, unknown
-from ..materials.bodies_array import BodiesArray
+from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
-from ..materials.prony_array import MaterialArray
 from ..parameters import PARAMETERS, Parameters, Rolls, framed
 from ..scale import OF_TIME
 from ..typed import Numbers
@@ -276,7 +275,7 @@ def _integrate_others(answer: Answer, many: _Many) -> NDArray[np.int64]:
 
 
 def _many_materials(scene: Parameters) -> bool:
-    return isinstance(scene.material, MaterialArray) or np.ndim(scene.alpha) > 0
+    return np.ndim(scene.alpha) > 0
 
 
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, bool]]:
@@ -286,7 +285,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.
 
     def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
         found = law_of_materials(material, np.minimum(which, len(material) - 1))
-        return found, isinstance(material, BodiesArray)
+        return found, isinstance(material, Bodies)
 
     def own(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
         given: Any = scene.material

@@ -10,9 +10,8 @@ import xarray as xr
 
 from .. import __version__
 from ..errors import MOTION_STATUS, ParameterError
-from ..materials.bodies_array import BodiesArray
+from ..materials.bodies import Bodies
 from ..materials.prony import Prony
-from ..materials.prony_array import PronyArray
 from ..parameters import PARAMETERS, Rolls
 from ..symbols import attributes
 from .driven import ACTING
@@ -62,10 +61,10 @@ def _material(scene: Any) -> dict[str, Any]:
 
 def _series(materials: Any, count: int) -> dict[str, xr.Variable]:
     """Strengths and times of a material each as they were given, or of both bodies and the cylinder's share."""
-    if isinstance(materials, PronyArray):
-        return _modes(materials, count, "", "")
-    if not isinstance(materials, BodiesArray):
+    if materials is None or not materials.shape:
         return {}
+    if not isinstance(materials, Bodies):
+        return _modes(materials, count, "", "")
     share = {"long_name": "the cylinder's part of the long-time compliance", "units": "1"}
     return (
         _modes(materials.cylinder, count, "cylinder_", "cylinder: ")
@@ -74,13 +73,10 @@ def _series(materials: Any, count: int) -> dict[str, xr.Variable]:
     )
 
 
-def _modes(given: Prony | PronyArray, count: int, body: str, of: str) -> dict[str, xr.Variable]:
+def _modes(given: Prony, count: int, body: str, of: str) -> dict[str, xr.Variable]:
     """Strengths and times of one body, over (motion, mode)."""
     form, over = ("creep", "compliance") if given.by_creep else ("relaxation", "modulus")
-    if isinstance(given, PronyArray):
-        strengths, times = given.given
-    else:
-        strengths, times = (given.J, given.T) if given.by_creep else (given.E, given.tau)
+    strengths, times = (given.J, given.T) if given.by_creep else (given.E, given.tau)
     about = {"strengths": f"strengths of {form} over the long-time {over}", "times": f"times of {form} over T_ref"}
     return {
         f"{body}{form}_{name}": xr.Variable(

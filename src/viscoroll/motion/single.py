@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from ..checks import number
 from ..drive import Feedback, Schedule, over
 from ..errors import MOTION_STATUS, ParameterError
-from ..materials.prony_array import MaterialArray
 from ..parameters import Rolls, framed
 from ..typed import Numbers
 from .checks import controls, in_words, output_times, refuse_many, start_speeds
@@ -155,8 +154,7 @@ def roll(
 
 def _refuse_many(roller: Any) -> None:
     """Name what is an array of what rolls."""
-    if isinstance(roller.material, MaterialArray):
-        refuse_many(material=roller.material.alpha)
+    refuse_many(material=roller.material)
     refuse_many(
         **{"load" if field.name == "pressed" else field.name: getattr(roller, field.name) for field in fields(roller)}
     )

@@ -17,7 +17,6 @@ from ..free_rolling import curve
 from ..kernels.compile.notice import is_worker
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
-from ..materials.prony_array import MaterialArray
 from ..parameters import PARAMETERS, Parameters
 from ..steadiness import STEADY_LIMIT
 
@@ -94,7 +93,7 @@ def _faults_of_many(scene: Parameters, V0: NDArray[np.float64], omega0: NDArray[
         slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
     found: list[str] = []
     for worst in {int(np.argmax(strain)) for strain in (-kappa, slips, unsteady)}:
-        material = scene.material[some[worst]] if isinstance(scene.material, MaterialArray) else scene.material
+        material = scene.material if scene.each is None else scene.each[some[worst]]
         own = dict(zip((*PARAMETERS, "V0", "omega0"), picked[:, worst].tolist(), strict=True))
         start = own.pop("V0"), own.pop("omega0")
         one = Parameters(**(own if material is None else own | {"alpha": None, "material": material}))
