@@ -190,41 +190,6 @@ def test_reference_between_curves_and_shifts_that_are_given():
 GOOD = curve(np.logspace(-2, 4, 20))
 
 
-def test_refused():
-    for column, name in enumerate(("omega", "storage", "loss")):
-        for bad in (0.0, -1.0, np.nan, np.inf, "E"):
-            data = [list(values) for values in GOOD]
-            data[column][3] = bad
-            refused(lambda data=data: vr.fit_prony(*data), name)
-    two = np.repeat([1.0, 0.0], 10)
-    for columns, options, *words in (
-        (([1.0, 2.0], [1.0, 2.0], [1.0, 2.0]), {}, "omega", "at least 3 points"),
-        ((*GOOD[:2], GOOD[2][:-1]), {}, "loss", "shape"),
-        ((1.0, 1.0, 1.0), {}, "omega", "column"),
-        (([1e-20, 1.0, 1e20], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]), {}, "omega", "within a factor"),
-        ((GOOD[0], GOOD[0] ** 2, GOOD[0]), {}, "storage", "fluid"),
-        (GOOD, {"modes": 2.5}, "modes = 2.5", "whole number"),
-        (GOOD, {"modes": 65}, "modes = 65", "to 64"),
-        (GOOD, {"misfit": 0.0}, "misfit = 0"),
-        (GOOD, {"reference": 20.0}, "reference", "with temperature only"),
-        (GOOD, {"shift": wlf}, "shift", "with temperature only"),
-        (GOOD, {"temperature": 20.0}, "temperature", "column"),
-        (GOOD, {"temperature": np.zeros(19)}, "omega", "one a temperature"),
-        (GOOD, {"temperature": np.arange(20.0)}, "omega", "at least 2 points"),
-        (GOOD, {"temperature": two, "reference": 2.0}, "reference = 2", "within [0, 1]"),
-        (GOOD, {"temperature": two, "shift": [1.0]}, "shift", "factor each of 2"),
-        (GOOD, {"temperature": two, "shift": [1.0, -1.0]}, "shift", "> 0"),
-    ):
-        refused(lambda columns=columns, options=options: vr.fit_prony(*columns, **options), *words)
-
-
-def test_curves_that_do_not_overlap():
-    omega = np.logspace(-1, 1, 11)
-    apart = [omega, omega], [1.0 + 0.01 * omega, 50.0 + omega], [0.01 * omega, omega]
-    refused(lambda: vr.fit_prony(*apart, temperature=[20.0, 0.0]), "temperature = 0 and 20", "overlap")
-    refused(lambda: vr.fit_prony(*apart, temperature=[20.0]), "temperature", "one a curve")
-
-
 # --- files ---
 
 
@@ -285,28 +250,6 @@ def test_units_are_asked_for(tmp_path):
     file.write_text("omega [rad/s], E_stor, E_loss\n1,2,3\n", encoding="utf-8")
     with pytest.warns(vr.ModelWarning, match="Pa"):
         assert close(vr.read_dma(file), [[1.0], [2.0], [3.0]], rel=1e-15)
-    for units in (("Hz",), ("MPa", "Hz"), ("Hz", "psi"), "Hz", ("Hz", 1.0)):
-        refused(lambda units=units: vr.read_dma(file, units=units), "units", "must be (frequency, moduli)")
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", "no row of numbers"),
-        ("f, E_stor, E_loss\n", "no row of numbers"),
-        ("1 2\n3 4\n", "has 2 columns"),
-        ("1 2 3\n4 5\n", "line 2 has 2 columns"),
-        ("1 2 3\nnan 5 6\n", "line 2 is no row"),
-        ("1 2 3 4\n", "no heading that names"),
-        ("f (Hz), E_stor (psi), E_loss (psi)\n1,2,3\n", "unit 'psi'"),
-        ("f, E_stor, E_loss\nHz, psi, psi\n1,2,3\n", "unit 'psi'"),
-        ("f, E_stor, E_loss\nMPa, Pa, Pa\n1,2,3\n", "unit 'mpa'"),
-    ],
-)
-def test_files_that_are_refused(tmp_path, text, words):
-    (tmp_path / "dma.txt").write_text(text, encoding="utf-8")
-    refused(lambda: vr.read_dma(tmp_path / "dma.txt"), "dma.txt", words, error=vr.TableError)
-    refused(lambda: vr.read_dma(tmp_path / "none.csv"), "none.csv", "cannot be read", error=vr.TableError)
 
 
 def test_what_the_contact_sees_of_the_data():

@@ -14,9 +14,11 @@ import viscoroll as vr
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]
+OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
 NAMES = {
     "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "partial": partial,
+    "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
     "PAPER": vr.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.RUBBER_CYLINDER,
 }  # fmt: skip
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 import dataclasses
 import math
 import pickle
-from functools import partial
 
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
@@ -162,29 +160,6 @@ def test_scene_of_a_pair():
     assert rigid == vr.Bodies(vr.Prony.elastic(), HARD.prony, 0.0)
 
 
-BAD_PAIRS = [
-    ({"material": RUBBER, "E": 1e6, "T_sigma": 1.0}, "material and E, T_sigma are both given"),
-    ({}, "give material=, or all of E, nu, T_epsilon and T_sigma: E, nu, T_epsilon, T_sigma not given"),
-    ({"E": 1e6, "nu": 0.4, "T_epsilon": 1.0}, "T_sigma: T_sigma not given"),
-    ({"material": "rubber"}, "material = 'rubber': must be a Material"),
-    ({"material": RUBBER, "base": 2e11}, "base = 200000000000.0: must be a Material"),
-    ({"material": vr.Material.rigid()}, "base = rigid: must be a body that deforms"),
-    ({"material": vr.Material.rigid(), "base": vr.Material.rigid()}, "base = rigid"),
-    ({"material": RUBBER, "load": 0.0}, "load = 0.0"),
-    ({"material": RUBBER, "load": [1.0, -2.0]}, "load = -2.0 at row 1"),
-    (
-        {"material": RUBBER, "load": [1.0, 2.0], "m": [1.0, 2.0, 3.0]},
-        "m (3,)",
-    ),
-    ({"material": RUBBER, "mu": None}, "mu = None"),
-]
-
-
-def test_refused_pairs():
-    for change, words in BAD_PAIRS:
-        refused(partial(vr.Cylinder, **ROLLER | change), words)
-
-
 def test_frozen():
     scene = vr.Scene(alpha=[2.0, 3.0], kappa=2.0, mu=0.2)
     with pytest.raises(dataclasses.FrozenInstanceError):
@@ -210,8 +185,6 @@ def test_equality_and_replace():
     assert scene != "scene"
     assert vr.Scene([2.0, 3.0], 2.0, 0.2) == vr.Scene(np.array([2.0, 3.0]), 2.0, 0.2)
     assert vr.Scene([2.0, 3.0], 2.0, 0.2) != scene
-    with pytest.raises(vr.ParameterError, match="alpha"):
-        scene.replace(alpha=0.5)
     assert type(scene.alpha) is float
 
 
@@ -220,87 +193,10 @@ def test_shape():
     assert vr.Scene([1.0, 2.0, 3.0], [[1.0], [2.0]], 0.2).shape == (2, 3)
 
 
-BAD_SCENES = [
-    *(({name: bad}, name) for name in ("kappa", "mu", "gamma", "j") for bad in (0.0, -1.0, math.nan, math.inf)),
-    *(({"alpha": bad}, "alpha") for bad in (1.0 - 1e-15, 0.0, -2.0, math.nan, math.inf, "eleven")),
-    ({"alpha": [2.0, 0.5]}, "alpha"),
-    ({"kappa": [[1.0, math.nan]]}, "kappa"),
-]
-
-
-def test_bad_scene():
-    for change, name in BAD_SCENES:
-        call = partial(vr.Scene, **{"alpha": 2.0, "kappa": 2.0, "mu": 0.2} | change)
-        assert refused(call, " = ", ">").startswith(name)
-
-
-def test_bad_value_is_shown():
-    with pytest.raises(vr.ParameterError, match=r"^alpha = 0\.5 at row 1: must be finite and >= 1, <= 1e\+12$"):
-        vr.Scene([2.0, 0.5], 2.0, 0.2)
-    with pytest.raises(vr.ParameterError, match=r"^mu = nan at row 12345, and 3 more: must be finite and > 0$"):
-        vr.Scene(2.0, 2.0, np.where(np.isin(np.arange(20000), [12345, 13000, 14000, 19999]), math.nan, 0.2))
-    with pytest.raises(vr.ParameterError, match=r"^mu is a masked array: give mu.compressed\(\)$"):
-        vr.Scene(2.0, 2.0, np.ma.masked_less([0.2, -1.0], 0.0))
-    assert refused(partial(vr.Scene, kappa=2.0, mu=0.2)) == "give alpha or material"
-    with pytest.raises(vr.ParameterError, match=r"^mu = -0\.2: must be finite and > 0$"):
-        vr.Scene(2.0, 2.0, -0.2)
-
-
-def test_shapes_that_do_not_broadcast():
-    with pytest.raises(vr.ParameterError, match=r"alpha \(2,\), kappa \(3,\): must be broadcastable"):
-        vr.Scene([1.0, 2.0], [1.0, 2.0, 3.0], 0.2)
-
-
-BAD_CYLINDERS = [
-    *(({name: bad}, name) for name in ("R", "m", "E", "mu", "T_sigma") for bad in (0.0, -1.0, math.nan)),
-    ({"nu": 0.51}, "nu"),
-    ({"nu": -1.0}, "nu"),
-    ({"T_epsilon": 0.5}, "T_epsilon"),
-    ({"plane": "bent"}, "plane"),
-    ({"T_epsilon": [[10.0, 11.0]]}, "T_epsilon"),
-    ({"T_epsilon": [10.0, 0.5]}, "T_epsilon"),
-    ({"T_epsilon": [10.0, math.nan]}, "T_epsilon"),
-    ({"R": [0.1, 0.0]}, "R"),
-    ({"g": 0.0}, "g"),
-    ({"j": -0.5}, "j"),
-]
-
-
-def test_bad_cylinder():
-    for change, name in BAD_CYLINDERS:
-        assert refused(partial(vr.Cylinder, **SI | change), f"{name} = ").startswith(name)
-
-
 def test_limits_that_are_allowed():
     assert close(vr.Cylinder(**(SI | {"nu": 0.5})).E_prime, math.pi * 2.3e5 / 0.75, rel=tol.SCENE)
     assert vr.Cylinder(**(SI | {"T_epsilon": 0.97})).scene().alpha == 1.0
     assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
-
-
-BEYOND_DOUBLES = [
-    ({"R": 1e-172, "m": 1e-172}, "kappa"),
-    ({"R": 1e-300, "m": 1e300, "E": 1e-300}, "kappa"),
-    ({"T_epsilon": 1e200, "T_sigma": 1e199}, "gamma"),
-    ({"T_epsilon": 1e300, "T_sigma": 1e-300}, "alpha"),
-]
-
-
-def test_cylinders_beyond_the_doubles():
-    """Products that underflow or overflow are refused by the field that they spoil, without a warning."""
-    for changed, field in BEYOND_DOUBLES:
-        refused(vr.Cylinder(**(SI | {"E": 2e5, "T_sigma": 1.0} | changed)).scene, field)
-
-
-BEYOND_LAW = [
-    ({"alpha": 1.1e12}, "alpha"), ({"alpha": [11.0, 1e20]}, "alpha"), ({"mu": 1e-200, "kappa": 1e150}, "mu/kappa"),
-    ({"mu": [0.2, 1e200], "kappa": 1e-150}, "mu/kappa"),
-]  # fmt: skip
-
-
-def test_parameters_beyond_the_range_of_the_law():
-    """From alpha of some 1e18 on roots did not converge or were NaN; delta_star was 0 or infinite."""
-    for changes, named in BEYOND_LAW:
-        refused(partial(vr.PAPER_SECTION_5.replace, **changes), f"{named} = ")
 
 
 def test_the_rubber_roller_is_inside_the_limits_of_steady_rolling():

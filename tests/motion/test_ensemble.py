@@ -8,7 +8,6 @@ import tolerances as tol
 import tqdm
 import xarray as xr
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.files import write_dataset
@@ -119,17 +118,6 @@ def test_scalars_broadcast():
     assert vr.ensemble(SCENE, 1.5, 0.5, T).V.shape == (1, 7)
     mus = SCENE.replace(mu=[0.1, 0.2, 0.3, 0.4])
     assert vr.ensemble(mus, 1.5, 0.5, T).V.shape == (4, 7)
-
-
-def test_no_motions():
-    """The flow map once rolled one motion that nobody asked for."""
-    for method in ("auto", "flow", "integrate"):
-        for start in (([], []), ([], 2.0), (2.0, [])):
-            none = vr.ensemble(SCENE, *start, T, method=method, rtol=1e-6, fields=FIELDS)
-            assert none.V.shape == none.regime.shape == (0, 7)
-            assert len(none) == none.flow.size == none.V0.size == 0
-            assert none.messages() == {}
-            refused(none.summary, "motions = 0: must be at least one")
 
 
 def test_a_regime_that_was_not_reached_is_no_full_slip():

@@ -59,18 +59,6 @@ def test_beside_a_second_method(scene, start, t, drive):
     assert np.abs(steady.V / m.V - 1.0).max() > 3e-4  # N is what this is about
 
 
-def test_on_the_slow_manifold():
-    """(1 + j + gamma N) V' = -gamma M: speeds and times, by quadrature, but for creep, which is of order 1/kappa."""
-    scene = ROLLER.replace(kappa=1.06e5)
-    V = np.geomspace(3e-3, 3e-4, 4001)
-    c = vr.contact(scene, V, delta=0.0, fields=("M", "N"))
-    slope = -(1.0 + scene.j + scene.gamma * c.N) / (scene.gamma * c.M) * V
-    h = np.log(V[1] / V[0])
-    times = h / 3.0 * np.cumsum(slope[:-2:2] + 4.0 * slope[1::2] + slope[2::2])
-    m = vr.roll(scene, V[0], V[0], times, unsteady=True)
-    assert close(m.V, V[2::2], rel=1e-4)
-
-
 def test_sliding_is_as_before():
     """Full slip to the onset of stick: the same motion, to the last bit."""
     plain, unsteady = (vr.roll(RUBBER, 3.0, 0.0, 0.1 * T, unsteady=each) for each in (False, True))
@@ -134,12 +122,6 @@ def test_it_ends_there_at_any_tolerance():
     assert ends == [38, 38]
 
 
-def test_elastic_bodies_have_none():
-    scene = RUBBER.replace(alpha=1.0)
-    plain, unsteady = (vr.roll(scene, 1.0, 0.2, T, unsteady=each) for each in (False, True))
-    assert np.array_equal(plain.V, unsteady.V)
-
-
 def test_a_rest_costs_speed():
     """V0 and omega0 less what leaving the imprint takes; a rest of no time nothing, a longer one more."""
     V0 = 30.0
@@ -189,43 +171,6 @@ def test_ensembles_are_rolls():
             assert np.array_equal(e.V[i], vr.roll(ones[i], V0[i], 0.0, T[:8], unsteady=True).V)
 
 
-def test_at_other_times():
-    m = vr.roll(RUBBER, 1.0, 1.0, T, unsteady=True, rested=5.0)
-    again = vr.roll(RUBBER, 1.0, 1.0, [3.3, T[-1]], unsteady=True, rested=5.0)
-    assert np.array_equal(m.at([3.3]).V, again.V[:1])
-
-
-PAIR = vr.Bodies(cylinder=DMA, half_space=vr.Prony([1.0], [1.0]), share=0.7)
-
-
-def test_in_si_units():
-    """A rest in s: the dimensionless motion in other units; ensembles likewise."""
-    roller, times = vr.RUBBER_CYLINDER, np.linspace(0.0, 3.0, 5)
-    T_ref, speed = roller.T_ref, roller.R / roller.T_ref
-    for rested in (True, 60.0):
-        m = roller.roll(1.0, 1.0 / roller.R, times, unsteady=True, rested=rested)
-        over = rested if rested is True else rested / T_ref
-        own = vr.roll(roller.scene(), 1.0 / speed, 1.0 / speed, times / T_ref, unsteady=True, rested=over)
-        assert close(m.V, own.V * speed, rel=tol.SI_MOTION, scale=1.0)
-        e = roller.ensemble([1.0, 2.0], np.array([1.0, 2.0]) / roller.R, times, unsteady=True, rested=rested)
-        assert close(e.V[0], m.V, rel=tol.SI_MOTION, scale=1.0)
-    for call in (roller.roll, roller.ensemble):
-        with pytest.raises(vr.ParameterError, match=r"rested = -1.0: must be finite and >= 0"):
-            call(1.0, 10.0, times, rested=-1.0)
-
-
-def test_on_the_command_line(capsys):
-    from viscoroll.cli import main
-
-    start = 1.0 * vr.RUBBER_CYLINDER.T_ref / vr.RUBBER_CYLINDER.R
-    command = ["roll", "rubber-roller", "--V0", repr(start), "--omega0", repr(start), "--t", "0:3:5", "--unsteady"]
-    for time, rested in ((["--rested"], True), (["--rested", "60"], 60.0)):
-        assert main([*command, *time]) == 0
-        m = vr.roll(vr.RUBBER_ROLLER, start, start, np.linspace(0.0, 3.0, 5), unsteady=True, rested=rested)
-        assert capsys.readouterr().out.startswith(str(m))
-    assert main([*command, "--rested", "-1"]) == 2
-
-
 RUN = """
 [cylinder]
 R = 0.1
@@ -269,21 +214,3 @@ def test_in_run_files(tmp_path):
             assert close(found, getattr(e, name), rel=tol.SI_MOTION, scale=1.0), name
     assert read(RUN).digest != read(RUN.replace("60.0", "61.0")).digest
     assert read(plain).digest == read(plain.replace("[run]\n", "[run]\nunsteady = false\n")).digest
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("rested = 60.0", "rested = -1.0", "rested = -1.0: must be finite and >= 0"),
-        ("unsteady = true", 'unsteady = true\nmethod = "flow"', "must be 'auto' or 'integrate' with"),
-        (
-            "T_epsilon = 0.5",
-            'T_epsilon = { distribution = "uniform", loc = 0.4, scale = 0.2 }',
-            "unsteady = true: must be left out where T_epsilon is uncertain",
-        ),
-    ],
-)
-def test_run_files_refuse(tmp_path, old, new, words):
-    (tmp_path / "run.toml").write_text(RUN.replace(old, new), encoding="utf-8")
-    with pytest.raises(vr.ConfigError, match=words):
-        read_run(tmp_path / "run.toml")

@@ -120,48 +120,6 @@ def test_axes_of_few_nodes():
         assert close(found.Q, table.Q.sel(V=0.5, delta=0.01, alpha=11.0).item(), rel=tol.TABLE_SPLINE_NODE)
 
 
-def test_refused_points(alphas):
-    good = {"V": 0.5, "delta": 0.01, "alpha": 2.0}
-    for points, text in (
-        ({"alpha": 17.0}, "alpha = 17: must be within the table's range [1, 16]"),
-        ({"V": [0.1, 1e-4]}, "V = 0.0001: must be within the table's range [0.01, 2]"),
-    ):
-        call = partial(vr.tables.interpolate, alphas, **good | points)
-        assert refused(call, error=vr.OutOfTableError) == text
-    for fields, points, text in (
-        ("zeta", good, "'zeta'"),
-        (None, {"V": 2.0, "alpha": 1.0}, "V, delta, alpha"),
-        (None, good | {"s": 1.0}, "V, delta"),
-        (None, good | {"alpha": np.nan}, "alpha = nan"),
-        (None, good | {"V": [1.0, 2.0], "alpha": [2.0] * 3}, "broadcast"),
-    ):
-        refused(partial(vr.tables.interpolate, alphas, fields, **points), text)
-    for thing in (None, xr.Dataset(), vr.tables.law(11.0)):
-        refused(partial(vr.tables.interpolate, thing, V=1.0), "no table of viscoroll", error=vr.TableError)
-
-
-def test_refused_grids():
-    good = {"what": vr.PAPER_SECTION_5, "V": V, "delta": DELTA}
-    for changes, words in (
-        ({"what": 11.0}, "what = 11.0: must be a Scene, a Cylinder or a law"),
-        ({"what": vr.PAPER_SECTION_5.replace(mu=[0.1, 0.2])}, "what = of shape (2,)"),
-        ({"what": vr.RUBBER_CYLINDER, "alpha": ALPHA}, "alpha = given: must be left out"),
-        ({"what": law_table(11.0), "alpha": [0.5]}, "alpha = 0.5"),
-        ({"V": [0.0, 1.0]}, "V = 0"),
-        ({"V": [[1.0]]}, "V = an array of shape (1, 1)"),
-        ({"V": []}, "V = "),
-        ({"V": [1e300]}, "kappa |V|"),
-        ({"delta": [0.1, 0.0]}, "delta"),
-        ({"V": np.arange(1.0, 1e4), "delta": np.arange(1e4)}, "at most"),
-    ):
-        refused(partial(vr.tables.build, **good | changes), words)
-    for options, words in (
-        ((5.0, 5.0, 3), "high = 5.0: must be > low = 5"), ((0.0, 1.0, 3, "log"), "low = 0.0: must be finite and > 0"),
-        ((1.0, np.inf, 3), "high = inf"), ((1.0, 2.0, 1), "count = 1"), ((1.0, 2.0, 3, "lag"), "spacing = 'lag'"),
-    ):  # fmt: skip
-        refused(partial(vr.tables.spread, *options), words)
-
-
 # --- files ---
 
 
@@ -246,7 +204,6 @@ def read_modelica(path: Path) -> tuple[dict[str, float], dict[str, NDArray]]:
 
 def test_modelica(name, table, tmp_path):
     if name == "alphas":
-        refused(partial(vr.tables.export, table, tmp_path / "t.txt"), "two inputs")
         table = table.sel(alpha=[4.0])
     vr.tables.export(table, tmp_path / "t.txt")
     errors, matrices = read_modelica(tmp_path / "t.txt")
@@ -265,13 +222,3 @@ def test_matlab(table, tmp_path):
         assert np.array_equal(content[key], table[key].values)
     assert content["dimensions"]["Q"] == ", ".join(schema.axes_of(table))
     assert content["linear_error"]["beta"] == table.beta.attrs["linear_error"]
-
-
-def test_refused_formats(alphas, tmp_path):
-    for file, form, words in (
-        ("t.h", None, "a name that ends in .nc, .csv, .txt, .mat for a grid"),
-        ("t.nc", "excel", "format = 'excel'"),
-        ("t.csv", "netcdf3", "format = 'netcdf3'"),
-    ):
-        refused(partial(vr.tables.export, alphas, tmp_path / file, form), words)
-    assert not list(tmp_path.iterdir())

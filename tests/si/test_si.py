@@ -1,0 +1,238 @@
+"""A cylinder in SI units: every call is the dimensionless one in other units, of one cylinder and of many."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import tolerances as tol
+import xarray as xr
+from closeness import close
+from refusals import refused
+
+import viscoroll as vr
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+
+ROLLER = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
+RUBBER = vr.Material(3e6, 0.49, vr.Prony([0.3, 0.6], [2e-2, 1e-3]), name="rubber", density=1130.0)
+ON_STEEL = vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=vr.Material.elastic(2e11, 0.3), mu=0.6, load=2000.0)
+TIMES, DOWN = np.linspace(0.0, 2.0, 9), -0.05
+WORKS = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
+
+
+def units_of(roller: vr.Cylinder, load: float) -> dict[str, float]:
+    """By hand: R, T_ref, the load on the plane, and what is made of them."""
+    R, T, P = roller.R, roller.T_ref, load
+    found = {
+        "t": T,
+        "x": R,
+        "l0": roller.l0,
+        "V": R / T,
+        "omega": 1.0 / T,
+        "force": P,
+        "Q": P,
+        "torque": P * R,
+        "N": P * T**2,
+    }
+    found |= dict.fromkeys(("M", "M_half_space", "M_cylinder"), P * R) | {"zeta": T, "rest_time": T, "onset_time": T}
+    found |= {"dQ_dV": P * T / R, "dQ_domega": P * T, "dQ_ddelta": P, "eigenvalues": P * T / (roller.m * R)}
+    found |= dict.fromkeys(("dM_dV", "dM_half_space_dV", "dM_cylinder_dV"), P * T)
+    return found | dict.fromkeys(WORKS, roller.m * (R / T) ** 2) | dict.fromkeys(("p", "tau"), roller.E_prime)
+
+
+def everything_acts(body, u):
+    """Numbers, schedules, callables, feedback, slope, brake."""
+    return body.roll(
+        0.02 / u.V, 0.1 / u.omega, TIMES / u.t, slope=DOWN,
+        force=vr.Feedback(lambda t: np.sin(t * u.t) / u.force, V=-3.0 * u.V / u.force, omega=0.2 * u.omega / u.force),
+        torque=vr.Schedule(np.array([0.5, 1.0, 1.0]) / u.t, np.array([0.0, 4.0, 1.0]) / u.torque),
+        brake=vr.Schedule(np.array([1.5, 1.5]) / u.t, np.array([0.0, 6.0]) / u.torque),
+    )  # fmt: skip
+
+
+def spun(body, u):
+    return body.roll(
+        0.0, None, TIMES / u.t, omega=vr.Schedule(np.array([0.0, 1.0]) / u.t, np.array([0.0, 0.5]) / u.omega)
+    )
+
+
+def towed(body, u):
+    speeds = vr.Schedule(TIMES[::4] / u.t, np.array([0.01, 0.03, -0.01]) / u.V)
+    return body.roll(None, 0.0, TIMES / u.t, V=speeds, torque=0.5 / u.torque)
+
+
+SPEEDS, SPINS = np.array([-0.2, 0.05, 0.3]), np.array([-1.99, 0.5, 3.1])
+STATE = ("lam", "zeta", "epsilon", "delta_star", "delta", "beta", "Q", "M", "dQ_dV", "dQ_domega", "dQ_ddelta", "dM_dV")
+PARTS = ("M_half_space", "M_cylinder", "dM_half_space_dV", "dM_cylinder_dV")
+MOTION = ("V", "omega", "x", "angle", "delta", "regime")
+DRIVEN = (*MOTION, "force", "torque", *WORKS)
+#: the call of a body in units, the fields of its result, and how near they are
+CALLS = {
+    "contact": (lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, "N")), (*STATE, "N")),
+    "two bodies": (
+        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, *PARTS)), (*STATE, *PARTS),
+    ),
+    "stress": (lambda body, u: body.stress(np.linspace(-1e-3, 1e-3, 9) / u.l0, 0.05 / u.V, delta=1e-3), ("p", "tau")),
+    "steady": (
+        lambda body, u: body.steady(force=-2.0 / u.force, torque=0.15 / u.torque, slope=DOWN),
+        ("V", "omega", "delta", "Q", "M", "force", "torque", "grip", "eigenvalues"),
+    ),
+    "humps": (lambda body, u: body.humps(), ("V", "M")),
+    "law": (
+        lambda body, u: body.law()(0.05 / u.V, 0.5 / u.omega, slopes=True),
+        ("Q", "M", *PARTS, "dQ_dV", "dQ_domega"),
+    ),
+    "free": (
+        lambda body, u: body.roll(0.02 / u.V, 0.1 / u.omega, 100.0 / u.t, rest=1e-5 / u.V), (*MOTION, "rest_time"),
+    ),
+    "driven": (everything_acts, DRIVEN),
+    "spun": (spun, DRIVEN),
+    "towed": (towed, DRIVEN),
+    "from rest": (
+        lambda body, u: body.roll(1.0 / u.V, 10.0 / u.omega, TIMES / u.t, unsteady=True, rested=60.0 / u.t), MOTION,
+    ),
+    "ensemble": (
+        lambda body, u: body.ensemble(np.array([0.01, 0.02]) / u.V, 0.1 / u.omega, TIMES / u.t, rest=1e-6 / u.V),
+        ("V", "omega", "x", "onset_time", "rest_time"),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_the_dimensionless_call_in_other_units(name):
+    call, fields = CALLS[name]
+    roller = {"two bodies": ON_STEEL, "from rest": vr.RUBBER_CYLINDER}.get(name, ROLLER)
+    tilted = name in ("steady", "driven")
+    unit = units_of(roller, roller.load * (np.cos(DOWN) if tilted else 1.0))
+    found = call(roller, SimpleNamespace(**dict.fromkeys(unit, 1.0)))
+    bare = call(roller.scene(), SimpleNamespace(**unit))
+    rel = {"driven": tol.SI_TILTED, "steady": tol.STEADY, "ensemble": tol.SI_ENSEMBLE}.get(name, tol.SI_MOTION)
+    for field in fields:
+        exact = np.asarray(getattr(bare, field)) * unit.get(field, 1.0)
+        largest = np.abs(exact[np.isfinite(exact)]).max(initial=0.0)
+        assert close(getattr(found, field), exact, rel=rel, scale=largest, what=field)
+    for events in ("switches", "reversals") if field == "rolling_loss" else ():
+        pairs = ([getattr(e, "t", e) for e in getattr(m, events)] for m in (found, bare))
+        times, exact = map(np.array, pairs)
+        assert not times.size or close(times, exact * unit["t"], rel=rel)
+
+
+def test_functions_are_the_methods():
+    """Of scene and cylinder, with one signature; what is neither is refused by name."""
+    for name in ("contact", "stress", "steady", "humps", "law", "roll", "ensemble", "validity"):
+        function = getattr(vr, name)
+        assert function is getattr(vr.Scene, name) is getattr(vr.Cylinder, name)
+        arguments = {"stress": 2, "steady": 0, "humps": 0, "law": 0, "roll": 3, "ensemble": 3}.get(name, 1)
+        said = refused(lambda function=function, n=arguments: function("a roller", *[0.1] * n))
+        assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
+
+
+# --- newtons, by other laws ---
+
+
+def test_stresses_hold_load_and_traction():
+    """The integrals of p and tau over the contact are P and the traction Q, N per m."""
+    state = ON_STEEL.contact(0.3, delta=0.002)
+    x = np.linspace(-state.length, state.length, 20001)
+    found = ON_STEEL.stress(x, 0.3, delta=0.002)
+    assert close(np.trapezoid(found.p, x), ON_STEEL.load, rel=tol.SI_INTEGRAL)
+    assert close(np.trapezoid(found.tau, x), state.Q, rel=tol.SI_INTEGRAL)
+    assert close(state.length, state.lam * ON_STEEL.l0, rel=tol.SI_MOTION)
+
+
+def test_work_is_energy_and_losses():
+    m = ROLLER.roll(0.02, 0.1, TIMES, force=20.0, torque=-2.0, slope=0.02, brake=0.3)
+    kinetic = 0.5 * ROLLER.m * (m.V**2 + ROLLER.j * (ROLLER.R * m.omega) ** 2)
+    works = m.work_force + m.work_torque
+    gained = kinetic - kinetic[0] + m.slip_loss + m.rolling_loss + m.brake_loss
+    assert close(works, gained, rel=tol.SI_ENERGY, scale=np.abs(works).max())
+    assert close(m.power_force, m.force * m.V, rel=tol.SI_MOTION)
+
+
+def test_equilibria_balance_and_motions_end_there():
+    """On a slope P sin(slope) holds against the moment, at a load of more than the weight, on a rigid base."""
+    slope = np.radians(1.0)
+    tread = vr.Material(3e5, 0.49, vr.Prony([0.5, 1.0], [1.0, 0.1]), T_ref=2.0)
+    pressed = vr.Cylinder(R=0.1, m=5.0, mu=0.4, material=tread, base=vr.Material.rigid(), load=500.0)
+    s, pull = pressed.steady(slope=slope), 500.0 * np.sin(slope)
+    assert close(s.force, pull, rel=tol.SI_MOTION)
+    assert close(s.M_half_space / pressed.R - s.Q, pull, rel=tol.SI_TERMINAL)
+    assert close(s.Q, -s.M_cylinder / pressed.R, rel=tol.SI_TERMINAL)
+    m = pressed.roll(0.0, 0.0, [50.0], slope=slope)
+    assert close(m.V[-1], s.V[s.stable][0], rel=tol.SI_TERMINAL)
+    assert close(m.force[-1], pull, rel=tol.SI_MOTION)
+
+
+def test_speeds_of_validity_are_metres_a_second():
+    """Waves: sqrt(G/density); the circumference counts where omega is given."""
+    wave = np.sqrt(RUBBER.G / RUBBER.density)
+    assert close(ON_STEEL.validity(0.1 * wave).quasistatic.value, 0.1, rel=tol.PAIR)
+    fast = ON_STEEL.validity(0.1 * wave, omega=0.5 * wave / ON_STEEL.R)
+    assert close((fast.quasistatic.value, fast.creep.value), (0.5, 4.0), rel=tol.PAIR)
+    assert not fast.creep.holds
+
+
+# --- many cylinders ---
+
+SLOW, FAST = np.array([1e-3, 1e-2, 2e-2]), np.array([1e-3, 1e-3, 5e-3])
+SOLID = vr.Cylinder(R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=0.02, T_sigma=0.02, mu=0.3)
+MANY = {
+    "mu and load": (ROLLER, {"mu": np.array([0.2, 0.3, 0.4]), "load": np.array([300.0, 340.0, 380.0])}),
+    "load and R": (vr.RUBBER_CYLINDER, {"load": np.array([50.0, 200.0, 900.0]), "R": np.array([0.05, 0.1, 0.2])}),
+    "times": (SOLID, {"T_epsilon": SLOW, "T_sigma": FAST}),
+}
+
+
+@pytest.mark.parametrize("name", MANY)
+def test_each_of_many_is_as_alone(name):
+    """Gains over m/s and rad/s too."""
+    roller, each = MANY[name]
+    many, drags = roller.replace(**each), np.array([0.002, 0.0, 0.03])
+    fields = ("V", "omega", "x", "torque", "rolling_loss", "onset_time")
+    e = many.ensemble(0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags), fields=fields[:-1])
+    state, checked = many.contact(0.5, delta=0.01), many.validity(0.5)
+    s = many.steady(slope=1e-3) if name != "times" else None  # of one alpha
+    for n in range(3):
+        one = roller.replace(**{key: values[n] for key, values in each.items()})
+        m = one.roll(0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags[n]))
+        for field in fields:
+            exact = getattr(m, field)
+            scale = np.abs(np.nan_to_num(exact)).max()
+            assert close(getattr(e, field)[n], exact, rel=tol.SI_ENSEMBLE, scale=scale, what=field)
+        for field in ("M", "Q", "length", "beta"):
+            exact = getattr(one.contact(0.5, delta=0.01), field)
+            assert close(getattr(state, field)[n], exact, rel=tol.SI_MOTION, what=field)
+        assert close(checked.small_contact.value[n], one.validity(0.5).small_contact.value, rel=tol.PAIR)
+        assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, rel=tol.SI_MOTION)
+    assert many == roller.replace(**{key: values.copy() for key, values in each.items()})
+    assert hash(many) == hash(roller.replace(**each))
+
+
+def test_what_follows_from_a_change():
+    assert ROLLER.replace(nu=0.0) == ROLLER.replace(nu=-0.0)
+    assert hash(ROLLER.replace(nu=0.0)) == hash(ROLLER.replace(nu=-0.0))
+    assert close(ROLLER.replace(m=70.0).load, 70.0 * 9.81, rel=tol.SCENE)
+    assert ROLLER.replace(load=500.0).replace(m=70.0).load == 500.0
+    assert ROLLER.replace(material=RUBBER).E is None
+    assert ON_STEEL.replace(E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97).material is None
+    assert SOLID.replace(T_epsilon=SLOW, T_sigma=FAST).T_ref == 2e-2
+
+
+def test_dataset_in_si(tmp_path):
+    brake = vr.Schedule([1.0, 1.0], [0.0, 3.0])
+    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, force=np.sin, brake=brake)
+    m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
+        for name in DRIVEN[:-5]:
+            assert np.array_equal(data[name].values, getattr(m, name))
+        said = {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss", "drive_brake_time")}
+        assert said == {"t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1", "drive_brake_time": "s"}
+        assert data["drive_torque"].item() == 2.0
+        assert data["drive_brake_time"].values.tolist() == [1.0, 1.0]
+        assert data["drive_brake"].values.tolist() == [0.0, 3.0]
+        assert data.attrs["drive_force"] == "a function of t"
+        assert [data.attrs[name] for name in ("R", "load", "T_ref")] == [ROLLER.R, ROLLER.load, ROLLER.T_ref]
+    e = ROLLER.replace(mu=[0.2, 0.3]).ensemble(0.02, 0.1, TIMES)
+    assert e.to_xarray()["V"].attrs["units"] == e.summary().V_mean.attrs["units"] == "m s-1"
