@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from refusals import refused
 
 import viscoroll as vr
 
@@ -77,13 +76,3 @@ def test_ensembles(body):
     assert "motion" not in plain.to_xarray().coords
     levels = pd.MultiIndex.from_tuples([("p", 1), ("q", 2)], names=["maker", "batch"])
     assert list(own(TABLE["V"].set_axis(levels), 0.0, 1e-3).to_xarray()["maker"]) == ["p", "q"]
-
-
-def test_unlike_labels_are_refused():
-    refused(lambda: vr.contact(SCENE, V, delta=np.array([0.0, 0.1])), "labels")
-    refused(lambda: vr.contact(SCENE, V, delta=(0.0, 0.1)), "labels")
-    refused(lambda: vr.stress(SCENE, np.zeros(2), V, delta=0.0), "labels")
-    refused(lambda: vr.steady(SCENE, slope=TABLE["V"], torque=TABLE["delta"].iloc[::-1]), "index")
-    refused(lambda: vr.ensemble(SCENE, V, np.zeros(2), 1.0), "labels")
-    refused(lambda: vr.ensemble(SCENE, V, V.assign_coords(run=["a", "c"]), 1.0), "coordinates")
-    refused(lambda: ROLLER.ensemble(V, V.rename(run="walk"), 1.0), "vectors")

@@ -7,18 +7,23 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 from refusals import refused
 
 import viscoroll as vr
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]
+V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
 NAMES = {
     "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "partial": partial,
     "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
+    "LABELLED": V, "FRAME": pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"]),
+    "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
     "PAPER": vr.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.RUBBER_CYLINDER,
 }  # fmt: skip
 

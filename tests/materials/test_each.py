@@ -8,7 +8,6 @@ import pytest
 import tolerances as tol
 from closeness import close
 from many import COUNT, MATERIALS, pairs, rubbers
-from refusals import refused
 
 import viscoroll as vr
 
@@ -143,41 +142,6 @@ def test_one_of_the_two_may_be_shared():
     assert np.array_equal(shared.slower(2.0).alpha, shared.alpha)
     assert vr.Scene(material=shared, kappa=[[1.0], [2.0], [3.0]], mu=0.1).shape == (3, 2)
     assert "2 series of 2 modes" in repr(shared)
-
-
-def test_refused():
-    many, few = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), vr.Prony([[1.0]] * 3, [1.0])
-    scene, pair = scene_of(many), scene_of(vr.Bodies(many, many, 0.4))
-    wide = vr.Prony(np.ones((2, 40)), np.arange(1.0, 41.0))
-    far = scene_of(vr.Prony([[1.0], [2.0]], [1e-120]))
-    for call, *words in (
-        (lambda: vr.Prony([[1.0, -2.0]], [1.0, 0.1]), "E = -2.0", ">= 0"),
-        (lambda: vr.Prony([[1.0, 2.0]], [[1.0, 0.0]]), "tau = 0.0", "> 0"),
-        (lambda: vr.Prony([[1.0, 2.0]], [1.0, 0.1, 0.2]), "E (1, 2), tau (3,)", "broadcast"),
-        (lambda: vr.Prony([[[1.0]]], [1.0]), "E, tau", "(materials, modes)"),
-        (lambda: vr.Prony(np.ones((2, 65)), np.arange(1.0, 66.0)), "at most 64"),
-        (lambda: vr.Prony([[1.0, 1.0]], [1e-20, 1e20]), "from 1e-20 to 1e+20", "within a factor"),
-        (lambda: vr.Prony([[1.0], [2e12]], [1.0]), "E = of a sum of 2e+12", "1e+12"),
-        (lambda: vr.Prony.creep([[0.5], [1.0]], [1.0]), "J", "of a sum below 1"),
-        (lambda: vr.Prony.creep([[0.5], [0.6]], [1.0], alpha=2.0), "alpha = 2.0", "2.5"),
-        (lambda: vr.Prony.creep([[0.5], [0.6]], [1.0], alpha=[1.0, 2.0, 3.0]), "alpha", "one a material"),
-        (lambda: many.slower(-1.0), "factor"),
-        (lambda: vr.Scene(material=many, kappa=[1.0, 2.0, 3.0], mu=0.1), "shapes", "alpha (2,), kappa (3,)"),
-        (lambda: scene.validity([0.3, 0.2, 0.1]), "shapes", "broadcast"),
-        (lambda: vr.roll(scene, 1.0, 1.0, T), "material", "one motion"),
-        (lambda: vr.ensemble(pair, 1.0, 1.0, T, method="flow"), "method = 'flow'"),
-        (lambda: vr.contact(scene, 1.0, delta=0.0, method="direct"), "method = 'direct'"),
-        (lambda: vr.Material(1e6, 0.5, many), "prony", "a Prony series"),
-        (lambda: vr.Bodies(many, few), "shapes", "cylinder (2,), half_space (3,)"),
-        (lambda: vr.Bodies(many, many, [0.1, 1.5]), "share = 1.5 at row 1", "<= 1"),
-        (lambda: vr.Bodies(wide, wide, 0.1), "of 80 modes together", "at most 64"),
-        (lambda: vr.Bodies(many, 11.0), "half_space = 11.0", "a Prony series"),
-        (lambda: vr.Bodies(many, many, [[0.1, 0.5]]), "share", "one for each pair"),
-        (lambda: vr.law(pair), "material = <2 pairs", "one material"),
-        (lambda: vr.contact(pair, 1.0, delta=0.0, fields="N"), "fields = 'N'", "one material"),
-        (lambda: vr.contact(far, 1.0, delta=0.0), "times", "1e-100 to 1e+100"),
-    ):
-        refused(call, *words)
 
 
 def test_arrays_of_materials_are_materials():

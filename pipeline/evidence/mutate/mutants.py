@@ -79,15 +79,11 @@ MOTION = [
     ("motion/integrate.py", "p / (inertia + load.per_V * (1.0 + delta))", "p / (inertia + load.per_V * (1.0 - delta))", "tests/motion/test_sets_out.py"),
     ("motion/events.py", "    for _ in range(_STEPS):\n", "    for _ in range(0):\n", "tests/motion/test_sets_out.py"),
 ]  # fmt: skip
-_PRONY, _PAIR, _UNSTEADY = (
-    "tests/materials/test_prony.py",
-    "tests/kernels/rows/test_pair.py",
-    "tests/kernels/law/test_unsteady.py",
-)
+_PAIR, _UNSTEADY = "tests/kernels/rows/test_pair.py", "tests/kernels/law/test_unsteady.py"
 SERIES = [
-    ("rows/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _PRONY),
-    ("rows/series.py", "lam2 = divide(one, add(one, add(rise, rise)))", "lam2 = divide(one, add(one, rise))", _PRONY),
-    ("rows/modes.py", "dh, pressed = add(dh, bend)", "dh, pressed = subtract(dh, bend)", _PRONY),
+    ("rows/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _CLAIMS),
+    ("rows/series.py", "lam2 = divide(one, add(one, add(rise, rise)))", "lam2 = divide(one, add(one, rise))", _CLAIMS),
+    ("rows/modes.py", "dh, pressed = add(dh, bend)", "dh, pressed = subtract(dh, bend)", _CLAIMS),
     ("rows/series.py", "weight = spread(a * series.a[n] / (a + series.a[n]))", "weight = spread(series.a[n])", _PAIR),
     ("rows/series.py", "multiply(spread(series.weights[j] * series.t[j]), share)", "multiply(spread(series.weights[j]), share)", _PAIR),
     ("rows/grid.py", "work.found[LANES * HALF_SPACE + c], work.found[LANES * CYLINDER + c]", "work.found[LANES * CYLINDER + c], work.found[LANES * HALF_SPACE + c]", "tests/materials/test_each.py"),
