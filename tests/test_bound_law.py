@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import pickle
-from concurrent.futures import ThreadPoolExecutor
 
 import numba
 import numpy as np
@@ -96,28 +95,6 @@ def test_what_is_no_number_is_an_error_or_nan(law):
             law(V, 1.0)
 
 
-@pytest.mark.parametrize("name", ["series", "on an elastic base"])
-def test_threads_share_a_law(name):
-    """Speeds beyond the ends of the table too."""
-    law = vr.law(vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name]))
-    V, omega = np.array(states(law.scene)).T
-    expected = bits([law(*state, slopes=True) for state in zip(V, omega, strict=True)])
-    function, scene = law.ctypes
-
-    def work(_):
-        wrong, out = 0, (ctypes.c_double * 8)()
-        for _ in range(30):
-            found = []
-            for state in zip(V, omega, strict=True):
-                function(*state, out, scene)
-                found.append(out[:])
-            wrong += bits(found) != expected
-        return wrong
-
-    with ThreadPoolExecutor(4) as pool:
-        assert sum(pool.map(work, range(4))) == 0
-
-
 def test_scipy_takes_the_c_function(law):
     found = scipy.LowLevelCallable(*law.ctypes)
     assert found.signature == "int (double, double, double *, void *)"
@@ -193,20 +170,3 @@ def test_a_pickled_law_binds_anew(law):
     assert again(0.3, 0.3001, slopes=True) == law(0.3, 0.3001, slopes=True)
     with pytest.raises(TypeError, match="bind it there"):
         pickle.dumps(law.jitted)
-
-
-@pytest.mark.parametrize(
-    ("scene", "name"),
-    [
-        (vr.Scene([2.0, 3.0], 50.0, 0.2), "alpha"),
-        (vr.Scene(2.0, [50.0], 0.2), "kappa"),
-        (vr.Scene(2.0, 50.0, np.full((2, 2), 0.2)), "mu"),
-        (vr.Scene(kappa=50.0, mu=0.2, material=vr.Prony([[1.0], [2.0]], [1.0])), "material"),
-        (vr.PAPER_CYLINDER.replace(load=[1.0, 2.0]), "kappa"),
-        (2.0, "roller"),
-    ],
-)
-def test_a_law_is_of_one_scene(scene, name):
-    with pytest.raises(vr.ParameterError) as caught:
-        vr.law(scene)
-    assert caught.value.name == name

@@ -61,13 +61,6 @@ def test_by_quadrature_of_N_and_M(scene, V):
     assert close(found.share, found.ten_percent.left / rest, rel=tol.STEADINESS)
 
 
-def test_by_the_motion_itself():
-    """It passes that speed at that time and place."""
-    found = ROLLER.validity(30.0).steady.ten_percent
-    m = vr.roll(ROLLER, 30.0, 30.0, [found.time], rtol=1e-10)
-    assert close((m.V[0], m.x[0]), (found.speed, found.way), rel=tol.STEADINESS_MOTION)
-
-
 def test_the_numbers_that_were_measured():
     """That roller from 1 m/s, as local_steadiness says: right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s."""
     found = Steadiness.of(ROLLER.freely(30.0).scaled(Scale(R=0.1, T=3.0)))

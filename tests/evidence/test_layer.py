@@ -65,11 +65,6 @@ def test_a_thin_layer_is_a_foundation(nu):
     assert close(2.0 * near - far, 1.0, rel=tol.LAYER_THIN)
 
 
-def test_half_the_points_are_enough():
-    for nu in layer.RATIOS:
-        assert close(layer.load(layer._THIN, nu, 15), layer.load(layer._THIN, nu), rel=tol.LAYER_POINTS)
-
-
 def test_the_page_states_what_is_kept():
     """And what is kept is what is computed; validity takes the least of the limits, rounded down."""
     rows = json.loads((RESULTS / "layer.json").read_text(encoding="utf-8"))["rows"]

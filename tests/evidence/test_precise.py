@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import sys
 
 import flint
 import mpmath as mp
 import numpy as np
 import pytest
 import tolerances as tol
-from closeness import close
 from processes import made
 from truth.test_driven import MOTIONS as DRIVEN
 from truth.test_driven import inputs as driven_inputs
@@ -18,7 +16,6 @@ from truth.test_motions import check_motions, inputs
 
 import viscoroll as vr
 from pipeline.evidence.truth import roll_precise
-from pipeline.evidence.truth.collocation import radau
 from pipeline.evidence.truth.load import pieces_of
 from pipeline.evidence.truth.motion import PATHS
 from pipeline.evidence.truth.phase import Law
@@ -31,27 +28,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 OUTPUTS = ("V", "omega", "x", "angle")
 
 
-class Decay:
-    """u' = -u."""
-
-    def rates(self, u):
-        return [-u[0]], np.array([[-1.0]])
-
-    def sizes(self, values, taus):
-        return [1.0]
-
-
 # --- the integrator ---
-
-
-def test_order_of_the_collocation():
-    """n nodes: the error of a step at its end falls like its length to the power 2 n, and the first is small."""
-    method, errors = radau(4, 160), []
-    with flint.ctx.workprec(160):
-        for length in (flint.arb(0.0625), flint.arb(0.03125)):
-            values = method.step(Decay(), [flint.arb(1)], [[flint.arb(1)] for _ in method.nodes], length)
-            errors.append(float(abs(values[-1][0] - (-length).exp())))
-    assert close(np.log2(errors[0] / errors[1]), 8.0, rel=0.025)
 
 
 def test_rates_are_those_of_the_printed_law():
@@ -73,12 +50,6 @@ def test_rates_are_those_of_the_printed_law():
             Q, M = state["Q"] * mp.sign(omega - V), state["M"] * mp.sign(V)
             for ours, printed in zip(found, (Q - M / 2, -(Q + M / 2) / mp.mpf(scene.j)), strict=True):
                 assert abs(mp.mpf(ours.mid().str(50, radius=False)) / printed - 1) < tol.PRECISE_RATE, (V, omega)
-
-
-def test_precise_motion_refuses(monkeypatch):
-    monkeypatch.setitem(sys.modules, "flint", None)
-    with pytest.raises(vr.MissingDependencyError, match="python-flint"):
-        roll_precise(vr.PAPER_SECTION_5, 1.0, 0.0, [1.0])
 
 
 # --- the check motions ---

@@ -351,20 +351,6 @@ def test_a_read_only_cache_is_used(cache):
     cache.chmod(0o755)
 
 
-def compiled_with_a_note() -> None:
-    cache_module.note_trouble.cache_clear()
-    with pytest.warns(RuntimeWarning, match=r"compiled kernels are not cached \(.*Permission denied"):
-        assert fresh() == 0
-
-
-def test_an_empty_read_only_folder_only_warns(cache):
-    let_in(cache.parent)
-    for path in cache.iterdir():
-        path.unlink()
-    cache.chmod(0o555)
-    assert as_ordinary_user(compiled_with_a_note) == ""
-
-
 def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
     """A file where the folder should be: stops even the superuser."""
     obstacle = tmp_path / "file"
