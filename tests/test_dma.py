@@ -49,7 +49,7 @@ def whole():
 # --- what is recovered ---
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_a_rubber_of_ten_modes_with_noise(seed):
     fit = vr.fit_prony(*curve(WHOLE, noise=0.005, seed=seed))
     assert max(fit.misfit) <= tol.DMA_MISFIT
@@ -74,7 +74,7 @@ def test_two_modes_are_found_exactly():
     assert close(fit.alpha, 9.0, rel=tol.DMA_EXACT)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_window_of_two_decades(seed):
     """As good as a trial on 14 measured points of an EPDM rubber; M inside the window needs neither E nor alpha."""
     omega, tau = np.logspace(0, 2, 14), np.logspace(4, -4, 10)
@@ -97,13 +97,6 @@ def test_number_of_modes_is_an_upper_bound(whole):
         assert fit.prony.E.size == modes or modes == 12
         errors.append(np.hypot(*fit.misfit))
     assert errors == sorted(errors, reverse=True)
-
-
-def test_scaling_of_frequency_and_modulus(whole):
-    other = vr.fit_prony(1e3 * whole.omega, 1e-6 * whole.storage, 1e-6 * whole.loss)
-    assert close(other.prony.E, whole.prony.E, rel=tol.DMA_SCALED)
-    assert close(other.prony.tau, whole.prony.tau, rel=tol.DMA_SCALED)
-    assert close((1e6 * other.E, 1e3 * other.T_ref), (whole.E, whole.T_ref), rel=tol.DMA_SCALED)
 
 
 def test_order_does_not_matter_and_points_may_repeat(whole):
@@ -132,16 +125,6 @@ def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, deca
 
 
 # --- what is said ---
-
-
-def test_a_grid_that_is_wider_changes_what_the_data_do_not_hold(whole):
-    assert [other.decades for other in whole.wider] == [1, 2]
-    for other in whole.wider:
-        assert other.M_change <= tol.DMA_MOMENT
-        assert np.hypot(*other.misfit) <= np.hypot(*whole.misfit)
-    window = vr.fit_prony(*curve(np.logspace(0, 2, 14), tau=np.logspace(4, -4, 10), noise=0.005))
-    assert abs(np.log(window.alpha / ALPHA)) > 0.1  # not seen ...
-    assert max(abs(np.log(other.alpha / window.alpha)) for other in window.wider) > 0.1  # ... and said
 
 
 # --- several temperatures ---
@@ -267,18 +250,6 @@ def test_what_the_contact_sees_of_the_data():
     assert "was measured from 0.0628 to 628 rad/s" in found.sentence
     other = replace(cylinder, material=vr.Material.elastic(1e6, 0.5))
     refused(lambda: fit.validity(other, V), "cylinder", "with this fit's material")
-
-
-def test_a_steel_roller_on_a_fitted_belt_and_a_series_of_rollers():
-    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
-    rollers = vr.Cylinder(R=[0.05, 0.1], m=30.0, material=vr.Material.rigid(), base=fit.material(0.5), mu=0.5)
-    V = np.geomspace(1e-3, 10.0, 5)[:, None]
-    found = fit.validity(rollers, V)
-    for n, R in enumerate(rollers.R):
-        one = fit.validity(rollers.replace(R=R), V[:, 0])
-        assert close(found.value[:, n], one.value, rel=1e-14)
-        assert np.array_equal(found.holds[:, n], one.holds)
-    assert close(rollers.validity(V).measured.value, found.value, rel=1e-12)
 
 
 def test_what_was_measured_stays_with_the_material():

@@ -212,13 +212,6 @@ def test_a_word_where_it_matters(told, call, said):
     assert all(one.startswith(word) for one, word in zip(found, said, strict=True))
 
 
-def test_the_thousandth_call_is_looked_at_as_the_first(told):
-    for _ in range(100):
-        assert told(lambda: vr.roll(ROLLER, 30.0, 30.0, [0.01])) == []
-    for V in (3.0, 2.9):
-        assert told(lambda V=V: vr.roll(ROLLER, V, V, [0.01])) == [SLOW]
-
-
 def test_a_program_is_told_once_a_line():
     """By Python's own registry, whatever the numbers."""
     with warnings.catch_warnings(record=True) as found:

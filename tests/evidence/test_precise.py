@@ -9,7 +9,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 import tolerances as tol
-from processes import made
 from truth.test_driven import MOTIONS as DRIVEN
 from truth.test_driven import inputs as driven_inputs
 from truth.test_motions import check_motions, inputs
@@ -64,13 +63,6 @@ def test_check_motions_are_found_again(number):
         assert [float(value) for value in getattr(motion, name)] == [row[name] for row in rows]
     assert np.array_equal(float(motion.onset_time or math.nan), rows[0]["onset_time"], equal_nan=True)
     assert len(motion.switches) == rows[0]["switches"]
-
-
-def test_picture_of_tolerance_and_error(tmp_path):
-    """From the stored proofs."""
-    picture = tmp_path / "errors.png"
-    made("evidence.prove.figures", "-o", picture)
-    assert picture.read_bytes()[1:4] == b"PNG"
 
 
 @pytest.mark.parametrize("name", ["pushed from rest", "slid off rest by a torque", "a jump there and back"])

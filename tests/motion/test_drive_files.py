@@ -41,11 +41,6 @@ def test_a_motion_carries_its_drive(tmp_path):
         assert "drive_brake" not in data
 
 
-def test_a_free_motion_has_none():
-    data = vr.roll(SCENE, 0.2, 0.0, [1.0]).to_xarray()
-    assert not {"force", "slip_loss", "reversals", "drive_force"} & set(data)
-
-
 def test_a_callable_that_starts_at_rest_does():
     """Its polynomials begin with rounding of either sign, which would be a start in full slip the wrong way."""
     for speed in ({"V": lambda t: 0.1 * np.sin(t), "omega0": 0.0}, {"omega": lambda t: 0.1 * np.sin(t), "V0": 0.0}):
@@ -60,14 +55,6 @@ def test_traction_at_rest_has_the_sign_of_what_follows():
         Q, other = (vr.roll(SCENE, 0.0, 0.0, [0.0, 1e-9, 1.0], torque=q).contact("Q").Q for q in (torque, -torque))
         assert np.array_equal(Q, -other)
         assert Q[0] > 0.0
-
-
-def test_regimes_of_a_brake_have_names():
-    m = vr.roll(SCENE, 0.5, 0.5, np.linspace(0.0, 20.0, 9), brake=1.0)
-    assert set(m.regime) >= {3, 4}
-    found = m.to_xarray().regime
-    meanings = dict(zip(found.flag_values.tolist(), found.flag_meanings.split(), strict=True))
-    assert (meanings[3], meanings[4]) == ("locked", "held")
 
 
 def test_an_ensemble_carries_its_drives():

@@ -77,15 +77,6 @@ def test_progress_bar_only_when_it_takes_long(capsys, monkeypatch):
 # --- energy ---
 
 
-def test_all_energy_is_lost_at_rest():
-    V0, omega0 = starts(20)
-    result = vr.ensemble(SCENE, V0, omega0, [1.0], rest=1e-6, fields=FIELDS)
-    energy = 0.5 * (V0**2 + SCENE.j * omega0**2)
-    assert (result.V == 0.0).all()
-    assert close((result.slip_loss + result.rolling_loss)[:, 0], energy, rel=tol.ENERGY)
-    assert (result.slip_loss >= 0.0).all()
-
-
 def test_in_full_slip_friction_takes_mu_a_unit_of_path():
     V0, omega0 = np.array([1.0, -1.0, 0.3]), np.array([-1.0, 1.0, 2.0])
     result = vr.ensemble(SCENE, V0, omega0, [1e-5, 5e-5], fields=FIELDS)
@@ -110,14 +101,6 @@ def test_shapes_and_fields():
     final = vr.ensemble(SCENE, V0, omega0, 3e-3)
     assert final.t.tolist() == [3e-3]
     assert equal(final.V[:, 0], result.V[:, -1])
-
-
-def test_scalars_broadcast():
-    V0 = np.array([1.0, 1.5, 2.0])
-    assert vr.ensemble(SCENE, V0, 0.5, T).V.shape == (3, 7)
-    assert vr.ensemble(SCENE, 1.5, 0.5, T).V.shape == (1, 7)
-    mus = SCENE.replace(mu=[0.1, 0.2, 0.3, 0.4])
-    assert vr.ensemble(mus, 1.5, 0.5, T).V.shape == (4, 7)
 
 
 def test_a_regime_that_was_not_reached_is_no_full_slip():

@@ -98,15 +98,11 @@ def test_flow_and_integrator_agree(name):
     mapped = vr.ensemble(scene, *start.T, t, method="flow", rtol=1e-6)
     rolled = vr.ensemble(scene, *start.T, t, method="integrate", rtol=1e-6)
     exact = vr.ensemble(scene, *start.T, t, method="integrate", rtol=1e-11)
+    assert mapped.flow.mean() > 0.5 or name != "paper"
     assert np.array_equal(mapped.V[~mapped.flow], rolled.V[~mapped.flow])
     speed = np.maximum(np.abs(exact.V), np.abs(exact.omega))
     difference = np.maximum(np.abs(mapped.V - exact.V), np.abs(mapped.omega - exact.omega))
     assert (difference[mapped.flow] <= mapped.flow_error * speed[mapped.flow]).all()
-
-
-def test_the_map_serves_nasty_starts():
-    """So that the test above is not of the integrator alone."""
-    assert vr.ensemble(SCENE, *nasty(SCENE).T, 1e-3, method="flow").flow.mean() > 0.5
 
 
 @pytest.mark.parametrize("name", ["paper", "elastic", "return of slip, -0.5"])

@@ -166,14 +166,6 @@ def test_refused():
         (partial(vr.Cylinder, **roller, material=law), "material = a law without units"),
         (partial(vr.Cylinder, **roller, material=in_si, base=STEEL), "base = given: must be left out"),
         (partial(vr.Cylinder, **roller, material=in_si, plane="stress"), "plane = 'stress'"),
-        (partial(vr.tables.law, law, STEEL), "base = given"),
-        (partial(vr.tables.law, SERIES, STEEL), "base = given"),
-        (partial(vr.tables.law, vr.Material.rigid(), vr.Material.rigid()), "rigid"),
-        (partial(vr.tables.law, "rubber"), "material = of type str: must be a Prony, Bodies, a Material"),
-        (partial(vr.tables.law, vr.Prony([[1.0], [2.0]], [1.0])), "material = <2 series"),
-        (partial(vr.tables.law, vr.RUBBER_CYLINDER, STEEL), "base = given"),
-        (partial(vr.tables.law, 0.5), "alpha = 0.5"),
-        (partial(vr.tables.law, float("nan")), "alpha = nan"),
     ):
         refused(call, words)
 
@@ -229,13 +221,6 @@ def test_json_has_the_same_bits(saved, tmp_path):
 
 def test_refused_exports(saved, tmp_path):
     law = vr.tables.load(saved)
-    for name, form, words in (
-        ("rubber.csv", None, "a name that ends in .h, .json or .nc for a law"),
-        ("my-rubber.h", None, "named as a variable of C may be"),
-        ("rubber.h", "netcdf3", "format = 'netcdf3'"),
-        ("rubber.nc", "excel", "format = 'excel'"),
-    ):
-        refused(partial(vr.tables.export, law, tmp_path / name, form), words)
     wrong = law.assign(press=law.press * 2.0)
     refused(partial(vr.tables.export, wrong, tmp_path / "rubber.h"), "its numbers are not those", error=vr.TableError)
     refused(partial(vr.tables.save, wrong, tmp_path / "rubber.nc"), "its numbers are not those", error=vr.TableError)

@@ -6,7 +6,6 @@ import math
 from functools import partial
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 import tolerances as tol
@@ -65,31 +64,6 @@ def test_refused(saved, tmp_path):
         assert refused(partial(vr.load_law, saved, alpha)).endswith(held)
     for alpha in (0.5, math.nan, "11", [2.0, 3.0]):
         assert refused(partial(vr.load_law, saved, alpha)).startswith("alpha = ")
-    law = vr.tables.load(saved)
-    refused(partial(vr.tables.export, law, tmp_path / "law.h"), "is the law of every alpha", error=vr.TableError)
     vr.tables.save(vr.tables.law(11.0), tmp_path / "one.nc")
     words = f"left out: {tmp_path / 'one.nc'} is the law of one material"
     assert refused(partial(vr.load_law, tmp_path / "one.nc", 11.0)).endswith(words)
-    for given, words in (
-        ({}, "give material or alpha"),
-        ({"material": 2.0, "alpha": (1, 2)}, "both given"),
-        ({"alpha": 11.0}, "alpha = 11.0"),
-        ({"alpha": (4, 2)}, "alpha = 4 to 2"),
-        ({"alpha": (0.5, 2)}, "alpha = 0.5"),
-        ({"alpha": (2, 1e13)}, "alpha = 1"),
-        ({"alpha": (2, math.nan)}, "alpha = nan"),
-    ):
-        refused(partial(vr.tables.law, **given), words)
-
-
-def test_edited(saved, tmp_path):
-    path = tmp_path / "copy.nc"
-    for change, words in (
-        (lambda file: file["press"].__setitem__((0, 0, 3, 5), 0.125), "its numbers are not those"),
-        (lambda file: file.__delitem__("m"), "variable 'm' is missing"),
-        (lambda file: file.attrs.__setitem__("law_schema", 2), "schema 2"),
-    ):
-        path.write_bytes(saved.read_bytes())
-        with h5py.File(path, "a") as file:
-            change(file)
-        refused(partial(vr.load_law, path, 11.0), words, error=vr.TableError)
