@@ -12,6 +12,7 @@ import xarray as xr
 from refusals import refused
 
 import viscoroll as vr
+from viscoroll import fmu
 from viscoroll.validation import validate
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
@@ -20,7 +21,7 @@ V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
 NAMES = {
-    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate,
+    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate, "fmu": fmu,
     "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
     "LABELLED": V, "FRAME": pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"]),
     "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 from viscoroll import fmu
 from viscoroll.cli import main
-from viscoroll.errors import MissingDependencyError, ParameterError
+from viscoroll.errors import MissingDependencyError
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
 fmpy = pytest.importorskip("fmpy", reason="not installed (make interop): fmpy")
@@ -218,26 +217,6 @@ def _pointer(values):
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), array.size
 
 
-@pytest.mark.parametrize("version", [2, 3])
-def test_element_in_an_integrator_of_ones_own(built, version):
-    cylinder, t = CYLINDERS["alike"], np.linspace(0.0, 0.6, 7)
-    inertia = np.array([cylinder.m, cylinder.j * cylinder.m * cylinder.R**2])
-    with opened(built("alike", "ContactElement", version)) as element:
-
-        def rates(_, y):
-            element.set(v=y[0], omega=y[1])
-            return element.get("force", "torque") / inertia
-
-        def jacobian(_, y):
-            element.set(v=y[0], omega=y[1])
-            return element.slopes(("force", "torque"), ("v", "omega")) / inertia[:, np.newaxis]
-
-        found = solve_ivp(rates, (0.0, t[-1]), [1.0, 0.0], "Radau", t, jac=jacobian, rtol=1e-9, atol=1e-12)
-    exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
-    assert close(found.y[0], exact.V, rel=tol.FMU_ELEMENT)
-    assert close(found.y[1], exact.omega, rel=tol.FMU_ELEMENT, scale=np.abs(exact.omega).max())
-
-
 def test_adjoint_slopes_are_the_same(built):
     with opened(built("unlike", "ContactElement", 3), v=0.4, omega=7.9) as element:
         slopes = element.slopes(OUTPUTS, ("v", "omega", "load"))
@@ -280,17 +259,6 @@ def test_same_cylinder_same_bytes(tmp_path):
     for name in ("one.fmu", "other.fmu"):
         fmu.build(CYLINDERS["alike"], tmp_path / name)
     assert (tmp_path / "one.fmu").read_bytes() == (tmp_path / "other.fmu").read_bytes()
-
-
-@pytest.mark.parametrize("given", [{"model": "Wheel"}, {"version": 1}])
-def test_other_models_and_versions_are_refused(tmp_path, given):
-    with pytest.raises(ParameterError, match=next(iter(given))):
-        fmu.build(11.0, tmp_path / "a.fmu", **given)
-
-
-def test_an_array_is_refused(tmp_path):
-    with pytest.raises(ParameterError, match="mu = an array"):
-        fmu.build(CYLINDERS["alike"].replace(mu=np.array([0.2, 0.3])), tmp_path / "a.fmu")
 
 
 @pytest.mark.parametrize("missing", ["fmpy", "cc"])

@@ -14,15 +14,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 BOUND = 30.0
 
 
-def test_a_brake_gives_way_at_its_capacity():
-    """Held with all that the brake can take: it lets go where the torque begins to exceed that."""
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
-    t = np.linspace(0.0, 2.0, 21)
-    m = vr.roll(scene, 0.0, 0.0, t, brake=0.1, torque=vr.Schedule([0.0, 1.0, 2.0], [0.1, 0.1, 0.2]))
-    assert not m.omega[t <= 1.0].any()
-    assert (m.omega[t > 1.0] > 0.0).all()
-
-
 @pytest.mark.parametrize("share", [1e-6, 1e-9, 1e-12])
 def test_a_faint_push_the_other_way(share):
     """A ramp that begins on the other side, by a share of what it reaches: V turns at twice the time of its zero."""

@@ -67,7 +67,3 @@ def test_a_table_of_a_store(store):
     assert table.loc[("V [m s-1]", 0.1), 0.5] == data.V_quantiles.values[1, 0]
     assert list(table.columns) == ["mean", "std", "min", "max", 0.1, 0.5, 0.9]
     assert np.isfinite(table.loc["onset_time [s]", "mean"].item())
-
-
-def test_no_store(tmp_path):
-    refused(lambda: open_run(tmp_path), "no results store", error=vr.TableError)

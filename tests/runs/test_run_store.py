@@ -13,8 +13,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from places import DOCS
-from processes import printed
 from refusals import refused
 
 import viscoroll as vr
@@ -94,31 +92,6 @@ def test_the_store_is_what_was_rolled(whole):
     assert summaries.ended.values.tolist()[:2] == [(status == 0).sum(), (status == 1).sum()]
     assert (summaries.attrs["run_file"], summaries.attrs["seed"]) == (RUN, 3)
     assert "numpy" in summaries.attrs["versions"]
-
-
-FULL = """
-import resource, sys
-from pathlib import Path
-from viscoroll import OutputError
-from viscoroll.runs import engine, export_netcdf
-store, path = sys.argv[1], Path(sys.argv[2])
-export_netcdf(store, path)
-before = path.read_bytes()
-for share in (0.0, 0.01, 0.1, 0.3, 0.5, 0.9, 0.99):
-    resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * len(before)), resource.RLIM_INFINITY))
-    try:
-        export_netcdf(store, path)
-    except OutputError as error:
-        print(error)
-    assert path.read_bytes() == before
-    assert list(path.parent.iterdir()) == [path]
-"""
-
-
-def test_export_to_a_full_disk(whole, tmp_path):
-    """In a process of its own, as HDF5 2.0 crashes one that meets a full disk; on a real one: `make torture`."""
-    path = tmp_path / "all.nc"
-    assert printed(FULL, whole, path) == f"{path}: cannot be written (File too large)\n" * 7
 
 
 def test_damaged_motions_are_not_exported(tmp_path, whole):
@@ -220,18 +193,6 @@ def test_a_killed_run_goes_on(run_file, tmp_path, whole):
     assert run_ensemble(read_run(run_file), store) == 12 - len(done)
     assert {path: path.stat().st_mtime_ns for path in done} == done
     assert content(store) == content(whole)
-
-
-def test_documented_run_file(tmp_path, capsys):
-    """From the example of the documentation to a store and its figure."""
-    text = (DOCS / "examples/ensemble.toml").read_text(encoding="utf-8").replace("20_000", "200")
-    (tmp_path / "run.toml").write_text(text, encoding="utf-8")
-    assert main(["ensemble", str(tmp_path / "run.toml"), "-o", str(tmp_path / "s.zarr")]) == 0
-    assert "in SI units: V m s-1, omega rad s-1, onset_time s, x m, t s" in capsys.readouterr().out
-    with xr.open_zarr(tmp_path / "s.zarr", group="motions", chunks=None) as motions:
-        assert motions.t.values.tolist() == [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
-        assert motions.status.max() == 0
-    assert main(["plot", str(tmp_path / "s.zarr"), "-o", str(tmp_path / "run.png")]) == 0
 
 
 def test_command(run_file, tmp_path, whole, capsys):

@@ -7,7 +7,6 @@ import decimal
 import mpmath as mp
 import numpy as np
 import pytest
-from closeness import close
 
 from viscoroll.kernels.numerics.nodes import Interpolation, chebyshev, gauss, radau, rounded, to_chebyshev
 
@@ -78,14 +77,6 @@ def test_matrices(kind):
     }
     for matrix, monomials in wanted.items():
         assert same(matrix(points), (mp.matrix(monomials) * inverse).tolist())
-
-
-def test_chebyshev_coefficients():
-    """Of T_2 + 3 T_0 at the nodes."""
-    x = rounded(chebyshev(5))
-    assert close(to_chebyshev(5) @ (2.0 * x**2 + 2.0), [3.0, 0.0, 1.0, 0.0, 0.0], rel=1e-15, scale=1.0)
-    exact = [[mp.cos(k * mp.pi * (9 - 2 * i) / 10) * (2 if k else 1) / 5 for i in range(5)] for k in range(5)]
-    assert same(to_chebyshev(5), exact)
 
 
 def test_digits_do_not_depend_on_the_caller():
