@@ -12,10 +12,10 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll import sampling
-from viscoroll.sampling import DESIGNS, Sample, sample
+from viscoroll.sampling import Sample, sample
 
 
-@pytest.mark.parametrize("design", DESIGNS)
+@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
 def test_sampling_is_reproducible(design):
     quantities = {"V0": stats.uniform(-1.0, 2.0), "omega0": stats.norm(0.5, 0.1), "mu": 0.2}
     first, again, other = (sample(64, seed=seed, design=design, **quantities) for seed in (3, 3, 4))
@@ -40,8 +40,10 @@ def test_designs_fill_their_strata():
 
 def test_no_draw_lies_on_the_edge(monkeypatch):
     """Of as many points as a Sobol sequence has one has the coordinate 0, whose normal draw would be infinite."""
-    monkeypatch.setattr(sampling, "_SOBOL_BITS", 6)
+    monkeypatch.setattr(sampling, "_BITS", 6)
+    sampling._sequence.cache_clear()
     drawn = sample(64, seed=0, design="sobol", V0=stats.norm(), omega0=stats.uniform())
+    sampling._sequence.cache_clear()
     assert np.all(np.isfinite(drawn["V0"]))
     for u in (stats.norm.cdf(drawn["V0"]), drawn["omega0"]):
         assert np.array_equal(np.sort(np.floor(64 * u + 0.25)), np.arange(64))
@@ -61,8 +63,8 @@ def test_constants_alone():
 
 
 BAD = [
-    ({"n": 0}, "n = 0: must be a whole number >= 1"),
-    ({"seed": -1}, "seed = -1: must be a whole number >= 0"),
+    ({"n": 0}, "n = 0: must be a whole number in [1, 1000000000000]"),
+    ({"seed": -1}, "seed = -1: must be a whole number in [0, 9223372036854775807]"),
     ({"design": "grid"}, "design: 'grid' is not a design; choose from random, latin, sobol"),
     ({"V0": math.nan}, "V0 = nan: must be a finite number or a frozen scipy.stats distribution"),
     ({"V0": [1.0, 2.0]}, "V0 = [1.0, 2.0]"),
@@ -71,8 +73,9 @@ BAD = [
     ({"V0": stats.norm(0.0, -1.0)}, "V0 = <scipy"),
     ({"V0": stats.gamma}, "V0 = <scipy"),
     ({"V0": stats.norm(0.0, 1e308), "n": 64}, ": must be a finite number"),
-    ({"n": True}, "n = True: must be a whole number >= 1"),
-    ({"n": 2**30 + 1, "design": "sobol"}, "n = 1073741825: must be at most 2^30 for design 'sobol'"),
+    ({"n": True}, "n = True: must be a whole number in [1, 1000000000000]"),
+    ({"n": 10**13}, "n = 10000000000000: must be a whole number"),
+    ({"seed": 2**63}, "seed = 9223372036854775808: must be a whole number"),
 ]
 
 

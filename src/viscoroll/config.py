@@ -1,10 +1,12 @@
-"""TOML files: a scene, or what has the law of a material.
+"""TOML files: what rolls, or what has the law of a material.
 
-Misspelt keys and wrong types are refused by :mod:`sections`, ranges by what a section describes.
+One schema for all of them: a run file is a scene file in which any number may be uncertain, with a start and [run].
+Types and misspelt keys are refused by :mod:`sections`, ranges by what a section describes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
@@ -13,25 +15,23 @@ import msgspec
 
 from .cylinder import Cylinder
 from .errors import ConfigError, ParameterError, unknown
-from .materials.file import SECTIONS, SUFFIX, materials_of, read_materials, series_of
+from .materials.file import SECTIONS, SUFFIX, CreepSection, PronySection, materials_of, read_materials, series_of
 from .materials.pair import Pair
 from .presets import PRESETS
 from .scene import Scene
 from .sections import as_struct, fault, read, refuse_unknown
 
-_SCENES = ("preset", "scene", "cylinder")
 
-
-class SceneSection(msgspec.Struct, kw_only=True):
-    """[scene]: the parameters of :class:`Scene`, one number each; alpha, or the series in its place."""
+class SceneSection(msgspec.Struct):
+    """[scene]: the parameters of :class:`Scene`; alpha, or the series in its place; a preset has them all."""
 
     alpha: float | None = None
-    kappa: float
-    mu: float
+    kappa: float | None = None
+    mu: float | None = None
     gamma: float | None = None
-    j: float = 0.5
-    prony: dict[str, Any] | None = None
-    creep: dict[str, Any] | None = None
+    j: float | None = None
+    prony: PronySection | None = None
+    creep: CreepSection | None = None
 
 
 class CylinderSection(msgspec.Struct, kw_only=True):
@@ -44,10 +44,14 @@ class CylinderSection(msgspec.Struct, kw_only=True):
     T_epsilon: float | None = None
     T_sigma: float | None = None
     mu: float
-    j: float = 0.5
-    g: float = 9.81
+    j: float | None = None
+    g: float | None = None
     plane: Literal["strain", "stress"] = "strain"
     load: float | None = None
+
+
+SCHEMA: dict[str, type] = {"scene": SceneSection, "cylinder": CylinderSection}
+SCENES = ("preset", *SCHEMA)
 
 
 def preset(name: str) -> Scene:
@@ -63,14 +67,8 @@ def preset(name: str) -> Scene:
     return PRESETS[name]
 
 
-def read_scene(path: str | PathLike[str]) -> Scene:
-    """The dimensionless scene of :func:`read_body`; errors as there."""
-    body = read_body(path)
-    return body.scene() if isinstance(body, Cylinder) else body
-
-
 def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene | Cylinder:
-    """Scene or cylinder of a TOML file that holds one of ``preset``, ``[scene]`` and ``[cylinder]``.
+    """Scene or cylinder of a TOML file: of its ``preset``, its [scene], which may change a preset, or its [cylinder].
 
     ``preset`` names a scene of :mod:`presets`, ``[scene]`` gives alpha (or prony, or creep), kappa, mu (gamma, j),
     ``[cylinder]`` R, m, E, nu, T_epsilon, T_sigma, mu (j, g, plane, load) in SI units; E to T_sigma stand in a
@@ -80,34 +78,59 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
     Raises
     ------
     ConfigError
-        A file that cannot be read, is not TOML, holds none or several of the three, a
+        A file that cannot be read, is not TOML, holds none of the three or a cylinder beside a scene, a
         misspelt or missing key, a value of the wrong type or out of its range.
     """
     content = read(path)
-    refuse_unknown(path, "", content, (*_SCENES, *SECTIONS, *beside))
-    given = [name for name in _SCENES if name in content]
-    if len(given) != 1:
-        found = " and ".join(given) or "none"
-        raise ConfigError(path, f"must hold exactly one of preset, [scene] and [cylinder], found {found}")
-    if given != ["cylinder"]:
-        refuse_unknown(path, "", content, (*_SCENES, *beside))
+    check_sections(path, content, beside)
     try:
-        if "preset" in content:
-            return preset(content["preset"])
-        if "cylinder" in content:
-            rolls = msgspec.structs.asdict(as_struct(path, "cylinder", content["cylinder"], CylinderSection))
-            body = Cylinder(**(rolls | materials_of(path, content)))
-            body.scene()  # refuses what leaves the range of doubles
-            return body
-        return _scene(path, as_struct(path, "scene", content["scene"], SceneSection))
+        body = body_of(path, content, materials_of(path, content))
+        body.scene()  # refuses what leaves the range of doubles
     except ParameterError as error:
-        section = "" if "preset" in content else given[0]
-        raise fault(path, section, error.name, str(error)) from error
+        raise located(path, content, error) from error
+    return body
 
 
-def _scene(path: Any, given: SceneSection) -> Scene:
-    parameters = {name: getattr(given, name) for name in ("alpha", "kappa", "mu", "gamma", "j")}
-    return Scene(**parameters, material=series_of(path, "scene", given.prony, given.creep))
+def check_sections(path: Any, content: dict[str, Any], beside: tuple[str, ...], more: Mapping[str, type] = {}) -> None:
+    """Raise ConfigError where sections do not go together, or hold keys and types that they do not have.
+
+    ``more`` : other sections that are checked by their schema.
+    """
+    refuse_unknown(path, "", content, (*SCENES, *SECTIONS, *more, *beside))
+    if not content.keys() & set(SCENES):
+        raise fault(path, "", "", "one of preset, [scene] and [cylinder] is needed")
+    scenes = [name for name in ("preset", "scene") if name in content]
+    if "cylinder" in content and scenes:
+        raise fault(path, "", "cylinder", f"[cylinder] stands alone: without {' and '.join(scenes)}")
+    for name in SECTIONS:
+        if name in content and "cylinder" not in content:
+            raise fault(path, "", name, f"[{name}] goes with [cylinder]")
+    for name, kind in {**SCHEMA, **more}.items():
+        if name in content:
+            as_struct(path, name, content[name], kind)
+
+
+def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
+    """What rolls by checked sections, whose numbers may be arrays; raises ParameterError, of a series ConfigError."""
+    if "cylinder" in content:
+        return Cylinder(**content["cylinder"], **materials)
+    given = dict(content.get("scene", {}))
+    if (series := series_of(path, "scene", given)) is not None:
+        given["material"] = series
+    given = {name: value for name, value in given.items() if name not in ("prony", "creep")}
+    if "preset" in content:
+        return preset(content["preset"]).replace(**given)
+    for name in ("kappa", "mu"):
+        if name not in given:
+            raise ParameterError(name, None, "given", f"needs {name}")
+    return Scene(**given)
+
+
+def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> ConfigError:
+    """A refusal with the section and the line of what it names."""
+    own = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
+    section = "" if error.name in content else next(own, next((name for name in SCHEMA if name in content), ""))
+    return fault(path, section, error.name, str(error))
 
 
 def read_bodies(path: str | PathLike[str], temperature: float | None = None) -> Any:
@@ -122,7 +145,7 @@ def read_bodies(path: str | PathLike[str], temperature: float | None = None) -> 
         As :func:`read_materials` and :func:`read_body`.
     """
     content = {} if Path(path).suffix == SUFFIX else read(path)
-    if content.keys() & set(_SCENES) and not content.keys() & set(SECTIONS):
+    if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
         body = read_body(path)
         if temperature is not None:
             raise ConfigError(path, f"temperature = {temperature:g}: needs [material] with wlf or arrhenius")

@@ -7,9 +7,10 @@ import re
 import tomllib
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import is_dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar, get_type_hints
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import msgspec
 
@@ -17,7 +18,14 @@ from .errors import ConfigError
 
 T = TypeVar("T")
 _HEADER = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]")
-_AT = re.compile(r"\$\.(\w+)")
+_KEYS = re.compile(r"\w+")
+_EXPECTED = re.compile(r"Expected `([^`]*)`, got `[^`]*`")
+_MISSING = re.compile(r"Object missing required field `(.*)`")
+#: what msgspec calls a type -> words
+_WORDS = {
+    "float": "a number without a unit", "int": "a whole number", "str": "a text", "bool": "true or false",
+    "array": "a list", "object": "a table",
+}  # fmt: skip
 
 
 def read(path: str | PathLike[str]) -> dict[str, Any]:
@@ -33,14 +41,38 @@ def read(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
-    """``content`` of section ``name`` as a ``kind``, its keys and types checked; raises ConfigError."""
-    refuse_unknown(path, name, content, get_type_hints(kind))
+    """``content`` of section ``name`` as a ``kind``, its keys and types checked to any depth; raises ConfigError."""
+    _refuse_unknown_within(path, name, content, kind)
     try:
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
-        key = _AT.search(str(error))
-        problem = str(error).replace(" | null", "")  # TOML has none
-        raise fault(path, name, key.group(1) if key else "", problem) from error
+        problem, _, place = str(error).partition(" - at `$")
+        keys, value = _KEYS.findall(place), content
+        for key in keys:
+            value = value[int(key)] if isinstance(value, list) else value[key]
+        words = [key for key in keys if not key.isdecimal()]
+        if missing := _MISSING.fullmatch(problem):
+            raise fault(path, ".".join((name, *words)), "", f"needs {missing[1]}") from error
+        if expected := _EXPECTED.fullmatch(problem):
+            kinds = " or ".join(_WORDS[kind] for kind in expected[1].split(" | ") if kind != "null")
+            problem = f"{'.'.join(words)} = {value!r:.40}: must be {kinds}"
+        elif words and not isinstance(value, dict):
+            problem = f"{words[-1]} = {value!r:.40}: {problem}"
+        raise fault(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error
+
+
+def _refuse_unknown_within(path: Any, name: str, content: Any, kind: Any) -> None:
+    """Refuse keys that are unknown in a section, or in any section within it."""
+    hints = get_type_hints(kind)
+    refuse_unknown(path, name, content, hints)
+    for key, value in content.items():
+        parts = [each for each in (hints[key], *get_args(hints[key])) if is_dataclass(each) or _is_struct(each)]
+        if parts and isinstance(value, dict):
+            _refuse_unknown_within(path, f"{name}.{key}", value, parts[0])
+
+
+def _is_struct(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, msgspec.Struct)
 
 
 def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:

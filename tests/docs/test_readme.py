@@ -74,11 +74,11 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys):
 
 
 def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.config import read_scene
+    from viscoroll.config import read_body
 
     for text in blocks(ROOT / "docs/howto.md", "toml"):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
-        assert isinstance(read_scene(tmp_path / "scene.toml"), vr.Scene)
+        assert read_body(tmp_path / "scene.toml").scene()
 
 
 def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):

@@ -13,9 +13,10 @@ from closeness import close
 from scipy import stats
 from scipy.stats import qmc
 
-from viscoroll.runs import draws, estimate, read_run
+from viscoroll import sampling
+from viscoroll.runs import estimate, read_run
 from viscoroll.runs.evaluate import roll_block
-from viscoroll.runs.inputs.record import LARGEST, SMALLEST, Distribution, Inputs
+from viscoroll.runs.inputs import Distribution, Inputs
 from viscoroll.runs.quantities import QUANTITIES
 from viscoroll.runs.summaries import bin_edges, bin_of, histogram, lower_edge, merged, quantiles, summarise
 
@@ -51,21 +52,22 @@ def run(tmp_path):
 @pytest.mark.parametrize("design", ["random", "latin", "sobol"])
 def test_points_depend_on_seed_and_block_alone(design):
     edges = [(0, 300), (300, 600), (600, 1000)]
-    forward = [draws.points(design, 3, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
-    backward = [draws.points(design, 3, 1000, 2, *edges[b], b) for b in (2, 1, 0)][::-1]
+    forward = [sampling.points(design, 3, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    backward = [sampling.points(design, 3, 1000, 2, *edges[b], b) for b in (2, 1, 0)][::-1]
     assert all(map(np.array_equal, forward, backward))
     every = np.hstack(forward)
     assert every.min() > 0.0
     assert every.max() < 1.0
     assert min(stats.kstest(row, "uniform").pvalue for row in every) > tol.KOLMOGOROV
-    assert not np.array_equal(every, np.hstack([draws.points(design, 4, 1000, 2, *e, b) for b, e in enumerate(edges)]))
+    other = [sampling.points(design, 4, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    assert not np.array_equal(every, np.hstack(other))
 
 
 def test_a_latin_hypercube_fills_every_stratum():
     """Every one once, for any number of them and however they are cut into blocks."""
     for n in (1, 2, 3, 7, 64, 1000, 1025):
         edges = [(0, n // 3), (n // 3, n)]
-        every = np.hstack([draws.points("latin", 1, n, 3, *edge, b) for b, edge in enumerate(edges)])
+        every = np.hstack([sampling.points("latin", 1, n, 3, *edge, b) for b, edge in enumerate(edges)])
         for row in every:
             assert np.array_equal(np.sort((row * n).astype(int)), np.arange(n)), n
     assert np.abs(np.corrcoef(every) - np.eye(3)).max() < tol.LATIN_CORRELATION
@@ -73,10 +75,10 @@ def test_a_latin_hypercube_fills_every_stratum():
 
 def test_sobol_blocks_are_those_of_scipy():
     whole = qmc.Sobol(3, bits=52, rng=np.random.default_rng(7)).random(1024).T
-    assert np.array_equal(draws.points("sobol", 7, 1024, 3, 0, 1024, 0), whole)
+    assert np.array_equal(sampling.points("sobol", 7, 1024, 3, 0, 1024, 0), whole)
     for start, stop in itertools.pairwise([0, 1, 2, 100, 777, 1024]):
-        assert np.array_equal(draws.points("sobol", 7, 1024, 3, start, stop, 0), whole[:, start:stop])
-    far = draws.points("sobol", 7, 10**12, 3, 10**12 - 4, 10**12, 1)  # at once, not after 10^12 points
+        assert np.array_equal(sampling.points("sobol", 7, 1024, 3, start, stop, 0), whole[:, start:stop])
+    far = sampling.points("sobol", 7, 10**12, 3, 10**12 - 4, 10**12, 1)  # at once, not after 10^12 points
     assert far.shape == (3, 4)
 
 
@@ -84,7 +86,7 @@ def test_sobol_blocks_are_those_of_scipy():
 
 
 def test_a_cut_tail_keeps_its_digits():
-    u = np.linspace(SMALLEST, LARGEST, 101)
+    u = np.linspace(sampling.SMALLEST, sampling.LARGEST, 101)
     for low, high in ((30.0, 31.0), (-31.0, -30.0), (-1.0, 2.0)):
         found = Distribution(stats.norm(), low, high).ppf(u)
         exact = stats.truncnorm(low, high).ppf(u)
@@ -96,7 +98,7 @@ def test_the_copula_keeps_marginals_and_gives_the_correlation():
     correlation = np.array([[1.0, 0.6], [0.6, 1.0]])
     laws = {"mu": Distribution(stats.expon(), 0.0, np.inf), "V0": Distribution(stats.norm(), -np.inf, np.inf)}
     inputs = Inputs({}, laws, {}, ("mu", "V0"), np.linalg.cholesky(correlation))
-    values = inputs.values(draws.points("sobol", 1, 1 << 14, 2, 0, 1 << 14, 0))
+    values = inputs.values(sampling.points("sobol", 1, 1 << 14, 2, 0, 1 << 14, 0))
     assert stats.kstest(values["mu"], "expon").pvalue > tol.KOLMOGOROV
     assert stats.kstest(values["V0"], "norm").pvalue > tol.KOLMOGOROV
     scores = [stats.norm.ppf(stats.expon.cdf(values["mu"])), values["V0"]]
@@ -139,7 +141,7 @@ def test_moments_and_quantiles(size):
 
 def test_merged_summaries_are_those_of_all(run):
     blocks = [roll_block(run, block) for block in range(run.blocks)]
-    total = merged(summarise(motions, run.settings.summaries, {}) for _, motions in blocks)
+    total = merged(summarise(motions, run.settings.summaries) for _, motions in blocks)
     assert sum(total.statuses.values()) == run.settings.n
     for name in run.settings.summaries:
         for k, one in enumerate(total.histograms[name]):

@@ -191,7 +191,6 @@ def test_intervals_narrow_like_the_root_of_n():
 
 @pytest.mark.parametrize("seed", [0, 3])
 def test_same_bits_for_any_threads(seed):
-    """Seed 0 too, which SALib itself takes for no seed."""
     run = run_of(ONSET.replace("n = 1\n", f"n = 1\nseed = {seed}\n"))
     one, two = sobol_indices(run, 64, threads=1), sobol_indices(run, 64, threads=2)
     assert one.identical(two)
@@ -282,7 +281,7 @@ def test_command(here, capsys):
     with xr.open_dataset("s.nc", engine="h5netcdf") as stored:
         assert stored.attrs["run_file"] == ONSET
         assert stored.attrs["seed"] == 0
-        assert "SALib" in stored.attrs["source"]
+        assert "viscoroll" in stored.attrs["source"]
         assert "numba" in stored.attrs["versions"]
         expected = sobol_indices(run_of(ONSET), 50)
         assert np.array_equal(stored["V_S1"].sel(input="mu"), expected["V_S1"].sel(input="mu"), equal_nan=True)

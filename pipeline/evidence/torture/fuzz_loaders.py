@@ -27,9 +27,9 @@ LONGEST = 1 << 17
 
 def read_toml(path: Path) -> None:
     from viscoroll import ViscorollError
-    from viscoroll.config import read_bodies, read_scene
+    from viscoroll.config import read_bodies, read_body
 
-    for read in (read_scene, read_bodies):
+    for read in (read_body, read_bodies):
         try:
             read(path)
         except ViscorollError as error:

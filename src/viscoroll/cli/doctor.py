@@ -19,7 +19,7 @@ _BASE = (
     "numpy", "scipy", "numba", "llvmlite", "h5py", "h5netcdf", "xarray", "matplotlib", "msgspec", "tqdm", "filelock",
 )  # fmt: skip
 #: extra -> what it brings
-_EXTRAS = {"runs": ("zarr", "SALib"), "cluster": ("distributed",)}
+_EXTRAS = {"runs": ("zarr",), "cluster": ("distributed",)}
 
 
 def add_commands(commands: Any) -> None:

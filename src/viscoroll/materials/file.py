@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from ..errors import ConfigError, ParameterError, TableError
 from ..sections import as_struct, fault, read
@@ -23,35 +24,6 @@ from .shift import WLF, Arrhenius
 from .store import SUFFIX
 
 SECTIONS = ("material", "base")
-
-
-class MaterialSection(msgspec.Struct):
-    """[material] or [base]: the parameters of :class:`Material`, or of :meth:`Material.sls`, and a temperature."""
-
-    E: float
-    nu: float
-    T_epsilon: float | None = None
-    T_sigma: float | None = None
-    prony: dict[str, Any] | None = None
-    creep: dict[str, Any] | None = None
-    T_ref: float | None = None
-    name: str = ""
-    density: float | None = None
-    thickness: float | None = None
-    measured: dict[str, Any] | None = None
-    wlf: dict[str, Any] | None = None
-    arrhenius: dict[str, Any] | None = None
-    temperature: float | None = None
-
-
-class FileSection(msgspec.Struct):
-    """[material] or [base] of a netCDF or TOML file, a thickness, and a temperature."""
-
-    file: str
-    thickness: float | None = None
-    wlf: dict[str, Any] | None = None
-    arrhenius: dict[str, Any] | None = None
-    temperature: float | None = None
 
 
 class PronySection(msgspec.Struct):
@@ -69,28 +41,30 @@ class CreepSection(msgspec.Struct):
     alpha: float | None = None
 
 
-class MeasuredSection(msgspec.Struct):
-    """measured = { low = ..., high = ..., misfit = ... }, perhaps with source."""
+class FileSection(msgspec.Struct, kw_only=True):
+    """[material] or [base] of a netCDF or TOML file, a thickness, and a temperature."""
 
-    low: float
-    high: float
-    misfit: float
-    source: str = ""
-
-
-class WLFSection(msgspec.Struct):
-    """wlf = { T0 = ... }."""
-
-    T0: float
-    C1: float = 17.44
-    C2: float = 51.6
+    file: str
+    thickness: float | None = None
+    wlf: WLF | None = None
+    arrhenius: Arrhenius | None = None
+    temperature: float | None = None
 
 
-class ArrheniusSection(msgspec.Struct):
-    """arrhenius = { T0 = ..., energy = ... }."""
+class MaterialSection(FileSection, kw_only=True):
+    """[material] or [base]: the parameters of :class:`Material`, or of :meth:`Material.sls`, and a temperature."""
 
-    T0: float
-    energy: float
+    file: None = None  # type: ignore[assignment]
+    E: float
+    nu: float
+    T_epsilon: float | None = None
+    T_sigma: float | None = None
+    prony: PronySection | None = None
+    creep: CreepSection | None = None
+    T_ref: float | None = None
+    name: str = ""
+    density: float | None = None
+    measured: Measured | None = None
 
 
 def read_materials(path: str | PathLike[str], temperature: float | None = None) -> dict[str, Material]:
@@ -130,19 +104,12 @@ def materials_of(path: Any, content: Mapping[str, Any], temperature: float | Non
 
 def shifts_of(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
     """a_T of the materials of a file that was read, over temperature, 1 at that of the file, where it has a shift."""
-    found: dict[str, Callable[[float], float]] = {}
-    for name in SECTIONS:
-        if name in content:
-            stored = "file" in content[name]
-            given: Any = as_struct(path, name, content[name], FileSection if stored else MaterialSection)
-            if (shift := _shift(path, name, given)) is not None:
-                own = 1.0 if given.temperature is None else shift(given.temperature)
-                found[name] = partial(_relative, shift, own)
-    return found
+    given = {name: _section(path, name, content[name]) for name in SECTIONS if name in content}
+    return {name: partial(_relative, *found) for name, each in given.items() if (found := _shift(path, name, each))}
 
 
-def _relative(shift: WLF | Arrhenius, own: float, temperature: float) -> float:
-    return shift(temperature) / own
+def _relative(shift: WLF | Arrhenius, own: float | None, temperature: float) -> float:
+    return shift(temperature) / (1.0 if own is None else shift(own))
 
 
 def as_toml(material: Material, section: str = "material") -> str:
@@ -173,15 +140,19 @@ def _text(given: str) -> str:
     return json.dumps(given, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 
+def _section(path: Any, name: str, content: Any) -> Any:
+    """A section by its schema, that of a file or its own."""
+    return as_struct(
+        path, name, content, FileSection if isinstance(content, dict) and "file" in content else MaterialSection
+    )
+
+
 def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
-    stored = isinstance(content, dict) and "file" in content
-    given: Any = as_struct(path, name, content, FileSection if stored else MaterialSection)
+    given = _section(path, name, content)
     try:
-        shift = _shift(path, name, given)
-        found = _stored(path, name, given) if stored else _unshifted(path, name, given)
-        if stored and given.thickness is not None:
-            found = replace(found, thickness=given.thickness)
-        at = given.temperature if temperature is None or shift is None else temperature
+        found = _unshifted(path, name, given) if given.file is None else _stored(path, name, given)
+        shift, own = _shift(path, name, given) or (None, given.temperature)
+        at = own if temperature is None or shift is None else temperature
         if at is None:
             return found
         if shift is None:
@@ -193,7 +164,11 @@ def _material(path: Any, name: str, content: Any, temperature: float | None) -> 
 
 def _stored(path: Any, name: str, given: FileSection) -> Material:
     """The material of a file beside ``path``: netCDF, its own or its law's, or TOML with this section or [material]."""
-    beside = Path(path).parent / given.file
+    found = _beside(path, name, Path(path).parent / given.file)
+    return found if given.thickness is None else replace(found, thickness=given.thickness)
+
+
+def _beside(path: Any, name: str, beside: Path) -> Material:
     try:
         if beside.suffix == SUFFIX:
             return _of_law(beside) if is_law(beside) else Material.from_netcdf(beside)
@@ -219,11 +194,8 @@ def _of_law(path: Path) -> Material:
 
 
 def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
-    more: dict[str, Any] = {"name": given.name, "density": given.density, "thickness": given.thickness}
-    if given.measured is not None:
-        band = as_struct(path, f"{name}.measured", given.measured, MeasuredSection)
-        more["measured"] = Measured(**msgspec.structs.asdict(band))
-    series = series_of(path, name, given.prony, given.creep)
+    more = {key: getattr(given, key) for key in ("name", "density", "thickness", "measured")}
+    series = series_of(path, name, msgspec.to_builtins({"prony": given.prony, "creep": given.creep}))
     if given.T_epsilon is not None or given.T_sigma is not None:
         if given.T_epsilon is None or given.T_sigma is None or given.T_ref is not None or series:
             raise fault(path, name, "", "T_epsilon and T_sigma, in s, go together and without T_ref, prony and creep")
@@ -231,29 +203,26 @@ def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
     return Material(given.E, given.nu, series or Prony.elastic(), 1.0 if given.T_ref is None else given.T_ref, **more)
 
 
-def series_of(path: Any, name: str, prony: Any, creep: Any) -> Prony | None:
-    """The series of section ``name`` by its keys prony and creep, None without; raises ConfigError."""
-    if prony is not None and creep is not None:
+def series_of(path: Any, name: str, given: Mapping[str, Any]) -> Any:
+    """The series of a section by its keys prony and creep, of arrays one each; None without.  Raises ConfigError."""
+    found = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
+    if len(found) > 1:
         raise fault(path, name, "creep", "prony and creep: must be one of the two")
-    at = f"{name}.prony" if creep is None else f"{name}.creep"
-    try:
-        if prony is not None:
-            relaxation = as_struct(path, at, prony, PronySection)
-            return Prony(relaxation.E, relaxation.tau)
-        if creep is not None:
-            given = as_struct(path, at, creep, CreepSection)
-            return Prony.creep(given.J, given.T, alpha=given.alpha)
-    except ParameterError as error:  # at its own line: E is a key of the material too
-        raise fault(path, at, error.name, str(error)) from error
+    for key, lists in found.items():
+        columns = {
+            each: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
+            for each, value in lists.items()
+        }
+        try:
+            return Prony(**columns) if key == "prony" else Prony.creep(**columns)
+        except ParameterError as error:  # at its own line: E is a key of the material too
+            raise fault(path, f"{name}.{key}", error.name, str(error)) from error
     return None
 
 
-def _shift(path: Any, name: str, given: MaterialSection | FileSection) -> WLF | Arrhenius | None:
+def _shift(path: Any, name: str, given: FileSection) -> tuple[WLF | Arrhenius, float | None] | None:
+    """(a_T over temperature, the temperature that is asked for), where a section has one."""
     if given.wlf is not None and given.arrhenius is not None:
         raise fault(path, name, "arrhenius", "wlf and arrhenius: must be one of the two")
-    if given.wlf is not None:
-        return WLF(**msgspec.structs.asdict(as_struct(path, f"{name}.wlf", given.wlf, WLFSection)))
-    if given.arrhenius is not None:
-        section = as_struct(path, f"{name}.arrhenius", given.arrhenius, ArrheniusSection)
-        return Arrhenius(energy=section.energy, T0=section.T0)
-    return None
+    shift = given.wlf or given.arrhenius
+    return None if shift is None else (shift, given.temperature)

@@ -159,7 +159,7 @@ def _material_of(text: str, path: Any) -> Any:
     if "bodies" in content:
         given = content["bodies"]
         parts = (given[name] for name in ("cylinder", "half_space"))
-        series: Any = (series_of(path, "bodies", one.get("prony"), one.get("creep")) for one in parts)
+        series: Any = (series_of(path, "bodies", one) for one in parts)
         return Bodies(*series, given["share"])  # type: ignore[call-arg]
     given = content["scene"]
-    return given["alpha"] if "alpha" in given else series_of(path, "scene", given.get("prony"), given.get("creep"))
+    return given["alpha"] if "alpha" in given else series_of(path, "scene", given)

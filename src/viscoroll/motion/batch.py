@@ -112,24 +112,15 @@ def ensemble(
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
-    numbers, drive = given.numbers, given.acting
-    roller, scene, scale = framed(roller, "ensemble", moves=True, slope=drive.slope)
-    if rest is not None and np.ndim(scale["V"]):
-        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    begun = begin(roller, starts, given, times[-1], (rtol, rest, max_steps), unsteady=unsteady, rested=rested)
+    roller, inputs, count = begun.roller, begun.inputs, begun.caught.size
+    scene, scale, ready, drive = roller.scene(), roller.scale, begun.ready, given.acting
     roller.look_at_starts(*starts)
+    many = _Many(
+        scene, inputs, begun.caught, ready, drive.acts, unsteady, times / scale["t"], begun.limits, names,
+        thread_count(threads), "motions" if progress else None,
+    )  # fmt: skip
     try:
-        limits = controls(rtol, over("rest", rest, scale), max_steps)
-        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
-        ready = prepared(drive.over(scale), *own, float(times[-1] / scale["t"]), rtol)
-        refuse_rest(limits[1], ready)
-        if unsteady:
-            refuse_unlike(scene)
-        ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
-        inputs, count = _inputs(scene, numbers, ready)
-        many = _Many(
-            scene, inputs, np.broadcast_to(caught, (count,)), ready, drive.acts, unsteady, times / scale["t"], limits,
-            names, thread_count(threads), "motions" if progress else None,
-        )  # fmt: skip
         answer, found = _answer(many, method, over("speed", speed, scale))
     except ParameterError as error:
         raise in_words(error, scale) from error
@@ -151,6 +142,46 @@ def ensemble(
     result = Ensemble(roller=roller, t=times, drive=drive, labels=labels, **kept)
     roller.look(result.V)
     return result
+
+
+class Begun(NamedTuple):
+    """Motions that may be rolled, without dimension but for what rolls, on its slope.
+
+    inputs : parameters and start speeds, one for all or one a motion.  caught : those that a rest keeps.
+    limits : rtol, the threshold of rest and max_steps.
+    """
+
+    roller: Rolls
+    inputs: dict[str, NDArray]
+    ready: Prepared
+    caught: NDArray[np.bool_]
+    limits: tuple[float, float, int]
+
+
+def begin(
+    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: tuple[float, float | None, int],
+    *, unsteady: bool, rested: bool | float,
+) -> Begun:  # fmt: skip
+    """All that is refused of motions up to a time before any is rolled; ``asked``: rtol, rest and max_steps.
+
+    Raises ParameterError.
+    """
+    drive, (rtol, rest, max_steps) = given.acting, asked
+    roller, scene, scale = framed(roller, "ensemble", moves=True, slope=drive.slope)
+    if rest is not None and np.ndim(scale["V"]):
+        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    try:
+        limits = controls(rtol, over("rest", rest, scale), max_steps)
+        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
+        ready = prepared(drive.over(scale), *own, float(end / scale["t"]), rtol)
+        refuse_rest(limits[1], ready)
+        if unsteady:
+            refuse_unlike(scene)
+        ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
+        inputs, count = _inputs(scene, given.numbers, ready)
+    except ParameterError as error:
+        raise in_words(error, scale) from error
+    return Begun(roller, inputs, ready, np.broadcast_to(caught, (count,)), limits)
 
 
 class _Many(NamedTuple):

@@ -1,8 +1,8 @@
 """Ensembles from a run file: uncertain inputs -> blocks -> a results store that an interrupted run continues.
 
-Read in this order: :mod:`runfile` (with the room :mod:`inputs`), :mod:`draws`,
-:mod:`evaluate`, :mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and
-:mod:`zarr_files`), :mod:`engine`, then :mod:`estimate`, :mod:`verify`, :mod:`results` and :mod:`export`.
+Read in this order: :mod:`runfile` (with :mod:`uncertain`, :mod:`inputs` and :mod:`rollers`), :mod:`evaluate`,
+:mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and :mod:`zarr_files`), :mod:`engine`, then
+:mod:`estimate`, :mod:`verify`, :mod:`results` and :mod:`export`.
 """
 
 from .engine import run_ensemble

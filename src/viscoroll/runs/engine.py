@@ -85,10 +85,10 @@ def run_ensemble(
     store = Store(Path(path).absolute(), run)
     imported("zarr", "zarr", "runs")
     store.refuse_other()
-    look_at_materials(run)
-    with locked(store.root):
-        store.begin()
-        with _executor(cluster, threads) as (pool, workers, given), _bar(run, progress) as advance:
+    with _executor(cluster, threads) as (pool, workers, given):  # a cluster that is not there is refused first
+        look_at_materials(run)
+        with locked(store.root), _bar(run, progress) as advance:
+            store.begin()
             made = 0
             try:
                 for motions in _results(store, pool, workers, given, advance):
@@ -97,7 +97,7 @@ def run_ensemble(
             except KeyboardInterrupt:
                 kept = f"{made} of {run.blocks} blocks were made and are kept in {path}"
                 raise Interrupted(f"interrupted: {kept}; the same call goes on") from None
-        store.end()
+            store.end()
     return made
 
 

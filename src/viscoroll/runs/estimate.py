@@ -11,7 +11,6 @@ import msgspec
 from ..blocks import thread_count
 from . import zarr_files
 from .evaluate import look_at_materials, roll_block
-from .inputs.units import scales
 from .records import Record, encoded
 from .runfile import Run
 from .store import columns_of
@@ -74,7 +73,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _work(run: Run) -> tuple[int, int]:
     """What a worker does with the first block, but for the writing: bytes of its motions and of its record."""
     values, motions = roll_block(run, 0)
-    summary = summarise(motions, run.settings.summaries, scales(values))
+    summary = summarise(motions, run.settings.summaries)
     every, count = run.settings.keep == "all", run.block
     chunks = zarr_files.chunks(columns_of(run, values, motions), 0, count, count) if every else {}
     return sum(map(len, chunks.values())), len(encoded(Record("", {}, summary=summary)))

@@ -21,7 +21,8 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -30,38 +31,68 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..config import preset
-from ..errors import ParameterError, unknown
-from ..materials.file import SECTIONS as MATERIALS
+from ..config import check_sections, located
+from ..errors import ConfigError, ParameterError, unknown
 from ..materials.file import as_toml, materials_of
-from ..materials.prony import Prony
-from ..motion.batch import FIELDS, FLOW_PAYS
-from ..motion.checks import controls, output_times
-from ..motion.unsteady import time_of_rest
-from ..sections import as_struct, fault, read, refuse_unknown
-from .draws import Design
-from .inputs.drives import is_driven, lasts
-from .inputs.ranges import CYLINDER, SCENE, START
-from .inputs.record import Inputs
-from .inputs.sources import read_inputs
-from .inputs.units import dimensionless
+from ..motion.batch import FIELDS, FLOW_PAYS, begin
+from ..motion.checks import output_times
+from ..motion.driven import Drive
+from ..sampling import Design
+from ..sections import fault, read
+from ..tables import spread
+from .inputs import Inputs, inputs_in
 from .quantities import QUANTITIES
+from .rollers import Rollers, drive_of, roller_of
+from .uncertain import correlated, inputs_of
 
 #: a block holds at most so many motions, mapped or integrated (some seconds each), and so many bytes
 _MAPPED, _INTEGRATED, _BYTES = 1 << 20, 1 << 16, 1 << 27
-#: settings that came later: left out of the digest where they are not given
-_LATER = ("unsteady", "rested")
-_SECTIONS = ("preset", "scene", "cylinder", *MATERIALS, "start", "drive", "correlation", "run")
+START = ("V0", "omega0")
 
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
+Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
+
+
+class StartSection(msgspec.Struct):
+    """[start]: one is left out where [drive] prescribes it."""
+
+    V0: float | None = None
+    omega0: float | None = None
+
+
+class CourseSection(msgspec.Struct):
+    """{ times = [...], values = [...] }."""
+
+    times: Numbers
+    values: Numbers
+
+
+class DriveSection(msgspec.Struct):
+    """[drive]."""
+
+    force: float | CourseSection | None = None
+    torque: float | CourseSection | None = None
+    brake: float | CourseSection | None = None
+    slope: float | None = None
+    V: float | CourseSection | None = None
+    omega: float | CourseSection | None = None
+
+
+class TimesSection(msgspec.Struct):
+    """{ low, high, count, spacing }."""
+
+    low: float
+    high: float
+    count: int
+    spacing: Literal["linear", "log"] = "linear"
 
 
 class RunSection(msgspec.Struct, frozen=True):
     """[run]."""
 
     n: Whole
-    t: float | list[float] | dict[str, Any]
+    t: float | list[float] | TimesSection
     seed: Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)] = 0
     design: Design = "random"
     method: Literal["auto", "flow", "integrate"] = "auto"
@@ -82,13 +113,14 @@ class Run:
 
     Attributes
     ----------
-    text : the file.
+    path, text : of the file.
     settings : its section [run].
-    inputs : what its other sections say of start, scene or cylinder.
+    inputs : what its other sections say of start, scene or cylinder, and what of it is uncertain.
     t : output times, dimensionless or, with [cylinder], in seconds.
     digest : SHA-256 of all that the results depend on: settings, inputs, samples.
     """
 
+    path: Path
     text: str
     settings: RunSection
     inputs: Inputs
@@ -100,30 +132,26 @@ class Run:
         """How every block is rolled: settled by the run as a whole, so that bits do not depend on blocks."""
         if self.settings.method != "auto":
             return self.settings.method
-        if is_driven(self.inputs) or self.settings.unsteady:
+        if not self.mappable:
             return "integrate"
-        return "flow" if self.one_scene and self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
+        return "flow" if self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
 
     @property
-    def one_scene(self) -> bool:
-        """Whether only the start is uncertain."""
-        return set(self.inputs.uncertain) <= set(START)
+    def mappable(self) -> bool:
+        """Whether only the start is uncertain, and nothing drives."""
+        driven = self.inputs.content.get("drive") or self.settings.unsteady
+        return not driven and set(self.inputs.uncertain) <= set(START)
 
-    @property
+    @cached_property
     def fastest(self) -> float:
-        """Dimensionless speed that the flow map is made for; the few motions beyond are integrated."""
-        return max(dimensionless(self.inputs.fixed | {name: self.inputs.largest(name)}, name) for name in START)
+        """Speed that the flow map is made for; the few motions beyond are integrated."""
+        R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
+        return max(self.inputs.largest("V0"), R * self.inputs.largest("omega0"))
 
     @property
     def si(self) -> bool:
         """Whether everything in the file and in the results is in SI units."""
         return self.inputs.si
-
-    @property
-    def rest(self) -> float | None:
-        """Dimensionless rest threshold."""
-        rest = self.settings.rest
-        return None if rest is None else dimensionless(self.inputs.fixed | {"rest": rest}, "rest")
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -176,112 +204,103 @@ def read_run(path: str | PathLike[str]) -> Run:
         the wrong type or with a unit, a range that leaves what the input allows, a sample
         that cannot be read: each with its line.
     """
-    content = read(path)
-    refuse_unknown(path, "", content, _SECTIONS)
-    if "run" not in content:
-        raise fault(path, "", "run", "section [run] is missing: it needs n and t")
-    settings = as_struct(path, "run", content["run"], RunSection)
-    sections, base = _parameters(path, content)
-    correlation = content.get("correlation", {})
-    materials = {name: content[name] for name in MATERIALS if name in content}
-    drive = content.get("drive", {})
-    inputs = read_inputs(Path(path), sections, base, correlation, materials, drive)
-    times = _checked(path, settings, inputs)
-    stored = materials_of(path, {name: given for name, given in materials.items() if "file" in given})
-    described = sections | materials | {f"{name} stored": as_toml(found) for name, found in stored.items()}
-    described |= {"drive": drive} if drive else {}
-    digest = _digest(settings, times, described, base, correlation, inputs)
-    return Run(Path(path).read_text(encoding="utf-8"), settings, inputs, times, digest)
+    path, content = Path(path), read(path)
+    inputs = inputs_of(path, content)
+    medians = inputs.filled(inputs.medians)
+    sections = {"start": StartSection, "drive": DriveSection, "run": RunSection}
+    check_sections(path, medians, ("correlation",), sections)
+    for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
+        if name not in content:
+            raise fault(path, "", name, f"section [{name}] is missing: it needs {needed}")
+    materials = materials_of(path, medians)
+    # those that are certain are read once
+    known = {name: found for name, found in materials.items() if not inputs_in(inputs.content[name])}
+    inputs = correlated(path, replace(inputs, content=inputs.content | known))
+    settings = msgspec.convert(content["run"], RunSection)
+    try:
+        given = settings.t
+        times = output_times(spread(**msgspec.to_builtins(given)) if isinstance(given, TimesSection) else given)
+    except ParameterError as error:
+        raise fault(path, "run", "t", str(error)) from error
+    text = path.read_text(encoding="utf-8-sig")
+    digest = _digest(settings, times, content, [as_toml(each) for each in known.values()], inputs)
+    run = Run(path, text, settings, inputs, times, digest)
+    _check_settings(run)
+    _check_inputs(run)
+    return run
 
 
-def _parameters(path: Any, content: dict[str, Any]) -> tuple[dict[str, dict[str, Any]], dict[str, Any]]:
-    """(sections of inputs, values that a preset gives)."""
-    if "cylinder" in content and ("scene" in content or "preset" in content):
-        raise fault(path, "", "cylinder", "[cylinder] stands alone: without preset and [scene]")
-    for name in MATERIALS:
-        if name in content and "cylinder" not in content:
-            raise fault(path, "", name, f"[{name}] goes with [cylinder]")
-    if "base" in content and "material" not in content:
-        raise fault(path, "", "base", "[base] needs [material]: E, nu, T_epsilon and T_sigma there, not in [cylinder]")
-    if not content.keys() & {"preset", "scene", "cylinder"}:
-        raise fault(path, "", "scene", "one of preset, [scene] and [cylinder] is needed")
-    if "start" not in content:
-        raise fault(path, "", "start", "section [start] is missing: it needs V0 and omega0")
-    base: dict[str, Any] = {}
-    if "preset" in content:
-        try:
-            scene = preset(content["preset"])
-        except ParameterError as error:
-            raise fault(path, "", "preset", str(error)) from error
-        base = {name: getattr(scene, name) for name in SCENE}
-        if scene.material is not None:
-            base = base | {"alpha": None, "series": scene.material}
-    kinds = {"cylinder": CYLINDER} if "cylinder" in content else {"scene": SCENE}
-    return {name: content.get(name, {}) for name in kinds} | {"start": content["start"]}, base
-
-
-def _checked(path: Any, settings: RunSection, inputs: Inputs) -> NDArray[np.float64]:
-    """Output times; what msgspec cannot check of [run] is checked here."""
-    from ..tables import spread
-
+def _check_settings(run: Run) -> None:
+    """Raise ConfigError for what msgspec cannot check of [run]."""
+    settings = run.settings
     for key, allowed, kind in (("fields", FIELDS, "a field"), ("summaries", tuple(QUANTITIES), "a summary")):
         for name in getattr(settings, key):
             if name not in allowed:
-                raise fault(path, "run", key, str(unknown(key, name, allowed, kind)))
+                raise fault(run.path, "run", key, str(unknown(key, name, allowed, kind)))
     if not settings.summaries:
-        raise fault(path, "run", "summaries", "summaries = []: must name at least one quantity")
-    if settings.method == "flow" and is_driven(inputs):
-        raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' with [drive]")
-    if settings.method == "flow" and set(inputs.uncertain) - set(START):
-        raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' where scenes differ")
-    if settings.rest is not None and lasts(inputs):
-        problem = f"rest = {settings.rest!r}: must be left out where [drive] lasts to the end"
-        raise fault(path, "run", "rest", problem)
-    if settings.rest is not None and inputs.si and {"R", "T_epsilon"} & set(inputs.uncertain):
-        problem = f"rest = {settings.rest!r}: must be left out where R or T_epsilon is uncertain"
-        raise fault(path, "run", "rest", problem)
-    if settings.method == "flow" and settings.unsteady:
-        raise fault(path, "run", "method", "method = 'flow': must be 'auto' or 'integrate' with unsteady")
-    for key, value in (("unsteady", settings.unsteady), ("rested", settings.rested)):
-        if value is not False and inputs.si and "T_epsilon" in inputs.uncertain:
-            problem = f"{key} = {msgspec.json.encode(value).decode()}: must be left out where T_epsilon is uncertain"
-            raise fault(path, "run", key, problem)
-    if isinstance(settings.t, dict):
-        refuse_unknown(path, "run.t", settings.t, ("low", "high", "count", "spacing"))
+        raise fault(run.path, "run", "summaries", "summaries = []: must name at least one quantity")
+    if settings.method == "flow" and not run.mappable:
+        problem = "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, and where scenes differ"
+        raise fault(run.path, "run", "method", problem)
+
+
+def _check_inputs(run: Run) -> None:
+    """Refuse, before anything is drawn, what a motion would: of the medians, of each input's ends, and of all ends."""
+    inputs, medians = run.inputs, run.inputs.medians
+    known = inputs.content | {"run": msgspec.to_builtins(run.settings)}
     try:
-        controls(settings.rtol, settings.rest, 1)
-        time_of_rest(settings.rested)
-        return output_times(spread(**settings.t) if isinstance(settings.t, dict) else settings.t)
+        _begin(run, medians)
     except ParameterError as error:
-        raise fault(path, "run", error.name if error.name in ("rtol", "rest", "rested") else "t", str(error)) from error
-    except TypeError:
-        problem = f"t = {settings.t!r:.60}: must be a list, or low, high, count (and spacing)"
-        raise fault(path, "run", "t", problem) from None
+        raise located(run.path, known, error) from error
+    for at in inputs_in(inputs.content):
+        ends = inputs.ends(at.name)
+        try:
+            _begin(run, medians | {at.name: ends})
+        except (ParameterError, ConfigError) as error:
+            if isinstance(error, ParameterError) and error.name in known["run"]:
+                raise located(run.path, known, error) from error
+            reaches = f"{at.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
+            problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
+            raise fault(run.path, at.section, at.key, f"{reaches}: {problem}; add truncate = [low, high]") from error
+    wholes = (medians | sample.columns for sample in inputs.joint.values() if len(sample.columns) > 1)
+    for values in (inputs.corners(), *wholes):
+        try:
+            _begin(run, values)
+        except ParameterError as error:
+            more = ParameterError(
+                error.name, error.value, error.allowed, f"{error} in every draw: truncate so that it is"
+            )
+            raise located(run.path, inputs.content, more) from error
 
 
-def _digest(settings: RunSection, times: NDArray, *parts: Any) -> str:
+def _begin(run: Run, values: dict[str, Any]) -> None:
+    content, settings = run.inputs.filled(values), run.settings
+    roller = roller_of(run.path, content)
+    for name in ("unsteady", "rested"):
+        if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
+            raise ParameterError(name, str(getattr(settings, name)).lower(), "left out where T_epsilon is uncertain")
+    start = tuple(content["start"].get(name) for name in START)
+    asked = settings.rtol, settings.rest, 1
+    drive = Drive(**drive_of(content))
+    begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
+
+
+def _digest(settings: RunSection, times: NDArray, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
     """SHA-256 of what the results depend on; comments and the order of keys are not among it."""
-    *described, inputs = parts
-    known = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _LATER or value}
-    content = [known, times.tolist(), described, _samples(inputs)]
-    content += ["SI"] * inputs.si  # there was a time when speeds and times of a cylinder were dimensionless
-    return hashlib.sha256(msgspec.json.encode(_plain(content), order="deterministic")).hexdigest()
-
-
-def _samples(inputs: Inputs) -> list[list[str]]:
-    return [
+    sections = {name: given for name, given in content.items() if name != "run"}
+    samples = [
         [name, hashlib.sha256(values.tobytes()).hexdigest()]
         for sample in inputs.joint.values()
         for name, values in sample.columns.items()
     ]
+    described = [msgspec.to_builtins(settings), times.tolist(), _plain(sections), materials, samples]
+    return hashlib.sha256(msgspec.json.encode(described, order="deterministic")).hexdigest()
 
 
 def _plain(value: Any) -> Any:
-    """Infinite bounds and series as text: JSON has none."""
+    """Infinite bounds as text: JSON has none."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, list):
         return [_plain(item) for item in value]
-    if isinstance(value, Prony):
-        return repr(value)
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,14 +1,14 @@
 """Sobol indices of a run: which uncertain input the spread of its motions comes from.
 
-Sampling and estimators are those of SALib: A. Saltelli et al., Computer Physics Communications 181 (2010) 259-270,
-on a scrambled Sobol sequence.  A base point costs a motion for every uncertain input and two more.
+Estimators are those of A. Saltelli et al., Computer Physics Communications 181 (2010) 259-270, on a scrambled Sobol
+sequence; scipy.stats.sobol_indices, which has them too, fails at one input (SciPy 1.17).  A base point costs a motion
+for every uncertain input and two more.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -17,13 +17,10 @@ from numpy.typing import NDArray
 from .. import __version__
 from ..blocks import run_blocks
 from ..errors import MOTION_STATUS, MotionStatus, ParameterError
-from ..extras import imported
+from ..sampling import points
 from .evaluate import look_at_materials, roll_inputs
-from .inputs.drives import PREFIX
-from .inputs.ranges import START
-from .inputs.record import LARGEST, SMALLEST, Inputs
-from .inputs.units import attributes, scales
-from .quantities import QUANTITIES, valued
+from .inputs import Inputs, inputs_in
+from .quantities import QUANTITIES, attributes
 from .runfile import Run
 
 if TYPE_CHECKING:
@@ -31,7 +28,7 @@ if TYPE_CHECKING:
 
 CONFIDENCE = 0.95
 _RESAMPLES = 100
-#: base points: SALib's bootstrap takes about 6 kB each
+#: base points
 _LEAST, _MOST = 16, 1 << 16
 #: bytes that the outcomes of all motions may take
 _BYTES = 1 << 29
@@ -84,11 +81,12 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
     whole = replace(run, settings=settings)
     look_at_materials(whole)
-    # names as an array: SALib below 1.5.2 hands them to pandas, which since 3.0 takes no list
-    problem = {"num_vars": len(names), "names": np.array(names), "bounds": [[0.0, 1.0]] * len(names)}
-    outcomes, status = _outcomes(whole, _points(problem, base, run.settings.seed), threads, progress)
+    outcomes, status = _outcomes(whole, _points(len(names), base, run.settings.seed), threads, progress)
     refused: list[str] = []
-    found = {name: _indices(whole, problem, name, values, refused) for name, values in outcomes.items()}
+    found = {
+        name: _indices(whole, name, values.reshape(-1, len(names) + 2, base), refused)
+        for name, values in outcomes.items()
+    }
     kept = {name: indices for name, indices in found.items() if np.isfinite(indices).any()}
     if not kept:
         raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
@@ -105,18 +103,12 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
     if inputs.correlated:
         allowed = "left out: Sobol indices are defined for independent inputs only"
         raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
-    scene = "cylinder" if inputs.si else "scene"
+    places = {at.name: f"[{at.section}] {at.name}" for at in inputs_in(inputs.content)}
     for file, sample in inputs.joint.items():
         if len(sample.columns) > 1:
-            places = ", ".join(f"[{_section(name, scene)}] {name}" for name in sample.columns)
             allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
-            raise ParameterError(places, f"rows of {file}", allowed)
+            raise ParameterError(", ".join(map(places.__getitem__, sample.columns)), f"rows of {file}", allowed)
     return inputs.uncertain
-
-
-def _section(name: str, scene: str) -> str:
-    """Of the run file, that an input stands in."""
-    return "start" if name in START else "drive" if name.startswith(PREFIX) else scene
 
 
 def _power_of_two(n: int) -> int:
@@ -126,47 +118,45 @@ def _power_of_two(n: int) -> int:
     return 1 << (n - 1).bit_length()
 
 
-def _points(problem: dict[str, Any], base: int, seed: int) -> NDArray[np.float64]:
-    """Saltelli's points (motion, input) of the unit cube."""
-    sobol = imported("SALib.sample.sobol", "SALib", "runs")
-
-    drawn = sobol.sample(problem, base, calc_second_order=False, seed=seed)
-    return np.clip(drawn, SMALLEST, LARGEST)
+def _points(count: int, base: int, seed: int) -> NDArray[np.float64]:
+    """Points (input, motion) of the unit cube: base points, as many others, and the first with each of the second."""
+    one, other = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
+    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, other, one) for n in range(count)]
+    return np.hstack([one, other, *mixed])
 
 
 def _outcomes(
-    run: Run, points: NDArray[np.float64], threads: int | None, progress: bool
+    run: Run, places: NDArray[np.float64], threads: int | None, progress: bool
 ) -> tuple[dict[str, NDArray[np.float64]], NDArray[np.int8]]:
     """(values of each quantity over (t, motion), how the motions ended): block by block, no motion is kept."""
-    rows = len(points)
+    rows = places.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
     size = 8 * rows * sum(times.values())
     if size > _BYTES:
         allowed = f"less, or t shorter: {sum(times.values())} quantities and times would take {size / 1e9:.1f} GB"
-        raise ParameterError("n", rows // (points.shape[1] + 2), allowed)
+        raise ParameterError("n", rows // (len(places) + 2), allowed)
     outcomes = {name: np.empty((count, rows)) for name, count in times.items()}
     status = np.empty(rows, np.int8)
 
     def work(start: int, stop: int) -> None:
-        given = run.inputs.values(points[start:stop].T)
-        motions, to_si = roll_inputs(run, given, threads=threads), scales(given)
+        motions = roll_inputs(run, run.inputs.values(places[:, start:stop]), stop - start, threads)
         status[start:stop] = motions.status
         for name, values in outcomes.items():
             for k, row in enumerate(values):
-                row[start:stop] = valued(name, motions, k, to_si)
+                row[start:stop] = QUANTITIES[name].values(motions, k)
 
     # one block at a time, its motions on all threads: a flow map is then made once
     run_blocks(work, rows, min(_BLOCK, run.block), threads=1, progress="sensitivity" if progress else None)
     return outcomes, status
 
 
-def _indices(
-    run: Run, problem: dict[str, Any], name: str, outcomes: NDArray[np.float64], refused: list[str]
-) -> NDArray[np.float64]:
-    """The rows of ``_INDICES`` over (t, input); NaN where there are none, and why goes into ``refused``."""
-    sobol = imported("SALib.analyze.sobol", "SALib", "runs")
+def _indices(run: Run, name: str, outcomes: NDArray[np.float64], refused: list[str]) -> NDArray[np.float64]:
+    """The rows of ``_INDICES`` over (t, input) from outcomes (t, point, base); NaN where there are none, and why goes
+    into ``refused``."""
+    from scipy.special import ndtri
 
-    found = np.full((len(_INDICES), len(outcomes), problem["num_vars"]), np.nan)
+    base = outcomes.shape[2]
+    found = np.full((len(_INDICES), len(outcomes), outcomes.shape[1] - 2), np.nan)
     noise = run.settings.rtol * np.abs(outcomes, where=np.isfinite(outcomes), out=np.zeros_like(outcomes)).max()
     for k, values in enumerate(outcomes):
         reason = _reason_against(values, noise)
@@ -175,13 +165,18 @@ def _indices(
                 f"{name} at t = {run.t[k]:g}: {reason}" if QUANTITIES[name].over_time else f"{name}: {reason}"
             )
             continue
-        # SALib takes seed 0 for none
-        result = sobol.analyze(
-            problem, values, calc_second_order=False, num_resamples=_RESAMPLES, conf_level=CONFIDENCE,
-            seed=run.settings.seed + 1,
-        )  # fmt: skip
-        found[:, k] = [result[key] for key in _INDICES]
+        random = np.random.default_rng(run.settings.seed)
+        again = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
+        found[0::2, k] = _estimated(values)
+        found[1::2, k] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(again, axis=0, ddof=1)
     return found
+
+
+def _estimated(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """First-order and total indices of outcomes (point, base)."""
+    one, other, *others = values - values[:2].mean()
+    mixed = np.array(others)
+    return np.array([(other * (mixed - one)).mean(axis=1), 0.5 * ((mixed - one) ** 2).mean(axis=1)]) / values[:2].var()
 
 
 def _reason_against(values: NDArray[np.float64], noise: float) -> str:
@@ -201,7 +196,7 @@ def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float
     for name, indices in found.items():
         dims = ("t", "input") if QUANTITIES[name].over_time else ("input",)
         for (key, text), values in zip(_INDICES.items(), indices, strict=True):
-            long_name = f"{text} of: {QUANTITIES[name].long_name(run.si)}"
+            long_name = f"{text} of: {QUANTITIES[name].about(run.si)['long_name']}"
             shaped = values if len(dims) == 2 else values[0]
             data[f"{name}_{key}"] = xr.Variable(dims, shaped, {"long_name": long_name, "units": "1"})
     coordinates = {
@@ -210,7 +205,7 @@ def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float
     }
     provenance = about(run) | {
         "title": "Sobol indices of motions of a viscoelastic cylinder",
-        "source": f"viscoroll {__version__}, SALib {version('SALib')}",
+        "source": f"viscoroll {__version__}",
         "design": "Saltelli's, on a scrambled Sobol sequence",
     }
     cut = ("motions_a_block", "blocks")

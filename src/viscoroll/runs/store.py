@@ -27,7 +27,7 @@ from ..errors import OutputError
 from ..motion.many import Ensemble
 from . import zarr_files
 from .evaluate import roll_block, roll_inputs
-from .inputs.units import attributes, scales
+from .quantities import attributes
 from .records import Record, damaged, make_folder, put, read_record, write_record
 from .runfile import Run
 from .summaries import Summary, merged, summarise, summary_dataset
@@ -97,7 +97,7 @@ class Store:
             columns = columns_of(self.run, values, motions)
             found = zarr_files.chunks(columns, block, self.run.settings.n, self.run.block)
             files = put(self.root, {f"{MOTIONS}/{name}": content for name, content in found.items()})
-        summary = summarise(motions, self.run.settings.summaries, scales(values))
+        summary = summarise(motions, self.run.settings.summaries)
         write_record(_path(self.root, block), Record(identity(self.run), files, summary=summary))
         return len(motions)
 
@@ -126,7 +126,7 @@ class Store:
         """Metadata of the group of all motions, if they are kept; a single motion tells names and types."""
         if self.run.settings.keep == "summaries":
             return {}
-        values = self.run.inputs.values(np.full((len(self.run.inputs.dimensions), 1), 0.5))
+        values = {name: np.atleast_1d(value) for name, value in self.run.inputs.medians.items()}
         columns = columns_of(self.run, values, roll_inputs(self.run, values))
         described = {name: attributes(name, self.run.si) for name in (*columns, "t")}
         found = zarr_files.metadata(
@@ -139,9 +139,6 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     """What is kept of every motion."""
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_EACH)}
-    for name, scale in scales(values).items():
-        if name in columns:
-            columns[name] = columns[name] * np.reshape(scale, (-1, 1))
     return columns | {"flow": columns["flow"].astype(np.int8)}
 
 

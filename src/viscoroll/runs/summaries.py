@@ -9,16 +9,15 @@ its bin, that is to 2^-8 of itself (``tests/runs/test_runs.py``).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.many import Ensemble
-from .inputs.units import attributes
-from .quantities import QUANTITIES, valued
+from .quantities import QUANTITIES, attributes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,11 +52,11 @@ class Summary(msgspec.Struct):
     mapped: int
 
 
-def summarise(motions: Ensemble, names: Iterable[str], scales: Mapping[str, Any]) -> Summary:
-    """Summary of a block; ``scales`` of :mod:`units`."""
+def summarise(motions: Ensemble, names: Iterable[str]) -> Summary:
+    """Summary of a block."""
     histograms = {
         name: [
-            histogram(valued(name, motions, k, scales))
+            histogram(np.asarray(QUANTITIES[name].values(motions, k)))
             for k in range(motions.t.size if QUANTITIES[name].over_time else 1)
         ]
         for name in names
@@ -184,7 +183,7 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
     """Moments, quantiles, and counts in all bins that some time fills."""
     import xarray as xr
 
-    text, unit = QUANTITIES[name].long_name(si), QUANTITIES[name].units(si)
+    text, unit = (QUANTITIES[name].about(si)[key] for key in ("long_name", "units"))
     over = ("t",) if QUANTITIES[name].over_time else ()
 
     def variable(dims: tuple[str, ...], values: NDArray, what: str, units: str = unit) -> xr.Variable:
