@@ -15,7 +15,6 @@ from places import DATA, ROOT
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.dma import choose
 from viscoroll.dma.spectrum import FLOOR
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
@@ -88,28 +87,6 @@ def test_a_window_of_two_decades(seed):
     assert close(first.M_fit, true, rel=tol.DMA_WINDOW_MOMENT)
 
 
-def test_number_of_modes_is_an_upper_bound(whole):
-    data = whole.omega, whole.storage, whole.loss
-    errors = []
-    for modes in (1, 3, 6, 12):
-        fit = vr.fit_prony(*data, modes)
-        assert fit.prony.E.size <= modes
-        assert fit.prony.E.size == modes or modes == 12
-        errors.append(np.hypot(*fit.misfit))
-    assert errors == sorted(errors, reverse=True)
-
-
-def test_order_does_not_matter_and_points_may_repeat(whole):
-    mixed = np.random.default_rng(0).permutation(whole.omega.size)
-    again = vr.fit_prony(whole.omega[mixed], whole.storage[mixed], whole.loss[mixed])
-    assert again.prony == whole.prony
-    twice = vr.fit_prony(*(np.repeat(column, 2) for column in (whole.omega, whole.storage, whole.loss)))
-    assert close(twice.prony.E, whole.prony.E, rel=tol.DMA_SCALED)
-    same = vr.fit_prony([1.0, 1.0, 1.0], [2.0, 2.1, 2.0], [0.5, 0.5, 0.52])
-    assert np.isnan(same.kramers_kronig.median)
-    assert "too few different frequencies" in str(same)
-
-
 @settings(max_examples=15, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(3, 40), st.floats(0.0, 0.3), st.floats(0.5, 9.0))
 def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, decades):
@@ -122,9 +99,6 @@ def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, deca
         [fit.prony.tau * fit.T_ref * fit.omega[0], 1.0 / (fit.prony.tau * fit.T_ref * fit.omega[-1])]
     )
     assert (beyond <= 10.0 * (1.0 + tol.DMA_EXACT)).all()
-
-
-# --- what is said ---
 
 
 # --- several temperatures ---
@@ -261,13 +235,3 @@ def test_what_was_measured_stays_with_the_material():
     cylinder = vr.Cylinder(R=0.1, m=30.0, material=poor.material(0.5), mu=0.5)
     assert not cylinder.validity(0.1).measured.holds
     assert "25 points" in cylinder.validity(0.1).measured.sentence
-
-
-def test_whoever_waits_for_a_fit_sees_a_bar(monkeypatch, capsys):
-    monkeypatch.setattr(choose, "_WAIT", 0.0)
-    monkeypatch.delenv("VISCOROLL_QUIET")
-    vr.fit_prony(*GOOD)
-    assert "fit_prony" in capsys.readouterr().err
-    monkeypatch.setenv("VISCOROLL_QUIET", "1")
-    vr.fit_prony(*GOOD)
-    assert capsys.readouterr().err == ""

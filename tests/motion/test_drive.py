@@ -38,13 +38,6 @@ def test_how_a_schedule_is_written():
     assert twice.torque[T == 2.0] == 0.03  # the later side
 
 
-@pytest.mark.parametrize("cut", [1e-4, 3e-4, 8e-4])
-def test_a_ramp_from_rest_cut_by_another_drive(cut):
-    """A torque of 0 at the start is 0 in the part that it is cut to: 1e-18 in its place once held the motion up."""
-    ramp = vr.Schedule([0.0, 1e-3], [0.0, 0.2])
-    m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], rtol=1e-9, torque=ramp, force=vr.Schedule([cut, cut], [0.0, 0.01]))
-    assert m.torque.size == 1
-    assert close(m.V[0], vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [cut], rtol=1e-9, torque=ramp).V[0], rel=30e-9)
 
 
 def test_jump_of_traction_where_V_passes_0_in_stick():

@@ -73,18 +73,6 @@ def test_a_callable_is_met_in_few_values(name, rtol):
     assert curve.error <= tol.CALLABLE_SHARE * max(rtol * largest, tol.CALLABLE_ROUNDING * largest)
 
 
-@pytest.mark.parametrize("rtol", RTOLS)
-def test_corners_and_jumps_lie_where_they_are(rtol):
-    """A jump between two neighbouring numbers, a corner where the parts on either side of it meet."""
-    jump = schedule.curve("torque", lambda t: 0.1 * (t > 0.3), END, rtol)
-    assert jump.starts[1] == np.nextafter(0.3, 1.0)
-    chain = schedule.curve("torque", lambda t: float(np.interp(t, [0.0, 1.0, 7.0], [0.05, 0.1, 0.0])), END, rtol)
-    if rtol < 1e-3:
-        assert close(chain.starts, [0.0, 1.0, 7.0, END], rel=tol.CALLABLE_CORNER)
-    steep = schedule.curve("torque", CALLABLES["steep tanh"], END, rtol)
-    assert steep.starts.size > 4  # a steep rise is none
-
-
 def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many values as it may."""
     monkeypatch.setattr(fitted, "MOST", 20_000)

@@ -58,16 +58,6 @@ def test_beside_a_second_method(scene, start, t, drive):
     assert np.abs(steady.V / m.V - 1.0).max() > 3e-4  # N is what this is about
 
 
-def test_sliding_is_as_before():
-    """Full slip to the onset of stick: the same motion, to the last bit."""
-    plain, unsteady = (vr.roll(RUBBER, 3.0, 0.0, 0.1 * T, unsteady=each) for each in (False, True))
-    slides = plain.t < plain.onset_time
-    assert slides.sum() > 2
-    assert plain.onset_time == unsteady.onset_time
-    assert np.array_equal(plain.V[slides], unsteady.V[slides])
-    assert (plain.V[~slides] != unsteady.V[~slides]).all()
-
-
 def test_works_and_losses_add_up():
     """What N takes and gives back of the energy counts as lost in rolling."""
     m = vr.roll(GENTLE, 0.2, 0.1, T, force=-0.05, torque=0.01, unsteady=True)
