@@ -38,8 +38,6 @@ def test_how_a_schedule_is_written():
     assert twice.torque[T == 2.0] == 0.03  # the later side
 
 
-
-
 def test_jump_of_traction_where_V_passes_0_in_stick():
     """Q jumps by -2 j |g| d/(1 + j)^2 to leading order (Q algebraic at V = 0); speeds only kink."""
     q, j, kappa, mu = -0.28, SCENE.j, SCENE.kappa, SCENE.mu
