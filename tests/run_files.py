@@ -148,6 +148,27 @@ summaries = ["force", "torque", "work_force", "slip_energy"]
 """
 SPUN = DRIVEN_ROLLER[: DRIVEN_ROLLER.index("omega0")] + "[drive]\nomega = { times = [0.0, 1.0], values = [0.05, 0.2] }"
 SPUN += "\n" + DRIVEN_ROLLER[DRIVEN_ROLLER.index("[run]") :].replace('"brake_loss", ', "")
+UNSTEADY = """[cylinder]
+R = 0.1
+m = 35.5
+E = 2.3e6
+nu = 0.49
+T_epsilon = 0.5
+T_sigma = 0.1
+mu = U(0.2, 0.3)
+[start]
+V0 = 1.0
+omega0 = 10.0
+[drive]
+torque = { times = [0.0, 2.0], values = [0.0, 0.5] }
+[run]
+n = 8
+t = [1.0, 3.0]
+unsteady = true
+rested = 60.0
+keep = "all"
+fields = ["V", "omega", "x", "work_torque"]
+"""
 FILES = {
     "a preset": FULL, "strengths": STRENGTHS, "compliances": COMPLIANCES,
     "numbers": NUMBERS, "a series": LOADED, "rubber": RUBBER,
@@ -157,6 +178,7 @@ FILES = {
     "a rigid roller": CERTAIN.replace("3e6", "inf") + SOFT_BASE,
     "driven": DRIVEN, "own times": OWN_TIMES, "given V": GIVEN_V, "given omega": GIVEN_OMEGA,
     "a driven roller": DRIVEN_ROLLER, "a spun roller": SPUN,
+    "unsteady": UNSTEADY,
 }  # fmt: skip
 FILES = {
     name: re.sub(r"U\(([^ ]*), ([^ ]*)\)", r'{ distribution = "uniform", loc = \1, scale = \2 }', text)

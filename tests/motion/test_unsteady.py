@@ -9,8 +9,6 @@ from closeness import close
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
-from viscoroll.runs import read_run
-from viscoroll.runs.evaluate import roll_block
 
 DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
 #: a roller of 0.1 m, T_ref 3 s: V = 30 is 1 m/s
@@ -158,47 +156,3 @@ def test_ensembles_are_rolls():
         e = vr.ensemble(many, V0, 0.0, T[:8], unsteady=True, threads=2)
         for i in range(n):
             assert np.array_equal(e.V[i], vr.roll(ones[i], V0[i], 0.0, T[:8], unsteady=True).V)
-
-
-RUN = """
-[cylinder]
-R = 0.1
-m = 35.5
-E = 2.3e6
-nu = 0.49
-T_epsilon = 0.5
-T_sigma = 0.1
-mu = { distribution = "uniform", loc = 0.2, scale = 0.3 }
-[start]
-V0 = 1.0
-omega0 = 10.0
-[drive]
-torque = { times = [0.0, 2.0], values = [0.0, 0.5] }
-[run]
-n = 3
-t = [1.0, 3.0]
-unsteady = true
-rested = 60.0
-keep = "all"
-fields = ["V", "omega", "x", "work_torque"]
-"""
-
-
-def test_in_run_files(tmp_path):
-    """As the cylinder's own ensemble; a digest is as it was where neither is given."""
-
-    def read(text):
-        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
-        return read_run(tmp_path / "run.toml")
-
-    plain = RUN.replace("unsteady = true\nrested = 60.0\n", "")
-    for text in (RUN, RUN.replace("rested = 60.0", "rested = true"), plain):
-        run = read(text)
-        values, motions = roll_block(run, 0)
-        roller = vr.Cylinder(R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=0.5, T_sigma=0.1, mu=values["mu"])
-        options = {"unsteady": run.settings.unsteady, "rested": run.settings.rested, "fields": run.fields}
-        e = roller.ensemble(1.0, 10.0, run.t, torque=vr.Schedule([0.0, 2.0], [0.0, 0.5]), **options)
-        for name in run.fields:
-            assert close(getattr(motions, name), getattr(e, name), rel=tol.SI_MOTION, scale=1.0), name
-    assert read(RUN).digest != read(RUN.replace("60.0", "61.0")).digest
-    assert read(plain).digest == read(plain.replace("[run]\n", "[run]\nunsteady = false\n")).digest

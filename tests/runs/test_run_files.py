@@ -69,7 +69,8 @@ def alone(run, values, i):
     prefix = {"base": "base_", "drive": "drive_"}
     file = {key: drawn(part, prefix.get(key, ""), values, i) for key, part in tomllib.loads(run.text).items()}
     call = [file["start"].get("V0"), file["start"].get("omega0"), run.t]
-    options = file.get("drive", {}) | {"rtol": run.settings.rtol, "rest": run.settings.rest}
+    options = file.get("drive", {})
+    options |= {name: getattr(run.settings, name) for name in ("rtol", "rest", "unsteady", "rested")}
     if "cylinder" in file:
         bodies = {name: vr.Material(**file[name]) for name in ("material", "base") if name in file}
         return vr.Cylinder(**file["cylinder"], **bodies).roll(*call, **options)
