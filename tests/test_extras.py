@@ -14,7 +14,6 @@ import pytest
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.cli import main
 from viscoroll.extras import imported
 from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble
 
@@ -74,14 +73,6 @@ def test_cluster_and_parquet_are_extras_too(bare, run_file, tmp_path, monkeypatc
     run_file.write_text(RUN.replace("omega0 = 0.5", 'omega0 = { file = "a.parquet", column = "a" }'))
     with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[parquet\]"):
         read_run(run_file)
-
-
-def test_the_program_names_a_missing_extra_in_one_line(bare, run_file, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["ensemble", str(run_file), "-o", "store.zarr"]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("viscoroll: error:")
-    assert line.endswith("is not installed: pip install 'viscoroll[runs]'")
 
 
 def test_what_an_extra_itself_misses_is_not_the_extra(tmp_path, monkeypatch):

@@ -152,18 +152,6 @@ def test_merged_summaries_are_those_of_all(run):
             assert close(one.spread / one.count, np.nanvar(values), rel=tol.MOMENT, scale=1.0)
 
 
-def test_energy_only_falls(run):
-    _, motions = roll_block(run, 0)
-    lost = np.array([QUANTITIES["lost"].values(motions, k) for k in range(3)])
-    assert np.abs(lost[0]).max() < tol.MOMENT
-    assert (np.diff(lost, axis=0) > 0.0).all()
-    shares = [QUANTITIES[name].values(motions, 1) for name in ("translation", "rotation", "lost")]
-    assert np.abs(np.sum(shares, axis=0) - 1.0).max() < tol.MOMENT
-    parts = [QUANTITIES[name].values(motions, 1) for name in ("slip_loss", "rolling_loss")]
-    assert np.min(parts[0]) >= 0.0  # rolling resistance gains from a spin against the motion
-    assert np.abs(np.sum(parts, axis=0) - shares[2]).max() < 30.0 * run.settings.rtol
-
-
 def test_an_estimate_does_not_scale_up_what_happens_once(run, monkeypatch):
     """By a clock that goes by the work alone: 100 s for what a process does once, as to import, then 1 s a trial."""
     clock = [0.0]

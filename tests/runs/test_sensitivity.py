@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import re
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,6 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from places import DOCS
 from refusals import refused
 from scipy import stats
 
@@ -139,13 +137,6 @@ def test_a_linear_motion_shares_its_variance(sliding):
                 assert inside(sliding, name, "ST", name_of_input, exact, k)
 
 
-def test_first_indices_of_a_linear_motion_add_to_one(sliding):
-    first, half = sliding["V_S1"].values, sliding["V_S1_conf"].values
-    assert (np.abs(first.sum(axis=1) - 1.0) <= half.sum(axis=1)).all()
-    both = half + sliding["V_ST_conf"].values
-    assert (np.abs(first - sliding["V_ST"].values) <= both + tol.SENSITIVITY_NONE).all()
-
-
 def test_an_input_without_influence_has_index_zero(sliding):
     """kappa acts in partial slip alone, j and omega0 on omega alone."""
     idle = sliding.sel(input=["kappa", "j", "omega0"])
@@ -182,11 +173,6 @@ def test_intervals_err_on_the_wide_side():
         value, half = (float(indices[key].sel(input="gamma")[0]) for key in ("V_S1", "V_S1_conf"))
         held += abs(value - exact) <= half
     assert held >= 19
-
-
-def test_intervals_narrow_like_the_root_of_n():
-    wide, narrow = (sobol_indices(run_of(PRODUCT), n)["V_ST_conf"].mean() for n in (64, N))
-    assert 0.5 < float(wide / narrow) / np.sqrt(N / 64) < 2.0
 
 
 @pytest.mark.parametrize("seed", [0, 3])
@@ -300,57 +286,3 @@ def test_command_writes_csv(capsys):
         at = {"t": float(row["t"]), "input": row["input"]}
         assert all(float(row[key]) == expected[f"V_{key}"].sel(at) for key in ("S1", "S1_conf", "ST", "ST_conf"))
         assert (row["run_file"], row["seed"], row["base_points"]) == (ONSET, "0", "64")
-
-
-def test_csv_of_a_cylinder_has_the_unit_of_time(here):
-    run_of("""
-        [cylinder]
-        R = 0.1
-        m = 35.5
-        E = 2.3e5
-        nu = 0.49
-        T_epsilon = 10.7
-        T_sigma = 0.97
-        mu = { distribution = "uniform", loc = 0.2, scale = 0.1 }
-        [start]
-        V0 = { distribution = "uniform", loc = 0.01, scale = 0.01 }
-        omega0 = 0.0
-        [run]
-        n = 1
-        t = [1e-3]
-        summaries = ["V"]
-        """)
-    assert main(["sensitivity", "run.toml", "-n", "16", "-o", "s.csv"]) == 0
-    assert (here / "s.csv").read_text(encoding="utf-8").startswith("confidence,quantity,t [s],input,")
-
-
-def test_example_of_the_help_runs(here, capsys):
-    run_of(ONSET)
-    assert main(["sensitivity", "--help"]) == 0
-    example = capsys.readouterr().out.partition("example:\n  viscoroll ")[2]
-    assert main(example.split()) == 0
-    assert {path.name for path in here.iterdir()} == {"run.toml", "sensitivity.nc", "sensitivity.png"}
-
-
-def test_command_refuses_in_one_line(here, capsys):
-    run_of(ONSET)
-    for options, words in (
-        (["-n", "8"], "n = 8: must be"), (["--plot", "s.xlsx"], "'s.xlsx' must end in .png or .pdf or .svg"),
-        (["-o", "missing/s.nc"], "its folder does not exist"), (["run.toml"], "unrecognized arguments"),
-    ):  # fmt: skip
-        assert main(["sensitivity", "run.toml", *options]) == 2
-        out, err = capsys.readouterr()
-        assert out == ""
-        assert re.fullmatch(r"viscoroll: error: [^\n]+\n", err)
-        assert words in err
-        assert [path.name for path in here.iterdir()] == ["run.toml"]
-
-
-def test_the_documented_run_file(capsys):
-    """What docs/sensitivity.md shows is the file beside it, and every quantity of it has indices."""
-    example = (DOCS / "examples" / "sensitivity.toml").read_text(encoding="utf-8")
-    assert example in (DOCS / "sensitivity.md").read_text(encoding="utf-8")
-    indices = sobol_indices(run_of(example), 64)
-    assert indices.attrs["refused"] == ""
-    for name in tomllib.loads(example)["run"]["summaries"]:
-        assert np.isfinite(indices[f"{name}_ST"]).all()
