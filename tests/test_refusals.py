@@ -1,8 +1,10 @@
-"""The table of refusals, refusals.txt: bad input is answered by an error of the package's own, in one line."""
+"""The table refusals.txt: bad input is answered by an error of the package's own, doubtful input by one warning."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -27,12 +29,19 @@ V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 RUBBER = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1e-4] }\nT_ref = 0.3\n"
+#: fits of docs/examples/dma.csv on a roller of 0.1 m, of a T_ref of 3 s: V = 30 is 1 m/s
+DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
+SLOW = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
+MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
 NAMES = {
     "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate, "fmu": fmu,
     "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
     "LABELLED": V, "FRAME": pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"]),
+    "DMA_ROLLER": SLOW, "ONE": vr.Scene(11.0, 10.0, 0.5, 120.0), "dataclasses": dataclasses,
+    "UNSURE": SLOW.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA.E), DMA.tau)),
+    "BELT": vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5),
     "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
@@ -41,9 +50,24 @@ NAMES = {
 }  # fmt: skip
 
 
+def told(call: str, answer: str, names: dict[str, object]) -> None:
+    """One warning that points to who called, with these words; or none, or none with these."""
+    first, *words = answer.split(" | ")
+    silent = first == "no warning"
+    first = words.pop() if silent and words else "" if silent else first
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        eval(call, names)
+    said = [each for each in found if first in str(each.message)]
+    assert len(said) == (not silent), [str(each.message) for each in found]
+    for each in said:
+        assert (each.category, each.filename) == (vr.ModelWarning, "<string>")
+        assert all(word in str(each.message) for word in words)
+
+
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize(("call", "answer"), [*zip(LINES[::2], LINES[1::2], strict=True)], ids=LINES[::2])
-def test_refused(call, answer, tmp_path):
+def test_answered(call, answer, tmp_path):
     def file(content: str | bytes, name: str = "file.toml") -> Path:
         (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
         return tmp_path / name
@@ -52,14 +76,11 @@ def test_refused(call, answer, tmp_path):
         assert old in FILES[name]
         return read_run(file(FILES[name].replace(old, new, 1)))
 
-    words = [word.strip() for word in answer.split(" | ")]
-    kind, _, first = words[0].rpartition("! ")
-    refused(
-        lambda: eval(call, NAMES | {"file": file, "run": run}),
-        first,
-        *words[1:],
-        error=getattr(vr, kind or "ParameterError"),
-    )
+    names, (kind, _, words) = NAMES | {"file": file, "run": run}, answer.strip().rpartition("! ")
+    if kind == "ModelWarning" or words.startswith("no warning"):
+        return told(call, words, names)
+    error = getattr(vr, kind or "ParameterError")
+    refused(lambda: eval(call, names), *words.split(" | "), error=error)
 
 
 def test_errors_of_input_are_value_errors():

@@ -145,19 +145,6 @@ def test_ten_humps_run_to_the_end():
     assert np.isfinite(m.V).all()
 
 
-def test_ensemble_is_roll():
-    """Numbers and schedules each: bit for bit; zeros without a drive."""
-    q = np.linspace(-0.2, 0.2, 7)
-    e = vr.ensemble(ROLLER, 0.1, 0.1, T, torque=vr.Schedule([0.0, 8.0], np.stack([q, 0.5 * q], axis=1)), force=0.01)
-    m = vr.roll(ROLLER, 0.1, 0.1, T, torque=vr.Schedule([0.0, 8.0], [q[4], 0.5 * q[4]]), force=0.01)
-    assert np.array_equal((e.V[4], e.x[4]), (m.V, m.x))
-    free = vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields=("V", "force", "brake_loss"))
-    assert free.force.shape == free.V.shape
-    assert not free.force.any()
-    tilted = vr.ensemble(ROLLER, 0.0, 0.0, T, slope=[0.01, 0.02])
-    assert np.array_equal(tilted.V[1], vr.roll(ROLLER, 0.0, 0.0, T, slope=0.02).V)
-
-
 def test_nothing_is_no_drive():
     """Zeros, however they are written: the integrator of free motions, and its bits; arrays of them count motions."""
     free = vr.roll(ROLLER, 1.5, 0.5, T)
@@ -166,6 +153,9 @@ def test_nothing_is_no_drive():
         assert np.array_equal(m.V, free.V)
         assert m.steps == free.steps
         assert not m.drive.given
+    many = vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields=("V", "force", "brake_loss"))
+    assert many.force.shape == many.V.shape
+    assert not many.force.any()
     for nothing in ({"force": np.zeros(3)}, {"slope": [0.0, 0.0, 0.0]}, {"brake": np.zeros(3)}):
         e = vr.ensemble(ROLLER, 1.5, 0.5, T, **nothing)
         assert len(e) == 3

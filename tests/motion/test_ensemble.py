@@ -34,24 +34,57 @@ def scenes(count: int) -> vr.Scene:
     )  # fmt: skip
 
 
-def one_of(many: vr.Scene, index: int) -> vr.Scene:
-    names = ("alpha", "kappa", "mu", "gamma", "j")
-    return vr.Scene(**{name: np.broadcast_to(getattr(many, name), many.shape)[index] for name in names})
-
-
 def equal(a, b) -> bool:
     return np.array_equal(a, b, equal_nan=True)
 
 
-@pytest.mark.parametrize("many", [SCENE, scenes(40).replace(alpha=4.3)], ids=["one scene", "a scene each"])
-def test_ensemble_is_roll_bit_for_bit_at_one_alpha(many):
-    """At an alpha each the law is read from another place: ``materials/test_each.py``."""
-    V0, omega0 = starts(40)
-    result = vr.ensemble(many, V0, omega0, T, fields=FIELDS)
-    for i in range(V0.size):
-        motion = vr.roll(one_of(many, i) if many.shape else many, V0[i], omega0[i], T)
-        for name in STATES:
-            assert equal(getattr(result, name)[i], getattr(motion, name)), (i, name)
+RUBBER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=18.0, j=0.5)
+SOFT = vr.Prony(np.stack([np.ones(40), np.linspace(2.0, 4.0, 40)], axis=1), [1.0, 0.1])
+TORQUE = np.linspace(-0.2, 0.2, 40)
+#: scenes, starts, times, and what acts; what is an array is of each
+MANY = {
+    "one scene": (SCENE, starts(40), T, {}),
+    "a scene each": (scenes(40).replace(alpha=4.3), starts(40), T, {}),
+    "driven": (
+        RUBBER, (np.full(40, 0.1), np.full(40, 0.1)), np.linspace(0.0, 8.0, 9),
+        {"torque": vr.Schedule([0.0, 8.0], np.stack([TORQUE, 0.5 * TORQUE], axis=1)), "force": 0.01},
+    ),
+    "tilted": (RUBBER, (np.zeros(40), np.zeros(40)), np.linspace(0.0, 8.0, 9), {"slope": 0.1 * TORQUE}),
+    "unsteady": (RUBBER, (np.linspace(1.0, 1.5, 40), np.zeros(40)), np.linspace(0.0, 3.5, 8), {"unsteady": True}),
+    "unsteady, an alpha each": (
+        RUBBER.replace(alpha=np.linspace(5.0, 9.0, 40)), (np.linspace(1.0, 1.5, 40), np.zeros(40)),
+        np.linspace(0.0, 3.5, 8), {"unsteady": True},
+    ),
+    "unsteady, a series each": (
+        RUBBER.replace(material=SOFT), (np.linspace(1.0, 1.5, 40), np.zeros(40)), np.linspace(0.0, 3.5, 8),
+        {"unsteady": True},
+    ),
+}  # fmt: skip
+
+
+def one_of(many: vr.Scene, index: int) -> vr.Scene:
+    if not many.shape:
+        return many
+    each = {name: np.broadcast_to(getattr(many, name), 40)[index] for name in ("kappa", "mu", "gamma", "j")}
+    law = {"material": SOFT[index]} if many.material is SOFT else {"alpha": np.broadcast_to(many.alpha, 40)[index]}
+    return vr.Scene(**each, **law)
+
+
+def given_to(index: int, value):
+    if isinstance(value, vr.Schedule):
+        return vr.Schedule(value.times, value.values[index])
+    return value[index] if np.ndim(value) else value
+
+
+@pytest.mark.parametrize("name", MANY)
+def test_ensemble_is_roll_bit_for_bit(name):
+    """Of materials each that are known by their rows: ``materials/test_each.py``."""
+    many, (V0, omega0), t, options = MANY[name]
+    result = vr.ensemble(many, V0, omega0, t, fields=FIELDS, threads=2, method="integrate", **options)
+    for i in range(0, V0.size, 1 if not options else 9):
+        motion = vr.roll(one_of(many, i), V0[i], omega0[i], t, **{k: given_to(i, v) for k, v in options.items()})
+        for field in STATES:
+            assert equal(getattr(result, field)[i], getattr(motion, field)), (i, field)
         assert equal(result.onset_time[i], motion.onset_time)
         assert result.status[i] == motion.status
         assert result.switches[i] == len(motion.switches)

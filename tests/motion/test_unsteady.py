@@ -138,21 +138,3 @@ def test_caught_in_the_imprint():
     assert not e.flow.any()
     one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
     assert np.array_equal(e.V[1], one.V)
-
-
-def test_ensembles_are_rolls():
-    """One material, an alpha each, a series each: the same bits."""
-    n, V0 = 3, np.array([1.0, -1.2, 1.4])
-    soft = [vr.Prony([1.0, each], [1.0, 0.1]) for each in (2.0, 3.0, 4.0)]
-    series = vr.Prony([[1.0, each] for each in (2.0, 3.0, 4.0)], [[1.0, 0.1]] * n)
-    scenes = (
-        [RUBBER] * n,
-        [RUBBER.replace(alpha=each) for each in (5.0, 7.0, 9.0)],
-        [RUBBER.replace(material=s) for s in soft],
-    )
-    for many, ones in zip(
-        (RUBBER, RUBBER.replace(alpha=[5.0, 7.0, 9.0]), RUBBER.replace(material=series)), scenes, strict=True
-    ):
-        e = vr.ensemble(many, V0, 0.0, T[:8], unsteady=True, threads=2)
-        for i in range(n):
-            assert np.array_equal(e.V[i], vr.roll(ones[i], V0[i], 0.0, T[:8], unsteady=True).V)

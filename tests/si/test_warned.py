@@ -50,40 +50,8 @@ def test_where_the_data_end():
     assert close(BELT._held[1] * BELT.l0, LAST, rel=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("call", "said"),
-    [
-        (lambda: BELT.contact([0.0, 0.1, 1.01 * LAST], delta=0.0), "passed at 0 to 6.4e+02 1/s"),
-        (lambda: BELT.contact(-1.01 * LAST, delta=0.0), "passed at 6.4e+02 1/s"),
-        (lambda: BELT.contact(1e-5, delta=0.0), "passed at 0.00"),
-        (lambda: BELT.contact([0.0, 0.1, 0.99 * LAST], delta=0.0), None),
-        (lambda: BELT.contact([], delta=0.0), None),
-        (
-            lambda: BELT.stress(0.0, 10.0, delta=0.0),
-            "the base was measured from 0.06 to 628 rad/s, misfit 1 % (dma.csv)",
-        ),
-        (lambda: BELT.roll(10.0, 100.0, 0.01), "passed at"),
-        (lambda: BELT.roll(1.0, 10.0, 10.0), None),
-        (lambda: BELT.roll(0.0, 0.0, [0.1, 1.0], force=300.0, torque=300.0), "passed at"),
-        (lambda: BELT.ensemble([1.0, 10.0], [10.0, 100.0], 0.01), "passed at"),
-        (lambda: BELT.ensemble([1.0, 2.0], [10.0, 20.0], 0.01, fields=("x",)), None),
-        (lambda: BELT.steady(V=10.0, torque=0.0), "passed at"),
-        (lambda: BELT.steady(V=0.1, torque=0.0), None),
-        (lambda: BELT.replace(base=replace(RUBBER, measured=None)).contact(10.0, delta=0.0), None),
-        (
-            lambda: BELT.replace(base=replace(RUBBER, measured=replace(DATA, misfit=0.2))).contact(0.1, delta=0.0),
-            "20 %",
-        ),
-        (lambda: BELT.replace(base=RUBBER.at(0.0, lambda _: 100.0)).contact(0.1, delta=0.0), "0.0006 to 6.28"),
-        # the ends of V and of l0 belong to different cylinders
-        (lambda: BELT.replace(R=[0.1, 0.01]).contact([2.8, 0.1], delta=0.0), None),
-        (lambda: BELT.replace(R=[0.1, 0.01]).contact([0.1, 2.8], delta=0.0), "passed at"),
-    ],
-)
-def test_a_word_beyond_what_was_measured(told, call, said):
-    found = told(call)
-    assert len(found) == (said is not None)
-    assert not found or said in found[0]
+def test_a_word_once_a_material(told):
+    assert len(told(lambda: BELT.contact(10.0, delta=0.0))) == 1
 
 
 def test_workers_are_quiet(told, monkeypatch):
