@@ -81,7 +81,7 @@ def without_place(mutants: list[Mutant]) -> Iterator[str]:
             places = path.read_text(encoding="utf-8").count(mutant.old)
         if places != 1 or mutant.old == mutant.new:
             yield f"{places} places: {name_of(mutant)}"
-        if not (ROOT / mutant.tests).is_file():
+        if not all((ROOT / tests.partition("::")[0]).is_file() for tests in mutant.tests.split()):
             yield f"no {mutant.tests}: {name_of(mutant)}"
 
 
@@ -131,7 +131,7 @@ def plant(mutant: Mutant, path: Path) -> None:
 
 def run(tree: Path, tests: str, timeout: float) -> tuple[str, str]:
     """(killed, crashed, timed out or survived; the first failing test)."""
-    command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no", "-p", "no:cacheprovider", tests]
+    command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no", "-p", "no:cacheprovider", *tests.split()]
     environment = os.environ | {"PYTHONPATH": str(tree / "src"), "VISCOROLL_CACHE_DIR": str(tree / "cache")}
     try:
         done = subprocess.run(

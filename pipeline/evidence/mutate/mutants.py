@@ -7,7 +7,10 @@ from typing import NamedTuple
 
 
 class Mutant(NamedTuple):
-    """``old`` occurs once in the kernel ``file`` and becomes ``new``; for a table, ``old`` is the coefficient's number."""
+    """``old`` occurs once in the kernel ``file`` and becomes ``new``; for a table, ``old`` is the coefficient's number.
+
+    ``tests`` : files of tests, or tests of one, with spaces between.
+    """
 
     file: str
     old: str
@@ -15,44 +18,55 @@ class Mutant(NamedTuple):
     tests: str
 
 
-_CLAIMS, _LAW, _RATIOS = "tests/test_claims.py", "tests/test_contact.py", "tests/kernels/bessel/test_ratios.py"
+def claims(*proofs: str) -> str:
+    """Claims of these proofs."""
+    return " ".join(f"tests/test_claims.py::test_claims[{proof}]" for proof in proofs)
+
+
+_LAW, _RATIOS = "tests/test_contact.py", "tests/kernels/bessel/test_ratios.py"
+_STATES, _SLOPES, _MOTION, _DRIVEN = (
+    claims("contact", "states"),
+    claims("slopes"),
+    claims("motion"),
+    claims("check_driven"),
+)
 _DIRECT, _STEADY, _BOUND = "tests/validation/test_validation.py", "tests/test_steady.py", "tests/test_bound_law.py"
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_hard_motions.py"
 
 LAW = [
-    ("rows/modes.py", "dh = share * p, share * r,", "dh = share * p, share * k,", _CLAIMS),
-    ("rows/modes.py", "dp, whole, i2 = dr * k + r * dk", "dp, whole, i2 = dr * k - r * dk", _CLAIMS),
-    ("rows/modes.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _CLAIMS),
-    ("numerics/nodes.py", "weights = [1 / ((1 - x * x)", "weights = [(1 + Decimal('1e-9')) / ((1 - x * x)", _CLAIMS),
+    ("rows/modes.py", "dh = share * p, share * r,", "dh = share * p, share * k,", _STATES),
+    ("rows/modes.py", "dp, whole, i2 = dr * k + r * dk", "dp, whole, i2 = dr * k - r * dk", _STATES),
+    ("rows/modes.py", "share * whole * (dr - r * r * dk)", "share * whole * (dr + r * r * dk)", _STATES),
+    ("numerics/nodes.py", "weights = [1 / ((1 - x * x)", "weights = [(1 + Decimal('1e-9')) / ((1 - x * x)", _SLOPES),
     ("law/states.py", "return -creep if V < 0.0 else creep, creep", "return creep, creep", _LAW),
     ("law/states.py", "else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "else np.copysign(np.inf, slip)", _LAW),
-    ("rows/modes.py", "(alpha * 2.0 * (r * r - i2) * per_x)", "(alpha * 2.0 * (r - i2) * per_x)", _CLAIMS),
+    ("rows/modes.py", "(alpha * 2.0 * (r * r - i2) * per_x)", "(alpha * 2.0 * (r - i2) * per_x)", _STATES),
     ("bessel/ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
     ("bessel/ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
     ("bessel/ratios.py", "return k if z < 1.0 else", "return k if z <= 1.0 else", _RATIOS),
-    ("bessel/ratios.py", "return complement * (1.0 + r) - r / x", "return complement * (1.0 - r) - r / x", _CLAIMS),
+    ("bessel/ratios.py", "return complement * (1.0 + r) - r / x", "return complement * (1.0 - r) - r / x", claims("ratios")),
     ("bessel/ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),
     ("bessel/ratios.py", "K_LEAST = 2.0**-30\n", "K_LEAST = 2.0**-20\n", _RATIOS),
-    ("bessel/ratios.py", "r_complement * (1.0 + r) - r * per_x", "r_complement * (1.0 - r) - r * per_x", _CLAIMS),
+    ("bessel/ratios.py", "r_complement * (1.0 + r) - r * per_x", "r_complement * (1.0 - r) - r * per_x", claims("ratios")),
     ("compile/fma.py", "fma(t, c[5], c[4])", "fma(t, c[4], c[5])", _RATIOS),
 ]  # fmt: skip
 STRESS = [
-    ("law/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _CLAIMS),
-    ("law/stress.py", "_DEEP = 38.0\n", "_DEEP = 12.0\n", _CLAIMS),
-    ("law/stress.py", "offset = w - r_complement", "offset = w + r_complement", _CLAIMS),
-    ("law/stress.py", "scale = lam / (8.0 * np.pi * kappa)", "scale = lam / (8.0 * np.pi * kappa * (1.0 + 1e-9))", _CLAIMS),
-    ("law/stress.py", "u = (1.0 - y) + epsilon", "u = (1.0 - y) - epsilon", _CLAIMS),
-    ("law/stress.py", "2.0 - u / beta, beta * zeta", "2.0 - u / beta, zeta", _CLAIMS),
+    ("law/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _SLOPES),
+    ("law/stress.py", "_DEEP = 38.0\n", "_DEEP = 12.0\n", _SLOPES),
+    ("law/stress.py", "offset = w - r_complement", "offset = w + r_complement", _SLOPES),
+    ("law/stress.py", "scale = lam / (8.0 * np.pi * kappa)", "scale = lam / (8.0 * np.pi * kappa * (1.0 + 1e-9))", _SLOPES),
+    ("law/stress.py", "u = (1.0 - y) + epsilon", "u = (1.0 - y) - epsilon", _SLOPES),
+    ("law/stress.py", "2.0 - u / beta, beta * zeta", "2.0 - u / beta, zeta", _SLOPES),
     ("printed/law.py", "bracket = 1.0 + epsilon - beta - 2.0", "bracket = 1.0 - beta - 2.0", _DIRECT),
     ("printed/law.py", "0.5 * epsilon * (1.0 - lam * lam) + 0.5", "0.5 * epsilon * (1.0 + lam * lam) + 0.5", _DIRECT),
 ]  # fmt: skip
 SLICE = [
-    ("rows/law.py", "return L, m, 1.0\n", "return L * (1.0 + 1e-9), m, 1.0\n", _CLAIMS),
-    ("rows/contact.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _CLAIMS),
-    ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", _CLAIMS),
-    ("rows/law.py", "part * here * at.per + (1.0 - part) * there * near.per", "here * at.per", _CLAIMS),
-    ("rows/law.py", "(1.0 + shift), shift + part, z", "(1.0 + shift), shift, z", _CLAIMS),
-    ("rows/lanes.py", "[float(step * k + n) for n in rise]", "[float(step * k + n) * 1.0000001 for n in rise]", _CLAIMS),
+    ("rows/law.py", "return L, m, 1.0\n", "return L * (1.0 + 1e-9), m, 1.0\n", _STATES),
+    ("rows/contact.py", "part = 1.0 - w * w * press", "part = 1.0 - w * press", _STATES),
+    ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", _SLOPES),
+    ("rows/law.py", "part * here * at.per + (1.0 - part) * there * near.per", "here * at.per", _STATES),
+    ("rows/law.py", "(1.0 + shift), shift + part, z", "(1.0 + shift), shift, z", _STATES),
+    ("rows/lanes.py", "[float(step * k + n) for n in rise]", "[float(step * k + n) * 1.0000001 for n in rise]", _STATES),
 ]  # fmt: skip
 ROWS = [
     ("rows/axis.py", "        marks[STAMP] += 1\n", "", _LAW),
@@ -66,12 +80,12 @@ ROWS = [
 MOTION = [
     ("flow/states.py", "edge, V[i] * scale * m\n", "edge, V[i] * scale * m * (1.0 + 1e-7)\n", "tests/motion/test_flow.py"),
     ("flow/read.py", "(E + layer_value(table, layout.LAYER_ANGLE", "(E - layer_value(table, layout.LAYER_ANGLE", "tests/motion/test_flow.py"),
-    ("motion/rates.py", "left = max(1.0 - sign * d, 0.0)", "left = max(1.0 - 0.999 * sign * d, 0.0)", _CLAIMS),
-    ("motion/rates.py", "spread = L + u * dL\n", "spread = L\n", _CLAIMS),
+    ("motion/rates.py", "left = max(1.0 - sign * d, 0.0)", "left = max(1.0 - 0.999 * sign * d, 0.0)", _MOTION),
+    ("motion/rates.py", "spread = L + u * dL\n", "spread = L\n", _MOTION),
     ("motion/rates.py", "press_secant(at, place(2.0 * u / L, law), v, D / w, law)", "press_secant(at, at, v, D / w, law)", "tests/truth/test_motions.py"),
-    ("motion/rates.py", "- creep_limit(V, scene) * abs(V)", "- 0.98 * creep_limit(V, scene) * abs(V)", _CLAIMS),
-    ("motion/collocation.py", "total = fma(t, total, powers[row + k])", "total = fma(t, total, powers[row + k] * (1.0 + 1e-7))", _CLAIMS),
-    ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _CLAIMS),
+    ("motion/rates.py", "- creep_limit(V, scene) * abs(V)", "- 0.98 * creep_limit(V, scene) * abs(V)", _MOTION),
+    ("motion/collocation.py", "total = fma(t, total, powers[row + k])", "total = fma(t, total, powers[row + k] * (1.0 + 1e-7))", _MOTION),
+    ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _MOTION),
     ("motion/output.py", "(scene.j * half_space - cylinder)", "(half_space - scene.j * cylinder)", "tests/motion/test_motion.py"),
     ("motion/integrate.py", "on_edge = sigma * here(inside, stick, clock, case)[1].rate < 0.0", "on_edge = False", "tests/motion/test_nasty_starts.py"),
     ("motion/rates.py", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.5 * n * V_rate", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.4 * n * V_rate", "tests/motion/test_unsteady.py"),
@@ -81,16 +95,16 @@ MOTION = [
 ]  # fmt: skip
 _PAIR, _UNSTEADY = "tests/kernels/rows/test_pair.py", "tests/kernels/law/test_unsteady.py"
 SERIES = [
-    ("rows/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", _CLAIMS),
-    ("rows/series.py", "lam2 = divide(one, add(one, add(rise, rise)))", "lam2 = divide(one, add(one, rise))", _CLAIMS),
-    ("rows/modes.py", "dh, pressed = add(dh, bend)", "dh, pressed = subtract(dh, bend)", _CLAIMS),
+    ("rows/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", claims("series", "states")),
+    ("rows/series.py", "lam2 = divide(one, add(one, add(rise, rise)))", "lam2 = divide(one, add(one, rise))", claims("series", "states")),
+    ("rows/modes.py", "dh, pressed = add(dh, bend)", "dh, pressed = subtract(dh, bend)", claims("series", "states")),
     ("rows/series.py", "weight = spread(a * series.a[n] / (a + series.a[n]))", "weight = spread(series.a[n])", _PAIR),
     ("rows/series.py", "multiply(spread(series.weights[j] * series.t[j]), share)", "multiply(spread(series.weights[j]), share)", _PAIR),
     ("rows/grid.py", "work.found[LANES * HALF_SPACE + c], work.found[LANES * CYLINDER + c]", "work.found[LANES * CYLINDER + c], work.found[LANES * HALF_SPACE + c]", "tests/materials/test_each.py"),
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
     ("law/unsteady.py", "return 0.25 * rise * z * z", "return 0.5 * rise * z * z", _UNSTEADY),
-    ("rows/law.py", "dL * at.per, m + u * at.per * dm", "dL * at.per, m + at.per * dm", _CLAIMS),
+    ("rows/law.py", "dL * at.per, m + u * at.per * dm", "dL * at.per, m + at.per * dm", _SLOPES),
     ("rows/bound.py", "out[2] = out[3] = 0.5 * out[1]", "out[2] = out[3] = out[1]", _BOUND),
     ("rows/bound.py", "out[6], out[7] = body_slopes", "out[7], out[6] = body_slopes", _BOUND),
     ("rows/steady.py", "step = (load - value) / slope", "step = 0.5 * (load - value) / slope", _STEADY),
@@ -98,15 +112,15 @@ SERIES = [
     ("rows/steady.py", "<= SNAP * abs(load)", "<= 1e-3 * abs(load)", _STEADY),
 ]  # fmt: skip
 DRIVE = [
-    ("motion/rates.py", "omega_rate = per_omega * (torque - Q - M_cylinder)", "omega_rate = per_omega * (torque - Q + M_cylinder)", _CLAIMS),
-    ("motion/rates.py", "V_rate = load.per_V * (Q - M_half_space + force)", "V_rate = load.per_V * (Q - M_half_space - force)", _CLAIMS),
-    ("motion/rates.py", "per_both * (force + torque - M_half_space - M_cylinder)", "per_both * (force + torque - M_half_space + M_cylinder)", _CLAIMS),
+    ("motion/rates.py", "omega_rate = per_omega * (torque - Q - M_cylinder)", "omega_rate = per_omega * (torque - Q + M_cylinder)", _DRIVEN),
+    ("motion/rates.py", "V_rate = load.per_V * (Q - M_half_space + force)", "V_rate = load.per_V * (Q - M_half_space - force)", _DRIVEN),
+    ("motion/rates.py", "per_both * (force + torque - M_half_space - M_cylinder)", "per_both * (force + torque - M_half_space + M_cylinder)", _DRIVEN),
     ("motion/load.py", "if by_omega or frame.locked else 1.0 / case.scene.j", "if by_omega else 1.0 / case.scene.j", _DRIVE),
-    ("motion/nodes.py", "weight * (force * speed), weight * (torque * omega)", "weight * (force * speed), weight * (torque * speed)", _CLAIMS),
-    ("motion/nodes.py", "weight * ((omega - speed) * Q)", "weight * (omega * Q)", _CLAIMS),
+    ("motion/nodes.py", "weight * (force * speed), weight * (torque * omega)", "weight * (force * speed), weight * (torque * speed)", _DRIVEN),
+    ("motion/nodes.py", "weight * ((omega - speed) * Q)", "weight * (omega * Q)", _DRIVEN),
     ("motion/switch.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
     ("motion/switch.py", "Frame(slips, -direction, -sigma, -spin, locked)", "Frame(slips, -direction, sigma, -spin, locked)", _EVENTS),
-    ("motion/origin.py", "* per - d * V_rate, slope, V_rate", "* per, slope, V_rate", _CLAIMS),
+    ("motion/origin.py", "* per - d * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVEN),
     ("motion/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/kernels/motion/test_events.py"),
     ("motion/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):", "if found == NO_EVENT and behind and not frame.slips:", _EVENTS),
     ("motion/phase.py", "kinked = behind and (not frame.slips or found == EDGE or found == SLOW)", "kinked = behind and not frame.slips", "tests/motion/test_drive_events.py"),
