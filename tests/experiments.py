@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 import viscoroll as vr
@@ -47,3 +49,41 @@ def thrown(seed: int | None = None, t: np.ndarray = TIMES, omega0: float | None 
     motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, rtol=1e-10, **more)
     spin = {} if omega0 is None else {"omega0": omega0}
     return vr.Coastdown(t, noise(seed, motion.V, 5e-3), sigma=5e-3, name="throw", **spin)
+
+
+#: of the drum's resistance, in files
+FILE = """
+[cylinder]
+R = 0.1
+m = 35.5
+mu = 0.3
+
+[material]
+E = 3e6
+nu = 0.5
+prony = { E = [9.0], tau = [1.0] }
+T_ref = 1e-3
+temperature = 20.0
+wlf = { T0 = 20.0 }
+
+[unknown]
+E = [3e5, 3e7]
+T_ref = [1e-4, 1e-2]
+
+[[data]]
+kind = "resistance"
+file = "drum.csv"
+columns = { V = "speed", M = "moment" }
+sigma = 0.01
+temperature = 20.0
+"""
+
+
+def measurements(folder: Path, old: str = "", new: str = "") -> Path:
+    """A TOML file and its CSV, with this for that in both."""
+    data = resistance(SLOW, seed=1)
+    rows = [f"{V!r},{M!r}" for V, M in zip(data.V.tolist(), data.M.tolist(), strict=True)]
+    drum = "\n".join(["speed [m/s],moment [N m/m]", "# a remark", *rows])
+    for name, text in (("drum.csv", drum), ("data.toml", FILE)):
+        (folder / name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
+    return folder / "data.toml"

@@ -7,6 +7,7 @@ import math
 import warnings
 from pathlib import Path
 
+import experiments
 import numpy as np
 import pandas as pd
 import pytest
@@ -18,6 +19,7 @@ from scipy import stats
 import viscoroll as vr
 from viscoroll import fmu
 from viscoroll.config import read_bodies, read_body
+from viscoroll.identification.file import read_measurements
 from viscoroll.materials.file import read_materials
 from viscoroll.runs import read_run
 from viscoroll.sampling import sample
@@ -35,8 +37,8 @@ SLOW = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
 MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
-NAMES = {
-    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate, "fmu": fmu,
+NAMES = vars(experiments) | {
+    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate, "xr": xr, "fmu": fmu,
     "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
     "LABELLED": V, "FRAME": pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"]),
     "DMA_ROLLER": SLOW, "ONE": vr.Scene(11.0, 10.0, 0.5, 120.0), "dataclasses": dataclasses,
@@ -76,7 +78,10 @@ def test_answered(call, answer, tmp_path):
         assert old in FILES[name]
         return read_run(file(FILES[name].replace(old, new, 1)))
 
-    names, (kind, _, words) = NAMES | {"file": file, "run": run}, answer.strip().rpartition("! ")
+    def measured(old: str, new: str) -> object:
+        return vr.identify(**read_measurements(experiments.measurements(tmp_path, old, new)), starts=1)
+
+    names, (kind, _, words) = NAMES | {"file": file, "run": run, "measured": measured}, answer.strip().rpartition("! ")
     if kind == "ModelWarning" or words.startswith("no warning"):
         return told(call, words, names)
     error = getattr(vr, kind or "ParameterError")
