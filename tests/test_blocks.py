@@ -8,32 +8,7 @@ import numpy as np
 import pytest
 
 import viscoroll as vr
-from viscoroll.blocks import cores, elements, run_blocks, thread_count
-
-GRID = np.arange(60.0).reshape(4, 5, 3)
-ARRAYS = {
-    "single": np.array(7.0),
-    "one": np.array([7.0]),
-    "row": np.arange(3.0),
-    "column": np.arange(5.0)[:, None],
-    "plane": np.arange(4.0)[:, None, None],
-    "whole": GRID,
-    "Fortran order": np.asfortranarray(GRID),
-    "turned": GRID[::-1, :, ::-1],
-    "every other": np.arange(120.0).reshape(4, 5, 6)[..., ::2],
-}
-
-
-def test_elements_are_those_of_the_broadcast_array():
-    for name, array in ARRAYS.items():
-        of, whole = elements(array, GRID.shape), np.broadcast_to(array, GRID.shape).reshape(-1)
-        for start, stop in ((0, 60), (0, 1), (59, 60), (7, 22), (13, 14)):
-            part = of(start, stop)
-            assert not part.flags.writeable, name
-            assert part.flags.c_contiguous, name
-            assert np.array_equal(np.broadcast_to(part, (stop - start,)), whole[start:stop]), name
-            assert part.size == (1 if array.size == 1 else stop - start), name
-        assert np.shares_memory(of(0, 60), array) == (name in ("single", "one", "whole")), name
+from viscoroll.blocks import cores, run_blocks, thread_count
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ast
-import dataclasses
-import inspect
 import sys
 from pathlib import Path
 
@@ -20,33 +18,6 @@ HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "ms
 
 
 # --- the public interface ---
-
-
-def parameters(function) -> list[str]:
-    return list(inspect.signature(function).parameters)
-
-
-def test_documented_names():
-    """The spellings that the documentation promises."""
-    assert parameters(vr.contact)[:4] == ["roller", "V", "delta", "omega"]
-    assert {"fields", "slopes", "method"} <= set(parameters(vr.contact))
-    assert parameters(vr.law) == ["roller"]
-    assert parameters(vr.Law.__call__) == ["self", "V", "omega", "slopes"]
-    assert parameters(vr.steady) == ["roller", "force", "torque", "slope", "V"]
-    assert parameters(vr.stress)[:4] == ["roller", "x", "V", "delta"]
-    assert parameters(vr.roll)[:5] == ["roller", "V0", "omega0", "t", "rtol"]
-    assert {"rest", "max_steps"} <= set(parameters(vr.roll))
-    assert inspect.signature(vr.roll).parameters["rtol"].default == 1e-8
-    assert parameters(vr.ensemble)[:4] == ["roller", "V0", "omega0", "t"]
-    assert [f.name for f in dataclasses.fields(vr.Scene)] == ["alpha", "kappa", "mu", "gamma", "j", "material"]
-    assert [f.name for f in dataclasses.fields(vr.Cylinder)] == [
-        "R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g", "plane", "material", "base", "pressed",
-    ]  # fmt: skip
-    for preset in (vr.PAPER_SECTION_5, vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_FIGURES_2_3):
-        assert isinstance(preset, vr.Scene)
-    for name in ("build", "save", "load", "interpolate"):
-        assert callable(getattr(vr.tables, name))
-    assert issubclass(vr.ParameterError, vr.ViscorollError)
 
 
 def test_every_public_name_loads():

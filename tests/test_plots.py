@@ -5,27 +5,15 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from processes import printed
 
 from viscoroll.errors import OutputError
-from viscoroll.plots.runs import even_bars, run_distributions
+from viscoroll.plots.runs import run_distributions
 from viscoroll.plots.style import save
 from viscoroll.runs import open_summaries, read_run, run_ensemble
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
-
-
-def test_even_bars_of_what_lies_close_together():
-    """Motions at rest fill one bin, from 0 to the next bin's denormal edge: one bar that shows."""
-    edges, bars = even_bars(np.array([0.0]), np.array([8.7e-311]), np.array([50]))
-    assert edges.tolist() == [-0.5, 0.5]
-    assert bars.tolist() == [50]
-    edges, bars = even_bars(np.array([-1.7e308, 1.7e308]), np.array([-1.6e308, np.inf]), np.array([1, 1]))
-    assert np.isfinite(edges).all()
-    assert np.isfinite(bars).all()
 
 
 def test_a_run_without_values(tmp_path):
@@ -63,11 +51,3 @@ def test_save_is_whole_or_not_at_all(tmp_path):
         save(Figure(), tmp_path / "picture.xyz")
     with pytest.raises(OutputError, match="cannot be written"):
         save(Figure(), tmp_path / "nowhere" / "picture.png")
-
-
-def test_import_is_light_and_pyplot_is_left_alone():
-    printed(
-        "import sys; from viscoroll.plots import draw; assert 'matplotlib' not in sys.modules; "
-        "import viscoroll as vr; draw(vr.contact(vr.PAPER_SECTION_5, [0.1, 0.2], delta=0.0).to_xarray()); "
-        "assert 'matplotlib.pyplot' not in sys.modules"
-    )

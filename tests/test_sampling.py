@@ -27,13 +27,6 @@ def test_sampling_is_reproducible(design):
     assert not np.array_equal(first["V0"], first["omega0"])
 
 
-def test_designs_fill_their_strata():
-    """A Latin hypercube and a Sobol sequence of 64 have one point in each 64th."""
-    for design in ("latin", "sobol"):
-        V0 = sample(64, seed=0, design=design, V0=stats.uniform(0.0, 1.0), omega0=stats.uniform(0.0, 1.0))["V0"]
-        assert np.array_equal(np.sort(np.floor(64 * V0)), np.arange(64))
-
-
 def test_no_draw_lies_on_the_edge(monkeypatch):
     """Of as many points as a Sobol sequence has one has the coordinate 0, whose normal draw would be infinite."""
     monkeypatch.setattr(sampling, "_BITS", 6)
@@ -50,9 +43,3 @@ def test_a_sample_feeds_an_ensemble():
     drawn = sample(8, seed=5, design="sobol", V0=stats.uniform(0.5, 1.0), omega0=0.5, mu=stats.uniform(0.1, 0.2))
     result = vr.ensemble(vr.PAPER_SECTION_5.replace(mu=drawn["mu"]), drawn["V0"], drawn["omega0"], [0.0, 3e-3])
     assert result.messages() == {vr.MOTION_STATUS[vr.MotionStatus.DONE]: 8}
-
-
-def test_constants_alone():
-    assert sample(3, seed=0, design="sobol", V0=1.0)["V0"].tolist() == [1.0, 1.0, 1.0]
-    assert sample(5, seed=0, design="sobol", V0=stats.uniform())["V0"].shape == (5,)
-    assert sample(1, seed=0, design="sobol", V0=stats.uniform())["V0"].shape == (1,)

@@ -110,14 +110,3 @@ assert any(name.endswith("ratios.npy") for name in opened)
 assert not any(name.endswith((".nc", ".h5")) for name in opened)
 """
     )
-
-
-def test_what_is_not_used_is_not_imported_and_so_not_compiled():
-    for call, absent in (
-        ("contact(scene, 0.5, delta=0.001)", "kernels.motion kernels.flow kernels.law.stress kernels.printed"),
-        ("stress(scene, 0.0, 0.5, delta=0.001)", "tables kernels.motion kernels.flow kernels.printed"),
-        ("roll(scene, 1.5, 0.5, 1e-4)", "tables kernels.flow kernels.law.stress kernels.printed"),
-    ):
-        code = f"import sys, viscoroll as vr\nscene = vr.PAPER_SECTION_5\nvr.{call}\nprint(*sys.modules)"
-        heavy = {"matplotlib", "xarray", "h5py", *(f"viscoroll.{name}" for name in absent.split())}
-        assert not heavy & set(printed(code).split()), call

@@ -70,21 +70,6 @@ def test_stress(name):
             assert close(*pair, rel=tol.SERIES_STATES, scale=alone.p.max(), what=(field, i))
 
 
-@of_both
-def test_validity(name):
-    """As of single ones, of scenes and of ensembles."""
-    many = MATERIALS[name]()
-    scene = scene_of(many)
-    found = scene.validity(0.3, omega=0.1)
-    for n, material in enumerate(many):
-        one = scene.replace(material=material).validity(0.3, omega=0.1)
-        for field in ("small_contact", "under_axis", "steady", "creep"):
-            assert close(getattr(found, field).value[n], getattr(one, field).value, rel=tol.UNIT, what=(field, n))
-            assert getattr(found, field).holds[n] == getattr(one, field).holds
-    fastest = vr.ensemble(scene, 0.3, 0.1, 1e-3, fields=("x",)).validity()
-    assert close(fastest.small_contact.value, found.small_contact.value, rel=tol.UNIT)
-
-
 def test_like_bodies_are_one_series():
     """Given as a pair they are the array of their series; with other shares the sum of both."""
     one = rubbers(np.random.default_rng(1), 3)

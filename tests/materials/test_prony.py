@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
-from viscoroll.materials.law_modes import series_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -37,12 +36,9 @@ def test_one_mode_is_the_standard_linear_solid():
 @settings(max_examples=60, deadline=None)
 @given(SERIES)
 def test_forms_belong_together(drawn):
-    """Q is orthogonal, Q^T t = e, times interlace, and creep gives relaxation back."""
+    """Times interlace, and creep gives relaxation back."""
     p = random_series(*drawn)
     m = p.modes
-    known = series_of(m)
-    assert abs(known.Q @ known.Q.T - np.eye(m.a.size)).max() <= tol.SERIES_ORTHOGONAL
-    assert abs(known.Q.T @ known.t - known.e).max() <= tol.SERIES_ORTHOGONAL * known.e.max()
     assert (m.b < m.a).all()
     assert (m.a[:-1] < m.b[1:]).all()
     assert close(p.T_mean, (m.J / m.b).sum(), rel=tol.SERIES_FORMS)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-from pathlib import Path
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -12,7 +9,6 @@ from closeness import close
 from memory import forget
 
 import viscoroll as vr
-from viscoroll import stored
 from viscoroll.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
@@ -112,32 +108,6 @@ def test_starts_deep_inside_the_stick_zone_are_served_within_their_layer():
     size = np.maximum(abs(exact.V), abs(exact.omega))
     assert close(mapped.V, exact.V, rel=mapped.flow_error, scale=size)
     assert close(mapped.omega, exact.omega, rel=mapped.flow_error, scale=size)
-
-
-def test_a_map_follows_the_sources_that_fill_it(tmp_path):
-    """Kernels read it, but modules of materials and motions fill it."""
-    package = Path(vr.__file__).parent
-    for part in ("materials", "motion"):
-        shutil.copytree(package / part, tmp_path / part)
-    before = stored._digest.__wrapped__(tmp_path)
-    (tmp_path / "motion/flow_fill.py").write_bytes((tmp_path / "motion/flow_fill.py").read_bytes() + b" ")
-    assert before == stored._digest.__wrapped__(package) != stored._digest.__wrapped__(tmp_path)
-
-
-def test_within_the_boundary_layer():
-    """Outputs a few stiff times behind an onset with omega > V, where creep falls from its limit through zero."""
-    V0, omega0 = 0.2, 2.0
-    onset = vr.roll(SCENE, V0, omega0, [T[-1]], rtol=1e-11).onset_time
-    t = onset + np.geomspace(1e-12, 1e-4, 200)
-    mapped = vr.ensemble(SCENE, [V0], [omega0], t, method="flow", fields=FIELDS)
-    rolled = vr.ensemble(SCENE, [V0], [omega0], t, method="integrate", rtol=1e-11, fields=FIELDS)
-    assert mapped.flow.all()
-    assert rolled.delta.max() > 0.0 > rolled.delta.min()
-    assert close(mapped.delta, rolled.delta, rel=tol.FLOW_SPEED, scale=1.0)
-    assert close(mapped.V, rolled.V, rel=tol.FLOW_SPEED)
-    assert close(mapped.omega, rolled.omega, rel=tol.FLOW_SPEED)
-    for name in LOSSES:
-        assert close(getattr(mapped, name), getattr(rolled, name), rel=tol.FLOW_LOSS, scale=1.0)
 
 
 #: scenes in which the stiff rate at onset is not far above the slow one

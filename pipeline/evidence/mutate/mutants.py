@@ -93,13 +93,13 @@ MOTION = [
     ("motion/integrate.py", "p / (inertia + load.per_V * (1.0 + delta))", "p / (inertia + load.per_V * (1.0 - delta))", "tests/motion/test_sets_out.py"),
     ("motion/events.py", "    for _ in range(_STEPS):\n", "    for _ in range(0):\n", "tests/motion/test_sets_out.py"),
 ]  # fmt: skip
-_PAIR, _UNSTEADY = "tests/kernels/rows/test_pair.py", "tests/kernels/law/test_unsteady.py"
+_UNSTEADY = "tests/kernels/law/test_unsteady.py"
 SERIES = [
     ("rows/series.py", "store(matrix, at, subtract(load(matrix, at),", "store(matrix, at, add(load(matrix, at),", claims("series", "states")),
     ("rows/series.py", "lam2 = divide(one, add(one, add(rise, rise)))", "lam2 = divide(one, add(one, rise))", claims("series", "states")),
     ("rows/modes.py", "dh, pressed = add(dh, bend)", "dh, pressed = subtract(dh, bend)", claims("series", "states")),
-    ("rows/series.py", "weight = spread(a * series.a[n] / (a + series.a[n]))", "weight = spread(series.a[n])", _PAIR),
-    ("rows/series.py", "multiply(spread(series.weights[j] * series.t[j]), share)", "multiply(spread(series.weights[j]), share)", _PAIR),
+    ("rows/series.py", "weight = spread(a * series.a[n] / (a + series.a[n]))", "weight = spread(series.a[n])", claims("series", "states")),
+    ("rows/series.py", "multiply(spread(series.weights[j] * series.t[j]), share)", "multiply(spread(series.weights[j]), share)", claims("series", "states")),
     ("rows/grid.py", "work.found[LANES * HALF_SPACE + c], work.found[LANES * CYLINDER + c]", "work.found[LANES * CYLINDER + c], work.found[LANES * HALF_SPACE + c]", "tests/materials/test_each.py"),
     ("law/unsteady.py", "            _subtract(2, 1, series, work)\n", "", _UNSTEADY),
     ("law/unsteady.py", "dU += T_mean * (", "dU -= T_mean * (", _UNSTEADY),
@@ -121,7 +121,7 @@ DRIVE = [
     ("motion/switch.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
     ("motion/switch.py", "Frame(slips, -direction, -sigma, -spin, locked)", "Frame(slips, -direction, sigma, -spin, locked)", _EVENTS),
     ("motion/origin.py", "* per - d * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVEN),
-    ("motion/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/kernels/motion/test_events.py"),
+    ("motion/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/motion/test_drive_events.py"),
     ("motion/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):", "if found == NO_EVENT and behind and not frame.slips:", _EVENTS),
     ("motion/phase.py", "kinked = behind and (not frame.slips or found == EDGE or found == SLOW)", "kinked = behind and not frame.slips", "tests/motion/test_drive_events.py"),
     ("motion/solve.py", "slowest = min(slowest, abs(nodes[SLOPE + i + 1]))", "slowest = abs(nodes[SLOPE])", _EVENTS),

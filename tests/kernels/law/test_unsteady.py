@@ -12,10 +12,7 @@ from closeness import close
 
 import viscoroll as vr
 from pipeline.evidence.truth import series as raw
-from viscoroll.kernels.law.unsteady import room, unsteady
-from viscoroll.materials.law_modes import series_of
 
-DIGITS = 50
 #: about the largest |N|, over S_J
 LARGEST = 0.05
 
@@ -53,23 +50,10 @@ def exact(known: raw.Rates, z: Any) -> Any:
     return -(mp.mpf(1.5) * form(z, 1) - theta / 2 * dU + (theta * dg - g) * form(z, 0)) / H
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_against_its_definition(seed):
-    p = random_series(seed)
-    known = series_of(p.modes)
-    work = room(known)
-    largest = p.second_moments[0]
-    with mp.workdps(DIGITS):
-        rates = raw.rates(mp, p.E.tolist(), p.tau.tolist())
-        for z in 10.0 ** np.random.default_rng(seed).uniform(np.log10(p.tau[-1]) - 2.0, 2.5, 4):
-            truth, found = exact(rates, mp.mpf(z)), unsteady(z, known, work)
-            assert abs(found - truth) <= tol.UNSTEADY * (abs(truth) + tol.UNSTEADY_ZERO * largest), z
-
-
 @pytest.mark.parametrize("material", [1.5, 1e4, random_series(1)])
 def test_rows_against_its_definition(material):
     """Over its largest size: N has a zero."""
-    with mp.workdps(DIGITS):
+    with mp.workdps(50):
         known = raw.rates_of(mp, material)
         slow, fast = (float(1 / rates[end]) for rates, end in ((known.b, 0), (known.a, -1)))
         found, truth = [], []
