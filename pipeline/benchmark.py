@@ -82,7 +82,7 @@ def by_grid(scene: vr.Scene, V: NDArray, delta: NDArray) -> Rates:
 
 def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
     """(By what, tolerance, way) of all."""
-    scene = vr.PAPER_SECTION_5
+    scene = vr.presets.PAPER_SECTION_5
     V, delta = vr.tables.spread(*settings.V, "log"), np.linspace(-settings.delta[0], *settings.delta)
     law, grid = by_law(scene), by_grid(scene, V, delta)
     for rtol in settings.rtol:

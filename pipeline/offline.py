@@ -17,7 +17,7 @@ from typing import Any
 import msgspec
 
 import viscoroll as vr
-from viscoroll.errors import ConfigError
+from viscoroll.errors import FileError
 from viscoroll.materials.file import SUFFIX, materials_of, read_materials
 from viscoroll.materials.law_store import errors_of
 
@@ -72,11 +72,11 @@ def build(outcome: stage.Outcome, path: Path, allowed: float, make: Callable[[],
 
 
 def read_law(config: Path, name: str, section: dict[str, Any]) -> Law:
-    """One of [tables.laws]; raises ConfigError."""
+    """One of [tables.laws]; raises FileError."""
     try:
         return msgspec.convert(section, Law)
     except msgspec.ValidationError as error:
-        raise ConfigError(config, f"[tables.laws.{name}] {error}") from error
+        raise FileError(config, f"[tables.laws.{name}] {error}") from error
 
 
 def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
@@ -89,7 +89,7 @@ def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
     try:
         return vr.fit_prony(*vr.read_dma(path), source=path.name).material(law.nu, name=law.name or path.stem)
     except vr.ViscorollError as error:
-        raise ConfigError(config, str(error)) from error
+        raise FileError(config, str(error)) from error
 
 
 if __name__ == "__main__":

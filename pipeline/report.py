@@ -18,7 +18,7 @@ from typing import Any
 import msgspec
 
 import viscoroll as vr
-from viscoroll.errors import FileProblem
+from viscoroll.errors import FileError
 from viscoroll.files import write_text
 from viscoroll.materials.law_store import errors_of
 from viscoroll.presets import PRESETS
@@ -53,7 +53,7 @@ def records(out: Path) -> dict[str, dict[str, Any]]:
 
     Raises
     ------
-    FileProblem
+    FileError
         If one of them has not run, or its record is damaged.
     """
     found = {}
@@ -62,7 +62,7 @@ def records(out: Path) -> dict[str, dict[str, Any]]:
         try:
             found[name] = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
-            raise FileProblem(path, f"cannot be read ({error}); run pipeline.{name} first") from error
+            raise FileError(path, f"cannot be read ({error}); run pipeline.{name} first") from error
     return found
 
 
@@ -125,7 +125,7 @@ def introduced(found: dict[str, dict[str, Any]]) -> str:
     """What rolls on this page, and what that is worth."""
     names = {str(found["ensemble"]["headline"]["preset"])}
     scenes = " and ".join(f"preset {escape(name)}: {escape(str(PRESETS[name]))}" for name in sorted(names))
-    fastest = max(abs(V0) for V0, _ in vr.PAPER_STARTS.values())
+    fastest = max(abs(V0) for V0, _ in vr.presets.PAPER_STARTS.values())
     worth = "; ".join(PRESETS[name].validity(fastest).steady.sentence for name in sorted(names))
     return (
         f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: the example of the paper's "

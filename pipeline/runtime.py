@@ -121,15 +121,15 @@ def timed(way: Way, start: tuple[float, float]) -> float:
 
 def motions(way: Way, t: NDArray, law: str) -> xr.Dataset:
     """The paper's IC1-IC3 with the least seconds of three that each took, one way; ``law``: by what."""
-    way(*vr.PAPER_STARTS["IC1"])  # compiles
+    way(*vr.presets.PAPER_STARTS["IC1"])  # compiles
     found, seconds = [], []
-    for start in vr.PAPER_STARTS.values():
+    for start in vr.presets.PAPER_STARTS.values():
         found.append(way(*start))
         seconds.append(min(timed(way, start) for _ in range(3)))
     speeds = {name: (("ic", "t"), [one[n] for one in found], attributes(name)) for n, name in enumerate(("V", "omega"))}
     about = {"title": "Motions of the paper's Sect. 5.1", "law": law, "source": f"viscoroll {vr.__version__}"}
     data = speeds | {"seconds": ("ic", seconds, {"long_name": "time to integrate", "units": "s"})}
-    names = np.array(list(vr.PAPER_STARTS), dtype=object)
+    names = np.array(list(vr.presets.PAPER_STARTS), dtype=object)
     return xr.Dataset(data, {"ic": names, "t": ("t", t, attributes("t"))}, about)
 
 
@@ -145,7 +145,7 @@ def from_file(scene: vr.Scene, t: NDArray, rtol: float) -> Way:
 
 
 def work(settings: Runtime, out: Path) -> stage.Outcome:
-    scene = vr.PAPER_SECTION_5.replace(material=vr.load_law(stage.ROOT / settings.law))
+    scene = vr.presets.PAPER_SECTION_5.replace(material=vr.load_law(stage.ROOT / settings.law))
     t = settings.t
     dataset = motions(from_file(scene, t, settings.rtol), t, f"the file {Path(settings.law).name}")
     along = vr.contact(scene, dataset.V.values, omega=dataset.omega.values, fields=CONTACT)
@@ -154,7 +154,7 @@ def work(settings: Runtime, out: Path) -> stage.Outcome:
     path = out / "runtime.nc"
     write_dataset(dataset, path, stage.plain_encoding(dataset))
     headline: dict[str, float | int | str] = {f"{dataset.law}: seconds, IC1-IC3": float(dataset.seconds.sum())}
-    for name, start in vr.PAPER_STARTS.items():
+    for name, start in vr.presets.PAPER_STARTS.items():
         motion = vr.roll(scene, *start, t)
         if np.isfinite(onset := motion.onset_time):
             headline[f"{name}: stick begins"] = f"t = {onset:.6g}, V = {motion.at(onset).V[0]:.4f}"

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from viscoroll import ViscorollError
-from viscoroll.errors import ConfigError, OutputError
+from viscoroll.errors import FileError
 from viscoroll.files import write_text
 
 if TYPE_CHECKING:
@@ -48,15 +48,15 @@ def read_toml(path: Path) -> dict[str, Any]:
 
     Raises
     ------
-    ConfigError
+    FileError
         If it cannot be read or is not TOML.
     """
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be read ({error.strerror or error})") from error
     except ValueError as error:  # of tomllib and of UTF-8
-        raise ConfigError(path, f"is not TOML ({error})") from error
+        raise FileError(path, f"is not TOML ({error})") from error
 
 
 def read_section(path: Path, name: str, kind: type[T]) -> T:
@@ -64,17 +64,17 @@ def read_section(path: Path, name: str, kind: type[T]) -> T:
 
     Raises
     ------
-    ConfigError
+    FileError
         A file that cannot be read, is not TOML, lacks the section or a key, holds a misspelt key
         or a value of the wrong type.
     """
     content = read_toml(path)
     if name not in content:
-        raise ConfigError(path, f"section [{name}] is missing")
+        raise FileError(path, f"section [{name}] is missing")
     try:
         return msgspec.convert(content[name], kind)
     except msgspec.ValidationError as error:
-        raise ConfigError(path, f"[{name}] {error}") from error
+        raise FileError(path, f"[{name}] {error}") from error
 
 
 def make_folder(path: Path) -> Path:
@@ -82,13 +82,13 @@ def make_folder(path: Path) -> Path:
 
     Raises
     ------
-    OutputError
+    FileError
         If it cannot be made.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(path, f"cannot be made a folder ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be made a folder ({error.strerror or error})") from error
     return path
 
 
@@ -106,7 +106,7 @@ def parser(doc: str | None, config: Path = CONFIG) -> argparse.ArgumentParser:
 
 
 def finish(name: str, seconds: float, outcome: Outcome, out: Path) -> None:
-    """Leave <out>/stages/<name>.json and print it; raises OutputError."""
+    """Leave <out>/stages/<name>.json and print it; raises FileError."""
     record = {
         "stage": name,
         "seconds": round(seconds, 2),
@@ -174,7 +174,7 @@ def read_rows(path: Path) -> list[dict[str, Any]]:
 
 
 def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
-    """Rows as CSV under the names of their columns; raises OutputError."""
+    """Rows as CSV under the names of their columns; raises FileError."""
     text = io.StringIO()
     writer = csv.DictWriter(text, rows[0], lineterminator="\n")
     writer.writeheader()

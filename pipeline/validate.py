@@ -19,7 +19,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.errors import FileProblem
+from viscoroll.errors import FileError
 from viscoroll.files import write_dataset, write_text
 from viscoroll.materials.law_store import errors_of
 from viscoroll.validation import report_dataset, validate
@@ -48,18 +48,18 @@ def direct(t: NDArray) -> xr.Dataset:
     """The paper's motions from root solves."""
 
     def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
-        found = roll_direct(vr.PAPER_SECTION_5, V0, omega0, t)
+        found = roll_direct(vr.presets.PAPER_SECTION_5, V0, omega0, t)
         return found.V, found.omega
 
     return motions(way, t, "root solves")
 
 
 def loaded(path: Path) -> xr.Dataset:
-    """What another stage left; raises FileProblem."""
+    """What another stage left; raises FileError."""
     try:
         return xr.load_dataset(path, engine="h5netcdf")
     except (OSError, ValueError) as error:
-        raise FileProblem(path, f"cannot be read ({error}); run the stage that makes it first") from error
+        raise FileError(path, f"cannot be read ({error}); run the stage that makes it first") from error
 
 
 def errors(found: xr.Dataset, truth: xr.Dataset) -> dict[str, float]:
@@ -90,10 +90,10 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
         "Q, table against direct, over mu": worst["random states: Q"],
         "motions from the file of the law, V and omega": max(row.measured for row in rows),
         "motions IC1-IC3 by roll at rtol 1e-8, V and omega": max(
-            worst[f"motion {start}: {name}"] for start in vr.PAPER_STARTS for name in ("V", "omega")
+            worst[f"motion {start}: {name}"] for start in vr.presets.PAPER_STARTS for name in ("V", "omega")
         ),
         "motions IC1-IC3 by roll, onset time, relative": max(
-            worst[f"motion {start}: onset time"] for start in vr.PAPER_STARTS
+            worst[f"motion {start}: onset time"] for start in vr.presets.PAPER_STARTS
         ),
     }
     for table in tables:

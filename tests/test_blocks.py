@@ -13,7 +13,7 @@ from viscoroll.blocks import cores, run_blocks, thread_count
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 def test_a_number_of_threads_that_is_none(monkeypatch):
-    start = (vr.PAPER_SECTION_5, [1.0, 2.0], 0.5, 1e-5)
+    start = (vr.presets.PAPER_SECTION_5, [1.0, 2.0], 0.5, 1e-5)
     for threads in ("2", 1.5, True, 0, -5):
         with pytest.raises(vr.ParameterError, match=f"threads = {threads!r}: must be a whole number >= 1"):
             vr.ensemble(*start, threads=threads)

@@ -32,11 +32,11 @@ def toml(tmp_path):
 def test_scene(toml):
     for content, scene in (
         (SCENE, vr.Scene(11.0, 2.91, 0.2)),
-        (SCENE + "gamma = 1.1e4\nj = 0.5", vr.PAPER_SECTION_5_ROUNDED),
-        (CYLINDER, vr.PAPER_SECTION_5),
-        (CYLINDER + 'plane = "stress"\nj = 1', replace(vr.PAPER_CYLINDER, plane="stress", j=1.0).scene()),
-        ('preset = "paper-figures-2-3"', vr.PAPER_FIGURES_2_3),
-        ('preset = "paper-figures-2-3"\n[scene]\nmu = 0.3', vr.PAPER_FIGURES_2_3.replace(mu=0.3)),
+        (SCENE + "gamma = 1.1e4\nj = 0.5", vr.presets.PAPER_SECTION_5_ROUNDED),
+        (CYLINDER, vr.presets.PAPER_SECTION_5),
+        (CYLINDER + 'plane = "stress"\nj = 1', replace(vr.presets.PAPER_CYLINDER, plane="stress", j=1.0).scene()),
+        ('preset = "paper-figures-2-3"', vr.presets.PAPER_FIGURES_2_3),
+        ('preset = "paper-figures-2-3"\n[scene]\nmu = 0.3', vr.presets.PAPER_FIGURES_2_3.replace(mu=0.3)),
     ):
         assert read_body(toml(content)).scene() == scene
 

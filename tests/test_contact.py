@@ -20,7 +20,7 @@ import viscoroll as vr
 from viscoroll.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
 from viscoroll.materials import law_each
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 PARTS = ("M_half_space", "M_cylinder")
 

@@ -37,13 +37,13 @@ def write(request: pytest.FixtureRequest) -> Callable[[Path], object]:
 
 
 def test_a_directory(write: Callable, tmp_path: Path) -> None:
-    with pytest.raises(vr.OutputError, match="cannot be written: it is a directory"):
+    with pytest.raises(vr.FileError, match="cannot be written: it is a directory"):
         write(tmp_path)
     assert not list(tmp_path.iterdir())
 
 
 def test_no_such_folder(write: Callable, tmp_path: Path) -> None:
-    with pytest.raises(vr.OutputError, match="No such file or directory"):
+    with pytest.raises(vr.FileError, match="No such file or directory"):
         write(tmp_path / "none" / "x")
 
 
@@ -59,7 +59,7 @@ def test_a_symbolic_link_stays_and_its_target_is_written(write: Callable, tmp_pa
 def test_a_loop_of_links(write: Callable, tmp_path: Path) -> None:
     (tmp_path / "a").symlink_to("b")
     (tmp_path / "b").symlink_to("a")
-    with pytest.raises(vr.OutputError, match="it is a loop of symbolic links"):
+    with pytest.raises(vr.FileError, match="it is a loop of symbolic links"):
         write(tmp_path / "a")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
 
@@ -70,7 +70,7 @@ def test_a_device_or_pipe_is_not_replaced(write: Callable, tmp_path: Path) -> No
     os.mkfifo(pipe)
     (tmp_path / "null").symlink_to(os.devnull)
     for path in (pipe, tmp_path / "null"):
-        with pytest.raises(vr.OutputError, match="it is not a regular file"):
+        with pytest.raises(vr.FileError, match="it is not a regular file"):
             write(path)
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
@@ -92,7 +92,7 @@ def test_a_read_only_file_is_not_replaced(write: Callable, shared: Path) -> None
     path = shared / "file"
     path.write_text("as it was")
     path.chmod(0o444)
-    assert "OutputError" in (text := as_ordinary_user(lambda: write(path)))
+    assert "FileError" in (text := as_ordinary_user(lambda: write(path)))
     assert "it is read-only" in text
     assert path.read_text() == "as it was"
     path.chmod(0o666)
@@ -104,7 +104,7 @@ def test_a_read_only_folder(write: Callable, shared: Path) -> None:
     path.write_text("as it was")
     path.chmod(0o666)
     shared.chmod(0o555)
-    assert "OutputError" in (text := as_ordinary_user(lambda: write(path)))
+    assert "FileError" in (text := as_ordinary_user(lambda: write(path)))
     assert "Permission denied" in text
     assert path.read_text() == "as it was"
 
@@ -123,7 +123,7 @@ for name, write in test_files.WRITERS.items():
         resource.setrlimit(resource.RLIMIT_FSIZE, (int(share * len(before)), resource.RLIM_INFINITY))
         try:
             write(path)
-        except test_files.vr.OutputError as error:
+        except test_files.vr.FileError as error:
             print(error)
         resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
         assert path.read_bytes() == before
@@ -184,13 +184,13 @@ def test_a_cut_or_longer_file_has_no_seal_that_holds() -> None:
 RUBBER = vr.Material(1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one')
 #: format -> how a file of it is written, and read
 FORMATS: dict[str, tuple[Callable[[Path], object], Callable[[Path], object]]] = {
-    "law": (lambda path: vr.tables.save(vr.tables.law(vr.RUBBER_CYLINDER.material), path), vr.load_law),
+    "law": (lambda path: vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), path), vr.load_law),
     "law of every alpha": (
         lambda path: vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path),
         lambda path: vr.load_law(path, 11.0),
     ),
     "grid": (
-        lambda path: vr.tables.save(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01]), path),
+        lambda path: vr.tables.save(vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01]), path),
         vr.tables.load,
     ),
     "material": (RUBBER.to_netcdf, vr.Material.from_netcdf),
@@ -204,10 +204,10 @@ def test_damage_is_told(form: str, tmp_path: Path) -> None:
 
     def told(content: bytes, *words: str) -> None:
         path.write_bytes(content)
-        refused(lambda: read(path), str(path), *words, error=vr.TableError)
+        refused(lambda: read(path), str(path), *words, error=vr.FileError)
 
-    refused(lambda: read(path), str(path), "cannot be read", error=vr.TableError)
-    refused(lambda: read(tmp_path), str(tmp_path), "cannot be read", error=vr.TableError)
+    refused(lambda: read(path), str(path), "cannot be read", error=vr.FileError)
+    refused(lambda: read(tmp_path), str(tmp_path), "cannot be read", error=vr.FileError)
     write(path)
     assert [each.name for each in tmp_path.iterdir()] == ["file.nc"]
     whole = path.read_bytes()
@@ -222,7 +222,7 @@ def test_damage_is_told(form: str, tmp_path: Path) -> None:
     for another, (write_it, _) in FORMATS.items():
         if another in ("material", "grid") and form != another:  # a table that is loaded may be a law
             write_it(path)
-            refused(lambda: read(path), str(path), error=vr.TableError)
+            refused(lambda: read(path), str(path), error=vr.FileError)
 
 
 # --- every writer is one of these ---

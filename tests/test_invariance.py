@@ -31,7 +31,7 @@ from viscoroll.motion.batch import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
 X = np.linspace(-0.5, 1.0, 61)[:, None]
 GRID = {"what": SCENE, "V": [0.1, 0.3, 2.0], "delta": [-0.01, 0.0, 0.03], "alpha": [1.0, 11.0]}
@@ -314,7 +314,7 @@ if __name__ == "__main__":
 
 def test_what_is_pickled_is_what_it_was():
     """Scenes, materials, and results of calls of them."""
-    for thing in (SCENE, vr.RUBBER_ROLLER, MATERIALS["each"](), vr.RUBBER_CYLINDER):
+    for thing in (SCENE, vr.presets.RUBBER_ROLLER, MATERIALS["each"](), vr.presets.RUBBER_CYLINDER):
         assert pickle.loads(pickle.dumps(thing)) == thing
     for result in (
         vr.contact(SCENE, [0.3, 1.0], delta=1e-3),

@@ -9,8 +9,8 @@ import xarray as xr
 
 import viscoroll as vr
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
-ROLLER = vr.RUBBER_CYLINDER
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
+ROLLER = vr.presets.RUBBER_CYLINDER
 V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")
 TABLE = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller"))
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from viscoroll.errors import OutputError
+from viscoroll.errors import FileError
 from viscoroll.plots.runs import run_distributions
 from viscoroll.plots.style import save
 from viscoroll.runs import open_summaries, read_run, run_ensemble
@@ -43,11 +43,11 @@ def test_save_is_whole_or_not_at_all(tmp_path):
             Path(target).write_bytes(b"half")
             raise OSError(28, "No space left on device")
 
-    with pytest.raises(OutputError, match="No space left"):
+    with pytest.raises(FileError, match="No space left"):
         save(Broken(), path)
     assert path.read_text() == "as it was"
     assert [item.name for item in tmp_path.iterdir()] == [path.name]
-    with pytest.raises(OutputError, match=r"suffix '\.xyz'"):
+    with pytest.raises(FileError, match=r"suffix '\.xyz'"):
         save(Figure(), tmp_path / "picture.xyz")
-    with pytest.raises(OutputError, match="cannot be written"):
+    with pytest.raises(FileError, match="cannot be written"):
         save(Figure(), tmp_path / "nowhere" / "picture.png")

@@ -27,7 +27,7 @@ SECONDS = float(os.environ.get("FUZZ_SECONDS", "0")) / 6.0
 #: a motion that takes longer hangs
 STEPS = 5000
 ENDED = {MotionStatus.DONE, MotionStatus.RESTED}
-SCENE = vr.PAPER_SECTION_5
+SCENE = vr.presets.PAPER_SECTION_5
 
 
 def tens(low, high):
@@ -189,7 +189,7 @@ def test_anything(a, bounds):
         lambda: vr.tables.build(SCENE, V=a[0], delta=a[1], alpha=a[2]),
         lambda: vr.tables.spread(*bounds, few),
         lambda: vr.Cylinder(*a[:5], *bounds, a[5]).scene(),
-        lambda: vr.PAPER_CYLINDER.validity(a[1], density=a[0]),
+        lambda: vr.presets.PAPER_CYLINDER.validity(a[1], density=a[0]),
         lambda: vr.sampling.sample(few, a[1], a[2], V0=a[3]),
         *(lambda table=table: vr.tables.interpolate(table, alpha=a[0], V=a[1], delta=a[2]) for table in tables()),
     )
@@ -203,5 +203,5 @@ def test_anything(a, bounds):
 def tables(made=[]):  # noqa: B006 - built once
     if not made:
         made.append(vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], [-0.01, 0.0, 0.03]))
-        made.append(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 0.3, 2.0], [-0.01, 0.0, 0.03], [1.0, 11.0]))
+        made.append(vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.3, 2.0], [-0.01, 0.0, 0.03], [1.0, 11.0]))
     return made

@@ -17,7 +17,7 @@ from run_files import FILES
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll import fmu
+from viscoroll import errors, fmu
 from viscoroll.config import read_bodies, read_body
 from viscoroll.identification.file import read_measurements
 from viscoroll.materials.file import read_materials
@@ -48,7 +48,7 @@ NAMES = vars(experiments) | {
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
     "read_body": read_body, "read_bodies": read_bodies, "read_materials": read_materials, "sample": sample,
-    "stats": stats, "PAPER": vr.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.RUBBER_CYLINDER,
+    "stats": stats, "PAPER": vr.presets.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.presets.RUBBER_CYLINDER,
 }  # fmt: skip
 
 
@@ -84,7 +84,7 @@ def test_answered(call, answer, tmp_path):
     names, (kind, _, words) = NAMES | {"file": file, "run": run, "measured": measured}, answer.strip().rpartition("! ")
     if kind == "ModelWarning" or words.startswith("no warning"):
         return told(call, words, names)
-    error = getattr(vr, kind or "ParameterError")
+    error = getattr(errors, kind or "ParameterError")
     refused(lambda: eval(call, names), *words.split(" | "), error=error)
 
 

@@ -18,8 +18,8 @@ import viscoroll as vr
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
-ROLLER = vr.RUBBER_CYLINDER
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
+ROLLER = vr.presets.RUBBER_CYLINDER
 
 
 @pytest.fixture(scope="module")
@@ -136,10 +136,10 @@ def test_a_table_of_pandas_has_a_row_each(results):
 
 def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
     t = np.linspace(0.0, 4.0, 5)
-    braked = vr.RUBBER_CYLINDER.roll(2.0, 20.0, t, brake=5.0)
+    braked = vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, t, brake=5.0)
     assert len(braked.plot().axes) == 3
     assert "held at t = " in repr(braked)
-    assert len(vr.RUBBER_CYLINDER.roll(2.0, 20.0, t, torque=0.5).plot().axes) == 4
+    assert len(vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, t, torque=0.5).plot().axes) == 4
 
 
 def test_a_motion_tells_its_peak(results):
@@ -166,7 +166,7 @@ def test_without_a_threshold_nothing_is_told_to_rest():
 
 def test_a_validity_is_a_card(results):
     """Not the numbers of all times, in text and in a notebook; its parts are a sentence each."""
-    found = vr.RUBBER_CYLINDER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity()
+    found = vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity()
     assert repr(found) == str(found)
     assert len(repr(found).splitlines()) == 1 + len(found)
     assert found._repr_html_().count("<tr>") == len(found)

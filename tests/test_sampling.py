@@ -41,5 +41,5 @@ def test_no_draw_lies_on_the_edge(monkeypatch):
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 def test_a_sample_feeds_an_ensemble():
     drawn = sample(8, seed=5, design="sobol", V0=stats.uniform(0.5, 1.0), omega0=0.5, mu=stats.uniform(0.1, 0.2))
-    result = vr.ensemble(vr.PAPER_SECTION_5.replace(mu=drawn["mu"]), drawn["V0"], drawn["omega0"], [0.0, 3e-3])
-    assert result.messages() == {vr.MOTION_STATUS[vr.MotionStatus.DONE]: 8}
+    result = vr.ensemble(vr.presets.PAPER_SECTION_5.replace(mu=drawn["mu"]), drawn["V0"], drawn["omega0"], [0.0, 3e-3])
+    assert result.messages() == {vr.MotionStatus.DONE.message: 8}

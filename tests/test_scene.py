@@ -21,7 +21,7 @@ SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma":
 def test_the_papers_dimensional_list_gives_its_numbers():
     """Sect. 3.1 and Eq. (4): alpha = 11.031, kappa = 2.9210, gamma = 11231."""
     scene = vr.Cylinder(**SI).scene()
-    assert scene == vr.PAPER_SECTION_5
+    assert scene == vr.presets.PAPER_SECTION_5
     assert close(scene.alpha, 11.031, rel=5e-4 / 11.0)
     assert close(scene.kappa, 2.9210, rel=5e-5 / 2.9)
     assert close(scene.gamma, 11231.0, rel=0.5 / 11231.0)
@@ -51,10 +51,10 @@ def test_plane_stress():
 
 def test_presets():
     """Figs. 2 and 3 use ten times the kappa of Sects. 4 and 5."""
-    rounded = vr.PAPER_SECTION_5_ROUNDED
+    rounded = vr.presets.PAPER_SECTION_5_ROUNDED
     assert (rounded.alpha, rounded.kappa, rounded.mu, rounded.gamma, rounded.j) == (11.0, 2.91, 0.2, 1.1e4, 0.5)
-    assert close(vr.PAPER_FIGURES_2_3.kappa, 10.0 * rounded.kappa, rel=tol.SCENE)
-    assert PAPER_CYLINDER.scene() == vr.PAPER_SECTION_5
+    assert close(vr.presets.PAPER_FIGURES_2_3.kappa, 10.0 * rounded.kappa, rel=tol.SCENE)
+    assert PAPER_CYLINDER.scene() == vr.presets.PAPER_SECTION_5
     assert set(PRESETS) == {"paper-section-5", "paper-section-5-rounded", "paper-figures-2-3", "rubber-roller"}
     assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
@@ -65,7 +65,7 @@ def test_units_by_hand():
     for name, one in {"V": 0.1 / 10.7, "omega": 1.0 / 10.7, "t": 10.7, "x": 0.1, "Q": P, "M": P * 0.1}.items():
         assert close(scale[name], one, rel=tol.SCENE, what=name)
     assert scale["beta"] == 1.0
-    assert all(vr.PAPER_SECTION_5.scale[name] == 1.0 for name in DIMENSIONS)
+    assert all(vr.presets.PAPER_SECTION_5.scale[name] == 1.0 for name in DIMENSIONS)
 
 
 def test_force_and_torque():
@@ -94,7 +94,7 @@ def test_a_material_in_place_of_the_four_parameters():
     """Of the paper's own the same kappa and gamma to the bit, and its creep; alpha is that of the series."""
     own = vr.Material.sls(*(SI[name] for name in ("E", "nu", "T_epsilon", "T_sigma")))
     cylinder = vr.Cylinder(**ROLLER, material=own)
-    scene, paper = cylinder.scene(), vr.PAPER_SECTION_5
+    scene, paper = cylinder.scene(), vr.presets.PAPER_SECTION_5
     assert scene.material is own.prony
     assert (scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j) == (
         paper.alpha, paper.kappa, paper.mu, paper.gamma, paper.j,
@@ -113,7 +113,7 @@ def test_a_given_load():
     assert close(pressed.l0, math.sqrt(32.0 * 0.1 * 1e3 / pressed.E_prime), rel=tol.SCENE)
     assert close(pressed.scene().kappa, 0.1 / pressed.l0, rel=tol.SCENE)
     assert close(pressed.scene().gamma, 1e3 * 10.7**2 / (35.5 * 0.1), rel=tol.SCENE)
-    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == vr.PAPER_SECTION_5
+    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == vr.presets.PAPER_SECTION_5
     assert dataclasses.replace(vr.Cylinder(**SI), m=1.0).load == 9.81
     assert dataclasses.replace(pressed, m=1.0).load == 1e3
     assert dataclasses.replace(pressed, load=5.0).load == 5.0
@@ -179,7 +179,7 @@ def test_an_array_given_is_copied():
 
 def test_equality_and_replace():
     scene = vr.Scene(11, 2.91, 0.2, 1.1e4)
-    assert scene == vr.PAPER_SECTION_5_ROUNDED
+    assert scene == vr.presets.PAPER_SECTION_5_ROUNDED
     assert scene != scene.replace(mu=0.3)
     assert scene.replace(mu=0.3).mu == 0.3
     assert scene != "scene"
@@ -189,7 +189,7 @@ def test_equality_and_replace():
 
 
 def test_shape():
-    assert vr.PAPER_SECTION_5.shape == ()
+    assert vr.presets.PAPER_SECTION_5.shape == ()
     assert vr.Scene([1.0, 2.0, 3.0], [[1.0], [2.0]], 0.2).shape == (2, 3)
 
 
@@ -202,7 +202,7 @@ def test_limits_that_are_allowed():
 def test_the_rubber_roller_is_inside_the_limits_of_steady_rolling():
     """As the paper's cylinder is not."""
     V = np.geomspace(1e-2, 1e3, 20)
-    found = vr.RUBBER_ROLLER.validity(V)
+    found = vr.presets.RUBBER_ROLLER.validity(V)
     assert found.steady.holds.all()
     assert found.small_contact.holds.all()
-    assert not vr.PAPER_SECTION_5.validity(0.5).steady.holds
+    assert not vr.presets.PAPER_SECTION_5.validity(0.5).steady.holds

@@ -15,7 +15,7 @@ import viscoroll as vr
 from pipeline.evidence.truth.series import functions, rates
 from viscoroll.contact_fields import SLOPES_OF_BODIES
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: a hump a mode, of ever smaller height
@@ -371,7 +371,7 @@ def test_why_there_is_none():
     assert "beyond the friction mu = 0.2" in vr.steady(SCENE, force=0.3, torque=-0.28).reason
     assert "beyond the friction" in vr.steady(SCENE, force=0.3, torque=-0.3).reason
     assert "at no speed" in vr.steady(SCENE, force=-0.3, torque=vr.Feedback(5.0, omega=1.0)).reason
-    si = vr.PAPER_CYLINDER.steady(slope=0.1).reason
+    si = vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason
     assert re.fullmatch(r"force \+ torque/R = \S+ N/m exceeds .* over R \S+ N/m \(at V = \S+ m/s\)", si)
 
 

@@ -12,7 +12,7 @@ from closeness import close
 import viscoroll as vr
 from viscoroll.assumptions import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
 
-SCENE = vr.PAPER_SECTION_5
+SCENE = vr.presets.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])
 
 
@@ -44,7 +44,7 @@ def test_arrays_of_scenes_and_speeds():
 
 def test_wave_speed():
     """Fifth of sqrt(G/density), in SI; unknown without a density."""
-    cylinder, density = vr.PAPER_CYLINDER, 1130.0
+    cylinder, density = vr.presets.PAPER_CYLINDER, 1130.0
     assert cylinder.validity(1.0).quasistatic.holds is None
     wave = math.sqrt(cylinder.E / (2.0 * (1.0 + cylinder.nu)) / density)
     share = np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT
@@ -57,7 +57,7 @@ def test_wave_speed():
 def test_speeds_and_densities_beyond_all_bounds():
     """No NaN, no warning: a ratio that no double can hold is infinite."""
     for V, density in ((3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324)):
-        found = vr.PAPER_CYLINDER.validity(V, density=density)
+        found = vr.presets.PAPER_CYLINDER.validity(V, density=density)
         assert found.quasistatic.holds == (V < 1.0)
         assert not np.isnan(found.quasistatic.value)
         assert "nan" not in str(found)
@@ -72,7 +72,7 @@ def test_scenes_beyond_all_bounds():
 
 
 def test_a_sentence_each():
-    _, *lines = str(vr.PAPER_CYLINDER.validity(1.0, density=1130.0)).splitlines()
+    _, *lines = str(vr.presets.PAPER_CYLINDER.validity(1.0, density=1130.0)).splitlines()
     assert [line.split()[0] for line in lines] == list(SCENE.validity(1.0)._fields)
     assert "plane strain" in lines[-1]
     assert SCENE.validity(1.0).bodies.holds is None
@@ -123,7 +123,7 @@ def test_bodies_assumption():
         assert found.holds is holds
         assert words in found.sentence
     assert close(found.value, cylinder.pair.dundurs[0], rel=tol.PAIR)
-    assert vr.PAPER_CYLINDER.validity(1.0).bodies == coupling(0.0, 0.0, like=True)
+    assert vr.presets.PAPER_CYLINDER.validity(1.0).bodies == coupling(0.0, 0.0, like=True)
 
 
 def test_waves_of_materials_that_know_their_density():
@@ -159,15 +159,15 @@ def test_how_thick_the_layer_is():
         assert "not known" not in found.sentence
     found = pair(RUBBER, replace(RUBBER, E=1e6, thickness=0.02)).validity(0.0).thick
     assert "the thickness of the cylinder is not known" in found.sentence
-    for cylinder in (pair(RUBBER, None), vr.RUBBER_CYLINDER):
+    for cylinder in (pair(RUBBER, None), vr.presets.RUBBER_CYLINDER):
         assert cylinder.validity(0.0).thick == (None, None, "thickness not known: the law is that of a half-space")
 
 
 def test_print_says_whether_each_holds_and_failed_names_what_does_not():
-    found = vr.PAPER_SECTION_5.validity(np.array([0.0, 1.5]))
+    found = vr.presets.PAPER_SECTION_5.validity(np.array([0.0, 1.5]))
     assert found.failed == ("steady",)
     words = {line.split()[0]: line.split()[1] for line in str(found).splitlines()}
     assert words["steady"] == "no"
     assert words["small_contact"] == "yes"
     assert words["plane"] == "?"
-    assert vr.RUBBER_CYLINDER.validity(2.0).failed == ()
+    assert vr.presets.RUBBER_CYLINDER.validity(2.0).failed == ()

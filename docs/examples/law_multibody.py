@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 
-warm = vr.RUBBER_ROLLER
+warm = vr.presets.RUBBER_ROLLER
 cold = warm.replace(material=warm.material.slower(10.0))
 laws, gamma, j = [vr.law(scene) for scene in (warm, cold)], warm.gamma, warm.j
 speed = 0.5  # of the tractor

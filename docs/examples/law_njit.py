@@ -31,7 +31,7 @@ def rolled(law, gamma, j, V, omega, force, h):
     return found
 
 
-scene = vr.RUBBER_ROLLER
+scene = vr.presets.RUBBER_ROLLER
 law = vr.law(scene).jitted  # any other law takes the same machine code
 gusts = np.repeat(np.random.default_rng(1).uniform(0.0, 0.01, 20), 5000)
 speeds = rolled(law, scene.gamma, scene.j, 0.5, 0.5, gusts, 1e-5)

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 
-scene = vr.RUBBER_ROLLER
+scene = vr.presets.RUBBER_ROLLER
 law, gamma, j = vr.law(scene), scene.gamma, scene.j
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 import viscoroll as vr
 from viscoroll.blocks import cores
-from viscoroll.errors import ConfigError
+from viscoroll.errors import FileError
 from viscoroll.files import write_text
 
 from ..stage import ROOT, make_folder, read_toml, told
@@ -122,7 +122,7 @@ def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
 
     Raises
     ------
-    ConfigError
+    FileError
         A file that cannot be read, is not TOML, or lacks the section.
     """
     section = read_toml(path)
@@ -131,7 +131,7 @@ def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
             section = section[key]
         sizes = section | section["quick"] if quick else section
     except KeyError as error:
-        raise ConfigError(path, f"section [{name}] or its key {error} is missing") from error
+        raise FileError(path, f"section [{name}] or its key {error} is missing") from error
     return {key: value for key, value in sizes.items() if key != "quick"}
 
 

@@ -46,7 +46,7 @@ def parts() -> Iterator[tuple[str, list[Any]]]:
     delta = 10.0 ** draw.uniform(-9.0, 0.5, _STATES) * draw.choice((-1.0, 1.0), _STATES)
     alpha = 1.0 + 10.0 ** draw.uniform(-8.0, 5.0, _STATES)
     V[:2], delta[2:4], alpha[4:8] = 0.0, 0.0, 1.0
-    scene, scenes = vr.PAPER_SECTION_5, vr.Scene(alpha=alpha, kappa=2.9, mu=0.2)
+    scene, scenes = vr.presets.PAPER_SECTION_5, vr.Scene(alpha=alpha, kappa=2.9, mu=0.2)
     yield "contact", _values(vr.contact(scene, V, delta=delta))
     yield "contact-own-alpha", _values(vr.contact(scenes, V, delta=delta))
     yield "contact-slopes", _values(vr.contact(scenes, V, delta=delta, slopes=True))
@@ -72,7 +72,7 @@ def parts() -> Iterator[tuple[str, list[Any]]]:
     axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
     grid = vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)
     yield "grid", [each.values for each in grid.data_vars.values()]
-    law = vr.tables.law(vr.RUBBER_CYLINDER.material)
+    law = vr.tables.law(vr.presets.RUBBER_CYLINDER.material)
     yield "law", [each.values for each in law.data_vars.values()]
 
 

@@ -26,13 +26,6 @@ _HOME = {
     "Measured": "materials.measured",
     "WLF": "materials.shift",
     "Arrhenius": "materials.shift",
-    "PAPER_CYLINDER": "presets",
-    "PAPER_SECTION_5": "presets",
-    "PAPER_SECTION_5_ROUNDED": "presets",
-    "PAPER_FIGURES_2_3": "presets",
-    "PAPER_STARTS": "presets",
-    "RUBBER_CYLINDER": "presets",
-    "RUBBER_ROLLER": "presets",
     "fit_prony": "dma",
     "Fit": "dma",
     "read_dma": "dma",
@@ -59,17 +52,13 @@ _HOME = {
     "ensemble": "motion",
     "ViscorollError": "errors",
     "ParameterError": "errors",
-    "OutOfTableError": "errors",
-    "TableError": "errors",
-    "OutputError": "errors",
-    "ConfigError": "errors",
+    "FileError": "errors",
     "ConvergenceError": "errors",
     "MissingDependencyError": "errors",
     "ModelWarning": "errors",
     "MotionStatus": "errors",
-    "MOTION_STATUS": "errors",
 }
-_SUBPACKAGES = ("tables", "sampling")
+_SUBPACKAGES = ("presets", "sampling", "tables")
 __all__ = ["__version__", *_HOME, *_SUBPACKAGES]  # noqa: PLE0604
 
 

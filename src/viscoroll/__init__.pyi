@@ -1,5 +1,6 @@
 """The public names, for type checkers and editors; ``__init__.py`` loads them on first use."""
 
+from . import presets as presets
 from . import sampling as sampling
 from . import tables as tables
 from .assumptions import Validity as Validity
@@ -15,16 +16,12 @@ from .drive import Schedule as Schedule
 from .equilibria import Steady as Steady
 from .equilibria import humps as humps
 from .equilibria import steady as steady
-from .errors import MOTION_STATUS as MOTION_STATUS
-from .errors import ConfigError as ConfigError
 from .errors import ConvergenceError as ConvergenceError
+from .errors import FileError as FileError
 from .errors import MissingDependencyError as MissingDependencyError
 from .errors import ModelWarning as ModelWarning
 from .errors import MotionStatus as MotionStatus
-from .errors import OutOfTableError as OutOfTableError
-from .errors import OutputError as OutputError
 from .errors import ParameterError as ParameterError
-from .errors import TableError as TableError
 from .errors import ViscorollError as ViscorollError
 from .identification import Coastdown as Coastdown
 from .identification import Resistance as Resistance
@@ -42,13 +39,6 @@ from .motion import ensemble as ensemble
 from .motion import roll as roll
 from .motion.many import Ensemble as Ensemble
 from .motion.one import Motion as Motion
-from .presets import PAPER_CYLINDER as PAPER_CYLINDER
-from .presets import PAPER_FIGURES_2_3 as PAPER_FIGURES_2_3
-from .presets import PAPER_SECTION_5 as PAPER_SECTION_5
-from .presets import PAPER_SECTION_5_ROUNDED as PAPER_SECTION_5_ROUNDED
-from .presets import PAPER_STARTS as PAPER_STARTS
-from .presets import RUBBER_CYLINDER as RUBBER_CYLINDER
-from .presets import RUBBER_ROLLER as RUBBER_ROLLER
 from .results import Values as Values
 from .rolling_contact import contact as contact
 from .scene import Scene as Scene

@@ -73,7 +73,7 @@ class Validity(NamedTuple):
     Printed, each line says yes, no or, where no number can tell, "?".
 
     >>> import viscoroll as vr
-    >>> vr.RUBBER_CYLINDER.validity(2.0).failed
+    >>> vr.presets.RUBBER_CYLINDER.validity(2.0).failed
     ()
     """
 

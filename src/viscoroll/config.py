@@ -14,7 +14,7 @@ from typing import Any, Literal
 import msgspec
 
 from .cylinder import Cylinder
-from .errors import ConfigError, ParameterError, unknown
+from .errors import FileError, ParameterError, unknown
 from .materials.file import SECTIONS, SUFFIX, CreepSection, PronySection, materials_of, read_materials, series_of
 from .materials.pair import Pair
 from .presets import PRESETS
@@ -77,7 +77,7 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
 
     Raises
     ------
-    ConfigError
+    FileError
         A file that cannot be read, is not TOML, holds none of the three or a cylinder beside a scene, a
         misspelt or missing key, a value of the wrong type or out of its range.
     """
@@ -92,7 +92,7 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
 
 
 def check_sections(path: Any, content: dict[str, Any], beside: tuple[str, ...], more: Mapping[str, type] = {}) -> None:
-    """Raise ConfigError where sections do not go together, or hold keys and types that they do not have.
+    """Raise FileError where sections do not go together, or hold keys and types that they do not have.
 
     ``more`` : other sections that are checked by their schema.
     """
@@ -111,7 +111,7 @@ def check_sections(path: Any, content: dict[str, Any], beside: tuple[str, ...], 
 
 
 def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any]) -> Scene | Cylinder:
-    """What rolls by checked sections, whose numbers may be arrays; raises ParameterError, of a series ConfigError."""
+    """What rolls by checked sections, whose numbers may be arrays; raises ParameterError, of a series FileError."""
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
     given = dict(content.get("scene", {}))
@@ -126,7 +126,7 @@ def body_of(path: Any, content: Mapping[str, Any], materials: Mapping[str, Any])
     return Scene(**given)
 
 
-def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> ConfigError:
+def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> FileError:
     """A refusal with the section and the line of what it names."""
     own = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
     section = "" if error.name in content else next(own, next((name for name in SCHEMA if name in content), ""))
@@ -141,20 +141,20 @@ def read_bodies(path: str | PathLike[str], temperature: float | None = None) -> 
 
     Raises
     ------
-    ConfigError, TableError
+    FileError
         As :func:`read_materials` and :func:`read_body`.
     """
     content = {} if Path(path).suffix == SUFFIX else read(path)
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
         body = read_body(path)
         if temperature is not None:
-            raise ConfigError(path, f"temperature = {temperature:g}: needs [material] with wlf or arrhenius")
+            raise FileError(path, f"temperature = {temperature:g}: needs [material] with wlf or arrhenius")
         if isinstance(body, Cylinder):
             return body.pair
         return body.alpha if body.material is None else body.material
     found = read_materials(path, temperature)
     if "material" not in found:
-        raise ConfigError(path, "section [material] is missing")
+        raise FileError(path, "section [material] is missing")
     try:
         return Pair(found["material"], found.get("base"))
     except ParameterError as error:

@@ -5,14 +5,13 @@ Which error when:
 - :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be,
   an unknown name, inputs that do not fit together.  Also a ``ValueError``.
 - :class:`OutOfTableError`: a point outside a table's grid.
-- :class:`TableError`: a file that is missing, damaged, of another schema, or not a table (or not a material).
-- :class:`OutputError`: a result that cannot be written.
-- :class:`ConfigError`: a TOML file with a misspelt key or a value of the wrong type.
+- :class:`FileError`: a file that is missing, damaged, not what was asked for, or has a misspelt key or a value of the
+  wrong type; one that cannot be written.
 - :class:`MissingDependencyError`: a package of an extra, or a program, is not installed.
 - :class:`ConvergenceError`: an iteration that hit its cap.
 
 Kernels never raise; they return a status.  Motions carry one each, with a sentence
-(:data:`MOTION_STATUS`); only a failed contact solve is turned into an exception.
+(:class:`MotionStatus`); only a failed contact solve is turned into an exception.
 """
 
 from __future__ import annotations
@@ -62,24 +61,12 @@ class OutOfTableError(ParameterError):
         super().__init__(name, f"{value:.6g}", f"within the table's range [{low:.6g}, {high:.6g}]")
 
 
-class FileProblem(ViscorollError):
-    """Something is wrong with the file at ``path``."""
+class FileError(ViscorollError):
+    """The file at ``path`` cannot be read as what was asked for, or cannot be written: ``problem`` says why."""
 
     def __init__(self, path: Any, problem: str) -> None:
         self.path, self.problem = path, problem
         super().__init__(f"{path}: {problem}")
-
-
-class TableError(FileProblem):
-    """The file is missing, damaged, of another schema version, or not a table."""
-
-
-class OutputError(FileProblem):
-    """The result cannot be written there."""
-
-
-class ConfigError(FileProblem):
-    """The TOML file cannot be read as what was asked for."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -116,16 +103,21 @@ class MotionStatus(IntEnum):
     UNSTEADY = 5
     CAUGHT = 6
 
+    @property
+    def message(self) -> str:
+        """In words."""
+        return _MESSAGES[self]
 
-MOTION_STATUS = {
-    MotionStatus.DONE: "reached the last output time",
-    MotionStatus.RESTED: "max(|V|, |omega|) fell below the rest threshold",
-    MotionStatus.STEP_LIMIT: "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
-    MotionStatus.STEP_TOO_SMALL: "the step size fell to rounding level: rtol is too tight for this start",
-    MotionStatus.UNDECIDED: "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
-    MotionStatus.UNSTEADY: "too slow for the added mass, which came to 1 + j or to half of that below 0",
-    MotionStatus.CAUGHT: "caught in the imprint of its rest, which takes seven tenths of its energy",
-}
+
+_MESSAGES = (
+    "reached the last output time",
+    "max(|V|, |omega|) fell below the rest threshold",
+    "the step limit was reached first: loosen rtol, raise max_steps or shorten the motion",
+    "the step size fell to rounding level: rtol is too tight for this start",
+    "V and omega were both 0, where the law leaves two ways on: with mu > 2 kappa it may",
+    "too slow for the added mass, which came to 1 + j or to half of that below 0",
+    "caught in the imprint of its rest, which takes seven tenths of its energy",
+)
 
 
 def outside() -> int:

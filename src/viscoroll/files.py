@@ -16,7 +16,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .errors import OutputError, TableError
+from .errors import FileError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +37,7 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
 
     Raises
     ------
-    OutputError
+    FileError
         If it cannot be written there: no such folder, a full disk, a folder or file that is
         read-only, a directory, a device, a loop of links.
     """
@@ -50,7 +50,7 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
         os.replace(temporary, target)
         _sync(target.parent)
     except OSError as error:
-        raise OutputError(path, f"cannot be written ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be written ({error.strerror or error})") from error
     finally:
         with suppress(OSError):
             temporary.unlink()
@@ -59,13 +59,13 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
 def _require_replaceable(target: Path, path: str | PathLike[str]) -> None:
     """Refuse what a rename would replace without asking; ``target`` is where ``path`` leads."""
     if target.is_symlink():
-        raise OutputError(path, "cannot be written: it is a loop of symbolic links")
+        raise FileError(path, "cannot be written: it is a loop of symbolic links")
     if target.is_dir():
-        raise OutputError(path, "cannot be written: it is a directory")
+        raise FileError(path, "cannot be written: it is a directory")
     if target.exists() and not target.is_file():
-        raise OutputError(path, "cannot be written: it is not a regular file")
+        raise FileError(path, "cannot be written: it is not a regular file")
     if target.exists() and not os.access(target, os.W_OK):
-        raise OutputError(path, "cannot be written: it is read-only")
+        raise FileError(path, "cannot be written: it is read-only")
 
 
 def _sync(path: Path) -> None:
@@ -93,17 +93,17 @@ def seal_holds(content: bytes) -> bool | None:
 def sealed_content(path: str | PathLike[str], most: int, what: str, remedy: str) -> bytes:
     """The bytes of a file, at ``most`` so many, compared with the seal at their end where there is one.
 
-    ``what`` the file should be, and the ``remedy`` where it is not, in words.  Raises TableError.
+    ``what`` the file should be, and the ``remedy`` where it is not, in words.  Raises FileError.
     """
     place = Path(path)
     try:
         if place.is_file() and place.stat().st_size > most:
-            raise TableError(path, f"is no {what}: it is larger than {most} bytes")
+            raise FileError(path, f"is no {what}: it is larger than {most} bytes")
         content = place.read_bytes()
     except OSError as error:
-        raise TableError(path, f"cannot be read ({error.strerror or error}): it must be a {what}") from error
+        raise FileError(path, f"cannot be read ({error.strerror or error}): it must be a {what}") from error
     if seal_holds(content) is False:
-        raise TableError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
+        raise FileError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
     return content
 
 
@@ -112,20 +112,20 @@ def _seal_of(content: bytes | memoryview) -> bytes:
 
 
 def write_bytes(path: str | PathLike[str], content: bytes) -> None:
-    """Write a file, whole or not at all; raises OutputError."""
+    """Write a file, whole or not at all; raises FileError."""
     with replacing(path) as temporary:
         temporary.write_bytes(content)
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a text file in UTF-8, whole or not at all; raises OutputError."""
+    """Write a text file in UTF-8, whole or not at all; raises FileError."""
     write_bytes(path, text.encode())
 
 
 def write_dataset(
     dataset: xr.Dataset, path: str | PathLike[str], encoding: dict[str, Any] | None = None, *, sealed: bool = False
 ) -> None:
-    """Write a dataset as netCDF-4/HDF5, whole or not at all; raises OutputError.
+    """Write a dataset as netCDF-4/HDF5, whole or not at all; raises FileError.
 
     Coordinates get no fill value (CF forbids it); arrays are compressed and carry
     Fletcher-32 checksums unless ``encoding`` says otherwise (HDF5 has none for scalars and texts).

@@ -66,7 +66,7 @@ class Shown:
         ------
         ParameterError
             Where there is nothing to draw over, as of a single state.
-        OutputError
+        FileError
             If the file cannot be written, or its suffix names no format.
         """
         from .plots import draw

@@ -14,7 +14,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 import msgspec
 
-from .errors import ConfigError
+from .errors import FileError
 
 T = TypeVar("T")
 _HEADER = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]")
@@ -29,19 +29,19 @@ _WORDS = {
 
 
 def read(path: str | PathLike[str]) -> dict[str, Any]:
-    """The content of a TOML file; raises ConfigError."""
+    """The content of a TOML file; raises FileError."""
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
-        raise ConfigError(path, f"cannot be read ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be read ({error.strerror or error})") from error
     except UnicodeDecodeError as error:
-        raise ConfigError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
+        raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (ValueError, RecursionError) as error:  # tomllib's own error is a ValueError; so is a number of 5000 digits
-        raise ConfigError(path, f"is not TOML ({error})") from error
+        raise FileError(path, f"is not TOML ({error})") from error
 
 
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
-    """``content`` of section ``name`` as a ``kind``, its keys and types checked to any depth; raises ConfigError."""
+    """``content`` of section ``name`` as a ``kind``, its keys and types checked to any depth; raises FileError."""
     _refuse_unknown_within(path, name, content, kind)
     try:
         return msgspec.convert(content, kind)
@@ -76,7 +76,7 @@ def _is_struct(kind: Any) -> bool:
 
 
 def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
-    """Raise ConfigError, with the nearest allowed key, where a section has a key that is none."""
+    """Raise FileError, with the nearest allowed key, where a section has a key that is none."""
     if not isinstance(content, dict):
         raise fault(path, "", name, f"{name} = {content!r:.40}: must be a section [{name}]")
     known = list(allowed)
@@ -85,13 +85,13 @@ def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -
             raise fault(path, name, key, f"unknown key {key!r}: must be one of {', '.join(known)}{hint(key, known)}")
 
 
-def fault(path: Any, name: str, key: str, problem: str) -> ConfigError:
+def fault(path: Any, name: str, key: str, problem: str) -> FileError:
     """The error to raise for ``key`` of section ``name`` ("": the top), with its line if that is found."""
     line = None
     with suppress(OSError, UnicodeDecodeError):
         line = line_of(Path(path).read_text(encoding="utf-8-sig"), name, key)
     at = "" if line is None else f"line {line}: "
-    return ConfigError(path, f"{at}[{name}] {problem}" if name else f"{at}{problem}")
+    return FileError(path, f"{at}[{name}] {problem}" if name else f"{at}{problem}")
 
 
 def line_of(text: str, name: str, key: str) -> int | None:

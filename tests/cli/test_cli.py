@@ -91,8 +91,10 @@ def refuse(capsys, here):
 def tables(tmp_path_factory):
     """Folder with the law of a rubber and a small grid."""
     folder = tmp_path_factory.mktemp("tables")
-    vr.tables.save(vr.tables.law(vr.RUBBER_CYLINDER.material), folder / "rubber.nc")
-    vr.tables.save(vr.tables.build(vr.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01], [1.0, 11.0]), folder / "grid.nc")
+    vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), folder / "rubber.nc")
+    vr.tables.save(
+        vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01], [1.0, 11.0]), folder / "grid.nc"
+    )
     return folder
 
 
@@ -243,7 +245,7 @@ def test_output_for_machines_and_for_eyes(run, here):
     run(*argv, "-o", "A.CSV")
     assert (here / "A.CSV").read_text() == run(*argv, "--format", "csv")
     table = json.loads(run(*argv, "--format", "json"))
-    assert table["columns"]["Q"] == vr.contact(vr.PAPER_SECTION_5, [1.0, 2.0], delta=-1e-3).Q.tolist()
+    assert table["columns"]["Q"] == vr.contact(vr.presets.PAPER_SECTION_5, [1.0, 2.0], delta=-1e-3).Q.tolist()
     (here / "bom.toml").write_bytes(b"\xef\xbb\xbf" + b'preset = "paper-section-5"\n')
     assert run("contact", "bom.toml", "--V", "1,2", "--delta", "-1e-3") == run(*argv)
 
@@ -269,7 +271,7 @@ def test_doctor_and_validity(run):
     assert {re.split("[^a-z0-9]", each)[0] for each in required} <= set(re.findall(r"\w+", out))
     out = run("validity", "rubber-roller", "--V", "5", "--omega", "4.99")
     words = {line.split()[0]: line.split()[1] for line in out.splitlines()[1:]}
-    assert tuple(words) == vr.RUBBER_ROLLER.validity(1.0)._fields
+    assert tuple(words) == vr.presets.RUBBER_ROLLER.validity(1.0)._fields
     assert words["steady"] == "yes"
     assert "steady         no " in run("validity", *PRESET, "--V", "1.5")
 
@@ -295,16 +297,16 @@ X, T = np.linspace(-0.3, 0.6, 9), np.linspace(0.0, 3e-3, 7)
 SAME = {
     "contact --V -1:1:3,2 --omega 1e-3:1:4:log --slopes": (
         ("V", "omega"),
-        lambda: vr.contact(vr.PAPER_SECTION_5, V[:, None], omega=OMEGA, slopes=True).as_dict(),
+        lambda: vr.contact(vr.presets.PAPER_SECTION_5, V[:, None], omega=OMEGA, slopes=True).as_dict(),
     ),
     "stress --V -0.5 --delta 0.01": (
         ("x",),
-        lambda x: vr.stress(vr.PAPER_SECTION_5, x, -0.5, delta=0.01).as_dict(),
+        lambda x: vr.stress(vr.presets.PAPER_SECTION_5, x, -0.5, delta=0.01).as_dict(),
     ),
     "roll --V0 1.5 --omega0 0.5 --t 0:3e-3:7 --rtol 1e-6": (
         ("t",),
         lambda: {
-            name: getattr(vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, T, rtol=1e-6), name)
+            name: getattr(vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, T, rtol=1e-6), name)
             for name in ("V", "omega", "x", "angle", "delta")
         },
     ),
@@ -334,7 +336,7 @@ def test_csv_and_netcdf_hold_the_bits_of_the_call(run, argv):
 
 def test_steady_states_as_rows(run):
     run("steady", *PRESET, "--slope", "0:0.105:7", "-o", "s.csv")
-    table, s = pd.read_csv("s.csv"), vr.steady(vr.PAPER_SECTION_5, slope=np.linspace(0.0, 0.105, 7))
+    table, s = pd.read_csv("s.csv"), vr.steady(vr.presets.PAPER_SECTION_5, slope=np.linspace(0.0, 0.105, 7))
     assert np.array_equal(table["V"], s.V[np.isfinite(s.V)])
     assert np.array_equal(table["stable"], s.stable[np.isfinite(s.V)])
     assert "load 1: force + torque = 0.12 exceeds" in run("steady", *PRESET, "--force", "0.12")
@@ -345,7 +347,7 @@ def test_steady_states_as_rows(run):
 
 def test_roll_text(run, here):
     out = run("roll", *START, "--t", "3e-3")
-    motion = vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, 3e-3)
+    motion = vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 3e-3)
     assert out.startswith(f"{motion}\n")
     assert len(out.splitlines()) == len(str(motion).splitlines()) + 2 + motion.t.size
     assert run("roll", *START, "--t", "3e-3", "-o", "m.txt") == f"{motion}\n"
@@ -356,7 +358,7 @@ def test_roll_from_a_rest(run):
     times, start = np.linspace(0.0, 3.0, 5), 0.3
     options = ["--V0", "0.3", "--omega0", "0.3", "--t", "0:3:5", "--unsteady", "--rested"]
     for given, rested in ((["60"], 60.0), ([], True)):
-        m = vr.roll(vr.RUBBER_ROLLER, start, start, times, unsteady=True, rested=rested)
+        m = vr.roll(vr.presets.RUBBER_ROLLER, start, start, times, unsteady=True, rested=rested)
         assert run("roll", "rubber-roller", *options, *given).startswith(str(m))
 
 

@@ -56,7 +56,7 @@ def ready():
     kernels = {{each for module in modules for each in vars(module).values() if hasattr(each, "overloads")}}
     return {{(each.py_func.__name__, arguments) for each in kernels for arguments in each.overloads}}
 before = ready()
-scene = vr.PAPER_SECTION_5
+scene = vr.presets.PAPER_SECTION_5
 {CALLS}
 print("anew:", *sorted(name for name, _ in ready() - before))
 """

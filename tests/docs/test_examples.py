@@ -22,7 +22,7 @@ def example(name: str) -> dict:
 
 def test_solve_ivp_is_roll(capsys):
     found = example("law_solve_ivp")
-    m = vr.roll(vr.RUBBER_ROLLER, 0.5, 0.0, found["t"], rtol=1e-11)
+    m = vr.roll(vr.presets.RUBBER_ROLLER, 0.5, 0.0, found["t"], rtol=1e-11)
     assert found["found"].success
     assert close(found["V"], m.V, rel=tol.EXAMPLE_RADAU, scale=1.0)
     assert close(found["omega"], m.omega, rel=tol.EXAMPLE_RADAU, scale=1.0)
@@ -31,7 +31,7 @@ def test_solve_ivp_is_roll(capsys):
 
 def test_a_users_loop_is_roll_to_its_first_order():
     found = example("law_njit")
-    scene, t, h = vr.RUBBER_ROLLER, 0.05, 1e-5
+    scene, t, h = vr.presets.RUBBER_ROLLER, 0.05, 1e-5
     m = vr.roll(scene, 0.5, 0.5, t, force=0.01, rtol=1e-10)
     off = []
     for step in (2.0 * h, h):

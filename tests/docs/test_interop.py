@@ -198,7 +198,7 @@ def test_a_roller_of_c(tmp_path):
 
 def test_readers_in_c_refuse_what_is_no_law(tmp_path):
     need("command -v cc && command -v nc-config")
-    grid = vr.tables.build(vr.PAPER_SECTION_5, V=[0.1, 0.2], delta=[0.0, 0.01])
+    grid = vr.tables.build(vr.presets.PAPER_SECTION_5, V=[0.1, 0.2], delta=[0.0, 0.01])
     vr.tables.save(grid, tmp_path / "grid.nc")
     law = vr.tables.law(11.0)
     law.attrs["law_schema"] = np.int32(2)

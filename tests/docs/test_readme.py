@@ -49,7 +49,7 @@ def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
         exec(compile(code, "offline_runtime.md", "exec"), session)
     worst, way = map(float, capsys.readouterr().out.split())
     assert worst < tol.LAW_STATED
-    assert way == vr.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0).x[-1]
+    assert way == vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0).x[-1]
 
 
 def test_howto_blocks_run(tmp_path, monkeypatch):

@@ -15,7 +15,7 @@ import viscoroll as vr
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 ROLL = "vr.ensemble(scene, [1.5], [0.5], [3e-3], method='flow', fields={!r})"
 WORK = {
     "partial slip": "vr.contact(scene, 0.5, delta=0.001)",
@@ -36,7 +36,7 @@ import json, sys
 from collections import Counter
 import numpy as np
 import viscoroll as vr
-scene = vr.PAPER_SECTION_5_ROUNDED
+scene = vr.presets.PAPER_SECTION_5_ROUNDED
 elastic = scene.replace(alpha=1.0)
 
 def calls(work):
@@ -102,7 +102,7 @@ import sys
 opened = []
 sys.addaudithook(lambda event, given: opened.append(str(given[0])) if event == "open" else None)
 import viscoroll as vr
-scene = vr.PAPER_SECTION_5
+scene = vr.presets.PAPER_SECTION_5
 vr.contact(scene, 0.5, delta=0.001)
 vr.stress(scene, [0.0, 0.1], 0.5, delta=0.001)
 vr.ensemble(scene, [1.0], [1.0], 1e-3, method="flow")

@@ -251,7 +251,7 @@ def test_a_material_of_another_toml_file(tmp_path):
         ("[material]\nE = 1.0\n", "nu"),
     ):
         (tmp_path / "dma.toml").write_text(content)
-        refused(partial(read_materials, scene), "line 2: [base]", "dma.toml", words, error=vr.ConfigError)
+        refused(partial(read_materials, scene), "line 2: [base]", "dma.toml", words, error=vr.FileError)
 
 
 def test_what_was_measured_goes_with_the_temperature():
@@ -265,12 +265,12 @@ def test_what_was_measured_goes_with_the_temperature():
 def test_edited_materials(tmp_path):
     path = tmp_path / "rubber.nc"
     STORED[0].to_netcdf(path)
-    refused(partial(read_materials, path, 30.0), "temperature = 30", "wlf", error=vr.ConfigError)
+    refused(partial(read_materials, path, 30.0), "temperature = 30", "wlf", error=vr.FileError)
     (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\n')
-    refused(partial(read_materials, tmp_path / "a.toml"), "line 2", "none.nc", error=vr.ConfigError)
+    refused(partial(read_materials, tmp_path / "a.toml"), "line 2", "none.nc", error=vr.FileError)
     (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\nE = 1.0\n')
-    refused(partial(read_materials, tmp_path / "a.toml"), "line 3", "unknown key 'E'", error=vr.ConfigError)
+    refused(partial(read_materials, tmp_path / "a.toml"), "line 3", "unknown key 'E'", error=vr.FileError)
     data = as_dataset(STORED[0])
     for changed in (data.assign(E=-data.E), data.drop_vars("tau"), data.assign_attrs(given="both", schema="other")):
         write_dataset(changed, path, sealed=True)
-        refused(lambda: vr.Material.from_netcdf(path), "no material", error=vr.TableError)
+        refused(lambda: vr.Material.from_netcdf(path), "no material", error=vr.FileError)

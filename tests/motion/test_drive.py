@@ -187,9 +187,9 @@ def test_small_beginnings():
 
 def test_a_ramp_whose_start_is_rounding():
     """A start of 1e-18 of what the ramp reaches is 0: the motion does not set out the other way and turn at once."""
-    plain = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=vr.Schedule([0.0, 1e-3], [0.0, 0.2]))
+    plain = vr.roll(vr.presets.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=vr.Schedule([0.0, 1e-3], [0.0, 0.2]))
     for first in (-1e-18, 1e-18, -1e-15):
-        m = vr.roll(vr.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=lambda t, first=first: first + 200.0 * t)
+        m = vr.roll(vr.presets.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=lambda t, first=first: first + 200.0 * t)
         assert m.status == vr.MotionStatus.DONE
         assert m.steps <= 2 * plain.steps
         assert close(m.V[-1], plain.V[-1], rel=30e-8)

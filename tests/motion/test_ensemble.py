@@ -15,7 +15,7 @@ from viscoroll.motion.batch import FIELDS, STATES
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 7)
 
 
@@ -151,12 +151,12 @@ def test_status_and_messages():
     assert set(tiny.status) == {vr.MotionStatus.DONE, vr.MotionStatus.STEP_LIMIT}
     words = tiny.messages()
     assert sum(words.values()) == 20
-    assert words[vr.MOTION_STATUS[vr.MotionStatus.STEP_LIMIT]] == 19  # all but the one at rest
+    assert words[vr.MotionStatus.STEP_LIMIT.message] == 19  # all but the one at rest
     limited = tiny.status == vr.MotionStatus.STEP_LIMIT
     assert np.all(np.isnan(tiny.V[limited, -1]))
     assert np.all(np.isfinite(tiny.V[limited, 0]))
     resting = vr.ensemble(SCENE, V0, omega0, [1e-2], rest=1e-3)
-    assert resting.messages() == {vr.MOTION_STATUS[vr.MotionStatus.RESTED]: 20}
+    assert resting.messages() == {vr.MotionStatus.RESTED.message: 20}
     assert np.all(resting.rest_time < 1e-2)
     assert np.all(resting.V == 0.0)
 

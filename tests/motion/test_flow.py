@@ -13,7 +13,7 @@ from viscoroll.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 16)
 
 

@@ -16,7 +16,7 @@ from viscoroll.presets import PAPER_STARTS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-ROUNDED, UNROUNDED = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_SECTION_5
+ROUNDED, UNROUNDED = vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.PAPER_SECTION_5
 #: full slip returns: theory, Sect. 3
 RETURNING = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5)
 #: mu kappa where the maximum over V of M (1 - j)/(2 (1 + j)) is mu: 0.0411, alpha = 11, j = 1/2
@@ -196,7 +196,7 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
     assert 1e-6 < t < 1.0
     assert close([V, omega], [there.V[0], there.omega[0]], rel=tol.SIX_DIGITS)
     with pytest.warns(RuntimeWarning, match="says where it stood"):
-        cut = vr.RUBBER_CYLINDER.roll(2.0, 20.0, 3.0, max_steps=5)
+        cut = vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, 3.0, max_steps=5)
     assert words.match(cut.message).group(2, 4, 6) == (" s", " m s-1", " rad s-1")
 
 

@@ -12,7 +12,7 @@ import viscoroll as vr
 from viscoroll.errors import MotionStatus
 from viscoroll.motion.batch import FIELDS
 
-SCENE = vr.PAPER_SECTION_5_ROUNDED
+SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 METHODS = ("integrate", "flow")
 #: mu kappa at alpha = 11, j = 1/2 where full slip returns: the maximum over V of kappa M over 6
 RETURN = 0.24659784 / 6.0

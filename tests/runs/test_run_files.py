@@ -75,7 +75,11 @@ def alone(run, values, i):
         bodies = {name: vr.Material(**file[name]) for name in ("material", "base") if name in file}
         return vr.Cylinder(**file["cylinder"], **bodies).roll(*call, **options)
     scene = file.get("scene", {})
-    scene = vr.PAPER_SECTION_5.replace(**scene) if "preset" in file else vr.Scene(material=scene.pop("prony"), **scene)
+    scene = (
+        vr.presets.PAPER_SECTION_5.replace(**scene)
+        if "preset" in file
+        else vr.Scene(material=scene.pop("prony"), **scene)
+    )
     return vr.roll(scene, *call, **options)
 
 
@@ -122,7 +126,7 @@ def test_the_digest_is_of_every_number(read, text):
         changed = text[: number.start()] + "-" * sign + "1" + number[0][sign:] + text[number.end() :]
         try:
             assert read(changed).digest != digest, number
-        except vr.ConfigError:
+        except vr.FileError:
             continue
 
 
@@ -217,13 +221,13 @@ def test_nothing_is_uncertain(read):
     """The same motion n times; scenes are those of presets and series."""
     start = "[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3"
     _, motions = roll_block(read(PAPER + start), 0)
-    assert np.array_equal(motions.V[:, 0], [vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3)
+    assert np.array_equal(motions.V[:, 0], [vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3)
     rubber, series = 'preset = "rubber-roller"\n', "prony = { E = [0.5, 2.0], tau = [1.0, 1e-2] }\n"
     two = vr.Prony([0.5, 2.0], [1.0, 1e-2])
     for head, scene in (
-        (rubber, vr.RUBBER_ROLLER),
-        (rubber + "[scene]\nalpha = 3.0\n", vr.RUBBER_ROLLER.replace(alpha=3.0)),
-        (PAPER + "[scene]\n" + series, vr.PAPER_SECTION_5.replace(material=two)),
+        (rubber, vr.presets.RUBBER_ROLLER),
+        (rubber + "[scene]\nalpha = 3.0\n", vr.presets.RUBBER_ROLLER.replace(alpha=3.0)),
+        (PAPER + "[scene]\n" + series, vr.presets.PAPER_SECTION_5.replace(material=two)),
     ):
         run = read(head + start)
         assert roller_of(run.path, run.inputs.content) == scene
@@ -297,4 +301,4 @@ def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
         assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
         refused(lambda run=run: sobol_indices(run, 16), "m, [cylinder] E = rows of sample.csv")
     text = SAMPLED.replace('"mass"', '"name"')
-    refused(lambda: read(text), "line 3", "finite numbers", error=vr.ConfigError)
+    refused(lambda: read(text), "line 3", "finite numbers", error=vr.FileError)

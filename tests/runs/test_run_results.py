@@ -56,7 +56,7 @@ def test_a_store_shows_itself(store, tmp_path):
     if keep == "all":
         assert found.motions().V.shape == (40, 2)
     else:
-        refused(found.motions, "keep", error=vr.TableError)
+        refused(found.motions, "keep", error=vr.FileError)
 
 
 def test_a_table_of_a_store(store):

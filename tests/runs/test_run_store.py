@@ -99,11 +99,11 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
     data = bytearray((store / "motions/V/7.0").read_bytes())
     data[-1] ^= 1
     (store / "motions/V/7.0").write_bytes(data)
-    with pytest.raises(vr.TableError, match=r"1 of 12 blocks .*puts it right"):
+    with pytest.raises(vr.FileError, match=r"1 of 12 blocks .*puts it right"):
         export_netcdf(store, tmp_path / "all.nc")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
-    refused(lambda: open_summaries(store), "V_mean/0", error=vr.TableError)
+    refused(lambda: open_summaries(store), "V_mean/0", error=vr.FileError)
 
 
 @pytest.mark.parametrize("change", ["flip", "truncate", "remove"])
@@ -121,7 +121,7 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
         else:
             (store / name).write_bytes(data if change == "flip" else data[: len(data) // 2])
         if name == "records/start":
-            refused(lambda: verify(store), "start", error=vr.TableError)
+            refused(lambda: verify(store), "start", error=vr.FileError)
         else:
             assert not verify(store).ok, name
         made = run_ensemble(read_run(run_file), store)
@@ -141,7 +141,7 @@ def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
             sync(path)
 
         monkeypatch.setattr(files, "_sync", limited)
-        with pytest.raises(vr.OutputError, match="No space left"):
+        with pytest.raises(vr.FileError, match="No space left"):
             run_ensemble(read_run(run_file), store, threads=2)
     monkeypatch.undo()
     run_ensemble(read_run(run_file), store)
@@ -163,16 +163,16 @@ def test_what_a_killed_worker_leaves_is_removed(run_file, tmp_path, whole, monke
 
 def test_other_folders_are_refused(run_file, tmp_path, whole):
     run_file.write_text(RUN.replace("seed = 3", "seed = 4"))
-    with pytest.raises(vr.OutputError, match="another run file: give another folder"):
+    with pytest.raises(vr.FileError, match="another run file: give another folder"):
         run_ensemble(read_run(run_file), whole)
     (tmp_path / "thesis").mkdir()
     (tmp_path / "thesis" / "chapter.tex").write_text("dear")
-    with pytest.raises(vr.OutputError, match=r"no results store, it holds chapter\.tex"):
+    with pytest.raises(vr.FileError, match=r"no results store, it holds chapter\.tex"):
         run_ensemble(read_run(run_file), tmp_path / "thesis")
-    with pytest.raises(vr.TableError, match="no results store"):
+    with pytest.raises(vr.FileError, match="no results store"):
         verify(tmp_path / "thesis")
     assert sorted(path.name for path in (tmp_path / "thesis").iterdir()) == ["chapter.tex"]
-    with locked(tmp_path / "store.zarr"), pytest.raises(vr.OutputError, match="another process"):
+    with locked(tmp_path / "store.zarr"), pytest.raises(vr.FileError, match="another process"):
         run_ensemble(read_run(run_file), tmp_path / "store.zarr")
 
 

@@ -103,7 +103,7 @@ CALLS = {
 @pytest.mark.parametrize("name", CALLS)
 def test_the_dimensionless_call_in_other_units(name):
     call, fields = CALLS[name]
-    roller = {"two bodies": ON_STEEL, "from rest": vr.RUBBER_CYLINDER}.get(name, ROLLER)
+    roller = {"two bodies": ON_STEEL, "from rest": vr.presets.RUBBER_CYLINDER}.get(name, ROLLER)
     tilted = name in ("steady", "driven")
     unit = units_of(roller, roller.load * (np.cos(DOWN) if tilted else 1.0))
     found = call(roller, SimpleNamespace(**dict.fromkeys(unit, 1.0)))
@@ -180,7 +180,10 @@ SLOW, FAST = np.array([1e-3, 1e-2, 2e-2]), np.array([1e-3, 1e-3, 5e-3])
 SOLID = vr.Cylinder(R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=0.02, T_sigma=0.02, mu=0.3)
 MANY = {
     "mu and load": (ROLLER, {"mu": np.array([0.2, 0.3, 0.4]), "load": np.array([300.0, 340.0, 380.0])}),
-    "load and R": (vr.RUBBER_CYLINDER, {"load": np.array([50.0, 200.0, 900.0]), "R": np.array([0.05, 0.1, 0.2])}),
+    "load and R": (
+        vr.presets.RUBBER_CYLINDER,
+        {"load": np.array([50.0, 200.0, 900.0]), "R": np.array([0.05, 0.1, 0.2])},
+    ),
     "times": (SOLID, {"T_epsilon": SLOW, "T_sigma": FAST}),
 }
 

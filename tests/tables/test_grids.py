@@ -26,9 +26,9 @@ from viscoroll.tables import schema
 V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)
 WHAT = {
-    "scene": vr.PAPER_SECTION_5,
-    "alphas": vr.PAPER_SECTION_5,
-    "cylinder": vr.RUBBER_CYLINDER,
+    "scene": vr.presets.PAPER_SECTION_5,
+    "alphas": vr.presets.PAPER_SECTION_5,
+    "cylinder": vr.presets.RUBBER_CYLINDER,
     "law": law_table(PAIR),
 }
 SUFFIXES = (".csv", ".txt", ".mat")
@@ -61,8 +61,8 @@ def saved(alphas, tmp_path) -> Path:
 
 def exact(name: str, points: dict[str, NDArray], fields: tuple[str, ...]) -> dict[str, NDArray]:
     if name == "cylinder":
-        return vr.RUBBER_CYLINDER.contact(points["V"], delta=points["delta"], fields=fields).as_dict()
-    scene = vr.PAPER_SECTION_5.replace(alpha=points["alpha"]) if name == "alphas" else WHAT[name]
+        return vr.presets.RUBBER_CYLINDER.contact(points["V"], delta=points["delta"], fields=fields).as_dict()
+    scene = vr.presets.PAPER_SECTION_5.replace(alpha=points["alpha"]) if name == "alphas" else WHAT[name]
     scene = vr.Scene(kappa=1.0, mu=1.0, material=PAIR) if name == "law" else scene
     return vr.contact(scene, points["V"], delta=points["delta"], fields=fields).as_dict()
 
@@ -115,7 +115,7 @@ def test_interpolation(table):
 
 def test_axes_of_few_nodes():
     for few in ([0.5], [0.4, 0.5], [0.4, 0.5, 0.6]):
-        table = vr.tables.build(vr.PAPER_SECTION_5, few, [0.0, 0.01], 11.0)
+        table = vr.tables.build(vr.presets.PAPER_SECTION_5, few, [0.0, 0.01], 11.0)
         found = vr.tables.interpolate(table, "Q", V=0.5, delta=0.01, alpha=11.0)
         assert close(found.Q, table.Q.sel(V=0.5, delta=0.01, alpha=11.0).item(), rel=tol.TABLE_SPLINE_NODE)
 
@@ -160,10 +160,10 @@ def test_what_is_no_table(alphas, saved, tmp_path):
         (alphas.transpose("alpha", "V", "delta"), "has dimensions"),
         (alphas.isel(V=slice(None, None, -1)), "must increase"),
     ):
-        refused(partial(vr.tables.save, changed, tmp_path / "x.nc"), words, error=vr.TableError)
+        refused(partial(vr.tables.save, changed, tmp_path / "x.nc"), words, error=vr.FileError)
         changed.to_netcdf(saved, engine="h5netcdf")
         assert files.seal_holds(saved.read_bytes()) is None
-        refused(partial(vr.tables.load, saved), str(saved), words, error=vr.TableError)
+        refused(partial(vr.tables.load, saved), str(saved), words, error=vr.FileError)
     assert [path.name for path in tmp_path.iterdir()] == ["grid.nc"]
 
 

@@ -31,7 +31,7 @@ GIVEN: dict[str, tuple[Any, ...]] = {
     "creep": (vr.Prony.creep([0.3, 0.6], [1.0, 1e-2]),),
     "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3),), "like bodies": (vr.Bodies(SERIES, SERIES),),
     "material": (RUBBER,), "on steel": (RUBBER, STEEL), "on a rigid base": (RUBBER, vr.Material.rigid()),
-    "steel on it": (STEEL, RUBBER), "pair": (vr.RUBBER_CYLINDER.replace(base=STEEL, plane="stress").pair,),
+    "steel on it": (STEEL, RUBBER), "pair": (vr.presets.RUBBER_CYLINDER.replace(base=STEEL, plane="stress").pair,),
 }  # fmt: skip
 V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
 
@@ -153,9 +153,9 @@ def test_scene_files_and_material_files(saved, tmp_path):
     assert read_body(path).material == RUBBER
     assert read_bodies(path) == table_of(RUBBER).pair
     vr.tables.save(vr.tables.law(RUBBER, STEEL), tmp_path / "rubber.nc")
-    refused(partial(read_body, path), "line 2", "law of a pair: give one material", error=vr.ConfigError)
+    refused(partial(read_body, path), "line 2", "law of a pair: give one material", error=vr.FileError)
     vr.tables.save(vr.tables.law(11.0), tmp_path / "rubber.nc")
-    refused(partial(read_body, path), "line 2", "without units", error=vr.ConfigError)
+    refused(partial(read_body, path), "line 2", "without units", error=vr.FileError)
 
 
 def test_refused():
@@ -174,7 +174,7 @@ def test_refused():
 
 
 def error_of(path: Path) -> str:
-    return refused(partial(vr.load_law, path), str(path), error=vr.TableError)
+    return refused(partial(vr.load_law, path), str(path), error=vr.FileError)
 
 
 @pytest.mark.parametrize(
@@ -222,6 +222,6 @@ def test_json_has_the_same_bits(saved, tmp_path):
 def test_refused_exports(saved, tmp_path):
     law = vr.tables.load(saved)
     wrong = law.assign(press=law.press * 2.0)
-    refused(partial(vr.tables.export, wrong, tmp_path / "rubber.h"), "its numbers are not those", error=vr.TableError)
-    refused(partial(vr.tables.save, wrong, tmp_path / "rubber.nc"), "its numbers are not those", error=vr.TableError)
+    refused(partial(vr.tables.export, wrong, tmp_path / "rubber.h"), "its numbers are not those", error=vr.FileError)
+    refused(partial(vr.tables.save, wrong, tmp_path / "rubber.nc"), "its numbers are not those", error=vr.FileError)
     assert not list(tmp_path.iterdir())

@@ -13,6 +13,6 @@ vr.contact(scene, x, delta=0.01, omega=x)  # wrong: creep twice
 vr.stress(scene, x, 0.5)  # wrong: no creep
 vr.ensemble(scene, x, 0.5, 1e-3, method="map")  # wrong: no such method
 vr.steady(scene, 0.01)  # wrong: force or torque?
-vr.PAPER_CYLINDER.contact(0.5, 0.01)  # wrong: creep or angular velocity?
+vr.presets.PAPER_CYLINDER.contact(0.5, 0.01)  # wrong: creep or angular velocity?
 vr.fit_prony(x, x)  # wrong: one modulus alone
 print(vr.law(scene)(0.3, 0.3).dQ_dV)  # wrong: slopes were not asked for

@@ -35,7 +35,7 @@ def test_all_is_well(report):
     assert len(set(names)) == len(names)
     for part in ("random states: Q", "along IC1-IC3: M", "stress: load", f"{vr.tables.law(11.0).title}: press"):
         assert part in names
-    for start in vr.PAPER_STARTS:
+    for start in vr.presets.PAPER_STARTS:
         assert f"motion {start}: onset time" in names
 
 
@@ -106,9 +106,9 @@ def test_wrong_scene_is_found(monkeypatch, module):
         assert not any(check.passed for check in motion_checks(10))
 
 
-@pytest.mark.parametrize("start", vr.PAPER_STARTS)
+@pytest.mark.parametrize("start", vr.presets.PAPER_STARTS)
 def test_direct_motion_against_the_tightest_roll(start):
-    scene, speeds = vr.PAPER_SECTION_5_ROUNDED, vr.PAPER_STARTS[start]
+    scene, speeds = vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.PAPER_STARTS[start]
     end = vr.roll(scene, *speeds, np.array([1.0]), rest=1e-6).rest_time
     best = vr.roll(scene, *speeds, np.linspace(0.0, end, 50), rtol=1e-12)
     direct = roll_direct(scene, *speeds, best.t)

@@ -34,7 +34,7 @@ def bound_law(sizes: dict[str, Any]) -> dict[str, Any]:
     random = np.random.default_rng(sizes["seed"])
     V, share = random.uniform(0.2, 0.4, sizes["states"]), random.uniform(size=sizes["states"])
     some = slice(0, sizes["numbers"])
-    paper, series = vr.PAPER_SECTION_5_ROUNDED, rubber(3)
+    paper, series = vr.presets.PAPER_SECTION_5_ROUNDED, rubber(3)
     scenes = {
         "one alpha": paper,
         "3 modes": paper.replace(material=series),

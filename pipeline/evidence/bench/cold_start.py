@@ -15,10 +15,10 @@ _PROCESSES = {
     "import": ("-c", "import viscoroll"),
     "cli_help": ("-m", "viscoroll", "--help"),
     "cli_roll": ("-m", "viscoroll", "roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3"),
-    "first_contact": ("-c", "import viscoroll as vr; vr.contact(vr.PAPER_SECTION_5, 0.5, delta=-0.01)"),
+    "first_contact": ("-c", "import viscoroll as vr; vr.contact(vr.presets.PAPER_SECTION_5, 0.5, delta=-0.01)"),
     "first_contact_alpha_1": ("-c", "import viscoroll as vr; vr.contact(vr.Scene(1.0, 2.91, 0.2), 0.5, delta=-0.01)"),
-    "first_roll": ("-c", "import viscoroll as vr; vr.roll(vr.PAPER_SECTION_5, 1.5, 0.5, 3e-3)"),
-    "first_ensemble": ("-c", "import viscoroll as vr; vr.ensemble(vr.PAPER_SECTION_5, [1.5] * 9, 0.5, 3e-3)"),
+    "first_roll": ("-c", "import viscoroll as vr; vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 3e-3)"),
+    "first_ensemble": ("-c", "import viscoroll as vr; vr.ensemble(vr.presets.PAPER_SECTION_5, [1.5] * 9, 0.5, 3e-3)"),
 }
 
 
@@ -42,7 +42,7 @@ import os
 from pathlib import Path
 folder, calls, motions = given
 os.environ["VISCOROLL_CACHE_DIR"] = folder
-scene, t = vr.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 30)
+scene, t = vr.presets.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 30)
 V0 = np.random.default_rng(12).uniform(-2.0, 2.0, motions)
 run = {
     "contact": lambda: vr.contact(scene, 0.5, delta=-0.01),

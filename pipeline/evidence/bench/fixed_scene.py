@@ -19,7 +19,7 @@ _INTEGRATOR = 30
 
 def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     """Rows of fields and output times -> ns a motion; the map's own figures."""
-    scene = vr.PAPER_SECTION_5_ROUNDED
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
     request = flow.asked(scene, 2.0)
     V0, omega0 = np.random.default_rng(sizes["seed"]).uniform(-2.0, 2.0, (2, sizes["motions"]))
     flow.build(*request, 1)  # compiles

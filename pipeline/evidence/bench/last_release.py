@@ -21,7 +21,7 @@ from ..timing import printed
 #: processor's time, which follows less what else the machine does
 _TIMES = """
 seed, states, calls, cases = given
-draw, scene = np.random.default_rng(seed), vr.PAPER_SECTION_5_ROUNDED
+draw, scene = np.random.default_rng(seed), vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0.5)
 found = {}
 for name, case in cases.items():
     count = int(states * case.get("share", 1.0))

@@ -130,7 +130,7 @@ def law(sizes: dict[str, Any]) -> dict[str, Any]:
     """ns a state for each way to ask for Q and M, on one core, and the largest error."""
     rng = np.random.default_rng(sizes["seed"])
     n = sizes["states"]
-    scene = vr.PAPER_SECTION_5_ROUNDED
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
     alpha = np.exp(rng.uniform(np.log(1.1), np.log(100.0), n))
     each = scene.replace(alpha=alpha)
     V, s = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n)), rng.uniform(0.0, 1.0, n)

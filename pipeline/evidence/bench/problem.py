@@ -81,8 +81,8 @@ def output_times(end: float, count: int) -> NDArray[np.float64]:
 
 def paper_problems(times: int, end: float) -> dict[str, Problem]:
     """IC1-IC3 of the paper, rounded parameters, each until ``end`` or the speed ``LEAST_SPEED``, if that is first."""
-    scene, problems = vr.PAPER_SECTION_5_ROUNDED, {}
-    for name, start in vr.PAPER_STARTS.items():
+    scene, problems = vr.presets.PAPER_SECTION_5_ROUNDED, {}
+    for name, start in vr.presets.PAPER_STARTS.items():
         rest = vr.roll(scene, *start, np.array([end]), rtol=REFERENCE_RTOL, rest=LEAST_SPEED).rest_time
         V0, omega0 = (np.array([value]) for value in start)
         problems[name] = Problem(scene, V0, omega0, output_times(np.fmin(rest, end), times))
@@ -96,10 +96,10 @@ def copies(problem: Problem, count: int) -> Problem:
 
 def random_problem(motions: int, times: int, end: float, seed: int) -> Problem:
     """Starts uniform in [-2, 2]^2, the paper's rounded parameters; IC1-IC3 come first."""
-    first = np.array(list(vr.PAPER_STARTS.values()))
+    first = np.array(list(vr.presets.PAPER_STARTS.values()))
     starts = np.random.default_rng(seed).uniform(-2.0, 2.0, (max(motions - len(first), 0), 2))
     V0, omega0 = np.concatenate([first, starts])[:motions].T.copy()
-    return Problem(vr.PAPER_SECTION_5_ROUNDED, V0, omega0, output_times(end, times))
+    return Problem(vr.presets.PAPER_SECTION_5_ROUNDED, V0, omega0, output_times(end, times))
 
 
 def own_problem(motions: int, times: int, end: float, seed: int) -> Problem:

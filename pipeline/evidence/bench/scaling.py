@@ -12,7 +12,7 @@ from ..timing import printed
 #: are drawn and distances added up block by block, which is part of the time: nothing is kept of a block
 _CHILD = """
 count, threads, rtol, end, seed, block, options = given
-scene = vr.PAPER_SECTION_5_ROUNDED
+scene = vr.presets.PAPER_SECTION_5_ROUNDED
 def run(count):
     total = 0.0
     for first in range(0, count, block):

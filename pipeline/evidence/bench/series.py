@@ -28,7 +28,7 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     random = np.random.default_rng(sizes["seed"])
     V, s = np.exp(random.uniform(np.log(1e-3), np.log(2.0), sizes["states"])), random.uniform(size=sizes["states"])
     start, t = random.uniform(-2.0, 2.0, (2, sizes["motions"])), np.linspace(0.0, sizes["end"], sizes["times"])
-    paper = vr.PAPER_SECTION_5_ROUNDED
+    paper = vr.presets.PAPER_SECTION_5_ROUNDED
     scenes = {"alpha = 11": paper} | {f"{n} modes": paper.replace(material=rubber(n)) for n in MODES}
     scenes["pair of 10 and 3 modes"] = paper.replace(material=vr.Bodies(rubber(10), rubber(3, 2.0), 0.4))
     calls: dict[Any, Any] = {}

@@ -15,7 +15,7 @@ def skips(sizes: dict[str, Any]) -> dict[str, Any]:
     """For each: seconds with and without the work, and the ratio."""
     n, m = sizes["states"], sizes["motions"]
     rng = np.random.default_rng(sizes["seed"])
-    scene = vr.PAPER_SECTION_5_ROUNDED
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
     elastic = scene.replace(alpha=1.0)
     V, s = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n)), rng.uniform(0.0, 1.0, n)
     delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star

@@ -104,7 +104,7 @@ def stress_closures(sizes: dict[str, Any]) -> dict[str, float]:
 def motions(sizes: dict[str, Any]) -> dict[str, list[tuple[vr.Scene, float, float]]]:
     """IC1-IC3 with the rounded parameters, and random scenes with random starts."""
     rng = np.random.default_rng(sizes["seed"] + 3)
-    paper = [(vr.PAPER_SECTION_5_ROUNDED, *start) for start in vr.PAPER_STARTS.values()]
+    paper = [(vr.presets.PAPER_SECTION_5_ROUNDED, *start) for start in vr.presets.PAPER_STARTS.values()]
     random = []
     for _ in range(sizes["scenes"]):
         alpha, kappa, mu = (
@@ -161,7 +161,7 @@ def call_times(sizes: dict[str, Any]) -> dict[str, float]:
     """Median times on one core: of a state or motion in arrays, and of single calls; motions end at t = 3e-3."""
     n, m = sizes["timed_states"], sizes["timed_motions"]
     rng = np.random.default_rng(sizes["seed"] + 4)
-    scene, end = vr.PAPER_SECTION_5, np.array([3e-3])
+    scene, end = vr.presets.PAPER_SECTION_5, np.array([3e-3])
     each = scene.replace(alpha=np.exp(rng.uniform(0.0, np.log(100.0), n)))
     V, s = np.exp(rng.uniform(np.log(1e-3), np.log(2.0), n)), rng.uniform(0.0, 1.2, n)
     starts = np.random.default_rng(sizes["seed"] + 5).uniform(-2.0, 2.0, (2, 51 * m))

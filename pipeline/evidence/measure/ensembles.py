@@ -104,7 +104,7 @@ def spent(work: Callable[[], Any]) -> Iterator[dict[str, float]]:
 
 def loop(n: int, block: int) -> dict[str, float]:
     """Time of the bare loop over ``vr.ensemble``, on all threads: starts drawn before, nothing summarised."""
-    scene, t = vr.PAPER_SECTION_5, np.array([3e-3])
+    scene, t = vr.presets.PAPER_SECTION_5, np.array([3e-3])
     V0, omega0 = np.random.default_rng(1).uniform(-2.0, 2.0, (2, block))
 
     def work(start: int, stop: int) -> None:

@@ -25,7 +25,7 @@ CALLS = {
     "integrated": "vr.ensemble(scene, x, y, 1e-9, method='integrate')",
 }
 _CHILD = """
-scene = vr.PAPER_SECTION_5
+scene = vr.presets.PAPER_SECTION_5
 def own(result, *given):  # what the result holds, each array once, without the arrays that were given
     values = result.as_dict() if hasattr(result, "as_dict") else vars(result)
     whole = {}

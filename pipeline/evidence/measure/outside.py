@@ -169,7 +169,7 @@ def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
 def fmus(folder: Path) -> dict[str, Any]:
     """Size, complaints of the standard, and errors of both models on a throw of the rubber cylinder."""
     fmpy, validation = imported("fmpy", "fmpy", "fmu"), imported("fmpy.validation", "fmpy", "fmu")
-    cylinder, t = vr.RUBBER_CYLINDER, np.linspace(0.0, 1.0, 21)
+    cylinder, t = vr.presets.RUBBER_CYLINDER, np.linspace(0.0, 1.0, 21)
     exact = cylinder.roll(2.0, 0.0, t, rtol=1e-11)
     found: dict[str, Any] = {"complaints": 0, "bytes": 0, "roller_error": 0.0, "element_error": 0.0}
     for model in fmu.MODELS:

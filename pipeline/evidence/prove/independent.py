@@ -120,7 +120,7 @@ def section_5() -> dict[str, NDArray]:
     for ic, params in sorted({(row["ic"], row["params"]) for row in rows}):
         data = columns([row for row in rows if (row["ic"], row["params"]) == (ic, params)])
         scene = vr.Scene(**{name: data[name][0] for name in ("alpha", "kappa", "mu", "gamma", "j")})
-        motion = vr.roll(scene, *vr.PAPER_STARTS[ic], data["t"], rtol=1e-11)
+        motion = vr.roll(scene, *vr.presets.PAPER_STARTS[ic], data["t"], rtol=1e-11)
         off["V, relative"].append((motion.V - data["V"]) / abs(motion.V))
         off["ω, over V"].append((motion.omega - data["omega"]) / abs(motion.V))
         off["onset time, relative"].append(np.array([motion.onset_time / data["t_onset"][0] - 1.0]))
@@ -132,25 +132,25 @@ def section_5() -> dict[str, NDArray]:
 
 def paper() -> list[dict[str, Any]]:
     """Each number that the paper prints, the same computed here, and the difference in its last printed digits."""
-    start = vr.PAPER_STARTS["IC1"]
-    onset = vr.roll(vr.PAPER_SECTION_5, *start, 1e-3).onset_time
+    start = vr.presets.PAPER_STARTS["IC1"]
+    onset = vr.roll(vr.presets.PAPER_SECTION_5, *start, 1e-3).onset_time
 
-    def at(t: float, name: str, scene: vr.Scene = vr.PAPER_SECTION_5) -> float:
+    def at(t: float, name: str, scene: vr.Scene = vr.presets.PAPER_SECTION_5) -> float:
         return float(getattr(vr.roll(scene, *start, [t]).contact((name,)), name)[0])
 
     def own(row: dict[str, Any]) -> float:
         if row["quantity"] == "onset":
             return onset
-        return at(row["t"], row["quantity"]) if row["t"] != "" else getattr(vr.PAPER_SECTION_5, row["quantity"])
+        return at(row["t"], row["quantity"]) if row["t"] != "" else getattr(vr.presets.PAPER_SECTION_5, row["quantity"])
 
     rows = read_rows(REFERENCE / "paper.csv")
     # beta rises from 0 to 0.98 within 1.5e-5: where its printed value is passed says more than the value at that time,
     # and so does what of T_epsilon puts it there
     n, early = next((n, row) for n, row in enumerate(rows) if (row["t"], row["quantity"]) == (1.52e-4, "beta"))
-    t, beta, printed = early["t"], early["value"], vr.PAPER_CYLINDER.T_epsilon
+    t, beta, printed = early["t"], early["value"], vr.presets.PAPER_CYLINDER.T_epsilon
     passed = brentq(lambda t: at(t, "beta") - beta, onset * (1.0 + 1e-9), t, xtol=1e-12)
     slower = brentq(
-        lambda T: at(t, "beta", vr.PAPER_CYLINDER.replace(T_epsilon=T).scene()) - beta, 0.996 * printed, printed
+        lambda T: at(t, "beta", vr.presets.PAPER_CYLINDER.replace(T_epsilon=T).scene()) - beta, 0.996 * printed, printed
     )
     result = [row | {"here": own(row)} for row in rows]
     result[n + 1 : n + 1] = [

@@ -29,7 +29,7 @@ import viscoroll as vr
 rng = np.random.default_rng(20501)
 V0, omega0 = rng.uniform(-2.0, 2.0, (2, {motions}))
 mu = np.clip(0.2 * np.exp(0.3 * rng.normal(size={motions})), 0.05, 0.6)
-scene = vr.PAPER_SECTION_5
+scene = vr.presets.PAPER_SECTION_5
 uncertain = scene.replace(mu=mu, j=0.4)
 results = []
 """

@@ -17,7 +17,7 @@ import numpy as np
 from tqdm import tqdm
 
 from viscoroll import tables
-from viscoroll.errors import TableError
+from viscoroll.errors import FileError
 
 from ..timing import forked, peak_mb, processor_time
 
@@ -129,7 +129,7 @@ def outcome_of(path: Path, expected: str) -> str:
     """What a user meets who loads the file."""
     try:
         found = fingerprint(tables.load(path))
-    except TableError as error:
+    except FileError as error:
         return "refused" if "\n" not in str(error) else f"more than a line: {error}"
     except BaseException as error:
         return f"not the package's own error: {error!r}"

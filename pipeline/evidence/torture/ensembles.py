@@ -26,7 +26,7 @@ import xarray as xr
 from tqdm import tqdm
 
 from viscoroll import ViscorollError
-from viscoroll.errors import OutputError
+from viscoroll.errors import FileError
 from viscoroll.runs import Run, export_netcdf, read_run, run_ensemble, verify
 
 from .damage import enlarge, flip, row, small_disk, truncate
@@ -221,7 +221,7 @@ def exit_code(do: Callable, *arguments: Any) -> int:
     def work() -> None:
         try:
             do(*arguments)
-        except OutputError:
+        except FileError:
             os._exit(2)
 
     process = get_context("fork").Process(target=work)

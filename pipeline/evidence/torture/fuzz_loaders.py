@@ -58,7 +58,7 @@ def seeds(what: str, folder: Path) -> None:
         for n, content in enumerate(SCENES):
             (folder / f"{n}.toml").write_bytes(content)
     else:
-        from viscoroll import RUBBER_CYLINDER
+        from viscoroll.presets import RUBBER_CYLINDER
         from viscoroll.tables import build, law, save
 
         save(build(RUBBER_CYLINDER, [0.1, 0.2], [0.0, 0.01]), folder / "grid")

@@ -21,9 +21,10 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from viscoroll import RUBBER_CYLINDER, ViscorollError, tables
-from viscoroll.errors import OutputError, TableError
+from viscoroll import ViscorollError, tables
+from viscoroll.errors import FileError
 from viscoroll.files import seal_holds
+from viscoroll.presets import RUBBER_CYLINDER
 
 from ...stage import ROOT
 from ..timing import forked
@@ -135,7 +136,7 @@ def survived(folder: Path, expected: dict[str, str]) -> bool:
 def values_hash(path: Path) -> str:
     """Of a sealed table: names and values alone, as ``history`` tells when it was made."""
     if not seal_holds(path.read_bytes()):
-        raise TableError(path, "has no seal that holds")
+        raise FileError(path, "has no seal that holds")
     return fingerprint(tables.load(path).drop_attrs())
 
 
@@ -167,7 +168,7 @@ def writers(done: str, count: int, path: Path) -> dict[str, Any]:
 
 
 def full_disk(done: str, count: int, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
-    """Saving ends in OutputError, the old file stays, nothing is left beside it; on a tmpfs where one can be had."""
+    """Saving ends in FileError, the old file stays, nothing is left beside it; on a tmpfs where one can be had."""
     table = grid()
     disk = folder / "disk"
     disk.mkdir()
@@ -191,7 +192,7 @@ def fill_and_save(table: Any, disk: Path, room: list[int]) -> Iterator[str]:
         try:
             tables.save(table, old)
             outcome = "saved without room"
-        except OutputError:
+        except FileError:
             outcome = "refused"
         except BaseException as error:
             outcome = f"not the package's own error: {error!r}"

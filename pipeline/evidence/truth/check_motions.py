@@ -44,9 +44,9 @@ class CheckMotions(msgspec.Struct, forbid_unknown_fields=True):
 
 def chosen(settings: CheckMotions) -> list[ChosenMotion]:
     """The motions of the file."""
-    paper = vr.PAPER_SECTION_5_ROUNDED
+    paper = vr.presets.PAPER_SECTION_5_ROUNDED
     returning = ChosenMotion(vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5), 1.0, 1.0, 4e-3)
-    named = [*(ChosenMotion(paper, *start, 4e-3) for start in vr.PAPER_STARTS.values()), returning]
+    named = [*(ChosenMotion(paper, *start, 4e-3) for start in vr.presets.PAPER_STARTS.values()), returning]
     rng = np.random.default_rng(settings.seed)
     return [*named, *(chosen_motion(rng) for _ in range(settings.motions - len(named)))]
 

@@ -79,7 +79,7 @@ def body_of(text: str) -> Scene | Cylinder:
     ------
     ParameterError
         An unknown preset.
-    ConfigError
+    FileError
         A file that cannot be read.
     """
     from ..config import preset, read_body

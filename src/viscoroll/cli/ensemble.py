@@ -102,12 +102,12 @@ def _sheet(summary: xr.Dataset) -> Sheet:
     """Quantiles of every quantity: a row a time."""
     import numpy as np
 
-    from ..errors import MOTION_STATUS, MotionStatus
+    from ..errors import MotionStatus
     from .output import Sheet
 
     heading = ["Ensemble of {motions} motions: design {design}, seed {seed}".format(**summary.attrs)]
     counts = zip(summary["status"].values, summary["ended"].values, strict=True)
-    heading += [f"{count} motions {MOTION_STATUS[MotionStatus(code)]}" for code, count in counts if count]
+    heading += [f"{count} motions {MotionStatus(code).message}" for code, count in counts if count]
     heading.append("quantiles are known to the bin that they lie in, at most 0.4 % wide")
     names = [str(name).removesuffix("_mean") for name in summary if str(name).endswith("_mean")]
     units = {name: summary[f"{name}_mean"].attrs["units"] for name in names} | {"t": summary["t"].attrs["units"]}

@@ -87,7 +87,7 @@ def put(arguments: Namespace, sheet: Callable[[], Sheet], dataset: Callable[[], 
 
     Raises
     ------
-    OutputError
+    FileError
         If it cannot be written.
     """
     from ..files import write_dataset, write_text

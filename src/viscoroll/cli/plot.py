@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ..errors import ParameterError, TableError
+from ..errors import FileError, ParameterError
 from .arguments import add_output_option
 
 FORMATS = (".png", ".pdf", ".svg")
@@ -57,7 +57,7 @@ def _of_file(path: str) -> Any:
             return draw(data)
     except OSError as error:
         missing = "there is no such file" if not Path(path).exists() else f"cannot be read ({error.strerror or error})"
-        raise TableError(path, missing) from error
+        raise FileError(path, missing) from error
 
 
 def _of_scene(path: str) -> Any:

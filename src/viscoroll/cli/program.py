@@ -95,7 +95,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if isinstance(end, Interrupted) and sys.stderr is not None:
             print("viscoroll:", end, file=sys.stderr, flush=True)
         return _INTERRUPTED
-    except OSError as error:  # files raise OutputError and the like: this is standard output
+    except OSError as error:  # files raise FileError and the like: this is standard output
         # whatever is still buffered goes nowhere, or the interpreter would complain at its end
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")

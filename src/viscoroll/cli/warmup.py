@@ -42,8 +42,9 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own."""
     import numpy as np
 
-    from .. import PAPER_SECTION_5, Prony, Scene, contact, ensemble, law, roll, steady, stress, tables
+    from .. import Prony, Scene, contact, ensemble, law, roll, steady, stress, tables
     from ..motion import flow
+    from ..presets import PAPER_SECTION_5
     from ..validation.direct_motion import roll_direct
 
     scene = PAPER_SECTION_5

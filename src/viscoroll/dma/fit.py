@@ -176,7 +176,7 @@ class Fit:
 
         Raises
         ------
-        OutputError
+        FileError
             If it cannot be written there.
         """
         from ..plots.material import fitted

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelWarning, ParameterError, TableError
+from ..errors import FileError, ModelWarning, ParameterError
 
 _FREQUENCY = {"hz": 2.0 * math.pi, "khz": 2e3 * math.pi, "rad/s": 1.0, "1/s": 1.0, "s^-1": 1.0}
 _MODULUS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
@@ -48,7 +48,7 @@ def read_dma(
 
     Raises
     ------
-    TableError
+    FileError
         If the file cannot be read, a row has no numbers where it must, columns are missing, or a unit is unknown.
     ParameterError
         ``units`` that are no two of these.
@@ -63,7 +63,7 @@ def read_dma(
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise TableError(path, f"cannot be read ({error})") from error
+        raise FileError(path, f"cannot be read ({error})") from error
     headings, rows = _parted(path, lines)
     columns, below = _columns(path, headings, len(rows[0]))
     values = np.array([[row[n] for n in columns] for row in rows]).T
@@ -100,13 +100,13 @@ def _parted(path: str | PathLike[str], lines: list[str]) -> tuple[list[list[str]
         if not text.startswith("#") and all(_NUMBER.match(cell) for cell in cells):
             rows.append([float(cell) for cell in cells])
             if len(cells) != len(rows[0]):
-                raise TableError(path, f"line {number} has {len(cells)} columns, those before it {len(rows[0])}")
+                raise FileError(path, f"line {number} has {len(cells)} columns, those before it {len(rows[0])}")
         elif rows:
-            raise TableError(path, f"line {number} is no row of numbers: {text[:60]!r}")
+            raise FileError(path, f"line {number} is no row of numbers: {text[:60]!r}")
         else:
             headings.append(cells)
     if not rows:
-        raise TableError(path, "has no row of numbers")
+        raise FileError(path, "has no row of numbers")
     return headings, rows
 
 
@@ -122,7 +122,7 @@ def _cells(text: str) -> list[str]:
 def _columns(path: str | PathLike[str], headings: list[list[str]], width: int) -> tuple[list[int], list[list[str]]]:
     """Which columns are frequency, storage and loss modulus, and the rows below their names, which give units."""
     if width < len(_NAMES):
-        raise TableError(path, f"has {width} columns: must be frequency, storage and loss modulus")
+        raise FileError(path, f"has {width} columns: must be frequency, storage and loss modulus")
     for row, line in enumerate(headings):
         bare = [re.sub(r"[\s_*]|[\[(].*", "", cell.lower()) for cell in line[:width]]
         found = [[n for n, cell in enumerate(bare) if re.match(pattern, cell)] for pattern in _NAMES]
@@ -130,7 +130,7 @@ def _columns(path: str | PathLike[str], headings: list[list[str]], width: int) -
             below = headings.pop(row + 1) if len(headings) > row + 1 and len(headings[row + 1]) == width else None
             return [hits[0] for hits in found], [] if below is None else [[c.strip("[()] ") for c in below]]
     if width > len(_NAMES):
-        raise TableError(path, f"has {width} columns, and no heading that names frequency, storage and loss modulus")
+        raise FileError(path, f"has {width} columns, and no heading that names frequency, storage and loss modulus")
     return [0, 1, 2], []
 
 
@@ -140,5 +140,5 @@ def _unit(path: str | PathLike[str], name: str, units: dict[str, float]) -> str 
     bracketed = re.findall(r"[\[(]([^\])]+)[\])]", name)
     found = {word.strip().lower() for word in [*words, *bracketed]}
     if len(found) > 1 or not found <= units.keys():
-        raise TableError(path, f"unit {', '.join(sorted(found))!r} of a column: must be one of {', '.join(units)}")
+        raise FileError(path, f"unit {', '.join(sorted(found))!r} of a column: must be one of {', '.join(units)}")
     return found.pop() if found else None

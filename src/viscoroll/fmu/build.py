@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import tables
 from ..cylinder import Cylinder
-from ..errors import MissingDependencyError, OutputError, ParameterError
+from ..errors import FileError, MissingDependencyError, ParameterError
 from ..extras import imported
 from ..files import replacing
 from ..materials.law_file import table_of
@@ -49,7 +49,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         Another model or version, a material without a law, arrays in the cylinder.
     MissingDependencyError
         No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
-    OutputError
+    FileError
         If it cannot be written there.
 
     Notes
@@ -155,4 +155,4 @@ def _compile(compiler: str, source: Path, library: Path) -> None:
         [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)], capture_output=True, text=True, check=False
     )
     if done.returncode:
-        raise OutputError(library.name, f"cannot be compiled by {compiler} ({' '.join(done.stderr.split()):.200})")
+        raise FileError(library.name, f"cannot be compiled by {compiler} ({' '.join(done.stderr.split()):.200})")

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..config import read_body
 from ..cylinder import Cylinder
-from ..errors import ConfigError, ParameterError, TableError
+from ..errors import FileError, ParameterError
 from ..materials.file import shifts_of
 from ..scale import refuse_other_unit
 from ..sections import fault, hint, read, refuse_unknown
@@ -32,9 +32,8 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises
     ------
-    ConfigError
+    FileError
         A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line.
-    TableError
         A file of data that cannot be read, or without a column.
     """
     cylinder, content = read_body(path, tuple(_SECTIONS)), {"prior": {}} | read(path)
@@ -51,18 +50,18 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 def _record(path: Path, given: Any) -> Record:
     kind = _KINDS.get(given.get("kind", "")) if isinstance(given, dict) else None
     if kind is None:
-        raise ConfigError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
+        raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
     own = {field.name for field in dataclasses.fields(kind) if field.init} - {*kind.PLACES, *kind.KINDS}
     refuse_unknown(path, "data", given, ("kind", "file", "columns", *sorted(own)))
     columns = given.get("columns", {})
     refuse_unknown(path, "data.columns", columns, (*kind.PLACES, *kind.KINDS))
     if not isinstance(given.get("file"), str):
-        raise ConfigError(path, "[[data]] file: must name a CSV file")
+        raise FileError(path, "[[data]] file: must name a CSV file")
     more: Any = {name: None if value == _UNKNOWN else value for name, value in given.items() if name in own}
     try:
         return kind(**more, **_columns(path.parent / given["file"], kind, columns))
     except ParameterError as error:
-        raise ConfigError(path, f"[[data]] {given['file']}: {error}") from error
+        raise FileError(path, f"[[data]] {given['file']}: {error}") from error
 
 
 def _columns(path: Path, kind: type[Record], called: dict[str, str]) -> dict[str, Any]:
@@ -71,7 +70,7 @@ def _columns(path: Path, kind: type[Record], called: dict[str, str]) -> dict[str
         lines = path.read_text(encoding="utf-8-sig").splitlines()
         head, *rows = [line for line in lines if line.strip() and not line.startswith("#")] or [""]
     except (OSError, ValueError) as error:
-        raise TableError(path, f"cannot be read ({error})") from error
+        raise FileError(path, f"cannot be read ({error})") from error
     names, units = zip(*(_HEADING.findall(cell.strip())[0] for cell in next(csv.reader([head]))), strict=True)
     where = {}
     for quantity in (*kind.PLACES, *kind.KINDS):
@@ -80,9 +79,9 @@ def _columns(path: Path, kind: type[Record], called: dict[str, str]) -> dict[str
             where[quantity] = names.index(name)
             refuse_other_unit(quantity, units[where[quantity]] or None, kind.unit(quantity))
         elif quantity in kind.PLACES or quantity in called:
-            raise TableError(path, f"has no column {name!r}, but {', '.join(names)}{hint(name, names)}")
+            raise FileError(path, f"has no column {name!r}, but {', '.join(names)}{hint(name, names)}")
     try:
         values = np.loadtxt(rows, delimiter=",", usecols=list(where.values()), ndmin=2, quotechar='"')
     except ValueError as error:
-        raise TableError(path, f"is no table of numbers ({error})") from error
+        raise FileError(path, f"is no table of numbers ({error})") from error
     return dict(zip(where, values.T, strict=True))

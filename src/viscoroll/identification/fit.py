@@ -248,7 +248,7 @@ class Identification(Shown):
 
         Raises
         ------
-        OutputError
+        FileError
             If it cannot be written there.
         """
         from ..plots.identification import compared

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ..errors import ConfigError, ParameterError, TableError
+from ..errors import FileError, ParameterError
 from ..sections import as_struct, fault, read
 from .law_store import is_law, read_law
 from .material import Material
@@ -78,15 +78,14 @@ def read_materials(path: str | PathLike[str], temperature: float | None = None) 
 
     Raises
     ------
-    ConfigError
+    FileError
         A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key, a value of
         the wrong type or out of its range, a temperature without a shift.
-    TableError
         A netCDF file that is missing, damaged, or no material.
     """
     if Path(path).suffix == SUFFIX:
         if temperature is not None:
-            raise ConfigError(path, f"temperature = {temperature:g}: needs a TOML file with wlf or arrhenius")
+            raise FileError(path, f"temperature = {temperature:g}: needs a TOML file with wlf or arrhenius")
         return {"material": Material.from_netcdf(path)}
     content = read(path)
     found = materials_of(path, content, temperature)
@@ -179,17 +178,17 @@ def _beside(path: Any, name: str, beside: Path) -> Material:
         if isinstance(content[section], dict) and "file" in content[section]:
             raise fault(beside, section, "file", "file: must not name a file again")
         return _material(beside, section, content[section], None)
-    except (ConfigError, TableError) as error:
+    except FileError as error:
         raise fault(path, name, "file", str(error)) from error
 
 
 def _of_law(path: Path) -> Material:
-    """The one material that the file of a law names; raises TableError of a pair, or of a law without units."""
+    """The one material that the file of a law names; raises FileError of a pair, or of a law without units."""
     found = tomllib.loads(read_law(path).attributes["material"])
     if not found.keys() & set(SECTIONS):
-        raise TableError(path, "is the law of a material without units: it must be of one with [material]")
+        raise FileError(path, "is the law of a material without units: it must be of one with [material]")
     if "base" in found:
-        raise TableError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
+        raise FileError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
     return materials_of(path, found)["material"]
 
 
@@ -204,7 +203,7 @@ def _unshifted(path: Any, name: str, given: MaterialSection) -> Material:
 
 
 def series_of(path: Any, name: str, given: Mapping[str, Any]) -> Any:
-    """The series of a section by its keys prony and creep, of arrays one each; None without.  Raises ConfigError."""
+    """The series of a section by its keys prony and creep, of arrays one each; None without.  Raises FileError."""
     found = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(found) > 1:
         raise fault(path, name, "creep", "prony and creep: must be one of the two")

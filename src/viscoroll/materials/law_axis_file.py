@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..checks import number
-from ..errors import ParameterError, TableError
+from ..errors import FileError, ParameterError
 from .law_axis import FUNCTIONS, LawAxis
 from .law_store import AXIS, MEANING_OF_AXIS, OTHERS_OF_AXIS, REMEDY, Content, sealed
 from .law_table import LawTable
@@ -49,9 +49,9 @@ def axis_of(content: Content, path: Any) -> LawAxis:
         rows = tuple(map(int, numbers["rows"]))
         found = LawAxis(whole, rows, int(numbers["first"]), int(numbers["e0"]))
     except (TypeError, ValueError) as error:
-        raise TableError(path, f"is no whole law file ({' '.join(str(error).split()):.200}): {REMEDY}") from error
+        raise FileError(path, f"is no whole law file ({' '.join(str(error).split()):.200}): {REMEDY}") from error
     if whole.ndim != _DIMENSIONS or len(rows) != len(whole):
-        raise TableError(path, f"is no whole law file (functions of shape {whole.shape[:-1]}): {REMEDY}")
+        raise FileError(path, f"is no whole law file (functions of shape {whole.shape[:-1]}): {REMEDY}")
     whole.flags.writeable = False
     return found
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..checks import checked
-from ..errors import ConfigError, ParameterError, TableError
+from ..errors import FileError, ParameterError
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis_file import alpha_of
@@ -98,7 +98,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
 
     Raises
     ------
-    TableError
+    FileError
         A file that is missing, cut or damaged in any byte, no law, or of another schema; an alpha beyond the file's.
     ParameterError
         An alpha beside the file of one material, or none for that of every alpha.
@@ -112,10 +112,10 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
 
 
 def law_of(content: Content, path: Any) -> LawTable:
-    """The law of what was checked; raises TableError where it does not name its material."""
+    """The law of what was checked; raises FileError where it does not name its material."""
     found, attributes = content
     if attributes[KIND] != LAW:
-        raise TableError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
+        raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
     try:
         given = _material_of(attributes["material"], path)
         numbers: dict[str, Any] = {name: np.asarray(found[name]) for name in OTHERS}
@@ -127,9 +127,9 @@ def law_of(content: Content, path: Any) -> LawTable:
             given_coefficients=coefficients, **numbers, unlike=attributes["bodies"] == "unlike",
             material=given if pair is None else pair.law, pair=pair,
         )  # fmt: skip
-    except (ConfigError, ParameterError, KeyError, TypeError, ValueError) as error:
+    except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
         text = " ".join(str(error).split())
-        raise TableError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
+        raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
 
 
 def _frozen(values: Any) -> Any:

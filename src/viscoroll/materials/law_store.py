@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import __version__
-from ..errors import TableError
+from ..errors import FileError
 from ..files import sealed_content
 from ..symbols import PAPER
 
@@ -123,7 +123,7 @@ def errors_of(found: Any) -> dict[str, float]:
 
 
 def is_law(path: str | PathLike[str]) -> bool:
-    """Whether a file names itself the law of a material; raises TableError of one that cannot be read or is damaged."""
+    """Whether a file names itself the law of a material; raises FileError of one that cannot be read or is damaged."""
     try:
         return _read(path, "material or law of viscoroll", "write it again").attributes.get(KIND) == LAW
     except OSError:  # the reader of materials says what it is not
@@ -131,13 +131,13 @@ def is_law(path: str | PathLike[str]) -> bool:
 
 
 def read_law(path: str | PathLike[str]) -> Content:
-    """What a law file holds, verified; raises TableError."""
+    """What a law file holds, verified; raises FileError."""
     try:
         found = _read(path, "law file of viscoroll", REMEDY)
     except Exception as error:  # libraries raise many kinds
-        if isinstance(error, TableError):
+        if isinstance(error, FileError):
             raise
-        raise TableError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
+        raise FileError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
     check(found, path)
     return found
 
@@ -159,17 +159,17 @@ def _single(value: Any) -> Any:
 
 
 def check(content: Content, path: Any) -> None:
-    """Refuse what is no law of this schema, or not the numbers that its checksum is of; raises TableError."""
+    """Refuse what is no law of this schema, or not the numbers that its checksum is of; raises FileError."""
     numbers, attributes = content
     kind = attributes.get(KIND)
     if kind not in VARIABLES:
-        raise TableError(path, "is no law file of viscoroll: `viscoroll tables law` writes one")
+        raise FileError(path, "is no law file of viscoroll: `viscoroll tables law` writes one")
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
         problem = f"is a law file of schema {schema!s:.20}, and this viscoroll ({__version__}) reads {VERSION}"
-        raise TableError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
+        raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
     missing = [name for name in VARIABLES[kind] if name not in numbers]
     if missing:
-        raise TableError(path, f"is no whole law file: variable {missing[0]!r} is missing; {REMEDY}")
+        raise FileError(path, f"is no whole law file: variable {missing[0]!r} is missing; {REMEDY}")
     if checksum(numbers, kind) != attributes.get(CHECKSUM):
-        raise TableError(path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}")
+        raise FileError(path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}")

@@ -217,7 +217,7 @@ class Material(FromPrograms):
 
         Raises
         ------
-        OutputError
+        FileError
             If it cannot be written there.
         """
         from ..plots.material import master_curve
@@ -234,7 +234,7 @@ class Material(FromPrograms):
 
         Raises
         ------
-        OutputError
+        FileError
             If it cannot be written there; a file of that name is left as it was.
         """
         from .store import save
@@ -251,7 +251,7 @@ class Material(FromPrograms):
 
         Raises
         ------
-        TableError
+        FileError
             A file that is missing, damaged in any byte, or no material.
         """
         from .store import load

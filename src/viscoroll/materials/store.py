@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from .. import __version__
-from ..errors import ParameterError, TableError
+from ..errors import FileError, ParameterError
 from ..files import seal_holds, write_dataset
 from .measured import Measured
 from .prony import Prony
@@ -71,22 +71,22 @@ def as_dataset(material: Any) -> xr.Dataset:
 
 
 def save(material: Any, path: str | PathLike[str]) -> None:
-    """Write a material, sealed; raises OutputError."""
+    """Write a material, sealed; raises FileError."""
     write_dataset(as_dataset(material), path, sealed=True)
 
 
 def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
-    """What ``make`` gives of the arguments of a material that :func:`save` wrote; raises TableError."""
+    """What ``make`` gives of the arguments of a material that :func:`save` wrote; raises FileError."""
     import xarray as xr
 
     content = _whole(Path(path))
     try:
         found = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False)
         if found.attrs.get("schema") != _SCHEMA:
-            raise TableError(path, f"is no material: its schema is {found.attrs.get('schema')!r}, not {_SCHEMA!r}")
+            raise FileError(path, f"is no material: its schema is {found.attrs.get('schema')!r}, not {_SCHEMA!r}")
         return make(**_arguments(found))
     except (ParameterError, KeyError, ValueError, OSError) as error:
-        raise TableError(path, f"is no material ({' '.join(str(error).split()):.200})") from error
+        raise FileError(path, f"is no material ({' '.join(str(error).split()):.200})") from error
 
 
 def _arguments(found: xr.Dataset) -> dict[str, Any]:
@@ -105,14 +105,14 @@ def _whole(path: Path) -> bytes:
     """The bytes of a file, compared with the SHA-256 at their end before anything parses them."""
     try:
         if path.stat().st_size > _MOST_BYTES:
-            raise TableError(path, f"is no material: larger than {_MOST_BYTES} bytes")
+            raise FileError(path, f"is no material: larger than {_MOST_BYTES} bytes")
         content = path.read_bytes()
     except OSError as error:
-        raise TableError(path, f"cannot be read ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be read ({error.strerror or error})") from error
     sealed = seal_holds(content)
     if not sealed:
         problem = (
             "its bytes differ from the SHA-256 at their end" if sealed is False else "there is no SHA-256 at its end"
         )
-        raise TableError(path, f"is damaged, or no material of this package: {problem}")
+        raise FileError(path, f"is damaged, or no material of this package: {problem}")
     return content

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..errors import MOTION_STATUS, ParameterError
+from ..errors import MotionStatus, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
 from ..parameters import PARAMETERS, Rolls
@@ -27,8 +27,8 @@ _OWN: dict[str, dict[str, Any]] = {
     "regime": _REGIME,
     "status": {
         "long_name": "how the motion ended",
-        "flag_values": np.array([int(s) for s in MOTION_STATUS], dtype=np.int8),
-        "flag_meanings": " ".join(s.name.lower() for s in MOTION_STATUS),
+        "flag_values": np.array([int(s) for s in MotionStatus], dtype=np.int8),
+        "flag_meanings": " ".join(s.name.lower() for s in MotionStatus),
     },
     "flow": {
         "long_name": "source of the motion",

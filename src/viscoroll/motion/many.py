@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assumptions import Validity
-from ..errors import MOTION_STATUS, MotionStatus
+from ..errors import MotionStatus
 from ..judged import validity
 from ..labels import Labels
 from ..parameters import Parameters, Rolls
@@ -110,7 +110,7 @@ class Ensemble(Shown):
     def messages(self) -> dict[str, int]:
         """How many motions ended in which way, in words."""
         codes, counts = np.unique(self.status, return_counts=True)
-        return {MOTION_STATUS[MotionStatus(code)]: int(n) for code, n in zip(codes, counts, strict=True)}
+        return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
     def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
         """Mean, standard deviation and quantiles over the motions, per output time.

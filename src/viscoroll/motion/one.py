@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..assumptions import Validity
-from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..errors import MotionStatus, ParameterError
 from ..judged import validity
 from ..parameters import Parameters, Rolls
 from ..results import Row, Shown, Values, unit_of
@@ -111,7 +111,7 @@ class Motion(Shown):
     @property
     def message(self) -> str:
         """The status in words; of a motion that was given up also where it stood."""
-        words = MOTION_STATUS[self.status]
+        words = self.status.message
         if self.success or self.status == MotionStatus.CAUGHT:
             return words
         stood = self._stood

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..checks import number
 from ..drive import Feedback, Schedule, over
-from ..errors import MOTION_STATUS, ParameterError
+from ..errors import ParameterError
 from ..parameters import Rolls, framed
 from ..typed import Numbers
 from .checks import controls, in_words, output_times, refuse_many, start_speeds
@@ -147,7 +147,7 @@ def roll(
         raise in_words(error, scale) from error
     roller.look(motion.V)
     if not motion.success:
-        words = f"roll: {MOTION_STATUS[motion.status]}; outputs not reached are NaN, and `message` says where it stood"
+        words = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)
     return motion
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import OutputError
+from ..errors import FileError
 from ..files import replacing
 from ..symbols import SYMBOLS, label
 
@@ -123,12 +123,12 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
 
     Raises
     ------
-    OutputError
+    FileError
         If it cannot be written there, or the suffix names no format.
     """
     formats = sorted(figure.canvas.get_supported_filetypes())
     suffix = Path(path).suffix
     if suffix.removeprefix(".").lower() not in formats:
-        raise OutputError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
+        raise FileError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
     with replacing(path) as temporary:
         figure.savefig(temporary)

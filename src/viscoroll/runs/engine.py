@@ -19,7 +19,7 @@ from typing import Any, Literal
 from urllib.parse import urlsplit
 
 from ..blocks import heed, thread_count
-from ..errors import Interrupted, OutputError, ParameterError, ViscorollError
+from ..errors import FileError, Interrupted, ParameterError, ViscorollError
 from ..extras import imported
 from .evaluate import look_at_materials
 from .runfile import Run
@@ -66,7 +66,7 @@ def run_ensemble(
 
     Raises
     ------
-    OutputError
+    FileError
         The folder holds something else or cannot be written, another process writes to it, or
         the cluster went away.
     ParameterError
@@ -151,14 +151,14 @@ def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Execut
         with _silent("distributed", "distributed.client"), _client(distributed, cluster, threads) as client:
             workers = sum(client.nthreads().values())
             if not workers:
-                raise OutputError(cluster, "this cluster has no workers")
+                raise FileError(cluster, "this cluster has no workers")
             with client.get_executor(pure=False, retries=_RETRIES) as pool:
                 yield pool, workers, lambda store: client.scatter(store, broadcast=True)
     except ViscorollError:
         raise
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
-        raise OutputError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
+        raise FileError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
 
 
 def _is_address(text: str) -> bool:

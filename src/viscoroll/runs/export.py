@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..errors import TableError
+from ..errors import FileError
 from ..extras import imported
 from ..files import replacing
 from .store import MOTIONS
@@ -32,9 +32,8 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 
     Raises
     ------
-    TableError
+    FileError
         There is no finished store, or anything in it is damaged.
-    OutputError
         The file cannot be written, or there is no room for it.
 
     Notes
@@ -43,7 +42,7 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     """
     summaries, verdict = open_summaries(store), verify(store)
     if not verdict.ok:
-        raise TableError(store, "; ".join(str(verdict).splitlines()[-2:]))
+        raise FileError(store, "; ".join(str(verdict).splitlines()[-2:]))
     with replacing(path) as temporary:
         temporary.write_bytes(bytes(summaries.to_netcdf(engine="h5netcdf")))
         if (Path(store) / MOTIONS).is_dir():

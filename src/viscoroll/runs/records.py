@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ..errors import OutputError
+from ..errors import FileError
 from ..files import seal, seal_holds, write_bytes
 from .summaries import Summary
 
@@ -37,7 +37,7 @@ class Record(msgspec.Struct):
 
 
 def write_record(path: Path, record: Record) -> None:
-    """Write a record, whole or not at all; raises OutputError."""
+    """Write a record, whole or not at all; raises FileError."""
     write_bytes(path, encoded(record))
 
 
@@ -86,7 +86,7 @@ def _digest(path: Path) -> str | None:
 def put(root: Path, files: dict[str, bytes]) -> dict[str, str]:
     """Write files below ``root``, each whole or not at all, and return the digests of what was meant.
 
-    A file that is there with this content is left alone.  Raises OutputError.
+    A file that is there with this content is left alone.  Raises FileError.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():
@@ -97,8 +97,8 @@ def put(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, unless they are there; raises OutputError."""
+    """Make a folder, and those above it, unless they are there; raises FileError."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(path, f"cannot be made a folder ({error.strerror or error})") from error
+        raise FileError(path, f"cannot be made a folder ({error.strerror or error})") from error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import MOTION_STATUS, MotionStatus, TableError
+from ..errors import FileError, MotionStatus
 from ..results import Row, Shown, column, unit_of
 from .store import MOTIONS
 from .verify import open_summaries
@@ -52,13 +52,13 @@ class RunResults(Shown):
 
         Raises
         ------
-        TableError
+        FileError
             Where the run kept summaries alone.
         """
         import xarray as xr
 
         if not (self.path / MOTIONS).is_dir():
-            raise TableError(self.path, 'holds no motions, summaries alone: run it with keep = "all"')
+            raise FileError(self.path, 'holds no motions, summaries alone: run it with keep = "all"')
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
     def to_xarray(self) -> xr.Dataset:
@@ -92,7 +92,7 @@ class RunResults(Shown):
 
         Raises
         ------
-        OutputError
+        FileError
             If it cannot be written there.
         """
         from ..plots.runs import run_distributions
@@ -113,7 +113,7 @@ class RunResults(Shown):
             at = " at the end" if data[f"{name}_mean"].ndim else ""
             rows.append(Row(name, f"mean {mean:.6g}, std {std:.3g}{at}", unit_of(data[f"{name}_mean"].attrs)))
         ended = zip(data["status"].values, data["ended"].values, strict=True)
-        rows += [Row("ended", f"{count}: {MOTION_STATUS[MotionStatus(code)]}") for code, count in ended if count]
+        rows += [Row("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
         kept = "every motion" if (self.path / MOTIONS).is_dir() else "summaries"
         return f"Results of a run of {len(self)} motions", [*rows, Row("kept", kept)]
 
@@ -132,7 +132,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
 
     Raises
     ------
-    TableError
+    FileError
         If there is no results store, it is not finished, or its summaries are damaged.
     MissingDependencyError
         If zarr is not installed.

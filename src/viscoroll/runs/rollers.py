@@ -63,7 +63,7 @@ class _Solid(NamedTuple):
 
 
 def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
-    """What rolls, one or one a motion; raises ParameterError, of a material ConfigError."""
+    """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
     plain = {name: body.typical if isinstance(body, _Solid) else body for name, body in bodies.items()}
     one = body_of(path, content, plain)

@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config import check_sections, located
-from ..errors import ConfigError, ParameterError, unknown
+from ..errors import FileError, ParameterError, unknown
 from ..materials.file import as_toml, materials_of
 from ..motion.batch import FIELDS, FLOW_PAYS, begin
 from ..motion.checks import output_times
@@ -199,7 +199,7 @@ def read_run(path: str | PathLike[str]) -> Run:
 
     Raises
     ------
-    ConfigError
+    FileError
         A file that cannot be read or is not TOML, a misspelt key (with the nearest), a value of
         the wrong type or with a unit, a range that leaves what the input allows, a sample
         that cannot be read: each with its line.
@@ -231,7 +231,7 @@ def read_run(path: str | PathLike[str]) -> Run:
 
 
 def _check_settings(run: Run) -> None:
-    """Raise ConfigError for what msgspec cannot check of [run]."""
+    """Raise FileError for what msgspec cannot check of [run]."""
     settings = run.settings
     for key, allowed, kind in (("fields", FIELDS, "a field"), ("summaries", tuple(QUANTITIES), "a summary")):
         for name in getattr(settings, key):
@@ -256,7 +256,7 @@ def _check_inputs(run: Run) -> None:
         ends = inputs.ends(at.name)
         try:
             _begin(run, medians | {at.name: ends})
-        except (ParameterError, ConfigError) as error:
+        except (ParameterError, FileError) as error:
             if isinstance(error, ParameterError) and error.name in known["run"]:
                 raise located(run.path, known, error) from error
             reaches = f"{at.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"

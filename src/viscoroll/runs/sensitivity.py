@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..blocks import run_blocks
-from ..errors import MOTION_STATUS, MotionStatus, ParameterError
+from ..errors import MotionStatus, ParameterError
 from ..sampling import points
 from .evaluate import look_at_materials, roll_inputs
 from .inputs import Inputs, inputs_in
@@ -215,4 +215,4 @@ def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float
 def _ended(status: NDArray[np.int8]) -> dict[str, int]:
     """How many motions ended in which way."""
     codes, counts = np.unique(status, return_counts=True)
-    return {f"ended: {MOTION_STATUS[MotionStatus(code)]}": int(n) for code, n in zip(codes, counts, strict=True)}
+    return {f"ended: {MotionStatus(code).message}": int(n) for code, n in zip(codes, counts, strict=True)}

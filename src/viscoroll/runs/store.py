@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..errors import OutputError
+from ..errors import FileError
 from ..motion.many import Ensemble
 from . import zarr_files
 from .evaluate import roll_block, roll_inputs
@@ -50,7 +50,7 @@ class Store:
 
         Raises
         ------
-        OutputError
+        FileError
             A folder that holds anything else, or cannot be written.
         """
         self.refuse_other()
@@ -60,12 +60,12 @@ class Store:
         write_record(_path(self.root, "start"), made)
 
     def refuse_other(self) -> None:
-        """Raise OutputError unless the folder is new, or begun by the same run."""
+        """Raise FileError unless the folder is new, or begun by the same run."""
         root = self.root
         if not root.exists():
             return
         if not root.is_dir():
-            raise OutputError(root, f"is a file: {_ADVICE}")
+            raise FileError(root, f"is a file: {_ADVICE}")
         record = read_record(_path(root, "start"))
         if record is None:
             whole = map(read_record, sorted((root / RECORDS).glob("[0-9e]*")))
@@ -73,14 +73,12 @@ class Store:
         if record is None:
             others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
             if others:
-                raise OutputError(root, f"is no results store, it holds {', '.join(others[:3])}: {_ADVICE}")
+                raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {_ADVICE}")
         elif record.run != identity(self.run):
             versions = record.about.get("versions", json.dumps(_software()))
             if versions != json.dumps(_software()):
-                raise OutputError(
-                    root, f"was begun with other versions, {versions}: finish it with those, or {_ADVICE}"
-                )
-            raise OutputError(root, f"holds the results of another run file: {_ADVICE}")
+                raise FileError(root, f"was begun with other versions, {versions}: finish it with those, or {_ADVICE}")
+            raise FileError(root, f"holds the results of another run file: {_ADVICE}")
 
     def missing(self) -> Iterator[int]:
         """Blocks that are not there, or not whole: their records and all their files are read."""
@@ -90,7 +88,7 @@ class Store:
                 yield block
 
     def work(self, block: int) -> int:
-        """Roll a block and store it; returns its number of motions.  Raises OutputError."""
+        """Roll a block and store it; returns its number of motions.  Raises FileError."""
         values, motions = roll_block(self.run, block)
         files: dict[str, str] = {}
         if self.run.settings.keep == "all":
@@ -102,7 +100,7 @@ class Store:
         return len(motions)
 
     def end(self) -> None:
-        """Merge the summaries of all blocks and write them; raises OutputError."""
+        """Merge the summaries of all blocks and write them; raises FileError."""
         dataset = summary_dataset(merged(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si)
         files = zarr_files.dataset_files(dataset.assign_attrs(about(self.run)))
         files[".zmetadata"] = zarr_files.consolidated(files | self._metadata())
@@ -119,7 +117,7 @@ class Store:
         for block in range(self.run.blocks):
             record = read_record(_path(self.root, block))
             if record is None or record.summary is None:
-                raise OutputError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
+                raise FileError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
             yield record.summary
 
     def _metadata(self) -> dict[str, bytes]:
@@ -196,7 +194,7 @@ def locked(root: Path) -> Iterator[None]:
 
     Raises
     ------
-    OutputError
+    FileError
         If another process has it.
     """
     from filelock import FileLock, Timeout
@@ -206,9 +204,9 @@ def locked(root: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise OutputError(root, "another process is writing to it") from None
+        raise FileError(root, "another process is writing to it") from None
     except (OSError, NotImplementedError) as error:  # some network disks
-        raise OutputError(root, f"cannot be locked ({getattr(error, 'strerror', None) or error})") from error
+        raise FileError(root, f"cannot be locked ({getattr(error, 'strerror', None) or error})") from error
     try:
         yield
     finally:

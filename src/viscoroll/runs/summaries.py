@@ -157,16 +157,16 @@ def summary_dataset(total: Summary, t: NDArray[np.float64], levels: tuple[float,
     """Moments, quantiles and histograms over t, and counts of how motions ended."""
     import xarray as xr
 
-    from ..errors import MOTION_STATUS, MotionStatus
+    from ..errors import MotionStatus
 
     data: dict[str, xr.Variable] = {}
     for name, histograms in total.histograms.items():
         data |= _variables(name, histograms, levels, si)
-    codes = np.array([int(code) for code in MOTION_STATUS], np.int8)
+    codes = np.array([int(code) for code in MotionStatus], np.int8)
     ended = {
         "long_name": "motions by how they ended", "units": "1", "flag_values": codes,
-        "flag_meanings": " ".join(code.name.lower() for code in MOTION_STATUS),
-        "meanings": "; ".join(f"{int(code)}: {text}" for code, text in MOTION_STATUS.items()),
+        "flag_meanings": " ".join(code.name.lower() for code in MotionStatus),
+        "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
     }  # fmt: skip
     counts = [total.statuses.get(int(code), 0) for code in codes]
     data["ended"] = xr.Variable("status", np.array(counts, np.int64), ended)

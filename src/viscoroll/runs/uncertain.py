@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config import SCHEMA
-from ..errors import ConfigError
+from ..errors import FileError
 from ..extras import imported
 from ..materials.file import SECTIONS
 from ..sections import fault, hint
@@ -28,7 +28,7 @@ _ONE = {"distribution", "file", "column"}
 
 
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
-    """The inputs of a file that was read, independent; raises ConfigError."""
+    """The inputs of a file that was read, independent; raises FileError."""
     reader = _Reader(path)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
     joint = {file: Joint(columns) for file, columns in reader.joint.items()}
@@ -71,7 +71,7 @@ class _Reader:
             self.column(found, given)
         return found
 
-    def fault(self, at: Input, problem: str) -> ConfigError:
+    def fault(self, at: Input, problem: str) -> FileError:
         return fault(self.path, at.section, at.key, f"{at.name}: {problem}")
 
     def refuse_unknown(self, at: Input, given: dict[str, Any], allowed: tuple[str, ...]) -> None:
@@ -162,7 +162,7 @@ def read_column(path: Path, column: str) -> NDArray[np.float64]:
 
 
 def correlated(path: Path, inputs: Inputs) -> Inputs:
-    """The same under the Gaussian copula of [correlation]; raises ConfigError."""
+    """The same under the Gaussian copula of [correlation]; raises FileError."""
     given, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(given, dict):
         raise fault(path, "", "correlation", "correlation: must be a section [correlation] with lines like V0.mu = 0.5")

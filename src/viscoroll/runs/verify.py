@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import TableError
+from ..errors import FileError
 from ..extras import imported
 from .records import read_record
 from .store import RECORDS, problems
@@ -53,7 +53,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
     Raises
     ------
-    TableError
+    FileError
         If there is no results store, or the record of its start is damaged.
 
     Notes
@@ -63,7 +63,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     root = Path(path)
     start = read_record(root / RECORDS / "start")
     if start is None:
-        raise TableError(path, "is no results store, or its record `start` is damaged: run its command again")
+        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
     damaged, missing = [*problems(root, "start", start.run)], []
     blocks = int(start.about["blocks"])
     for block in range(blocks):
@@ -81,7 +81,7 @@ def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
 
     Raises
     ------
-    TableError
+    FileError
         If there are none, or they are damaged.
     """
     import xarray as xr
@@ -90,7 +90,7 @@ def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
     root = Path(path)
     start = read_record(root / RECORDS / "start")
     if start is None:
-        raise TableError(path, "is no results store, or its record `start` is damaged")
+        raise FileError(path, "is no results store, or its record `start` is damaged")
     if found := problems(root, "end", start.run):
-        raise TableError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
+        raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
     return xr.open_zarr(root, chunks=None)

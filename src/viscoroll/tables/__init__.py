@@ -1,11 +1,12 @@
 """Tables of the contact law: files of one material or pair, exact, and grids for look-up blocks of other programs.
 
     import viscoroll as vr
-    law = vr.tables.law(vr.RUBBER_CYLINDER)
+    law = vr.tables.law(vr.presets.RUBBER_CYLINDER)
     vr.tables.save(law, "rubber.nc")  # for vr.load_law, and any program that reads netCDF
     vr.tables.export(law, "rubber.h")  # table and evaluator in one header of C
 
-    grid = vr.tables.build(vr.RUBBER_CYLINDER, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0, 0.01])
+    roller = vr.presets.RUBBER_CYLINDER
+    grid = vr.tables.build(roller, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0, 0.01])
     vr.tables.export(grid, "rubber.txt")  # Modelica
 
 Read in this order: :mod:`law`, :mod:`build`, :mod:`schema` (what a grid's file holds), :mod:`interpolate`,

@@ -37,7 +37,7 @@ def export(table: xr.Dataset, path: str | PathLike[str], format: str | None = No
     ------
     ParameterError
         Another suffix or format; for Modelica a grid over alpha, as its tables have two inputs.
-    OutputError
+    FileError
         If it cannot be written there.
 
     Notes

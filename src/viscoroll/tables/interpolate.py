@@ -30,7 +30,7 @@ class Interpolant:
 
     Raises
     ------
-    TableError
+    FileError
         If it is not a table.
     """
 
@@ -138,7 +138,7 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     ParameterError
         An unknown field, a coordinate that is missing, unknown, NaN or infinite, shapes that
         do not broadcast.
-    TableError
+    FileError
         If ``table`` is not a table.
 
     Notes

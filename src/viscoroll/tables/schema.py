@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..errors import TableError
+from ..errors import FileError
 from ..symbols import PAPER, SYMBOLS, meaning
 
 if TYPE_CHECKING:
@@ -86,27 +86,27 @@ def check(table: Any, path: Any) -> None:
 
     Raises
     ------
-    TableError
+    FileError
         Naming ``path`` and the first thing that is wrong.
     """
     attributes = getattr(table, "attrs", {})
     if attributes.get(KIND) not in KINDS:
-        raise TableError(path, f"is no table of viscoroll: attribute {KIND} is {attributes.get(KIND)!r:.40}")
+        raise FileError(path, f"is no table of viscoroll: attribute {KIND} is {attributes.get(KIND)!r:.40}")
     version, major = attributes.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
         problem = f"is a table of schema {version!s:.20}, and this viscoroll ({__version__}) reads {major}.x"
-        raise TableError(path, f"{problem}: build it again, or install the version that wrote it")
+        raise FileError(path, f"{problem}: build it again, or install the version that wrote it")
     axes = axes_of(table)
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
-            raise TableError(path, f"is no whole table: variable {name!r} is missing")
+            raise FileError(path, f"is no whole table: variable {name!r} is missing")
         if tuple(dim for dim in axes if dim in table[name].dims) != table[name].dims:
-            raise TableError(path, f"variable {name!r} has dimensions {table[name].dims}, out of {axes} in this order")
+            raise FileError(path, f"variable {name!r} has dimensions {table[name].dims}, out of {axes} in this order")
         _check_values(name, table[name].values, name in axes, path)
 
 
 def _check_values(name: str, values: NDArray, is_axis: bool, path: Any) -> None:
     if values.dtype != np.float64 or not np.isfinite(values).all():
-        raise TableError(path, f"variable {name!r} must hold finite 64-bit floats")
+        raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")
     if is_axis and (not values.size or (np.diff(values) <= 0.0).any()):
-        raise TableError(path, f"coordinate {name!r} must increase strictly")
+        raise FileError(path, f"coordinate {name!r} must increase strictly")

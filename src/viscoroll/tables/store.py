@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import TableError
+from ..errors import FileError
 from ..files import sealed_content, write_dataset
 from ..materials import law_store
 from . import schema
@@ -25,7 +25,7 @@ def is_law(table: Any) -> bool:
 
 
 def check(table: Any, path: Any) -> None:
-    """Refuse what is neither a law nor a grid; raises TableError."""
+    """Refuse what is neither a law nor a grid; raises FileError."""
     if is_law(table):
         law_store.check(law_store.content_of(table), path)
     else:
@@ -44,9 +44,8 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
     Raises
     ------
-    OutputError
+    FileError
         If it cannot be written there; a file of that name is left as it was.
-    TableError
         If ``table`` is neither.
 
     Notes
@@ -77,7 +76,7 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
 
     Raises
     ------
-    TableError
+    FileError
         A file that is missing, cut or damaged, of another major schema version, or no table.
     """
     import xarray as xr
@@ -87,7 +86,7 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
         table = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", mask_and_scale=False, decode_times=False)
     except Exception as error:  # libraries raise many kinds
         problem = f"is damaged, or no table of viscoroll ({' '.join(str(error).split()):.120}): build it again"
-        raise TableError(path, problem) from error
+        raise FileError(path, problem) from error
     check(table, path)
     return table
 
@@ -97,7 +96,7 @@ def info(path: str | PathLike[str]) -> str:
 
     Raises
     ------
-    TableError
+    FileError
         As :func:`load`.
     """
     table = load(path)

@@ -49,7 +49,7 @@ def validate(
     ------
     ParameterError
         A count below 1 (times: 2) or a negative seed.
-    TableError
+    FileError
         A table that does not state its errors.
     ConvergenceError
         If a direct solve or the comparison's own integrator gives up.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError, TableError
+from ..errors import FileError, ParameterError
 from ..materials.law_axis_file import axis_of
 from ..materials.law_file import law_of
 from ..materials.law_store import AXIS, KIND, content_of, errors_of
@@ -38,7 +38,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     ------
     ParameterError
         A count or seed out of range.
-    TableError
+    FileError
         A table that is no law: a grid states its errors when it is built.
     """
     if count < 1:
@@ -47,7 +47,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
         raise ParameterError("seed", seed, "a whole number >= 0")
     source = table.encoding.get("source", "table")
     if not is_law(table):
-        raise TableError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")
+        raise FileError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")
     content, against = content_of(table), "the formulas of the modes"
     if content.attributes[KIND] == AXIS:
         found, against = axis.measured_errors(axis_of(content, source), count, seed), "root solves"

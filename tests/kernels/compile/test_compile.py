@@ -417,7 +417,7 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 
 # --- what is said ---
 
-SCENE = "import numpy as np; import viscoroll as vr; scene = vr.PAPER_SECTION_5\n"
+SCENE = "import numpy as np; import viscoroll as vr; scene = vr.presets.PAPER_SECTION_5\n"
 #: without a figure: the first kernel does not know how many follow it
 NOTICE = r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
 

@@ -11,7 +11,7 @@ import viscoroll as vr
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-PAPER = vr.PAPER_SECTION_5_ROUNDED
+PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
 #: rolling resistance widens the slip where it is at its largest, before friction closes it
 WIDENING = PAPER.replace(mu=0.01)
 

@@ -19,7 +19,7 @@ rubber = vr.Scene(material=vr.Prony(2.0 ** np.arange(5), times), kappa=10.0, mu=
 figure, panels = plt.subplots(1, 2, figsize=(9.5, 4.2), layout="constrained")
 for axes, scene, title in zip(
     panels,
-    (vr.PAPER_SECTION_5, rubber),
+    (vr.presets.PAPER_SECTION_5, rubber),
     ("a) one relaxation time", "b) five relaxation times"),
     strict=True,
 ):
@@ -39,6 +39,6 @@ figure.suptitle("Equilibria: stable (filled) and unstable (open)", fontsize="med
 
 # %%
 # For one roller, in SI units:
-s = vr.RUBBER_CYLINDER.steady(slope=np.radians(0.3))
+s = vr.presets.RUBBER_CYLINDER.steady(slope=np.radians(0.3))
 for V, stable in zip(s.V, s.stable, strict=True):
     print(f"{V:10.3g} m/s, {'stable' if stable else 'unstable'}")

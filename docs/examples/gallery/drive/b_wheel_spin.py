@@ -12,7 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-scene = vr.PAPER_SECTION_5
+scene = vr.presets.PAPER_SECTION_5
 grip = (1.0 + scene.j) * scene.mu
 times = np.array([0.0, 5.0, 8.0, 8.0]) / scene.gamma
 torque = np.array([0.0, 2.0, 2.0, 0.25]) * grip

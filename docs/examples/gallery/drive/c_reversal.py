@@ -12,7 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-scene, V0 = vr.PAPER_SECTION_5, 0.5
+scene, V0 = vr.presets.PAPER_SECTION_5, 0.5
 torque = -0.85 * (1.0 + scene.j) * scene.mu
 end = 3.0 * V0 / (scene.gamma * abs(torque))
 turn = vr.roll(scene, V0, V0, end, torque=torque).reversals[0]

@@ -12,7 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-scene, slope = vr.PAPER_SECTION_5, np.radians(3.0)
+scene, slope = vr.presets.PAPER_SECTION_5, np.radians(3.0)
 s = vr.steady(scene, slope=slope)
 node, saddle = s.V
 plane = np.array([-0.5, 2.0]) * saddle

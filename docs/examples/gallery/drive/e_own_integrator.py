@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 
-scene = vr.RUBBER_ROLLER  # times over 1 s, lengths over R = 0.1 m, forces over the load
+# times over 1 s, lengths over R = 0.1 m, forces over the load
+scene = vr.presets.RUBBER_ROLLER
 law, gamma, j = vr.law(scene), scene.gamma, scene.j
 speed = 0.5  # of the tractor, radii a second
 stiffness = 0.02  # of the spring, load per radius

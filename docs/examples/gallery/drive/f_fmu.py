@@ -16,7 +16,7 @@ import numpy as np
 import viscoroll as vr
 from viscoroll import fmu
 
-roller = vr.RUBBER_CYLINDER
+roller = vr.presets.RUBBER_CYLINDER
 drive = np.array(
     [(0.0, 0.0, 5.0), (1.0, 0.0, 5.0), (1.0, 0.0, 0.0), (3.0, 0.0, 0.0)],
     dtype=[("time", float), ("drive_force", float), ("drive_torque", float)],

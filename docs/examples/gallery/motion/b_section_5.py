@@ -13,7 +13,7 @@ import numpy as np
 
 import viscoroll as vr
 
-scene = vr.PAPER_SECTION_5
+scene = vr.presets.PAPER_SECTION_5
 t = np.linspace(0.0, 4e-3, 2001)  # in units of T_epsilon
 figure, axes = plt.subplots(figsize=(7.6, 4.6), layout="constrained")
 for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):

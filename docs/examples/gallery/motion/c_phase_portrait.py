@@ -12,7 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-scene, radius = vr.PAPER_SECTION_5, 2.0
+scene, radius = vr.presets.PAPER_SECTION_5, 2.0
 angles = (np.arange(24) + 0.5) * np.pi / 12.0
 starts = [(radius * np.cos(a), radius * np.sin(a)) for a in angles]
 motions = [vr.roll(scene, *start, 60.0 / scene.gamma) for start in starts]

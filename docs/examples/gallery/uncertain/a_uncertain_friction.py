@@ -12,7 +12,7 @@ from scipy import stats
 
 import viscoroll as vr
 
-roller = vr.RUBBER_CYLINDER
+roller = vr.presets.RUBBER_CYLINDER
 draw = vr.sampling.sample(
     10_000, seed=1, design="sobol", mu=stats.norm(0.3, 0.03), V0=stats.uniform(1.8, 0.4)
 )  # V0 in m/s, from 1.8 to 2.2
