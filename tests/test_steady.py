@@ -166,16 +166,6 @@ def test_bodies_swapped():
     assert close(other.delta, -one.delta, rel=tol.BODIES)
 
 
-def test_unlike_bodies_need_friction_of_their_own():
-    """Q = torque - M_cylinder: a rigid cylinder driven by torque alone needs all of it, a rigid base none."""
-    steel = vr.Prony.elastic()
-    rigid_base = vr.steady(series_scene(vr.Bodies(TWO, steel, 1.0)), torque=0.008)
-    assert close(rigid_base.Q, 0.0, rel=tol.STEADY_BETA, scale=1.0)
-    rigid_wheel = vr.steady(series_scene(vr.Bodies(steel, TWO, 0.0)), torque=0.008)
-    assert close(rigid_wheel.Q, 0.008, rel=tol.STEADY)
-    assert vr.steady(series_scene(vr.Bodies(steel, TWO, 0.0), mu=0.007), torque=0.008).count == 0
-
-
 # --- stability ---
 
 

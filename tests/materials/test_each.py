@@ -48,18 +48,6 @@ def test_an_ensemble_is_its_motions(name):
 
 
 @of_both
-@pytest.mark.parametrize("drive", [{"force": 0.02, "torque": [0.1] * COUNT}, {"slope": -0.02, "brake": 0.01}])
-def test_driven(name, drive):
-    many = MATERIALS[name]()
-    found = vr.ensemble(scene_of(many), 0.5, 0.4, T, **drive, rtol=1e-6, fields=("V", "work_force"))
-    single = {name: value[0] if isinstance(value, list) else value for name, value in drive.items()}
-    for i, one in enumerate(many):
-        motion = vr.roll(scene_of(one), 0.5, 0.4, T, rtol=1e-6, **single)
-        assert close(found.V[i], motion.V, rel=tol.MOTION_EACH)
-        assert close(found.work_force[i], motion.work_force, rel=tol.MOTION_EACH)
-
-
-@of_both
 def test_stress(name):
     many, x = MATERIALS[name](), np.linspace(-0.6, 0.9, 7)[:, None]
     found = vr.stress(scene_of(many), x, 0.3, delta=1e-3)
@@ -68,19 +56,6 @@ def test_stress(name):
         for field in ("p", "tau"):
             pair = getattr(found, field)[:, i], getattr(alone, field)
             assert close(*pair, rel=tol.SERIES_STATES, scale=alone.p.max(), what=(field, i))
-
-
-def test_like_bodies_are_one_series():
-    """Given as a pair they are the array of their series; with other shares the sum of both."""
-    one = rubbers(np.random.default_rng(1), 3)
-    for pair in (vr.Bodies(one, one), vr.Bodies(one, vr.Prony(one.E, one.tau), np.full(COUNT, 0.5))):
-        assert pair.like
-        for call in (
-            lambda scene: vr.ensemble(scene, 1.0, 0.2, T, rtol=1e-6).V,
-            lambda scene: vr.contact(scene, 0.3, delta=1e-3, fields=("Q", "M_half_space")).M_half_space,
-            lambda scene: vr.stress(scene, 0.1, 0.3, delta=1e-3).tau,
-        ):
-            assert np.array_equal(call(scene_of(pair)), call(scene_of(one)))
 
 
 def test_memory_is_bounded_by_a_block():

@@ -127,20 +127,6 @@ def test_abaqus():
     assert close(long.instant, 10e6, rel=tol.MATERIAL)
 
 
-def test_lsdyna():
-    """Shear modulus 40 MPa at once, 10 MPa at last, beta = 50/s: E_1 = 30/10, tau = 0.02 s; E = 30 MPa."""
-    found = vr.Material.lsdyna(G=[30e6], beta=[50.0], nu=0.5, G_inf=10e6)
-    assert close(found.E, 30e6, rel=tol.MATERIAL)
-    assert (found.prony.E.tolist(), found.prony.tau.tolist()) == ([3.0], [0.02])
-    # 3 (10 + 30 exp(-1)) MPa after 0.02 s = 30 + 33.1091497 MPa
-    assert close(found.relaxation(0.02), 63.1091497e6, rel=tol.MATERIAL_PRINTED)
-    for same in (
-        vr.Material.lsdyna(G=[30e6], beta=[50.0], nu=0.5, G0=40e6),
-        vr.Material.lsdyna(G=[10e6, 30e6], beta=[0.0, 50.0], nu=0.5),
-    ):
-        assert same == found
-
-
 def test_lsdyna_with_a_bulk_modulus():
     """66.67 MPa, G_inf = 10 MPa, G_1 = 90 MPa, beta = 0.01/ms: nu = (200.01 - 20)/(400.02 + 20) = 0.42857483."""
     found = vr.Material.lsdyna(G=[90e6, 20e6], beta=[10.0, 1e4], bulk=66.67e6, G_inf=10e6)

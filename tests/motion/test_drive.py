@@ -54,27 +54,6 @@ def test_jump_of_traction_where_V_passes_0_in_stick():
     assert close(c.Q, [traction(1.0), traction(-1.0)], rel=tol.DRIVE_TURN)
 
 
-def test_prescribed_omega_is_infinite_inertia():
-    schedule = vr.Schedule([0.0, 3.0, 8.0], [0.2, 1.0, -0.4])
-    m = vr.roll(ROLLER, 0.2, None, T, rtol=1e-10, omega=schedule)
-    assert close(m.omega, np.interp(T, schedule.times, schedule.values), rel=1e-10, scale=1.0)
-    heavy, slopes = ROLLER.replace(j=1e9), (0.8 / 3.0, -1.4 / 5.0)
-    torque = vr.Schedule([0.0, 3.0, 3.0], [1e9 * slopes[0] / ROLLER.gamma] * 2 + [1e9 * slopes[1] / ROLLER.gamma])
-    other = vr.roll(heavy, 0.2, 0.2, T, rtol=1e-10, torque=torque)
-    assert close(m.V, other.V, rel=tol.DRIVE_HEAVY, scale=1.0)
-    assert balance(m) <= tol.DRIVE_BALANCE
-
-
-def test_towed_and_what_it_needs():
-    """Towed at a speed: the force is V'/gamma - Q + M/2; freely Q = -M/2."""
-    m = vr.roll(ROLLER, None, 0.3, np.linspace(0.0, 200.0, 5), rtol=1e-9, V=0.3)
-    s = vr.steady(ROLLER, V=0.3, torque=0.0)
-    assert close(m.force[-1], float(np.ravel(s.M)[0]), rel=1e-7)
-    c = m.contact(fields=("Q", "M"))
-    assert close(c.Q[-1], -0.5 * c.M[-1], rel=1e-7)
-    assert balance(m) <= 1e-7
-
-
 def test_brake_holds_slips_and_lets_go():
     """Locked while |Q + M/2| <= B, held at rest while |f| <= mu and |f + q| <= B, and away when the force is more."""
     m = vr.roll(ROLLER, 0.5, 0.5, np.linspace(0.0, 10.0, 41), brake=0.5)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import tolerances as tol
 import tqdm
 import xarray as xr
 from closeness import close
@@ -108,14 +107,6 @@ def test_progress_bar_only_when_it_takes_long(capsys, monkeypatch):
 
 
 # --- energy ---
-
-
-def test_in_full_slip_friction_takes_mu_a_unit_of_path():
-    V0, omega0 = np.array([1.0, -1.0, 0.3]), np.array([-1.0, 1.0, 2.0])
-    result = vr.ensemble(SCENE, V0, omega0, [1e-5, 5e-5], fields=FIELDS)
-    assert (result.regime == 0).all()
-    slipped = SCENE.gamma * SCENE.mu * np.abs(result.angle - result.x)
-    assert close(result.slip_loss, slipped, rel=tol.SLIDING_LOSS)
 
 
 # --- what a result holds ---

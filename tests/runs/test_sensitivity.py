@@ -60,26 +60,6 @@ t = 1e-4
 summaries = ["V"]
 """
 FACTORS = {"mu": stats.uniform(0.02, 0.36), "gamma": stats.uniform(1e3, 1.8e4)}
-#: an elastic cylinder in SI units that slides up to the last time: V = V0 + mu g t, whatever its radius
-CYLINDER = """
-[cylinder]
-R = { distribution = "uniform", loc = 0.05, scale = 0.1 }
-m = 35.5
-E = 2.3e5
-nu = 0.49
-T_epsilon = 10.7
-T_sigma = 10.7
-mu = { distribution = "uniform", loc = 0.1, scale = 0.2 }
-
-[start]
-V0 = { distribution = "uniform", loc = 0.01, scale = 0.002 }
-omega0 = 1.0
-
-[run]
-n = 1
-t = 1e-3
-summaries = ["V"]
-"""
 #: inputs of partial slip, quick, and with an onset that some motions do not reach
 ONSET = """
 preset = "paper-section-5"
@@ -142,16 +122,6 @@ def test_an_input_without_influence_has_index_zero(sliding):
     idle = sliding.sel(input=["kappa", "j", "omega0"])
     for key in ("V_S1", "V_ST", "x_S1", "x_ST"):
         assert np.abs(idle[key]).max() <= tol.SENSITIVITY_NONE
-
-
-def test_a_cylinder_in_si_units():
-    indices = sobol_indices(run_of(CYLINDER), N)
-    assert indices["t"].attrs["units"] == "s"
-    parts = np.square([1.0, 9.81e-3]) * (stats.uniform(0.0, 0.002).var(), stats.uniform(0.1, 0.2).var())
-    for name, exact in zip(("V0", "mu"), parts / parts.sum(), strict=True):
-        assert inside(indices, "V", "S1", name, exact, 0)
-        assert inside(indices, "V", "ST", name, exact, 0)
-    assert np.abs(indices["V_ST"].sel(input="R")).max() <= tol.SENSITIVITY_NONE
 
 
 def test_a_product_has_total_above_first():
