@@ -32,17 +32,6 @@ def test_contact_states(body):
 
 
 @pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
-def test_stresses(body):
-    own = body.stress if body is ROLLER else lambda *given, **named: vr.stress(SCENE, *given, **named)
-    x = xr.DataArray(np.linspace(-1e-3, 1e-3, 5), dims="place")
-    found = own(x, V, delta=0.01)
-    assert found.p.dims == ("place", "run")
-    assert np.array_equal(found.tau.sel(run="b"), own(x.values, 0.2, delta=0.01).tau)
-    series = pd.Series(x.values, index=list("abcde"))
-    assert own(series, 0.2, delta=0.01).p["c"] == own(0.0, 0.2, delta=0.01).p
-
-
-@pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
 def test_equilibria(body):
     own = body.steady if body is ROLLER else lambda **named: vr.steady(SCENE, **named)
     slope = xr.DataArray(np.radians([0.01, 0.02, 40.0]), dims="place", coords={"place": ["a", "b", "c"]})

@@ -87,33 +87,6 @@ def test_scenes_hash_and_are_short():
     assert eval(repr(SCENE), {"Scene": vr.Scene}) == SCENE
 
 
-def test_no_gamma_no_motion():
-    """What moves asks for gamma by name; what does not, does not."""
-    still = SCENE.replace(gamma=None)
-    for call in (vr.roll, vr.ensemble):
-        told = refused(lambda call=call: call(still, 1.0, 0.5, 1e-3))
-        assert told.startswith(f"{call.__name__} needs the scene's gamma")
-    assert vr.contact(still, 1.0, delta=0.0).M == vr.contact(SCENE, 1.0, delta=0.0).M
-    assert vr.steady(still, slope=0.05).V.tolist() == vr.steady(SCENE, slope=0.05).V.tolist()
-    assert vr.humps(still).M.tolist() == vr.humps(SCENE).M.tolist()
-    assert still.validity(1.0).steady.holds is None
-    assert still.validity(1.0).small_contact == SCENE.validity(1.0).small_contact
-
-
-def test_validity_of_motions(results):
-    """All of it along a motion: the numbers are those of the scene at each output."""
-    m = results["motion"]
-    found = m.validity()
-    assert close(found.creep.value, np.abs(m.delta), rel=tol.SCENE, scale=1.0)
-    assert not found.creep.holds[0]
-    assert found.creep.holds[-1]
-    assert results["motion in SI"].validity().quasistatic.value.shape == (9,)
-    assert results["ensemble"].validity().steady.value.shape == (12,)
-    each = vr.ensemble(SCENE.replace(mu=np.linspace(0.1, 0.3, 400)), 1.0, 0.5, 1e-3)
-    assert each.validity().small_contact.value.shape == (256,)
-    assert "unsteadiness" in str(found)
-
-
 def test_a_table_of_pandas_knows_its_units(results):
     """In the names of its columns, and so in the CSV; what has none stands bare."""
     table = results["motion in SI"].to_pandas()

@@ -71,13 +71,6 @@ def test_scenes_beyond_all_bounds():
         assert "nan" not in str(found)
 
 
-def test_a_sentence_each():
-    _, *lines = str(vr.presets.PAPER_CYLINDER.validity(1.0, density=1130.0)).splitlines()
-    assert [line.split()[0] for line in lines] == list(SCENE.validity(1.0)._fields)
-    assert "plane strain" in lines[-1]
-    assert SCENE.validity(1.0).bodies.holds is None
-
-
 # --- pairs ---
 
 RUBBER = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0)

@@ -6,9 +6,11 @@ import json
 
 import tolerances as tol
 from closeness import close
+from experiments import TRUTH, roller, traction
 from places import RESULTS
 from processes import made
 
+import viscoroll as vr
 from pipeline.evidence.measure.identification import COVERAGE, PARTS, complaint
 from pipeline.evidence.results import rows_of
 
@@ -43,3 +45,30 @@ def test_a_row_beyond_its_bound_is_told():
     assert "90% of starts" in complaint({"experiment": "M over the hump", "reached": 0.9})
     assert "3.0% of the width" in complaint({"experiment": "thrown", "off": 0.03})
     assert "0.6 s a fit" in complaint({"case": "thrown", "fit_s": 0.6, "profiles_s": 2.0})
+
+
+# --- profiles of wide ranges take minutes ---
+
+WIDE = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-5, 1e-1)}
+
+
+def test_an_end_that_a_range_makes_is_told():
+    """Q at two speeds: mu and E, and of E_1 and T_ref hardly more than their product."""
+    fit = vr.identify(roller(), WIDE, [traction((0.1, 1.0), seed=0)], starts=2)
+    assert fit.undetermined == ("E_1", "T_ref")
+    low, high = fit.intervals()["E_1"]
+    assert low < TRUTH["E_1"]
+    assert high is None
+    said = str(fit)
+    assert "E_1 is open on its upper side" in said
+    assert "the best fit has E_1 at the end of its range" in said
+    assert "the range of E_1, not the data, makes" in said
+
+
+def test_an_interval_reaches_over_its_pieces():
+    """A walk from the best fit, a narrow well, ends at its rim; the truth lies on the plateau behind it."""
+    fit = vr.identify(roller(), WIDE, [traction((0.1, 1.0), seed=3)], starts=2)
+    low, high = fit.intervals()["E_1"]
+    assert low < TRUTH["E_1"] < high
+    assert fit.values["E_1"] < 0.1 * TRUTH["E_1"]
+    assert "the interval of E_1 is not in one piece" in str(fit)

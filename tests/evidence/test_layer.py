@@ -15,35 +15,6 @@ from pipeline.evidence.prove import layer
 from viscoroll.assumptions import THICK_LIMIT
 
 
-def settlement(k: float, nu: float) -> float:
-    """-w at the top of a layer of thickness 1 under a pressure cos(k x), over (1 - nu)/(G k), by Airy's function.
-
-    F(z) cos(k x) of cosh, sinh, z cosh, z sinh: sigma_zz = -k^2 F, tau = k F', and
-    2 G k u = (1 - nu) F'' + nu k^2 F, 2 G k^2 w = (1 - nu) F''' - (2 - nu) k^2 F'.
-    """
-
-    def derivatives(z: float, order: int) -> np.ndarray:
-        plain = [np.cosh(k * z), np.sinh(k * z)]
-        at, before = (k**n * np.roll(plain, n % 2) if n >= 0 else np.zeros(2) for n in (order, order - 1))
-        return np.concatenate([at, z * at + order * before])
-
-    def along(z: float) -> np.ndarray:
-        return (1.0 - nu) * derivatives(z, 2) + nu * k**2 * derivatives(z, 0)
-
-    def down(z: float) -> np.ndarray:
-        return (1.0 - nu) * derivatives(z, 3) - (2.0 - nu) * k**2 * derivatives(z, 1)
-
-    conditions = [along(0.0), down(0.0), derivatives(1.0, 0), derivatives(1.0, 1)]
-    strengths = np.linalg.solve(conditions, [0.0, 0.0, 1.0 / k**2, 0.0])
-    return -float(down(1.0) @ strengths) / (2.0 * k**2) * k / (1.0 - nu)
-
-
-@pytest.mark.parametrize("nu", layer.RATIOS)
-def test_the_kernel_is_that_of_elasticity(nu):
-    k = np.array([0.1, 0.5, 1.0, 2.0, 5.0])
-    assert close([settlement(each, nu) for each in k], layer.kernel(k, nu), rel=tol.LAYER_KERNEL)
-
-
 @pytest.mark.parametrize("nu", layer.RATIOS)
 def test_a_thick_layer_is_a_half_space(nu):
     """f - 1 = c/(2 h^2), c the integral of (1 - L) u: the layer takes a part of the curvature."""

@@ -18,7 +18,7 @@ from refusals import refused
 import viscoroll as vr
 from viscoroll import files
 from viscoroll.cli import main
-from viscoroll.runs import engine, export_netcdf, open_summaries, read_run, run_ensemble, verify
+from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
 from viscoroll.runs.evaluate import roll_block
 from viscoroll.runs.store import Store, locked
 
@@ -240,12 +240,3 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
     assert process.returncode == 130
     kept = "interrupted: 0 of 4 blocks were made and are kept in long.zarr; the same call goes on"
     assert told.splitlines()[-1] == f"viscoroll: {kept}"
-
-
-def test_progress_in_a_log(run_file, tmp_path, monkeypatch, capsys):
-    """Without a terminal a line now and then, here after every block."""
-    monkeypatch.setattr(engine, "LINE_EVERY", 0.0)
-    run_ensemble(read_run(run_file), tmp_path / "store.zarr", threads=1, progress="lines")
-    lines = capsys.readouterr().err.splitlines()
-    assert lines[0].startswith("viscoroll: 100 of 1200 motions, 8 %, ")
-    assert lines[-1].startswith("viscoroll: 1200 of 1200 motions, 100 %, 0.0 min left")
