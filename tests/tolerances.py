@@ -4,14 +4,8 @@
 #: Units in the last place of the textbook Bessel ratios; measured 2.7 (I) and 3.6 (K, where Temme's two sums are
 #: divided).
 BESSEL_ULP = 4.0
-#: delta_star of the printed forms against the law by rows: a few roundings each; measured 1e-15.
-DIRECT_LENGTH = 2e-15
-#: beta, absolute: the rounding of epsilon (up to 6.9 at alpha = 1e4) enters Eq. (10) undiminished; measured 3.3e-15.
-DIRECT_STICK = 1e-14
 #: Q/mu, absolute: K1/K0 <= 1e3 (kappa V = 1e3) magnifies the rounding of Eq. (15)'s bracket; measured 1.1e-13.
 DIRECT_TRACTION = 4e-13
-#: kappa M, absolute: kappa V <= 1e3 magnifies the rounding of lam^2 - 1/alpha in Eq. (16); measured 1.7e-13.
-DIRECT_MOMENT = 6e-13
 #: Carter's closed forms from the printed equations at alpha = 1: same magnification as DIRECT_TRACTION.
 DIRECT_CARTER = 4e-13
 #: lam and epsilon from their limits at kappa V <= 1e-12 or >= 1e12: the limits' own error, c kappa V or
@@ -19,14 +13,6 @@ DIRECT_CARTER = 4e-13
 DIRECT_EXTREME = 1e-8
 
 # --- contact_stress.py (test_stress.py) ---
-#: Stress against Eqs. (11) and (13) as printed at 160 digits, relative to the peak: a few roundings; measured 2.4e-15.
-STRESS_PRINTED = 2e-14
-#: Closures Int p, Int tau, Int x p, relative to Int p: 26 Gauss-Legendre panels in the test; measured 1.3e-14.
-STRESS_CLOSURE = 1e-13
-#: p >= 0 and tau <= mu p hold exactly in the form used.
-STRESS_SIGN = 0.0
-#: tau at the stick edge +- 1e-12 of the contact: it leaves mu p like a square root there; measured 1.9e-6.
-STRESS_EDGE = 1e-5
 #: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
 STRESS_ELLIPSE = 1e-15
 #: Carter's shear: near the stick edge the reference's beta^2 - (..)^2 cancels; relative to mu times the peak;
@@ -59,10 +45,6 @@ INTEROP_ROLL = 1e-7
 RATIO_ULP = 2.0
 #: 1 - r and 1 - k: just below the seams x = 2 and z = 1 the difference triples the error of r and k; measured 2.8.
 RATIO_COMPLEMENT_ULP = 4.0
-#: A bin's polynomial alone, in numpy: roundings of its largest two terms; measured 1.0.
-RATIO_BIN_ULP = 2.0
-#: r', k' over |r'| + 1/(1 + x): the two terms of the Riccati equations, each rounded; measured 4e-16.
-RATIO_SLOPE = 1e-15
 
 # --- rolling_contact.py (test_contact.py) ---
 #: A state by the rows of its law against 50 digits, relative: delta_star, Q and M; measured 3e-15 over 900 states.
@@ -79,25 +61,8 @@ SPEED_LIMIT = 1e-10
 CONTINUITY_BETA = 1e-10
 #: (mu - Q)/mu at s = 1 - 1e-12: of the order of (1 - s)^2, so rounding alone.
 CONTINUITY_Q = 1e-15
-#: Falls of what must rise and excess over a bound, in units in the last place of the bound: the sum for |Q|/mu near
-#: s = 1 rounds to either side; measured 4.
-SHAPE_ULP = 5.0
-#: Slopes against 50 digits, times 1/(1 - s): dQ_ddelta and dQ_domega relative, dQ_dV over mu/V (it cancels as
-#: delta -> 0), dM_dV over c (it changes sign); measured 9e-16.
-SLOPE = 1e-14
-#: dM_dV over M/V: in the octave where 24 powers leave so much of lam; measured 3.1e-14.
-SLOPE_OF_M = 5e-14
 #: dQ_dV relative to itself at slight creep: the bound asked of all slopes.
 SLOPE_SLIGHT = 1e-10
-
-# --- one material against an alpha each (test_material_tables.py) ---
-#: Motions of one material against those of the same alpha each, at rtol 1e-9: half of the stated error of either.
-KINDS = 1e-9
-#: Many states at one alpha against 50 digits, relative, beta times 1/(1 - s): Q loses a digit where 1 - H(eta)/H(zeta)
-#: is just not yet an integral, at a tenth of delta_star; measured 8.8e-15; the documentation states 1e-13.
-SLICE = 2e-14
-#: delta_star of a table against that of one state, in units in the last place; measured 10 (alpha = 1e4).
-SLICE_STAR_ULP = 16
 
 # --- materials/law_axis.py (test_law_axis.py) ---
 #: M/V, eta/F and H/F^2 by the axis of alpha, relative; measured 4.9e-15.
@@ -105,17 +70,13 @@ AXIS_LAW = 1e-14
 #: N by the axis against the material's own, over its largest: both round; measured 4e-15.
 AXIS_UNSTEADY = 2e-14
 
-# --- contact_table.py (test_contact_each.py) ---
+# --- an alpha or a material each (test_contact.py) ---
 #: An alpha each, by the axis of alpha: lam, delta_star, M and Q, and beta times its condition; epsilon.  As asked of
 #: the axis, and of epsilon what the row of one alpha has; 400 states from 1 to 2^20 have 2.5e-15 at most.
 EACH_ALPHA, EACH_SHIFT = 1e-14, 2e-14
 #: A material each, by the grid of z, against its own table: values, as asked, which 300 random series of 1 to 16 modes
 #: hold with 6e-14; slopes, of their scale, which are those of polynomials fitted to values.
 EACH_MATERIAL, EACH_SLOPE = 1e-13, 1e-11
-
-# --- materials/law_table.py (test_law_table.py) ---
-#: M/V, eta/F and H/F^2 by a row, relative; lam and epsilon as of states (CONTACT_LENGTH, CONTACT_SHIFT).
-TABLE_LAW = 5e-15
 
 # --- scene.py (test_scene.py) ---
 #: Conversions: a few roundings of products and one square root.
@@ -139,17 +100,8 @@ MEASURED_CONTACT = 2e-15
 #: 2e-7 to 3.2e-7 of |V| (its V(3e-3) of IC1, rounded, is 0.00660030518, where the theory brief and the integrator
 #: here agree on 0.0066003062980 to 1e-12); its README says about 1e-9.
 SECTION_5_SPEED = 4e-7
-#: its delta, and lam, epsilon, beta, Q, M (relative or absolute): they follow V.
-SECTION_5_CREEP = 1e-6
-SECTION_5_STATE = 1e-6
 #: its onset: 1e-9 stated, 2.9e-9 measured on IC3.
 SECTION_5_ONSET = 4e-9
-#: its time of |V| = 1e-3: the error of V over the decay exponent.
-SECTION_5_REST = 1e-7
-#: V(3e-3) of the theory brief: printed to 11 digits.
-THEORY_V = 1e-11
-#: its onset: printed to 12 digits.
-THEORY_ONSET = 5e-12
 #: Global error over rtol: the factor the documentation promises; measured 0.14.
 MOTION_RTOL = 30.0
 #: rtol 1e-8, and hence ten times that: the accuracy promised at the default; measured 2.4e-8.
@@ -158,11 +110,6 @@ MOTION_DEFAULT = 1e-7
 MOTION_EACH = 1e-8
 #: speeds of 1 that slide to 0 at once, over rtol: observed 1.2e-5
 VANISHED = 1e-4
-#: Momentum, energy and path by quadrature at rtol 1e-10: 30 rtol, twice (both ends), and the quadrature.
-MOTION_IDENTITY = 1e-8
-#: (Q - its leading order)/(V M) on the slow manifold: the next order, V over 57 for the paper's
-#: numbers; measured 0.0075.
-MANIFOLD = 0.02
 #: The second stick of the brief's example, printed to 9 digits.
 RETURN_TIME = 3e-9
 
@@ -179,15 +126,8 @@ KOLMOGOROV = 0.01
 ENERGY_OF_PAIRS = 3e-5
 #: The two losses against the energy that there was, at rtol 1e-8; measured 4.2e-10.
 ENERGY = 3e-7
-#: mu times the path slipped, against the quadrature, at rtol 1e-8: the error of the path; measured below 1e-12.
-SLIDING_LOSS = 1e-9
 
 # --- validation (test_validation.py) ---
-#: The comparison's own integrator against roll at rtol 1e-12, relative to the speed, down to |V| = 1e-6: LSODA at
-#: 1e-13 and the noise of Q as printed; measured 1.9e-10.
-DIRECT_MOTION = 1e-9
-#: its onset time: DOP853 at 1e-12; measured 2e-13.
-DIRECT_ONSET = 1e-11
 #: Added to a field of a table, or share of a stress, that a validation must find: beyond all it allows.
 VALIDATION_WRONG = 1e-4
 
@@ -239,8 +179,6 @@ MEMORY_SLACK = 8_000_000
 # --- proofs and check values (test_prove.py) ---
 #: The accuracy asked of every field where its condition number is at most 225; measured 8.8e-15 (Q by a slice).
 PROVEN = 1e-13
-#: Elsewhere: four roundings of 2^-53 times the condition number; measured 0.75 of them in place of four.
-PROVEN_ROUNDINGS = 4.0 * 2.0**-53
 #: What the last subnormals cannot hold: a few of their spacings.
 PROVEN_SUBNORMAL = 4e-323
 
@@ -284,26 +222,13 @@ TRUNCATED = 1e-12
 COPULA = 1e-3
 #: Mean and variance against numpy's: other orders of summation of up to 1e5 numbers of size 1.
 MOMENT = 1e-12
-#: g, h, m and shares by Chebyshev polynomials where they resolve the layer at the front edge; measured 1e-14.
-CHEBYSHEV = 1e-12
 
 # --- motions in extended precision (truth/test_motions.py, evidence/test_precise.py) ---
-#: V' and omega' by central differences with a step of 1e-14, short beside the fastest rate (below 1e3 here), against
-#: 60 digits: its square; measured 1e-23.
-PRECISE_RATE = 1e-20
 #: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20.
 PRECISE_MOTION = 1e-17
 
 #: Driven ones likewise (truth/test_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
 PRECISE_DRIVEN = 1e-17
-
-# --- boundary elements (evidence/test_boundary.py) ---
-#: Errors of twice the elements fall to an eighth, once layers are resolved; measured 7.9 to 8.6.
-ELEMENTS_FALL = 6.5
-#: Errors of 100 elements a zone, of one mode; measured 3e-5 (g, which is small beside z).
-ELEMENTS = 1e-4
-#: What 50 and 100 leave when extrapolated, of three modes; and of parts of M, whose work is a sum over elements.
-ELEMENTS_FURTHER, ELEMENTS_PARTS = 1e-4, 1e-4
 
 # --- sensitivity (test_sensitivity.py) ---
 #: Sobol index of an input that a motion does not feel: sums of a thousand differences that round; measured 8e-17.
@@ -326,16 +251,8 @@ PAIR = 1e-14
 # --- materials/prony.py, kernels/rows/series.py (test_prony.py) ---
 #: One form from the other for one mode: roundings of a product or two.
 SERIES_FORMS = 1e-14
-#: Q Q^T - 1 and Q^T t - e of up to 12 modes: each entry is a product of 2 N gaps; measured 8e-15 at 29 modes.
-SERIES_ORTHOGONAL = 5e-14
 #: Relaxation from creep from relaxation: a weak mode between close times keeps fewer digits; measured 1.4e-14.
 SERIES_BACK = 1e-10
-#: Gaps between rates against 60 digits: a few roundings.
-SERIES_GAPS = 2e-15
-#: g, h and m against the matching conditions in 60 digits, relative: the bound asked; measured 2e-15.
-SERIES_FUNCTIONS = 1e-13
-#: Two modes 1e-13 apart against one.
-SERIES_SPLIT = 1e-11
 #: Another unit of time: powers of two are exact, others round the times; slopes over the largest of their parts;
 #: measured 2.9e-13 (dM_dV over M/V).
 UNIT = 1e-12
@@ -349,14 +266,10 @@ SERIES_STATES = 1e-12
 SERIES_STRESS = 1e-6
 #: Speeds at which slip returns, known to three digits from another program.
 SERIES_BANDS = 1e-3
-#: The integrator's own error beside that of a map.
-SERIES_MAP = 3e-9
 #: Moments of two bodies: sums over modes of positive terms, and one table.
 BODIES = 1e-12
 #: Central differences of M and its parts with a step of 1e-4 V, over M/V: their truncation and rounding.
 BODIES_DIFFERENCE = 1e-7
-#: Their parts of m together, by a table, against m; measured 3e-15.
-SHARES = 1e-14
 
 # --- steady rolling (test_steady.py) ---
 #: Speeds of humps against extended precision: where a slope from a table is 0; measured 2.8e-14.  The documentation
@@ -367,17 +280,11 @@ STEADY_HUMP_V = 1e-11
 STEADY = 1e-12
 #: V M'(V) over M where it should be 0.
 STEADY_FLAT = 1e-10
-#: Zeros of a parabola 1e-5 apart: rounding of the values over the slope.
-STEADY_PAIR = 1e-11
-#: The next term of a small load, over (kappa V)^2: a number of order 10.
-STEADY_SECOND_ORDER = 20.0
 #: What an equation of motion leaves at an equilibrium by the contact law, over the grip: omega is rounded, and
 #: dQ/domega some hundreds; measured 2.4e-14.
 STEADY_RESIDUAL = 1e-12
 #: beta and grip there, whose slopes grow as the grip goes; measured 5.1e-13.
 STEADY_BETA = 1e-9
-#: Eigenvalues by central differences: the truncation.
-STEADY_DIFFERENCES = 1e-3
 #: Their product against b M'/j of the contact law, their sum against its slopes; measured 4.2e-14, 4e-15.
 STEADY_DETERMINANT = 1e-11
 #: Where motions from rest end at rtol 1e-10: measured 6e-14.
@@ -390,8 +297,6 @@ STEADY_SLOW_RATE = STEADY_FAINT = 1e-4
 STEADY_CONTROLLED = 1e-9
 #: Residuals of equilibria with feedback on omega, by the contact law at a rounded omega; measured below 1e-12.
 STEADY_SCAN = 1e-10
-#: A gain of 1e-9 changes a load by that of 0.05.
-STEADY_SMALL_GAIN = 1e-6
 #: grip = 1 - |Q|/mu: rounding of Q/mu.
 STEADY_GRIP = 1e-14
 #: What goes in and what is lost, where force and torque nearly cancel; measured 2e-13.
@@ -400,14 +305,9 @@ STEADY_POWER = 1e-11
 # --- steadiness.py (test_steadiness.py) ---
 #: N, M and their integrals by splines over sixteenths of octaves, against quadrature of the law itself.
 STEADINESS = 1e-6
-#: Speed and place of a motion at the time of free rolling: it slips a little.
-STEADINESS_MOTION = 1e-3
 #: |N| (kappa V)^2 over 1 - 1/alpha: 1.3418/16 was found at most, of one mode and alpha near 100.
 STEADINESS_BOUND = 1.35 / 16.0
 # --- kernels/law/unsteady.py (test_unsteady.py) ---
-#: N against derivatives of H and H m in 50 digits, relative, and in its zeros over the part of the largest |N| below.
-UNSTEADY = 2e-11
-UNSTEADY_ZERO = 1e-2
 #: One mode as a series and as an alpha; -S_E.
 UNSTEADY_SERIES = 1e-12
 #: The first terms of its limits: kappa V T = 1e-4, and 1e4 times the speed of the fastest mode.
@@ -429,8 +329,6 @@ DMA_WINDOW = (0.009, 0.006)
 #: M inside that window at the same load, though neither alpha nor E is seen; measured 7.6 % (six seeds, four of
 #: them below 4.1 %).
 DMA_WINDOW_MOMENT = 0.1
-#: Two fits of data that differ by a factor in frequency or modulus: paths of the iterations that round otherwise.
-DMA_SCALED = 1e-6
 #: The same sums, and shifts given, once more: a few roundings.
 DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
@@ -451,8 +349,6 @@ SI_TILTED = 3e-11
 SI_ENERGY = 1e-8
 #: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8; measured 5e-14.
 SI_TERMINAL = 1e-11
-#: Slopes against central differences of a step 1e-5 of the speed: the square of the step, and rounding over it.
-SI_SLOPE = 1e-5
 #: Trapezoids over 2e4 points, square roots at both ends of the contact: (2/2e4)^1.5.
 SI_INTEGRAL = 1e-5
 #: Motions of an ensemble against roll at rtol 1e-8: equal steps, other rounding of inputs.
@@ -464,16 +360,10 @@ SI_ENSEMBLE = 1e-9
 RUN_SI = 1e-8
 
 # --- driven motions (motion/test_drive.py) ---
-#: Works against energies at rtol 1e-10 and 1e-11, over the largest of them.
-DRIVE_BALANCE = 1e-8
 #: The general method against that of free motions, both at 1e-10.
 DRIVE_FREE = 3e-9
-#: A sine from a table of 10^3 points a period: h^2/8 of the second derivative.
-DRIVE_TABLE = 2e-4
 #: Q next to V = 0, a share of 1e-9 of the time away from it.
 DRIVE_TURN = 1e-6
-#: Inertia 1e9 in place of an infinite one.
-DRIVE_HEAVY = 1e-7
 
 # --- examples of the bound law (docs/test_examples.py) ---
 #: V and omega by SciPy's Radau at rtol 1e-8 against roll; measured 3.7e-10.
@@ -494,21 +384,12 @@ TRANSIENT_M = 2e-3
 TRANSIENT_ERROR = 6e-3
 
 # --- a layer on something rigid (evidence/test_layer.py) ---
-#: L by four equations of Airy's function; measured 3e-13, where cosh and sinh of 5 cancel.
-LAYER_KERNEL = 1e-11
 #: f - 1 at h = 100 half-widths against its first term, c/(2 h^2): the next is of h^-4.
 LAYER_THICK = 1e-3
 #: Half-width of a thin layer over that of its limit, from h = 0.08 and 0.04 extrapolated to 0; measured 7e-4.
 LAYER_THIN = 2e-3
-#: 15 points of collocation against 31, at the thinnest; measured 1.3e-5.
-LAYER_POINTS = 3e-5
 #: The file keeps three digits.
 LAYER_KEPT = 5e-3
-
-# --- kernels/motion/events.py (tests/kernels/motion/test_events.py) ---
-#: v where a straight line through the nodes of a panel passes 0: its interpolant in powers of t rounds at 2^-53 of the
-#: terms of its coefficients, 1,800 together; measured 4.8e-14 over 4,000 places.
-EVENT_PLACE = 2e-13
 
 # --- fmu/test_fmu.py ---
 #: A few roundings of the last place.
@@ -538,8 +419,6 @@ CALLABLE_SHARE = 0.2
 CALLABLE_FOOT, CALLABLE_ROUNDING = 1e-6, 5e-10
 #: Balance of the late creep's traction, of which rounding is left where V has died out; measured 4e-16.
 LATE_CREEP = 1e-14
-#: Place of a corner between two straight lines.
-CALLABLE_CORNER = 1e-13
 #: Steps of motions under callables, up to 330; those from rest once took 100,000.
 CALLABLE_STEPS = 500
 #: Tables of 4,000 to 10,000 values: h^2/8 of the second derivative.

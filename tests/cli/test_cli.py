@@ -385,17 +385,6 @@ def test_tables_law(run, here):
     assert vr.load_law("law.nc", alpha=11.0).material == 11.0
 
 
-def test_a_law_for_a_material(run, here):
-    """As a section of a scene file takes it: the digits are those of the material itself."""
-    (here / "rubber.toml").write_text(ONE)
-    run("tables", "law", "rubber.toml", "-o", "rubber.nc")
-    cylinder = "[cylinder]\nR = 0.1\nm = 30.0\nmu = 0.3\n"
-    (here / "own.toml").write_text(ONE + cylinder)
-    (here / "law.toml").write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
-    argv = ["--V", "0.1:1:4:log", "--delta", "1e-3", "--format", "json"]
-    assert run("contact", "law.toml", *argv) == run("contact", "own.toml", *argv)
-
-
 def test_tables_build_and_export(run, here):
     (here / "s.toml").write_text(SCENE)
     assert run(*GRID.split(), "s.toml", "--alpha", "1,11", "-o", "t.nc").startswith("t.nc: ")

@@ -152,16 +152,6 @@ def test_rest(rest):
     assert close(mapped.angle, rolled.angle, rel=tol.FLOW_PATH, scale=5e-8)
 
 
-def test_long_life():
-    """V falls like exp(-t c/(1 + j)) through the subnormals to 0, and the distance stays."""
-    t = np.array([1.0, 100.0, 700.0, 800.0, 1e6, 1e12]) * decay_time(SCENE)
-    mapped = vr.ensemble(SCENE, [1.0], [1.0], t, method="flow")
-    assert mapped.flow.all()
-    assert close(mapped.V[0, 2] / mapped.V[0, 1], np.exp(-600.0), rel=tol.FLOW_PATH)
-    assert mapped.V[0, 3] == mapped.V[0, -1] == 0.0
-    assert mapped.x[0, 2] == mapped.x[0, 3] == mapped.x[0, -1]
-
-
 def test_scenes_without_a_map_are_integrated():
     for scene, why in (
         (SCENE.replace(alpha=1.0), "elastic"), (SCENE.replace(mu=0.01), "resistance"),

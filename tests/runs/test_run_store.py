@@ -10,16 +10,13 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
-import xarray as xr
 from refusals import refused
 
 import viscoroll as vr
 from viscoroll import files
 from viscoroll.cli import main
 from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
-from viscoroll.runs.evaluate import roll_block
 from viscoroll.runs.store import Store, locked
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -77,21 +74,6 @@ def test_one_thread_gives_the_same_files(run_file, tmp_path, whole):
     run_ensemble(read_run(run_file), tmp_path / "one.zarr", threads=1)
     assert content(tmp_path / "one.zarr") == content(whole)
     assert verify(whole).ok
-
-
-def test_the_store_is_what_was_rolled(whole):
-    blocks = [roll_block(read_run(whole.parent / "run.toml"), block)[1] for block in range(12)]
-    with xr.open_zarr(whole, group="motions", chunks=None) as motions:
-        assert motions.V.dims == ("motion", "t")
-        assert motions.status.dtype == np.int8
-        assert motions.mu.attrs["long_name"] == "coefficient of friction"
-    summaries = open_summaries(whole)
-    V, status = (np.concatenate([getattr(block, name) for block in blocks]) for name in ("V", "status"))
-    assert summaries.V_counted.values[1] == np.isfinite(V[:, 1]).sum()
-    assert summaries.V_max.values[0] == V[:, 0].max()
-    assert summaries.ended.values.tolist()[:2] == [(status == 0).sum(), (status == 1).sum()]
-    assert (summaries.attrs["run_file"], summaries.attrs["seed"]) == (RUN, 3)
-    assert "numpy" in summaries.attrs["versions"]
 
 
 def test_damaged_motions_are_not_exported(tmp_path, whole):

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
-from closeness import close
 
 import viscoroll as vr
 from viscoroll.validation import Check, Report, report_dataset, stresses, validate
-from viscoroll.validation.direct_motion import roll_direct
 from viscoroll.validation.motions import motion_checks
 from viscoroll.validation.states import random_state_checks, random_states
 
@@ -104,15 +102,3 @@ def test_wrong_scene_is_found(monkeypatch, module):
     else:
         monkeypatch.setattr(motions, "roll", lambda scene, *a, **o: vr.roll(other(scene), *a, **o))
         assert not any(check.passed for check in motion_checks(10))
-
-
-@pytest.mark.parametrize("start", vr.presets.PAPER_STARTS)
-def test_direct_motion_against_the_tightest_roll(start):
-    scene, speeds = vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.PAPER_STARTS[start]
-    end = vr.roll(scene, *speeds, np.array([1.0]), rest=1e-6).rest_time
-    best = vr.roll(scene, *speeds, np.linspace(0.0, end, 50), rtol=1e-12)
-    direct = roll_direct(scene, *speeds, best.t)
-    size = np.maximum(np.abs(best.V), np.abs(best.omega))
-    assert np.max(np.abs(direct.V - best.V) / size) < tol.DIRECT_MOTION
-    assert np.max(np.abs(direct.omega - best.omega) / size) < tol.DIRECT_MOTION
-    assert close(direct.onset_time, best.onset_time, rel=tol.DIRECT_ONSET)

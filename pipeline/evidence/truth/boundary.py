@@ -137,7 +137,7 @@ def contact(p: Prony, z: float, eta: float, count: int = 100) -> Boundary:
     Returns
     -------
     Boundary
-        Off by what falls with the power 2 of 1/count and more (``tests/evidence/test_boundary.py``).
+        Off by what falls with the power 2 of 1/count and more.
     """
     edge = z - 2.0 * eta
     behind, middle_behind = graded(-z, edge, count)
