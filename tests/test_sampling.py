@@ -43,3 +43,12 @@ def test_a_sample_feeds_an_ensemble():
     drawn = sample(8, seed=5, design="sobol", V0=stats.uniform(0.5, 1.0), omega0=0.5, mu=stats.uniform(0.1, 0.2))
     result = vr.ensemble(vr.presets.PAPER_SECTION_5.replace(mu=drawn["mu"]), drawn["V0"], drawn["omega0"], [0.0, 3e-3])
     assert result.messages() == {vr.MotionStatus.DONE.message: 8}
+
+
+def test_a_generator_in_place_of_a_seed():
+    """As SciPy takes it: it moves on, and what was drawn can be drawn again by its seed."""
+    generator = np.random.default_rng(7)
+    one, other = (sample(4, rng=generator, V0=stats.uniform()) for _ in range(2))
+    assert not np.array_equal(one["V0"], other["V0"])
+    assert np.array_equal(one["V0"], sample(4, rng=7, V0=stats.uniform())["V0"])
+    assert np.array_equal(one["V0"], sample(4, seed=one.seed, V0=stats.uniform())["V0"])

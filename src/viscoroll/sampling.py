@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .checks import checked, number
-from .errors import ParameterError, unknown
+from .errors import ParameterError, one_of, unknown
 
 Design = Literal["random", "latin", "sobol"]
 #: no design draws a point closer to 0 or 1 than this
@@ -52,13 +52,14 @@ class Sample(Mapping[str, NDArray]):
         return len(self.columns)
 
 
-def sample(n: int, seed: int, design: Design = "random", **quantities: Any) -> Sample:
+def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: Any = None, **quantities: Any) -> Sample:
     """Draw n values of each named quantity, independent of each other.
 
     Parameters
     ----------
     n : number of draws, >= 1; powers of two suit "sobol".
     seed : whole number >= 0, below 2^63, kept in the result.
+    rng : in place of a seed, which is drawn from it: a numpy.random.Generator, or what makes one.
     design : "random", "latin" (hypercube) or "sobol" (scrambled); the draws are those of a run file of one block.
     **quantities : a number, or a frozen scipy.stats distribution, e.g.
         ``V0=scipy.stats.uniform(-1, 2)``; drawn through its inverse CDF.
@@ -71,13 +72,18 @@ def sample(n: int, seed: int, design: Design = "random", **quantities: Any) -> S
     Raises
     ------
     ParameterError
-        Bad n, seed or design, a quantity that is neither, a distribution without a median, a draw that overflows.
+        Bad n, seed or design, both or neither of seed and rng, a quantity that is neither a number nor a distribution,
+        a distribution without a median, a draw that overflows.
 
     Notes
     -----
     The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
     strata of every quantity, for "sobol" where n is a power of two (``tests/test_sampling.py``).
     """
+    if (seed is None) == (rng is None):
+        raise one_of("seed", "rng", both=rng is not None)
+    if seed is None:
+        seed = int(np.random.default_rng(rng).integers(2**63))
     for name, value, low, high in (("n", n, 1, 10**12), ("seed", seed, 0, 2**63 - 1)):
         if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
             raise ParameterError(name, value, f"a whole number in [{low}, {high}]")

@@ -346,11 +346,11 @@ def test_steady_states_as_rows(run):
 
 
 def test_roll_text(run, here):
-    out = run("roll", *START, "--t", "3e-3")
-    motion = vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 3e-3)
+    out = run("roll", *START, "--t", "0:3e-3:9")
+    motion = vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, np.linspace(0.0, 3e-3, 9))
     assert out.startswith(f"{motion}\n")
     assert len(out.splitlines()) == len(str(motion).splitlines()) + 2 + motion.t.size
-    assert run("roll", *START, "--t", "3e-3", "-o", "m.txt") == f"{motion}\n"
+    assert run("roll", *START, "--t", "0:3e-3:9", "-o", "m.txt") == f"{motion}\n"
     assert (here / "m.txt").read_text() == out
 
 

@@ -145,8 +145,11 @@ def test_rest_is_where_the_faster_of_both_is_as_slow():
 
 
 def test_times_of_output():
-    """The steps taken, those asked for, none at all; and others later, by the same motion."""
-    whole = vr.roll(ROUNDED, 1.5, 0.5, 2e-3)
+    """One time is the state there, as of an ensemble; those asked for, the steps taken, and others later."""
+    last = vr.roll(ROUNDED, 1.5, 0.5, 2e-3)
+    assert last.t.tolist() == vr.ensemble(ROUNDED, 1.5, 0.5, 2e-3).t.tolist() == [2e-3]
+    whole = last.course
+    assert whole.V[-1] == last.V[0]
     assert (whole.t[0], whole.t[-1]) == (0.0, 2e-3)
     assert np.all(np.diff(whole.t) > 0.0)
     assert whole.onset_time in whole.t

@@ -85,7 +85,7 @@ def test_from_rest_and_to_it():
 )
 def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
-        m = vr.roll(scene, V0, V0, 100.0, unsteady=True)
+        m = vr.roll(scene, V0, V0, 100.0, unsteady=True).course
     assert m.status == vr.MotionStatus.UNSTEADY
     reached = m.regime >= 0
     assert reached.tolist() == [True] * (m.t.size - 1) + [False]

@@ -21,7 +21,7 @@ def add_commands(commands: Any) -> None:
     add_scene(parser)
     parser.add_argument("--V0", type=number, required=True, help="start velocity of the axis")
     parser.add_argument("--omega0", type=number, required=True, help="start angular velocity")
-    parser.add_argument("--t", type=numbers, required=True, help=f"one end time, or output times: {NUMBERS}")
+    parser.add_argument("--t", type=numbers, required=True, help=f"output times: {NUMBERS}")
     parser.add_argument("--rtol", type=number, default=1e-8, help="relative tolerance in [1e-12, 1e-2] (default 1e-8)")
     parser.add_argument("--unsteady", action="store_true", help="with the added mass of rolling that is not steady")
     parser.add_argument(

@@ -167,7 +167,7 @@ class Ensemble(Shown):
             return unit_of(attributes(name, self.scale.si))
 
         ends = [Row("ended", f"{count}: {message}") for message, count in self.messages().items()]
-        rows = [Row("t", f"{self.t.size} times to {self.t[-1]:.6g}", unit("t"))]
+        rows = [Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", unit("t"))]
         for name in ("V", "omega", "x"):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]

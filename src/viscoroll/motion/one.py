@@ -24,10 +24,15 @@ from .driven import ROWS, Drive
 from .rolling import Inputs, rolled
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     import xarray as xr
+    from matplotlib.figure import Figure
 
 #: changes of regime that are kept
 _SWITCHES_KEPT = 1000
+#: room for the ends of steps at first
+_STEPS = 1000
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
 
 
@@ -188,7 +193,7 @@ class Motion(Shown):
         def unit(name: str) -> str:
             return unit_of(attributes(name, self.scale.si))
 
-        rows = [Row("t", f"{self.t.size} times to {self.t[-1]:.6g}", unit("t"))]
+        rows = [Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", unit("t"))]
         rows += [Row(name, _course(self.t, getattr(self, name)), unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
             rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", unit(name)))
@@ -226,6 +231,29 @@ class Motion(Shown):
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
         return integrated(self._inputs, times, self.roller, self.drive)
 
+    @cached_property
+    def course(self) -> Motion:
+        """The same motion at 0, at the ends of its steps, at places between them, and at its end."""
+        ends, end, most = np.empty(0), self._inputs.end, self._inputs.limits[2]
+        while ends.size < most and not np.isnan(ends).any():  # full: there may be more
+            ends = np.full(min(max(4 * ends.size, _STEPS), most), np.nan)
+            rolled(self._inputs, np.array([end]), (np.empty((0, 2)), ends))
+        return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+        """Draw it, all of it where it was asked for at one time; a figure of matplotlib.
+
+        Parameters
+        ----------
+        path : a file to save it in, of a suffix that matplotlib knows; default: none is written.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written, or its suffix names no format.
+        """
+        return Shown.plot(self if self.t.size > 1 else self.course, path)
+
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
         from .export import motion_dataset
@@ -236,7 +264,7 @@ class Motion(Shown):
 def integrated(inputs: Inputs, times: NDArray, roller: Rolls, drive: Drive) -> Motion:
     """The motion at ``times``, up to its end, in the units of what rolled."""
     scale = roller.scale
-    T, at = scale["t"], times / scale["t"]
+    T, at = scale["t"], np.minimum(times / scale["t"], inputs.end)
     asked = at if at[-1] == inputs.end else np.append(at, inputs.end)
     switches = np.empty((_SWITCHES_KEPT, 2))
     switches.fill(np.nan)

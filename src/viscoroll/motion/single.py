@@ -7,9 +7,6 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..checks import number
 from ..drive import Feedback, Schedule, over
 from ..errors import ParameterError
@@ -18,13 +15,10 @@ from ..typed import Numbers
 from .checks import controls, in_words, output_times, refuse_many, start_speeds
 from .driven import Drive
 from .one import Motion, integrated
-from .rolling import Inputs, rolled
+from .rolling import Inputs
 from .unsteady import refuse_unlike, time_of_rest
 from .warned import look
 
-#: room for the ends of steps at first
-_STEPS = 1000
-_NO_SWITCHES = np.empty((0, 2))
 #: a function of time
 Course = float | Schedule | Callable[[float], float]
 Acting = Course | Feedback
@@ -55,7 +49,7 @@ def roll(
     roller : a :class:`Scene`; or a :class:`Cylinder`, in SI units per m of its length: s, m/s, rad/s, m, N, N m, J.
         One, no arrays.
     V0, omega0 : start speeds, any sign; the larger of the two 0, or in [1e-300, 1e100] R/T_ref.
-    t : output times, ascending, or one end time: then output falls on the steps taken.
+    t : output times, ascending; one number: the final state only, and ``course`` of the result is the whole motion.
     rtol : tolerance in [1e-12, 1e-2]; the global relative error of x and the switch times is
         proportional to it, that of V and omega too, times t |V'|/|V|, by which a late
         speed magnifies any earlier error: mostly below rtol, at most 30 rtol on the scenes
@@ -140,8 +134,6 @@ def roll(
             refuse_unlike(scene)
         look(scene, *map(float, speeds), driven=drive.acts or unsteady)
         inputs = Inputs(scene, *starts, end, limits, drive.over(scale), unsteady, rest_before)
-        if np.ndim(t) == 0:
-            times = np.append(_step_times(inputs)[:-1] * scale["t"], times)
         motion = integrated(inputs, times, roller, drive)
     except ParameterError as error:
         raise in_words(error, scale) from error
@@ -158,12 +150,3 @@ def _refuse_many(roller: Any) -> None:
     refuse_many(
         **{"load" if field.name == "pressed" else field.name: getattr(roller, field.name) for field in fields(roller)}
     )
-
-
-def _step_times(inputs: Inputs) -> NDArray:
-    """0, the ends of the steps and places between them, and the end time."""
-    ends, end = np.empty(0), inputs.end
-    while ends.size < inputs.limits[2] and not np.isnan(ends).any():  # full: there may be more
-        ends = np.full(min(max(4 * ends.size, _STEPS), inputs.limits[2]), np.nan)
-        rolled(inputs, np.array([end]), (_NO_SWITCHES, ends))
-    return np.unique(np.concatenate(([0.0], ends[ends < end], [end])))

@@ -15,9 +15,9 @@ import viscoroll as vr
 scene, radius = vr.presets.PAPER_SECTION_5, 2.0
 angles = (np.arange(24) + 0.5) * np.pi / 12.0
 starts = [(radius * np.cos(a), radius * np.sin(a)) for a in angles]
-motions = [vr.roll(scene, *start, 60.0 / scene.gamma) for start in starts]
+motions = [vr.roll(scene, *start, 60.0 / scene.gamma).course for start in starts]
 rest = vr.roll(scene, 2.5, 2.5, 1e6 / scene.gamma, rest=1e-3).rest_time
-rolling = vr.roll(scene, 2.5, 2.5, rest)
+rolling = vr.roll(scene, 2.5, 2.5, rest).course
 late = rolling.t > 0.05 / scene.gamma  # the first panel leads onto the manifold
 
 V = np.linspace(-2.5, 2.5, 801)
