@@ -30,7 +30,7 @@ _STATES, _SLOPES, _MOTION, _DRIVEN = (
     claims("motion"),
     claims("check_driven"),
 )
-_DIRECT, _STEADY, _BOUND = "tests/validation/test_validation.py", "tests/test_steady.py", "tests/test_bound_law.py"
+_DIRECT, _STEADY, _BOUND = "tests/kernels/printed/test_direct.py", "tests/test_steady.py", "tests/test_bound_law.py"
 _DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_hard_motions.py"
 
 LAW = [

@@ -1,4 +1,4 @@
-"""Method "direct" of contact() beyond what ``vr.validate`` compares: its Bessel ratios, its limits, its roots."""
+"""Method "direct" of contact(): as the table where ``validate`` compares them; its Bessel ratios, limits and roots."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pipeline.evidence.prove.ratios import points, ulps
 from pipeline.evidence.truth import enclosures
 from viscoroll.kernels.printed.bessel import ratio_i, ratio_k0k1
 from viscoroll.kernels.printed.law import NOT_CONVERGED, direct_contact_length
+from viscoroll.validation.states import random_state_checks
 
 KAPPA, MU = 2.91, 0.2
 #: along three axes: alpha, kappa V, |delta|/delta_star
@@ -26,6 +27,10 @@ def test_bessel_ratios():
         for ratio, exact in ((ratio_i, enclosures.ratio_r), (ratio_k0k1, enclosures.ratio_k)):
             for x in [*seams, *points(400, 20)[-400:].tolist()]:
                 assert ulps(ratio(x), exact(flint.arb(x))) <= tol.BESSEL_ULP, x
+
+
+def test_as_the_table():
+    assert [check for check in random_state_checks(2000, 3) if not check.passed] == []
 
 
 def test_carter():
