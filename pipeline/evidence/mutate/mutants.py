@@ -117,14 +117,14 @@ DRIVE = [
     ("motion/rates.py", "per_both * (force + torque - M_half_space - M_cylinder)", "per_both * (force + torque - M_half_space + M_cylinder)", _DRIVEN),
     ("motion/load.py", "if by_omega or frame.locked else 1.0 / case.scene.j", "if by_omega else 1.0 / case.scene.j", _DRIVE),
     ("motion/nodes.py", "weight * (force * speed), weight * (torque * omega)", "weight * (force * speed), weight * (torque * speed)", _DRIVEN),
-    ("motion/nodes.py", "weight * ((omega - speed) * Q)", "weight * (omega * Q)", _DRIVEN),
+    ("motion/nodes.py", "weight * ((omega - speed) * rates.Q)", "weight * (omega * rates.Q)", _DRIVEN),
     ("motion/switch.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
     ("motion/switch.py", "Frame(slips, -direction, -sigma, -spin, locked)", "Frame(slips, -direction, sigma, -spin, locked)", _EVENTS),
     ("motion/origin.py", "* per - d * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVEN),
     ("motion/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/motion/test_drive_events.py"),
     ("motion/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):", "if found == NO_EVENT and behind and not frame.slips:", _EVENTS),
     ("motion/phase.py", "kinked = behind and (not frame.slips or found == EDGE or found == SLOW)", "kinked = behind and not frame.slips", "tests/motion/test_drive_events.py"),
-    ("motion/solve.py", "slowest = min(slowest, abs(nodes[SLOPE + i + 1]))", "slowest = abs(nodes[SLOPE])", _EVENTS),
+    ("motion/solve.py", "slowest = min(slowest, abs(nodes[SLOPE + i]))", "slowest = abs(nodes[SLOPE])", _EVENTS),
 ]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
 COEFFICIENTS = [

@@ -161,9 +161,19 @@ def _pipelines() -> tuple[type, type]:
         """IR of all parts below, optimised and compiled together."""
 
         def finalize(self) -> None:
-            _link(self, self._final_module)
+            module = self._final_module
+            own = {function.name for function in module.functions if not function.is_declaration}
+            _link(self, module)
+            for function in module.functions:  # nobody else calls the parts: what they are not asked for is left out
+                if not function.is_declaration and function.name not in own:
+                    function.linkage = "internal"
             self._linking_libraries = []
             super().finalize()
+
+        def _optimize_final_module(self) -> None:
+            """Once: numba works twice through a module, to find references to leave out, which parts do not count."""
+            manager, builder = self._codegen._module_pass_manager(opt=2)
+            manager.run(self._final_module, builder)
 
         def _verify_declare_only_symbols(self) -> None:
             """What is missing ends the process when LLVM links; _ZN begins the names of all that numba compiles."""

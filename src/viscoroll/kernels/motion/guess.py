@@ -7,9 +7,10 @@ import numpy as np
 from ..compile.jit import kernel
 from .collocation import SHARES, N, rise_at
 from .load import load_at
-from .nodes import OF_SECOND, OF_V, RATE, SECOND, SPEED, V_RATE, V, time_at
+from .nodes import DIAGONAL, OF_SECOND, OF_V, RATE, SECOND, SPEED, V_RATE, V, time_at
 from .origin import departing
-from .rates import rates_at
+from .rates import rates_of
+from .records import State
 
 #: how far beyond the end of a panel its interpolants are followed, over its length
 _REACH = 1.5
@@ -28,9 +29,7 @@ def guess(panel, slope, track, frame, case):
     alike = panel.tau > track.tau or panel.length > _SHORT * track.length
     if alike and track.length > 0.0 and panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
         _follow(panel, track, frame, case.work)
-    elif frame.slips and case.work.nodes[SPEED] == 0.0:
-        _slide_out(panel, frame, case)
-    elif panel.known:
+    elif panel.known and case.work.nodes[SPEED] > 0.0:
         _set_out(panel, slope, frame, case.work.nodes)
     else:
         _set_out_from_rest(panel, frame, case)
@@ -61,41 +60,34 @@ def _follow(panel, track, frame, work):
         _keep(i, speed + rise_at(v, powers, OF_V), second + rise_at(v, powers, OF_SECOND), frame.slips, nodes)
 
 
+@kernel(inline=True)
+def _lasting(slope, since):
+    """How long a pace that relaxes with this slope would have had to last."""
+    return np.expm1(slope * since) / slope if slope < 0.0 and slope * since < -1e-8 else since
+
+
 @kernel
 def _set_out(panel, slope, frame, nodes):
-    """Unknowns at the nodes: V at its pace, the other on its way to where it comes to stand."""
-    pace = nodes[RATE] if frame.slips else nodes[RATE] / nodes[V]
+    """Unknowns at the nodes: on their way to where they come to stand, V if it falls."""
+    pace, fall = nodes[RATE] if frame.slips else nodes[RATE] / nodes[V], nodes[DIAGONAL] if nodes[V_RATE] < 0.0 else 0.0
     for i in range(1, N + 1):
         since = panel.length * (SHARES[i] if panel.power == 1 else SHARES[i] ** panel.power)
-        lasting = np.expm1(slope * since) / slope if slope < 0.0 and slope * since < -1e-8 else since
-        _keep(i, nodes[V] + nodes[V_RATE] * since, nodes[SECOND] + pace * lasting, frame.slips, nodes)
+        speed = nodes[V] + nodes[V_RATE] * _lasting(fall, since)
+        _keep(i, speed, nodes[SECOND] + pace * _lasting(slope, since), frame.slips, nodes)
 
 
 @kernel
 def _set_out_from_rest(panel, frame, case):
-    """Unknowns at the nodes from V = 0 in partial slip on, where d follows the drive and V may start at no pace."""
+    """Unknowns at the nodes from V = 0 on, where speeds may start at no pace and follow the drive, as d does."""
     nodes = case.work.nodes
-    load = load_at(panel.tau + panel.length, panel.piece, frame, case)
-    sticks, d = departing(load, frame.spin, case.scene)
-    if not sticks:
-        d = nodes[SECOND]
-    rates = rates_at(0.0, d, load, frame, case.scene)
-    late = max(rates.p_rate / rates.p_V, 0.0)
+    load, d = load_at(panel.tau + panel.length, panel.piece, frame, case), 0.0
+    if not frame.slips:
+        sticks, d = departing(load, frame.spin, case.scene)
+        d = d if sticks else nodes[SECOND]
+    rates = rates_of(State(0.0, d), load, frame, case.scene)
+    late = rates.V_rate if frame.slips else max(rates.p_rate / rates.p_V, 0.0)
     for i in range(1, N + 1):
-        share = SHARES[i]
-        mean = nodes[V_RATE] + 0.5 * share * (late - nodes[V_RATE])
-        _keep(i, mean * share * panel.length, nodes[SECOND] + share * (d - nodes[SECOND]), False, nodes)
-
-
-@kernel
-def _slide_out(panel, frame, case):
-    """Unknowns at the nodes from V = omega = 0 in full slip on, where speeds may start at no pace and follow the
-    drive."""
-    nodes = case.work.nodes
-    load = load_at(panel.tau + panel.length, panel.piece, frame, case)
-    late = rates_at(0.0, 0.0, load, frame, case.scene)
-    for i in range(1, N + 1):
-        share, since = 0.5 * SHARES[i], SHARES[i] * panel.length
-        V_rate = nodes[V_RATE] + share * (late.V_rate - nodes[V_RATE])
-        rate = nodes[RATE] + share * (late.rate - nodes[RATE])
-        _keep(i, V_rate * since, rate * since, True, nodes)
+        since, half = SHARES[i] * panel.length, 0.5 * SHARES[i]
+        rise = (nodes[RATE] + half * (rates.rate - nodes[RATE])) * since
+        second = rise if frame.slips else nodes[SECOND] + SHARES[i] * (d - nodes[SECOND])
+        _keep(i, (nodes[V_RATE] + half * (late - nodes[V_RATE])) * since, second, frame.slips, nodes)

@@ -13,9 +13,9 @@ from .collocation import WIDE
 from .load import brakes, goes_on, piece_end, threshold, undriven
 from .nodes import INTERPOLANTS, NUMBERS, ONES, PATHS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
-from .output import coast, put_here, put_still, regime_of, speeds
+from .output import coast, put_here, put_still, regime_of
 from .phase import creeps, phase
-from .rates import creep_limit, room
+from .rates import creep_limit, room, speeds
 from .records import (
     DONE,
     EDGE,

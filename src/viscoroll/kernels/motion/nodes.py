@@ -8,20 +8,19 @@ from typing import NamedTuple
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, WIDE, N
 from .load import FUNCTIONS, load_of, needed, values_at, varies
-from .rates import edge
-from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN
+from .rates import edge, rates_of, speeds
+from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN, State
 
-#: rows of the values at the nodes: unknowns; rates of p and of the second, and of V at node 0; speed scale, Q and parts
-#: of M, omega; p, its inverse slope in V, its slope in the second unknown, what a change of p adds to the equation of
-#: that; slope at which the second unknown relaxes
-V, SECOND, P_RATE, RATE, V_RATE, SPEED, OF_OMEGA, OF_Q, OF_HALF_SPACE, OF_CYLINDER = (WIDE * n for n in range(10))
-P, PER_P, P_SECOND, COUPLED, SLOPE = (WIDE * n for n in range(10, 15))
+#: rows of the values at the nodes: unknowns; rates of p and of the second, and of V at node 0; speed scale; p, its
+#: inverse slope in V, its slope in the second unknown, what a change of p adds to the equation of that; slope at which
+#: the second unknown relaxes
+V, SECOND, P_RATE, RATE, V_RATE, SPEED, P, PER_P, P_SECOND, COUPLED, SLOPE = (WIDE * n for n in range(11))
 #: of Newton's iteration: slopes of the interpolants of p and of the second unknown, right sides and changes of either;
 #: weights of its equation; what both diagonals are less than those of the slopes; what a change of d adds to V'
-P_SLOPE, SECOND_SLOPE, RIGHT, SECOND_RIGHT, CHANGE, SECOND_CHANGE = (WIDE * n for n in range(15, 21))
-ONES, WEIGHTS, DIAGONAL, SECOND_DIAGONAL, FED = (WIDE * n for n in range(21, 26))
+P_SLOPE, SECOND_SLOPE, RIGHT, SECOND_RIGHT, CHANGE, SECOND_CHANGE = (WIDE * n for n in range(11, 17))
+ONES, WEIGHTS, DIAGONAL, SECOND_DIAGONAL, FED = (WIDE * n for n in range(17, 22))
 #: integrands of the path: x, angle, work of force and of torque, losses in the brake, in slip and in rolling
-PATH, PATHS = WIDE * 26, 7
+PATH, PATHS = WIDE * 22, 7
 #: functions of events, and the drive
 EVENT = PATH + WIDE * PATHS
 DRIVE = EVENT + WIDE * EVENTS
@@ -87,9 +86,7 @@ def load_there(i, frame, case):
 def put_node(i, rates, weight, nodes):
     """Keep what the equations say at node i, rates times ``weight``."""
     nodes[P_RATE + i], nodes[RATE + i] = weight * rates.p_rate, weight * rates.rate
-    nodes[P + i], nodes[OF_OMEGA + i], nodes[OF_Q + i] = rates.p, rates.omega, rates.Q
-    nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i] = rates.M_half_space, rates.M_cylinder
-    nodes[SPEED + i] = max(abs(nodes[V + i]), abs(rates.omega))
+    nodes[P + i], nodes[SPEED + i] = rates.p, max(abs(nodes[V + i]), abs(rates.omega))
 
 
 @kernel(inline=True)
@@ -102,28 +99,34 @@ def may_end(event, panel, frame):
     return frame.locked if event == FREED else event != SLOW or panel.rest > 0.0
 
 
+@kernel
+def acting_at(i, frame, case):
+    """(The equations at node i, by its unknowns as they are now; force, torque, brake)."""
+    state, load = State(case.work.nodes[V + i], case.work.nodes[SECOND + i]), load_there(i, frame, case)
+    rates = rates_of(state, load, frame, case.scene)
+    moments = rates.Q, rates.M_half_space, rates.M_cylinder
+    return rates, needed((state.V, rates.omega), moments, load, frame, case.scene.j)
+
+
 @kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
     nodes = case.work.nodes
     for i in range(N + 1):
-        nodes[EVENT + WIDE * TURN + i] = nodes[V + i]
-        nodes[EVENT + WIDE * EDGE + i] = edge(nodes[V + i], nodes[SECOND + i], frame, case.scene)
+        speed, second = nodes[V + i], nodes[SECOND + i]
+        nodes[EVENT + WIDE * TURN + i] = speed
+        nodes[EVENT + WIDE * EDGE + i] = edge(speed, second, frame, case.scene)
         if not frame.slips:
-            nodes[EVENT + WIDE * KINK + i] = frame.sigma * nodes[SECOND + i] + FAINT
-        if frame.spin != 0.0:
-            omega, speed = nodes[OF_OMEGA + i], nodes[V + i]
+            nodes[EVENT + WIDE * KINK + i] = frame.sigma * second + FAINT
+        if frame.spin != 0.0 or panel.rest > 0.0:
+            omega, delta = speeds(State(speed, second), frame, case.scene)
             # in partial slip omega vanishes with V, which is another event, and by its own
-            nodes[EVENT + WIDE * STOP + i] = frame.spin * (
-                omega if frame.slips else omega / speed if speed > 0.0 else 1.0
-            )
-        if panel.rest > 0.0:
-            nodes[EVENT + WIDE * SLOW + i] = nodes[SPEED + i] - panel.rest
+            stops = omega if frame.slips else 1.0 + delta if speed > 0.0 else 1.0
+            nodes[EVENT + WIDE * STOP + i] = frame.spin * stops
+            nodes[EVENT + WIDE * SLOW + i] = max(abs(speed), abs(omega)) - panel.rest
         if frame.locked:  # of squares: smooth where what the brake takes changes its sign
-            load = load_there(i, frame, case)
-            moments = nodes[OF_Q + i], nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i]
-            _, _, brake = needed((nodes[V + i], nodes[OF_OMEGA + i]), moments, load, frame, case.scene.j)
-            nodes[EVENT + WIDE * FREED + i] = load.brake * load.brake - brake * brake
+            most, brake = load_there(i, frame, case).brake, acting_at(i, frame, case)[1][2]
+            nodes[EVENT + WIDE * FREED + i] = most * most - brake * brake
 
 
 @kernel(inline=True)
@@ -131,17 +134,13 @@ def put_path(panel, frame, case):
     """Fill the integrands of the path at all nodes."""
     nodes = case.work.nodes
     for i in range(N + 1):
-        speed, omega, Q, weight = nodes[V + i], nodes[OF_OMEGA + i], nodes[OF_Q + i], grade(i, panel.power)
-        M_half_space, M_cylinder = nodes[OF_HALF_SPACE + i], nodes[OF_CYLINDER + i]
-        load = load_there(i, frame, case)
-        force, torque, brake = needed((speed, omega), (Q, M_half_space, M_cylinder), load, frame, case.scene.j)
+        rates, (force, torque, brake) = acting_at(i, frame, case)
+        speed, omega, weight = nodes[V + i], rates.omega, grade(i, panel.power)
         nodes[PATH + i], nodes[PATH + WIDE + i] = weight * speed, weight * omega
         nodes[PATH + WIDE * 2 + i], nodes[PATH + WIDE * 3 + i] = weight * (force * speed), weight * (torque * omega)
-        nodes[PATH + WIDE * 4 + i], nodes[PATH + WIDE * 5 + i] = (
-            -weight * (brake * omega),
-            weight * ((omega - speed) * Q),
-        )
-        nodes[PATH + WIDE * 6 + i] = weight * (speed * M_half_space + omega * M_cylinder)
+        nodes[PATH + WIDE * 4 + i] = -weight * (brake * omega)
+        nodes[PATH + WIDE * 5 + i] = weight * ((omega - speed) * rates.Q)
+        nodes[PATH + WIDE * 6 + i] = weight * (speed * rates.M_half_space + omega * rates.M_cylinder)
 
 
 @kernel

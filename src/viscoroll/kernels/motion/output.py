@@ -6,11 +6,10 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..rows.added import added_mass
-from ..rows.law import bodies, place, speed
 from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed
 from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, V, put_path, risen
-from .rates import creep_limit, rates_at
+from .rates import moments_slopes, rates_of, speeds
 from .records import FULL, LOCKED, PARTIAL, REST, Asked, Clock, Frame, State
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
@@ -56,6 +55,13 @@ def _put_path(column, n, value, case):
 
 
 @kernel
+def _put_totals(column, case):
+    """What has added up so far, in one column."""
+    for n in range(PATHS):
+        _put_path(column, n, case.work.totals[n], case)
+
+
+@kernel
 def put_still(until, closed, regime, clock, case):
     """Outputs before ``until``, or on it too, of a cylinder that does not move; the clock then."""
     at, out, still = clock.at, case.out, Frame(False, 1.0, 1.0, 0.0, False)
@@ -63,20 +69,9 @@ def put_still(until, closed, regime, clock, case):
         load = load_at(case.tau[at], clock.piece, still, case)
         _put_moving(at, (0.0, 0.0, 0.0), regime, case)
         _put_acting(at, load.force, load.torque, out)
-        for n in range(PATHS):
-            _put_path(at, n, case.work.totals[n], case)
+        _put_totals(at, case)
         at += 1
     return Clock(until, at, clock.piece, clock.steps + 1, clock.ends, 0.0)
-
-
-@kernel(inline=True)
-def speeds(state, frame, scene):
-    """(omega, delta) of a state."""
-    if not frame.slips:
-        delta = creep_limit(state.V, scene) * state.second
-        return state.V * (1.0 + delta), delta
-    slip = state.second - state.V
-    return state.second, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
 
 
 @kernel
@@ -87,7 +82,7 @@ def _put_state(column, state, piece, frame, case):
     _put_moving(column, (direction * state.V, direction * omega, delta), regime_of(frame), case)
     if case.asked.acting:
         load = load_at(case.tau[column], piece, frame, case)
-        rates = rates_at(state.V, state.second, load, frame, case.scene)
+        rates = rates_of(state, load, frame, case.scene)
         moments = rates.Q, rates.M_half_space, rates.M_cylinder
         force, torque, _ = needed((state.V, omega), moments, load, frame, case.scene.j)
         _put_acting(column, direction * force, direction * torque, out)
@@ -99,8 +94,7 @@ def put_here(state, frame, clock, case):
     at = clock.at
     while at < case.tau.size and case.tau[at] <= clock.tau * (1.0 + case.limits.rtol):
         _put_state(at, state, clock.piece, frame, case)
-        for n in range(PATHS):
-            _put_path(at, n, case.work.totals[n], case)
+        _put_totals(at, case)
         at += 1
     return Clock(clock.tau, at, clock.piece, clock.steps, clock.ends, 0.0)
 
@@ -152,28 +146,14 @@ def pass_panel(end, v, panel, frame, clock, case):
 
 
 @kernel
-def _slow_moments(scene):
-    """M/V of half-space and cylinder as V -> 0."""
-    at = place(0.0, scene.law)
-    if scene.unlike:
-        return bodies(at, 0.0, scene.law)
-    m = speed(at, 0.0, scene.law)[1]
-    return 0.5 * m, 0.5 * m
-
-
-@kernel
-def _slow_creep(V, half_space, cylinder, inertia, scene):
-    """delta where V and omega fall together: Q = 4 kappa delta takes what the moments differ by."""
-    return V * (scene.j * half_space - cylinder) / (4.0 * scene.kappa * inertia)
-
-
-@kernel
 def coast(state, frame, clock, case):
     """Outputs of the last decay, (1 + j + gamma N) V' = -T_mean V with delta/V constant: (clock, time of rest)."""
     scene, out, direction, totals = case.scene, case.out, frame.direction, case.work.totals
-    half_space, cylinder = _slow_moments(scene)
+    _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, scene)
     inertia = 1.0 + scene.j + added_mass(scene.law, 0.0, scene.kappa, scene.gamma)[0]
-    rate, creep = (half_space + cylinder) / inertia, _slow_creep(state.V, half_space, cylinder, inertia, scene)
+    # V and omega fall together: Q = 4 kappa delta takes what the moments differ by
+    rate, per = (half_space + cylinder) / inertia, 4.0 * scene.kappa * inertia
+    creep = state.V * (scene.j * half_space - cylinder) / per
     fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), case.limits.rest, np.inf
     if rest > 0.0:
         end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)

@@ -5,21 +5,37 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..rows.record import ALPHA, E0, WHOLE
+from ..rows.record import ALPHA, E0
 from .collocation import N, rise_at
 from .events import NOWHERE, ends_on, first_event, goes_behind, located, passed_over, place_of
 from .load import load_at, piece_end, undriven
-from .nodes import OF_SECOND, OF_V, RATE, SECOND, SLOPE, SPEED, V_RATE, Panel, V, put_events, put_node
+from .nodes import (
+    DIAGONAL,
+    OF_SECOND,
+    OF_V,
+    P_RATE,
+    PER_P,
+    RATE,
+    SECOND,
+    SLOPE,
+    SPEED,
+    V_RATE,
+    Panel,
+    V,
+    put_events,
+    put_node,
+)
 from .origin import departing
 from .output import pass_panel
-from .rates import rates_at
+from .rates import rates_of
 from .records import EDGE, NO_EVENT, SLOW, STUCK, TURN, Clock, Frame, State
 from .solve import panel_error, solve
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
 _FIRST, _RELAXED = 0.4, 3.0
-#: behind the onset of stick the law bends on the scale tau: nodes of the first panel lie as this power
-_GRADED, _BEND = 3, 50.0
+#: behind the onset of stick the law bends: nodes of the first panel lie as this power; how far d may go there, over
+#: what slip feeds back by
+_GRADED, _BEND = 3, 12.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
 #: V at the end of a panel, over that at its start, from which on V = 0 is sought
@@ -38,7 +54,7 @@ _EARLY, _BEHIND_IT = 0.5, 1.1
 #: length, over the time so far and to come, of a regime that ends where it begins
 _INSTANT = 1e-14
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
-_FASTER, _TINY = 1.5, 1e-12
+_FASTER, _TINY = 1.3, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
 _LESS, _FAR_LESS = 0.7, 0.4
 #: share of the speed that divides slow from fast rolling, over rtol^(1/7), that the first panel from V = 0 on may rise
@@ -46,6 +62,8 @@ _LESS, _FAR_LESS = 0.7, 0.4
 _RISE = 0.25
 #: share of the time until the drive changes in which its slope shows
 _SOON = 1e-3
+#: relaxation times behind which d follows V, and what V may then change by, over rtol^(1/8)
+_OVER, _SLOW = 6.0, 4.0
 #: growth and shrinkage of panels; growth behind a graded panel, and the order of its error
 _GROW, _SHRINK, _FAILED, _SAFETY, _BEHIND, _BENT = 6.0, 0.1, 0.3, 0.9, 30.0, 3.0
 #: V over the speed that divides slow from fast rolling, and |d|, both over rtol, below which V decays exponentially
@@ -64,20 +82,13 @@ def _rise_time(rise, clock, frame, case):
     soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[V_RATE]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
     _, d = departing(load, frame.spin, case.scene)
-    later = rates_at(0.0, d if d != 0.0 else case.work.nodes[SECOND], load, frame, case.scene)
+    later = rates_of(State(0.0, d if d != 0.0 else case.work.nodes[SECOND]), load, frame, case.scene)
     pace, gain = max(pace, 0.0), (later.p_rate / later.p_V - pace) / soon
     square = pace**2 + 2.0 * gain * rise
     if square < 0.0:  # it does not rise so far, and falls from here on
         return -pace / gain
     # at d = 1 there may be neither
     return 2.0 * rise / (pace + np.sqrt(square) + 1e-300)
-
-
-@kernel(inline=True)
-def shortest_time(law):
-    """Of relaxation, weighted by the strengths of the modes; infinite of elastic bodies, whose law does not bend."""
-    alpha, W = law.rows[ALPHA], law.rows[WHOLE]
-    return (alpha - 1.0) / (alpha * alpha * W) if W > 0.0 else np.inf
 
 
 @kernel
@@ -92,11 +103,11 @@ def _first_length(fresh, clock, frame, case):
         return _rise_time(_RISE * case.limits.rtol ** (1.0 / N) * moderate_speed(scene), clock, frame, case)
     length = _RELAXED / abs(nodes[SLOPE])
     if fresh:
-        # as far as d may go at the bend of the law near eta = 0
-        near = 1.0 - abs(nodes[SECOND]) + shortest_time(scene.law) * 2.0 * scene.kappa * speed
-        length = min(length, _BEND * case.limits.rtol ** (1.0 / 3.0) * near * speed / max(rate, 1e-300))
+        # as far as d may go until what is left of slip feeds back on it
         load = load_at(clock.tau, clock.piece, frame, case)
-        return min(length, speed / (4.0 * scene.kappa * max(load.per_V + load.per_omega, 1.0)))
+        feeds = scene.kappa * max(load.per_V + load.per_omega, 1.0)
+        near = (case.limits.rtol * rate / (feeds * scene.law.rows[ALPHA])) ** (1.0 / 3.0)
+        return min(length, _BEND * near * speed / max(rate, 1e-300), speed / (4.0 * feeds))
     return min(length, _FIRST * speed / pace) if pace > 0.0 else length
 
 
@@ -165,6 +176,16 @@ def _attempt(panel, left, aimed, track, frame, case):
 
 
 @kernel(inline=True)
+def _slow_length(panel, frame, case):
+    """Length to try behind a panel along which d has relaxed: from there on it follows V, which changes slowly."""
+    nodes = case.work.nodes
+    if frame.slips or not nodes[SLOPE + N] * panel.length < -_OVER:
+        return 0.0
+    pace = max(abs(nodes[P_RATE + N] * nodes[PER_P + N] / nodes[V + N]), abs(2.0 * nodes[DIAGONAL + N] / panel.length))
+    return _SLOW * case.limits.rtol ** (1.0 / (N + 1)) / pace
+
+
+@kernel(inline=True)
 def _next_length(panel, size, rejected, last, last_size):
     """Length to try behind a panel with this error over its tolerance, the last good one before having had its own.
 
@@ -188,11 +209,11 @@ def _begin(state, frame, clock, case):
     """The frame with node 0 filled; from delta = 0 on the branch is that which d turns to."""
     nodes = case.work.nodes
     nodes[V], nodes[SECOND] = state.V, state.second
-    rates = rates_at(state.V, state.second, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
+    rates = rates_of(state, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
     put_node(0, rates, 1.0, nodes)
     # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
     nodes[V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.p_V
-    nodes[SLOPE] = rates.rate_second / rates.weight
+    nodes[SLOPE], nodes[DIAGONAL] = rates.rate_second / rates.weight, rates.p_rate_V / rates.p_V
     if not frame.slips and state.second == 0.0 and frame.sigma * rates.rate < 0.0:
         # both branches say the same here
         return Frame(False, frame.direction, -frame.sigma, frame.spin, frame.locked)
@@ -246,5 +267,6 @@ def phase(fresh, state, frame, clock, case):
             state = State(nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND))
         if event != NO_EVENT:
             return event, state, frame, clock
+        length = max(length, _slow_length(panel, frame, case))
         power, rejected, last, last_size = 1, 0, panel.length, size
     return NO_EVENT, state, frame, clock

@@ -24,6 +24,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..rows.added import added_mass
@@ -63,7 +65,7 @@ class Rates(NamedTuple):
 
 
 @kernel(inline=True)
-def _speeds(u, scene):
+def moments_slopes(u, scene):
     """(L, L', L'', M/V of half-space and cylinder, d(u M/V)/du of these) at u = kappa |V|."""
     law, at = scene.law, place(u, scene.law)
     L, dL, ddL, m, rise = speed_seconds(at, u, law)
@@ -80,6 +82,16 @@ def creep_limit(V, scene):
     """delta_star at V."""
     u = scene.kappa * abs(V)
     return 0.5 * scene.mu / scene.kappa * speed_seconds(place(u, scene.law), u, scene.law)[0]
+
+
+@kernel(inline=True)
+def speeds(state, frame, scene):
+    """(omega, delta) of a state."""
+    if not frame.slips:
+        delta = creep_limit(state.V, scene) * state.second
+        return state.V * (1.0 + delta), delta
+    slip = state.second - state.V
+    return state.second, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
 
 
 @kernel(inline=True)
@@ -109,7 +121,7 @@ def stick_rates(V, d, load, frame, scene):
     """Partial slip."""
     law, mu, sign, k = scene.law, scene.mu, frame.sigma, 0.5 * scene.mu / scene.kappa
     u, turn = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
-    L, dL, ddL, m_half_space, m_cylinder, half_space_rise, cylinder_rise = _speeds(u, scene)
+    L, dL, ddL, m_half_space, m_cylinder, half_space_rise, cylinder_rise = moments_slopes(u, scene)
     left = max(1.0 - sign * d, 0.0)
     w = left * L
     Q, Q_V, Q_d = sign * mu, 0.0, 0.0
@@ -160,7 +172,7 @@ def stick_rates(V, d, load, frame, scene):
 def slip_rates(V, omega, load, frame, scene):
     """Full slip."""
     u, Q = scene.kappa * abs(V), frame.sigma * scene.mu
-    _, _, _, m_half_space, m_cylinder, half_space_rise, cylinder_rise = _speeds(u, scene)
+    _, _, _, m_half_space, m_cylinder, half_space_rise, cylinder_rise = moments_slopes(u, scene)
     force, _, torque = acting(V, omega, load, frame)
     M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
     V_rate = load.per_V * (Q - M_half_space + force) + load.V_rate
@@ -178,3 +190,9 @@ def rates_at(V, second, load, frame, scene):
     if frame.slips:
         return slip_rates(V, second, load, frame, scene)
     return stick_rates(V, second, load, frame, scene)
+
+
+@kernel
+def rates_of(state, load, frame, scene):
+    """The same where it is not the innermost loop: compiled once for all."""
+    return rates_at(state.V, state.second, load, frame, scene)

@@ -56,10 +56,9 @@ _MOST_ITERATIONS = 12
 #: error per panel is kept at this share of rtol; Newton's iteration stops at this share of that; the least that it can
 #: leave
 SHARE, _NEWTON, _LEAST = 0.4, 0.01, 1e-14
-#: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, which
-#: nothing tells yet; share of the tolerance that the last change may be of: what is integrated stays as it was before,
-#: and a loss from rest takes a creep as small as errors of it may be (1 left 100 rtol of a loss, this leaves 1)
-_ANEW, _SLOWED, _FIRST_GAIN, _LAST = 1e-2, 1e-3, 0.1, 0.02
+#: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, at most,
+#: and over its change
+_ANEW, _SLOWED, _FIRST_GAIN, _SQUARED = 1e-2, 1e-3, 0.1, 10.0
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
 #: the last term's share of the error: the next one over this one, and the coefficient of a power over that
@@ -154,6 +153,7 @@ def _newton(anew, fed, panel, frame, case):
         rise, change = max(rise, abs(step)), max(change, abs(second))
         nodes[V + i] += step
         nodes[SECOND + i] += second
+        nodes[P + i] += nodes[CHANGE + i]
     of_V, of_second = scales(panel, frame, case)
     return max(rise / of_V, change / of_second)
 
@@ -172,10 +172,10 @@ def solve(panel, slope, track, frame, case):
     before, anew, fed = np.inf, True, strong(load_there(0, frame, case), frame, case.scene)
     for n in range(_MOST_ITERATIONS):
         change = _newton(anew, fed, panel, frame, case)
-        gain = _FIRST_GAIN if n == 0 else change / before
+        gain = min(_FIRST_GAIN, _SQUARED * change + _SLOWED) if n == 0 else change / before
         if not (change < 1e6 and gain < 2.0):
             return False
-        if change <= _LAST * tolerance and change * gain <= left:
+        if change * gain <= left:
             rise_terms(V, work.nodes, OF_V, work.powers)
             rise_terms(SECOND, work.nodes, OF_SECOND, work.powers)
             return True
@@ -185,12 +185,13 @@ def solve(panel, slope, track, frame, case):
 
 
 @kernel(inline=True)
-def _mismatch(row, first, half, nodes):
-    """Rate at the left end less that which the nodes extrapolate to, over the panel."""
+def _mismatch(row, slopes, first, nodes):
+    """Slope at the left end less that which those of the interpolant at the nodes extrapolate to, over the panel."""
+    product(SLOPES, row, nodes[row], nodes, slopes, nodes)
     off = first
     for i in range(N):
-        off -= TO_START[i] * nodes[row + i + 1]
-    return 2.0 * half * abs(off)
+        off -= TO_START[i] * nodes[slopes + i + 1]
+    return 2.0 * abs(off)
 
 
 @kernel
@@ -215,7 +216,7 @@ def panel_error(panel, frame, case):
     nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
     of_V, of_second = scales(panel, frame, case)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not
-    error = _mismatch(P_RATE, nodes[P_RATE] if smooth else 0.0, half, nodes) * abs(nodes[PER_P + N])
+    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half if smooth else 0.0, nodes) * abs(nodes[PER_P + N])
     error = max(error, _LAST * abs(case.work.powers[OF_V + N - 1]))
     # shorter panels do not mend what the rounding of the drive moves V by
     error = max(error - panel.length * rounding(panel.piece, case.drive.pieces), 0.0) / of_V
@@ -225,14 +226,12 @@ def panel_error(panel, frame, case):
         error *= np.sqrt(max(nodes[SPEED + N] / nodes[SPEED], 1.0))
     if panel.known:
         weight = 1.0 if frame.slips else nodes[V]
-        off = nodes[RATE] / weight * half if smooth else 0.0
+        off = _mismatch(SECOND, SECOND_SLOPE, nodes[RATE] / weight * half if smooth else 0.0, nodes)
         # near the edge of the stick zone relaxation comes to an end
         slowest = abs(nodes[SLOPE])
-        product(SLOPES, SECOND, nodes[SECOND], nodes, SECOND_SLOPE, nodes)
-        for i in range(N):
-            off -= TO_START[i] * nodes[SECOND_SLOPE + i + 1]
-            slowest = min(slowest, abs(nodes[SLOPE + i + 1]))
-        error = max(error, 2.0 * abs(off) / ((1.0 + panel.length * slowest) * of_second))
+        for i in range(1, WIDE):
+            slowest = min(slowest, abs(nodes[SLOPE + i]))
+        error = max(error, off / ((1.0 + panel.length * slowest) * of_second))
     if not frame.slips:  # between the nodes
         error = max(error, _LAST * abs(case.work.powers[OF_SECOND + N - 1]) / of_second)
     return _OVERSTATED * error / (SHARE * case.limits.rtol)

@@ -9,7 +9,7 @@ from .collocation import N
 from .load import acting, brakes, load_at, risen_by
 from .nodes import SPEED as FASTEST
 from .nodes import V
-from .rates import rates_at
+from .rates import rates_of
 from .records import EDGE, KINK, NEITHER, SPEED, STOP, TURN, Frame, State
 
 #: V at the end of a panel, over that at its start, below which it is 0 there
@@ -24,7 +24,7 @@ _OFF = 10.0
 def here(state, frame, clock, case):
     """(The drive, what the equations say) at a state."""
     load = load_at(clock.tau, clock.piece, frame, case)
-    return load, rates_at(state.V, state.second, load, frame, case.scene)
+    return load, rates_of(state, load, frame, case.scene)
 
 
 @kernel
