@@ -188,12 +188,12 @@ ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 def test_material_show(run, here):
     (here / "a.toml").write_text(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n")
     first, base = run("material", "show", "a.toml").split("\n\n[base]")
-    assert first.startswith("[material] tread\nE(0) = 7.5e+06 Pa at once, E = 3e+06 Pa for long times")
+    assert first.startswith("[material] tread\n  E                 3e+06 Pa, of long times\n  instantaneous     7.5e+06 Pa")
     slow = re.search(r"^ *0\.5 +2 ", first, re.M)  # E_1, and tau_1 in seconds
     assert slow
-    assert "elastic\nE = 2e+11, nu = 0.3" in base
+    assert "2e+11 Pa, of long times" in base
     warm = run("material", "show", "a.toml", "--temperature", "30")
-    assert f"T_ref = {2.0 * vr.WLF(T0=20.0)(30.0):.10g}" in warm
+    assert f"T_ref             {2.0 * vr.WLF(T0=20.0)(30.0):.6g} s" in warm
 
 
 def test_material_fit(run, here):
@@ -204,7 +204,7 @@ def test_material_fit(run, here):
     assert report == f"{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
     assert "Prony series of 2 modes" in run("material", "fit", data, "--modes", "2")
-    assert f"measured from {fit.measured}" in run("material", "show", "a.toml")
+    assert f"measured          {fit.measured}" in run("material", "show", "a.toml")
 
 
 def test_a_belt_of_a_fit_that_was_saved(run, here):
@@ -231,8 +231,8 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
     assert f"M = {cylinder.contact(0.5, delta=0.01).M:.10g} N m m-1" in run(*point)
     table = json.loads(run("roll", "a.toml", "--V0", "1", "--omega0", "0.5", "--t", "0,0.1", "--format", "json"))
     m = cylinder.roll(1.0, 0.5, [0.0, 0.1])
-    assert table["columns"]["V"] == m.V.tolist()
-    assert (table["units"]["V"], table["units"]["x"]) == ("m s-1", "m")
+    assert table["V [m s-1]"] == m.V.tolist()
+    assert "x [m]" in table
     assert run(*point, "--format", "csv").startswith("V [m s-1],delta,lam,length [m],")
     out = run("steady", "a.toml", "--slope", "0.003")
     assert f"{cylinder.steady(slope=0.003).V[0]:.10g}" in out
@@ -245,7 +245,7 @@ def test_output_for_machines_and_for_eyes(run, here):
     run(*argv, "-o", "A.CSV")
     assert (here / "A.CSV").read_text() == run(*argv, "--format", "csv")
     table = json.loads(run(*argv, "--format", "json"))
-    assert table["columns"]["Q"] == vr.contact(vr.presets.PAPER_SECTION_5, [1.0, 2.0], delta=-1e-3).Q.tolist()
+    assert table["Q"] == vr.contact(vr.presets.PAPER_SECTION_5, [1.0, 2.0], delta=-1e-3).Q.tolist()
     (here / "bom.toml").write_bytes(b"\xef\xbb\xbf" + b'preset = "paper-section-5"\n')
     assert run("contact", "bom.toml", "--V", "1,2", "--delta", "-1e-3") == run(*argv)
 
@@ -339,7 +339,7 @@ def test_steady_states_as_rows(run):
     table, s = pd.read_csv("s.csv"), vr.steady(vr.presets.PAPER_SECTION_5, slope=np.linspace(0.0, 0.105, 7))
     assert np.array_equal(table["V"], s.V[np.isfinite(s.V)])
     assert np.array_equal(table["stable"], s.stable[np.isfinite(s.V)])
-    assert "load 1: force + torque = 0.12 exceeds" in run("steady", *PRESET, "--force", "0.12")
+    assert "load 0: force + torque = 0.12 exceeds" in run("steady", *PRESET, "--force", "0.12")
 
 
 # --- roll ---

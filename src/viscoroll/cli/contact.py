@@ -39,24 +39,24 @@ def add_commands(commands: Any) -> None:
 def _contact(arguments: Namespace) -> int:
     import numpy as np
 
-    from .output import deliver
+    from .output import show
 
     name = "omega" if arguments.delta is None else "delta"
     V, creep = arguments.V, getattr(arguments, name)
     V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
-    deliver(arguments, body_of(arguments.scene).contact(V, **{name: creep}, slopes=arguments.slopes))
+    show(arguments, body_of(arguments.scene).contact(V, **{name: creep}, slopes=arguments.slopes))
     return 0
 
 
 def _stress(arguments: Namespace) -> int:
     import numpy as np
 
-    from .output import deliver
+    from .output import show
 
     body, speeds = body_of(arguments.scene), {"V": arguments.V, "delta": arguments.delta, "omega": arguments.omega}
     state = body.contact(**speeds, fields=("length", "epsilon"))
     # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
     ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POINTS)
     x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
-    deliver(arguments, body.stress(x, **speeds))
+    show(arguments, body.stress(x, **speeds))
     return 0

@@ -6,15 +6,10 @@ import os
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import ParameterError
 from .arguments import count, output_path
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from .output import Sheet
 
 #: options of a run, with what they are if not given
 _OPTIONS = {"cluster": None, "threads": None, "dry_run": False}
@@ -63,7 +58,8 @@ def _ensemble(arguments: Namespace) -> int:
 
 
 def _run(path: str, arguments: Namespace) -> int:
-    from ..runs import estimate, open_summaries, read_run, run_ensemble
+    from ..runs import estimate, open_run, read_run, run_ensemble
+    from .output import as_text
 
     asked = read_run(path)
     if arguments.dry_run:
@@ -77,7 +73,8 @@ def _run(path: str, arguments: Namespace) -> int:
     )  # fmt: skip
     if made < asked.blocks:
         print(f"{asked.blocks - made} of {asked.blocks} blocks were there and whole")
-    print(_sheet(open_summaries(arguments.output)).text(), end="")
+    found = open_run(arguments.output)
+    print(as_text(found.to_pandas().reset_index(), str(found)), end="")
     return 0
 
 
@@ -96,32 +93,3 @@ def _export(store: str, output: Path | None) -> int:
         raise ParameterError("-o", output, "a file FILE.nc")
     export_netcdf(store, output)
     return 0
-
-
-def _sheet(summary: xr.Dataset) -> Sheet:
-    """Quantiles of every quantity: a row a time."""
-    import numpy as np
-
-    from ..errors import MotionStatus
-    from .output import Sheet
-
-    heading = ["Ensemble of {motions} motions: design {design}, seed {seed}".format(**summary.attrs)]
-    counts = zip(summary["status"].values, summary["ended"].values, strict=True)
-    heading += [f"{count} motions {MotionStatus(code).message}" for code, count in counts if count]
-    heading.append("quantiles are known to the bin that they lie in, at most 0.4 % wide")
-    names = [str(name).removesuffix("_mean") for name in summary if str(name).endswith("_mean")]
-    units = {name: summary[f"{name}_mean"].attrs["units"] for name in names} | {"t": summary["t"].attrs["units"]}
-    if summary["t"].attrs["units"] != "1":
-        heading.append("in SI units: " + ", ".join(f"{name} {unit}" for name, unit in units.items() if unit != "1"))
-    size = {name: summary[f"{name}_mean"].size for name in names}
-    shown = [f"{t:.10g}" for t in summary["t"].values]
-    times = {name: shown if summary[f"{name}_mean"].ndim else [""] for name in names}
-    columns = {
-        "quantity": np.repeat(names, [size[name] for name in names]),
-        "t": np.concatenate([times[name] for name in names]),
-    }
-    for part in ("mean", "std"):
-        columns[part] = np.concatenate([summary[f"{name}_{part}"].values.ravel() for name in names])
-    for n, level in enumerate(summary["quantile"].values):
-        columns[f"{level:.6g}"] = np.concatenate([summary[f"{name}_quantiles"].values[n].ravel() for name in names])
-    return Sheet(tuple(heading), {}, columns)

@@ -111,19 +111,15 @@ def _fit(arguments: Namespace) -> int:
 
 
 def _text(section: str, material: Material) -> str:
-    from .output import Sheet
+    import pandas as pd
+
+    from ..results import as_text
 
     series, T = material.prony, material.T_ref
-    heading = [f"[{section}] {material.name}".rstrip()]
-    constants = {"E": material.E, "nu": material.nu}
-    more = {"density": material.density, "thickness": material.thickness}
-    constants |= {name: value for name, value in more.items() if value is not None}
-    if material.measured is not None:
-        heading.append(f"measured from {material.measured}")
+    card = f"[{section}] {as_text(*material._card())}\n"
     if not series.E.size:
-        heading.append("rigid" if material.is_rigid else "elastic")
-        return "\n".join([*heading, ", ".join(f"{name} = {value:.10g}" for name, value in constants.items()), ""])
-    heading.append(f"E(0) = {material.instant:.6g} Pa at once, E = {material.E:.6g} Pa for long times")
-    heading.append(f"M = V T_mean/R at low speeds V in m/s of like bodies, T_mean = {series.T_mean * T:.6g} s")
-    columns = {"E_i": series.E, "tau_i, s": series.tau * T, "J_i": series.J, "T_i, s": series.T * T}
-    return Sheet(tuple(heading), constants | {"alpha": series.alpha, "T_ref": T}, columns).text()
+        return card
+    columns = {"E_i": series.E, "tau_i [s]": series.tau * T, "J_i": series.J, "T_i [s]": series.T * T}
+    table = pd.DataFrame(columns).to_string(index=False, float_format="{:.10g}".format)
+    slow = f"M = V T_mean/R at low speeds V in m/s of like bodies, T_mean = {series.T_mean * T:.6g} s"
+    return f"{card}{slow}\n\n{table}\n"

@@ -33,13 +33,13 @@ def add_commands(commands: Any) -> None:
 
 
 def _roll(arguments: Namespace) -> int:
-    from .output import deliver
+    from .output import show
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # how it ended is printed
         options = {name: getattr(arguments, name) for name in ("rtol", "unsteady", "rested")}
         motion = body_of(arguments.scene).roll(arguments.V0, arguments.omega0, arguments.t, **options)
-    deliver(arguments, motion, str(motion).splitlines())
+    show(arguments, motion, str(motion))
     if arguments.output is not None:
         print(motion)
     return 0

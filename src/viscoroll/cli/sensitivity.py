@@ -4,17 +4,10 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import plot
 from .arguments import FORMATS, add_output_option, count, output_path
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from .output import Sheet
-
-_INDICES = ("S1", "S1_conf", "ST", "ST_conf")
 
 
 def add_commands(commands: Any) -> None:
@@ -38,64 +31,24 @@ def add_commands(commands: Any) -> None:
 
 def _sensitivity(arguments: Namespace) -> int:
     from ..runs import read_run
-    from ..runs.sensitivity import sobol_indices
-    from .output import is_csv, put
+    from ..runs.sensitivity import sobol_indices, table
+    from .output import as_text, deliver
 
     indices = sobol_indices(read_run(arguments.file), arguments.n, progress=sys.stderr.isatty())
-    path = arguments.output
-    as_csv = path is not None and is_csv(path)
-    put(arguments, lambda: _sheet(indices, provenance=as_csv), lambda: indices)
-    if path is not None and path.suffix.lower() != ".txt":
-        print(_sheet(indices).text(), end="")
+    frame, about = table(indices), indices.attrs
+    asked, base = about["asked_base_points"], about["base_points"]
+    rounded = "" if base == asked else f" ({asked}, rounded up to a power of two)"
+    heading = "\n".join((
+        f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed {about['seed']}",
+        *(f"{n} motions {key.removeprefix('ended: ')}" for key, n in about.items() if key.startswith("ended: ")),
+        *(f"no indices of {reason}" for reason in about["refused"].splitlines()),
+    ))  # fmt: skip
+    deliver(arguments, indices, frame, heading)
+    if arguments.output is not None:
+        print(as_text(frame, heading), end="")
     if arguments.plot is not None:
         from ..plots.sensitivity import sobol_bars
         from ..plots.style import save
 
         save(sobol_bars(indices), arguments.plot)
     return 0
-
-
-def _sheet(indices: xr.Dataset, *, provenance: bool = False) -> Sheet:
-    """A row for each quantity, time and input: to four decimals, or in full with seed, versions and run file."""
-    import numpy as np
-
-    from ..results import unit_of
-    from .output import Sheet
-
-    rows = [row for name in indices if str(name).endswith("_S1") for row in _rows(indices, str(name)[: -len("_S1")])]
-    names = ("quantity", "t", "input", *_INDICES)
-    columns = {name: np.array(column, object) for name, column in zip(names, zip(*rows), strict=True)}
-    about = indices.attrs
-    if not provenance:
-        columns |= {name: np.array([f"{round(value, 4) + 0.0:.4f}" for value in columns[name]]) for name in _INDICES}
-    else:
-        for key in ("base_points", "seed", "source", "versions", "run_file"):
-            columns[key] = np.full(len(rows), about[key], object)
-    unit = unit_of(indices["t"].attrs)
-    return Sheet(_heading(about), {"confidence": about["confidence"]}, columns, {"t": unit} if unit else {})
-
-
-def _heading(about: dict[str, Any]) -> tuple[str, ...]:
-    base, asked = about["base_points"], about["asked_base_points"]
-    rounded = "" if base == asked else f" ({asked}, rounded up to a power of two)"
-    ended = [f"{n} motions {key.removeprefix('ended: ')}" for key, n in about.items() if key.startswith("ended: ")]
-    refused = [f"no indices of {reason}" for reason in about["refused"].splitlines()]
-    return (
-        f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed {about['seed']}",
-        about["source"], *ended, *refused,
-    )  # fmt: skip
-
-
-def _rows(indices: xr.Dataset, name: str) -> list[tuple]:
-    """(quantity, t, input, indices) of a quantity, the largest total index first at each t; t is "" if it has none."""
-    import numpy as np
-
-    inputs = indices["input"].values
-    tables = [np.atleast_2d(indices[f"{name}_{key}"].values) for key in _INDICES]
-    times = indices["t"].values.tolist() if indices[f"{name}_S1"].ndim == 2 else [""]
-    rows = []
-    for t, *columns in zip(times, *tables, strict=True):
-        for i in np.argsort(-columns[_INDICES.index("ST")], kind="stable"):
-            if np.isfinite(columns[0][i]):  # what was refused stands in the heading
-                rows.append((name, t, inputs[i], *(float(column[i]) for column in columns)))
-    return rows

@@ -32,12 +32,13 @@ def add_commands(commands: Any) -> None:
 def _steady(arguments: Namespace) -> int:
     import numpy as np
 
-    from .output import deliver
+    from .output import show
 
     given = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
     loads = {name: np.atleast_1d(value) for name, value in given.items() if value is not None}
     found = body_of(arguments.scene).steady(**loads)
-    lines = [f"load {n + 1}: {reason}" for n, reason in enumerate(found.reason) if reason]
-    more = len(lines) - _LINES
-    deliver(arguments, found, lines if more <= 0 else [*lines[:_LINES], f"{more} more loads have none"])
+    lines = [f"load {n}: {reason}" for n, reason in enumerate(found.reason) if reason]
+    if len(lines) > _LINES:
+        lines[_LINES:] = [f"{len(lines) - _LINES} more loads have none"]
+    show(arguments, found, "\n".join(lines))
     return 0

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from .. import __version__
 from ..blocks import run_blocks
 from ..errors import MotionStatus, ParameterError
+from ..results import column, unit_of
 from ..sampling import points
 from .evaluate import look_at_materials, roll_inputs
 from .inputs import Inputs, inputs_in
@@ -24,6 +25,7 @@ from .quantities import QUANTITIES, attributes
 from .runfile import Run
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 CONFIDENCE = 0.95
@@ -210,6 +212,22 @@ def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float
     }
     cut = ("motions_a_block", "blocks")
     return xr.Dataset(data, coordinates, {key: value for key, value in provenance.items() if key not in cut})
+
+
+def table(indices: xr.Dataset) -> pd.DataFrame:
+    """A row for each quantity, time and input that has indices, the largest total index first at each t."""
+    import pandas as pd
+
+    tables = []
+    for name in (str(each).removesuffix("_S1") for each in indices if str(each).endswith("_S1")):
+        own = indices[[f"{name}_{key}" for key in _INDICES]].rename({f"{name}_{key}": key for key in _INDICES})
+        over = [dim for dim in ("t",) if dim in own.dims]
+        frame = own.to_dataframe().reset_index().dropna().assign(quantity=name)
+        tables.append(frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable"))
+    named = {"t": column("t", unit_of(indices["t"].attrs))}
+    return pd.concat(tables)[["quantity", *tables[0].columns.difference(["quantity"], sort=False)]].rename(
+        columns=named
+    )
 
 
 def _ended(status: NDArray[np.int8]) -> dict[str, int]:
