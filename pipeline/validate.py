@@ -19,19 +19,19 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import viscoroll as vr
+from pipeline.validation import report_dataset, validate
+from pipeline.validation.direct_motion import roll_direct
 from viscoroll.errors import FileError
 from viscoroll.files import write_dataset, write_text
 from viscoroll.materials.law_store import errors_of
-from viscoroll.validation import report_dataset, validate
-from viscoroll.validation.direct_motion import roll_direct
-from viscoroll.validation.report import Check
+from viscoroll.tables.check import Check
 
 from . import corners, stage
 from .runtime import motions
 
 
 class Validate(msgspec.Struct, forbid_unknown_fields=True):
-    """[validate]: files of laws, the arguments of :func:`viscoroll.validation.validate`, and what motions from the file
+    """[validate]: files of laws, the arguments of :func:`pipeline.validation.validate`, and what motions from the file
     may be off by.
     """
 

@@ -17,13 +17,13 @@ from run_files import FILES
 from scipy import stats
 
 import viscoroll as vr
+from pipeline.validation import validate
 from viscoroll import errors, fmu
 from viscoroll.config import read_bodies, read_body
 from viscoroll.identification.file import read_measurements
 from viscoroll.materials.file import read_materials
 from viscoroll.runs import read_run
 from viscoroll.sampling import sample
-from viscoroll.validation import validate
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]

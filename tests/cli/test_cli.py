@@ -188,7 +188,9 @@ ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 def test_material_show(run, here):
     (here / "a.toml").write_text(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n")
     first, base = run("material", "show", "a.toml").split("\n\n[base]")
-    assert first.startswith("[material] tread\n  E                 3e+06 Pa, of long times\n  instantaneous     7.5e+06 Pa")
+    assert first.startswith(
+        "[material] tread\n  E                 3e+06 Pa, of long times\n  instantaneous     7.5e+06 Pa"
+    )
     slow = re.search(r"^ *0\.5 +2 ", first, re.M)  # E_1, and tau_1 in seconds
     assert slow
     assert "2e+11 Pa, of long times" in base

@@ -8,9 +8,9 @@ import tolerances as tol
 import xarray as xr
 
 import viscoroll as vr
-from viscoroll.validation import Check, Report, report_dataset, stresses, validate
-from viscoroll.validation.motions import motion_checks
-from viscoroll.validation.states import random_state_checks, random_states
+from pipeline.validation import Check, Report, report_dataset, stresses, validate
+from pipeline.validation.motions import motion_checks
+from pipeline.validation.states import random_state_checks, random_states
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -88,7 +88,7 @@ def test_wrong_stress_is_found(monkeypatch):
 @pytest.mark.parametrize("module", ["states", "motions"])
 def test_wrong_scene_is_found(monkeypatch, module):
     """The table method at a slightly other kappa."""
-    from viscoroll.validation import motions, states
+    from pipeline.validation import motions, states
 
     def other(scene):
         return scene.replace(kappa=np.asarray(scene.kappa) * (1.0 + tol.VALIDATION_WRONG))

@@ -129,7 +129,7 @@ def reference(problem: Problem) -> Outcome:
 
 def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[str, Any]:
     """The reference against the printed equations by scipy's integrators, other unknowns, on the first motions."""
-    from viscoroll.validation.direct_motion import roll_direct
+    from pipeline.validation.direct_motion import roll_direct
 
     few = problem.take(slice(motions))
     columns = np.array(few.parameters()).T

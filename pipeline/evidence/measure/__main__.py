@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.validation.states import differences
-from viscoroll.validation.stresses import closures
+from pipeline.validation.states import differences
+from pipeline.validation.stresses import closures
 
 from ..bench.cold_start import cold_start
 from ..bench.problem import speed_error

@@ -11,8 +11,8 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.validation.states import random_states
-from viscoroll.validation.stresses import closures
+from pipeline.validation.states import random_states
+from pipeline.validation.stresses import closures
 
 from ..peers.standard import generators, standard
 from ..truth.check_values import chosen_alpha

@@ -148,8 +148,7 @@ def _info(arguments: Namespace) -> int:
 
 def _validate(arguments: Namespace) -> int:
     from .. import tables
-    from ..validation import Report
-    from ..validation.table_check import check_table
+    from ..tables.check import Report, check_table
 
     checks = check_table(tables.load(arguments.file), arguments.n, arguments.seed)
     report = Report(tuple(checks), {"file": arguments.file, "points": arguments.n, "seed": arguments.seed})

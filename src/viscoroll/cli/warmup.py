@@ -40,12 +40,11 @@ def _warm_up(arguments: Namespace) -> int:
 
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own."""
-    import numpy as np
 
     from .. import Prony, Scene, contact, ensemble, law, roll, steady, stress, tables
+    from ..kernels.printed import motion as printed
     from ..motion import flow
     from ..presets import PAPER_SECTION_5
-    from ..validation.direct_motion import roll_direct
 
     scene = PAPER_SECTION_5
     modes = Prony([1.0, 2.0], [1.0, 0.1])
@@ -69,4 +68,6 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "flow map", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "motions by a flow map", lambda: ensemble(scene, **start, method="flow", rest=1e-3)
     yield "law of a material as a file", lambda: tables.law(modes)
-    yield "check of motions", lambda: roll_direct(scene, 1.5, 0.5, np.array([0.0, 3e-3]))
+    numbers = (scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j)
+    yield "printed law, in full slip", lambda: printed.direct_sliding(1.5, 1.0, *numbers)
+    yield "printed law, in partial slip", lambda: printed.direct_sticking(0.1, 0.01, *numbers)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_stress import stress
-from ..rolling_contact import contact
-from ..scene import Scene
-from .report import Check
+from viscoroll.contact_stress import stress
+from viscoroll.rolling_contact import contact
+from viscoroll.scene import Scene
+from viscoroll.tables.check import Check
+
 from .states import random_states
 
 #: Roundings of the quadrature's 312 terms; 1.3e-14 seen over 200 states.

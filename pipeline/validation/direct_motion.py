@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ConvergenceError
-from ..scene import Scene
+from viscoroll.errors import ConvergenceError
+from viscoroll.scene import Scene
 
 #: The tightest that run smoothly; delta's absolute one is the noise of Q as printed, 1e-16 mu/(4 kappa) and more.
 _SLIDING_RTOL, _SLIDING_ATOL = 1e-12, 1e-13
@@ -63,14 +63,14 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
 
 
 def _sticks(V: float, omega: float, parameters: tuple[float, ...]) -> bool:
-    from ..kernels.printed.motion import direct_sliding
+    from viscoroll.kernels.printed.motion import direct_sliding
 
     return abs(omega - V) < direct_sliding(V, 1.0, *parameters)[2]
 
 
 def _slide(now, end, state, parameters):
     """Full slip from ``state`` (V, omega) to the onset of stick or the end."""
-    from ..kernels.printed.motion import direct_sliding
+    from viscoroll.kernels.printed.motion import direct_sliding
 
     sigma = float(np.sign(state[1] - state[0]))
 
@@ -85,7 +85,7 @@ def _slide(now, end, state, parameters):
 
 def _stick(now, end, state, parameters):
     """Partial slip from ``state`` (V, omega) to the return of full slip or the end, seen with V > 0."""
-    from ..kernels.printed.motion import direct_sticking
+    from viscoroll.kernels.printed.motion import direct_sticking
 
     direction, speed = np.sign(state[0]), abs(state[0])
     start = (np.log(speed), (state[1] - state[0]) / state[0])

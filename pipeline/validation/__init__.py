@@ -1,7 +1,7 @@
 """Is what the package computes what the paper's equations say?  :func:`validate` -> :class:`Report`.
 
-Read in this order: :mod:`report`, :mod:`states` and :mod:`stresses` (contact law), :mod:`table_check`
-(table files), :mod:`direct_motion` (an integrator of its own) and :mod:`motions` (what it is for).
+Read in this order: :mod:`report`, :mod:`states` and :mod:`stresses` (contact law), :mod:`direct_motion` (an
+integrator of its own) and :mod:`motions` (what it is for); rows of files are those of ``viscoroll tables validate``.
 """
 
 from __future__ import annotations
@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError
-from .report import Check, Report, report_dataset
+from viscoroll.errors import ParameterError
+from viscoroll.tables.check import Check, Report, check_table
+
+from .report import report_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -64,7 +66,6 @@ def validate(
     from .motions import motion_checks
     from .states import along_motion_checks, random_state_checks
     from .stresses import stress_checks
-    from .table_check import check_table
 
     settings = {"states": states, "stress_states": stress_states, "table_points": table_points, "times": times}
     for name, value in settings.items():

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..motion import roll
-from ..presets import PAPER_SECTION_5_ROUNDED, PAPER_STARTS
-from ..scene import Scene
+from viscoroll.motion import roll
+from viscoroll.presets import PAPER_SECTION_5_ROUNDED, PAPER_STARTS
+from viscoroll.scene import Scene
+from viscoroll.tables.check import Check
+
 from .direct_motion import roll_direct
-from .report import Check
 
 #: What the package promises at rtol 1e-8, relative to max(|V|, |omega|), down to |V| = 1e-6.
 SPEED_ALLOWED = 1e-7
