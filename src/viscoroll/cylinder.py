@@ -30,7 +30,7 @@ from .symbols import MEASURED
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")
-_UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
+UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -187,7 +187,7 @@ class Cylinder(Methods):
     def _card(self) -> tuple[str, list[Row]]:
         names = (*(name for name in _NUMBERS if name != "pressed"), "load", "plane")
         given = {name: value for name in names if (value := getattr(self, name)) is not None}
-        rows = [Row(name, short(value), _UNITS.get(name, "")) for name, value in given.items()]
+        rows = [Row(name, short(value), UNITS.get(name, "")) for name, value in given.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:
                 rows.append(Row(name, getattr(body, "name", "") or repr(body)))

@@ -14,7 +14,7 @@ from scipy import stats
 from scipy.stats import qmc
 
 from viscoroll import sampling
-from viscoroll.runs import estimate, read_run
+from viscoroll.runs import estimate, read_run, store
 from viscoroll.runs.evaluate import roll_block
 from viscoroll.runs.inputs import Distribution, Inputs
 from viscoroll.runs.quantities import QUANTITIES
@@ -149,7 +149,7 @@ def test_an_estimate_does_not_scale_up_what_happens_once(run, monkeypatch):
         return summarise(*given)
 
     module = import_module("viscoroll.runs.estimate")  # whose name is the function's
-    monkeypatch.setattr(module, "summarise", summarised)
+    monkeypatch.setattr(store, "summarise", summarised)
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
     assert run.blocks == 5
     assert estimate(run, threads=1).seconds == 5.0

@@ -9,12 +9,10 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from ..blocks import thread_count
-from . import zarr_files
-from .evaluate import look_at_materials, roll_block
+from .evaluate import look_at_materials
 from .records import Record, encoded
 from .runfile import Run
-from .store import columns_of
-from .summaries import summarise
+from .store import made
 
 #: motions of the trial, mapped and integrated: some tenths of a second
 _TRIAL = {"flow": 1 << 17, "integrate": 1 << 12}
@@ -72,11 +70,8 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 
 def _work(run: Run) -> tuple[int, int]:
     """What a worker does with the first block, but for the writing: bytes of its motions and of its record."""
-    values, motions = roll_block(run, 0)
-    summary = summarise(motions, run.settings.summaries)
-    every, count = run.settings.keep == "all", run.block
-    chunks = zarr_files.chunks(columns_of(run, values, motions), 0, count, count) if every else {}
-    return sum(map(len, chunks.values())), len(encoded(Record("", {}, summary=summary)))
+    files, summary, _ = made(run, 0)
+    return sum(map(len, files.values())), len(encoded(Record("", {}, summary=summary)))
 
 
 def _most_resident() -> float:

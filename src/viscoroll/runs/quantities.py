@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..config import CylinderSection
+from ..cylinder import UNITS
 from ..motion.export import column_attributes
 from ..motion.many import Ensemble
 from ..symbols import SYMBOLS
@@ -89,8 +91,6 @@ _MODES = {
     "E": "strength {} of relaxation over the long-time modulus", "tau": "relaxation time {} over T_ref",
     "J": "strength {} of creep over the long-time compliance", "T": "retardation time {} over T_ref",
 }  # fmt: skip
-#: of the numbers of a cylinder that are no symbols
-_UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "nu": "1", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
 
 
 def attributes(name: str, si: bool) -> dict[str, Any]:
@@ -108,8 +108,8 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
     kind, _, number = name.partition("_")
     if kind in _MODES and number.isdecimal():
         return {"long_name": _MODES[kind].format(number), "units": "1"}
-    if name in _UNITS and name not in SYMBOLS:
-        return {"long_name": f"{name} of the cylinder", "units": _UNITS[name]}
+    if name in CylinderSection.__struct_fields__ and name not in SYMBOLS:
+        return {"long_name": f"{name} of the cylinder", "units": UNITS.get(name, "1")}
     return {
         key: value.tolist() if isinstance(value, np.ndarray) else value
         for key, value in column_attributes(name, si).items()

@@ -222,12 +222,10 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
     for name in (str(each).removesuffix("_S1") for each in indices if str(each).endswith("_S1")):
         own = indices[[f"{name}_{key}" for key in _INDICES]].rename({f"{name}_{key}": key for key in _INDICES})
         over = [dim for dim in ("t",) if dim in own.dims]
-        frame = own.to_dataframe().reset_index().dropna().assign(quantity=name)
+        frame = own.to_dataframe().reset_index().dropna()
+        frame.insert(0, "quantity", name)
         tables.append(frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable"))
-    named = {"t": column("t", unit_of(indices["t"].attrs))}
-    return pd.concat(tables)[["quantity", *tables[0].columns.difference(["quantity"], sort=False)]].rename(
-        columns=named
-    )
+    return pd.concat(tables).rename(columns={"t": column("t", unit_of(indices["t"].attrs))})
 
 
 def _ended(status: NDArray[np.int8]) -> dict[str, int]:

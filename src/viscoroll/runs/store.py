@@ -88,16 +88,10 @@ class Store:
                 yield block
 
     def work(self, block: int) -> int:
-        """Roll a block and store it; returns its number of motions.  Raises FileError."""
-        values, motions = roll_block(self.run, block)
-        files: dict[str, str] = {}
-        if self.run.settings.keep == "all":
-            columns = columns_of(self.run, values, motions)
-            found = zarr_files.chunks(columns, block, self.run.settings.n, self.run.block)
-            files = put(self.root, {f"{MOTIONS}/{name}": content for name, content in found.items()})
-        summary = summarise(motions, self.run.settings.summaries)
-        write_record(_path(self.root, block), Record(identity(self.run), files, summary=summary))
-        return len(motions)
+        """Roll a block and store it; returns its number of motions.  Raises OutputError."""
+        files, summary, count = made(self.run, block)
+        write_record(_path(self.root, block), Record(identity(self.run), put(self.root, files), summary=summary))
+        return count
 
     def end(self) -> None:
         """Merge the summaries of all blocks and write them; raises FileError."""
@@ -131,6 +125,16 @@ class Store:
             columns, self.run.settings.n, self.run.block, self.run.t, described, about(self.run)
         )
         return {f"{MOTIONS}/{name}": content for name, content in found.items()}
+
+
+def made(run: Run, block: int) -> tuple[dict[str, bytes], Summary, int]:
+    """What there is to store of a block: files, summary, number of motions."""
+    values, motions = roll_block(run, block)
+    files: dict[str, bytes] = {}
+    if run.settings.keep == "all":
+        found = zarr_files.chunks(columns_of(run, values, motions), block, run.settings.n, run.block)
+        files = {f"{MOTIONS}/{name}": content for name, content in found.items()}
+    return files, summarise(motions, run.settings.summaries), len(motions)
 
 
 def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
