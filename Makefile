@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 RUN := $(BIN)/python
 CONFIG ?= pipeline/config.toml
-SOURCES := $(shell find src pipeline/validation -name '*.py' -o -name '*.npy')
+SOURCES := $(shell find src -name '*.py' -o -name '*.npy')
 STAGE = pipeline/stage.py $(CONFIG) .venv/stamp
 TABLES := $(addprefix data/tables/,law.nc paper.nc rubber.nc rubber-on-steel.nc)
 .DEFAULT_GOAL := help
@@ -34,7 +34,7 @@ out/ensemble.nc: pipeline/ensemble.py $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.ensemble --config $(CONFIG)
 
 validate: out/validation.nc ## tables and motions against direct solves; exit code 1 beyond a stated tolerance
-out/validation.nc: pipeline/validate.py out/runtime.nc $(TABLES) $(SOURCES) $(STAGE)
+out/validation.nc: pipeline/validate.py $(wildcard pipeline/validation/*.py) out/runtime.nc $(TABLES) $(SOURCES) $(STAGE)
 	$(RUN) -m pipeline.validate --config $(CONFIG)
 
 corners: setup ## law and motions at the ends of what the package takes: out/corners.csv (a minute or two)
