@@ -88,7 +88,7 @@ class Store:
                 yield block
 
     def work(self, block: int) -> int:
-        """Roll a block and store it; returns its number of motions.  Raises OutputError."""
+        """Roll a block and store it; returns its number of motions.  Raises FileError."""
         files, summary, count = made(self.run, block)
         write_record(_path(self.root, block), Record(identity(self.run), put(self.root, files), summary=summary))
         return count
