@@ -10,9 +10,9 @@ from closeness import close
 import viscoroll as vr
 from pipeline.evidence.prove.ratios import points, ulps
 from pipeline.evidence.truth import enclosures
+from pipeline.validation.states import random_state_checks
 from viscoroll.kernels.printed.bessel import ratio_i, ratio_k0k1
 from viscoroll.kernels.printed.law import NOT_CONVERGED, direct_contact_length
-from viscoroll.validation.states import random_state_checks
 
 KAPPA, MU = 2.91, 0.2
 #: along three axes: alpha, kappa V, |delta|/delta_star
