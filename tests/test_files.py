@@ -36,15 +36,27 @@ def write(request: pytest.FixtureRequest) -> Callable[[Path], object]:
 # --- what stands in the way ---
 
 
-def test_a_directory(write: Callable, tmp_path: Path) -> None:
-    with pytest.raises(vr.FileError, match="cannot be written: it is a directory"):
-        write(tmp_path)
-    assert not list(tmp_path.iterdir())
+#: what stands at a path, and how it is told
+OBSTACLES: dict[str, tuple[Callable[[Path], object], str]] = {
+    "a directory": (Path.mkdir, "cannot be written: it is a directory"),
+    "no folder": (lambda path: path.parent.rmdir(), "No such file or directory"),
+    "a loop of links": (lambda path: path.symlink_to(path), "it is a loop of symbolic links"),
+    "a pipe": (os.mkfifo, "it is not a regular file"),
+    "a device": (lambda path: path.symlink_to(os.devnull), "it is not a regular file"),  # which a rename would replace
+}
 
 
-def test_no_such_folder(write: Callable, tmp_path: Path) -> None:
-    with pytest.raises(vr.FileError, match="No such file or directory"):
-        write(tmp_path / "none" / "x")
+@pytest.mark.parametrize("obstacle", OBSTACLES)
+def test_an_obstacle_is_told_and_stays(write: Callable, tmp_path: Path, obstacle: str) -> None:
+    make, words = OBSTACLES[obstacle]
+    path = tmp_path / "folder" / "file"
+    path.parent.mkdir()
+    make(path)
+    before = [(each.name, each.lstat().st_mode) for each in tmp_path.rglob("*")]
+    with pytest.raises(vr.FileError, match=words):
+        write(path)
+    assert [(each.name, each.lstat().st_mode) for each in tmp_path.rglob("*")] == before
+    assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
 
 
 def test_a_symbolic_link_stays_and_its_target_is_written(write: Callable, tmp_path: Path) -> None:
@@ -54,26 +66,6 @@ def test_a_symbolic_link_stays_and_its_target_is_written(write: Callable, tmp_pa
         write(tmp_path / name)
         assert (tmp_path / name).readlink() == Path(target)
     assert sorted(path.name for path in (tmp_path / "far").iterdir()) == ["file", "new"]
-
-
-def test_a_loop_of_links(write: Callable, tmp_path: Path) -> None:
-    (tmp_path / "a").symlink_to("b")
-    (tmp_path / "b").symlink_to("a")
-    with pytest.raises(vr.FileError, match="it is a loop of symbolic links"):
-        write(tmp_path / "a")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
-
-
-def test_a_device_or_pipe_is_not_replaced(write: Callable, tmp_path: Path) -> None:
-    """A rename would put a file in the place of /dev/null."""
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    (tmp_path / "null").symlink_to(os.devnull)
-    for path in (pipe, tmp_path / "null"):
-        with pytest.raises(vr.FileError, match="it is not a regular file"):
-            write(path)
-    assert stat.S_ISFIFO(pipe.stat().st_mode)
-    assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
 
 
 @pytest.fixture
@@ -87,26 +79,22 @@ def shared(tmp_path: Path, write: Callable) -> Path:
     return folder
 
 
-def test_a_read_only_file_is_not_replaced(write: Callable, shared: Path) -> None:
+@pytest.mark.parametrize(
+    ("file", "folder", "words"), [(0o444, 0o777, "it is read-only"), (0o666, 0o555, "Permission denied")]
+)
+def test_what_is_read_only_is_not_replaced(write: Callable, shared: Path, file: int, folder: int, words: str) -> None:
     """A rename would not ask."""
     path = shared / "file"
     path.write_text("as it was")
-    path.chmod(0o444)
-    assert "FileError" in (text := as_ordinary_user(lambda: write(path)))
-    assert "it is read-only" in text
+    path.chmod(file)
+    shared.chmod(folder)
+    text = as_ordinary_user(lambda: write(path))
+    assert "FileError" in text
+    assert words in text
     assert path.read_text() == "as it was"
     path.chmod(0o666)
+    shared.chmod(0o777)
     assert as_ordinary_user(lambda: write(path)) == ""
-
-
-def test_a_read_only_folder(write: Callable, shared: Path) -> None:
-    path = shared / "file"
-    path.write_text("as it was")
-    path.chmod(0o666)
-    shared.chmod(0o555)
-    assert "FileError" in (text := as_ordinary_user(lambda: write(path)))
-    assert "Permission denied" in text
-    assert path.read_text() == "as it was"
 
 
 FULL = """

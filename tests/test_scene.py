@@ -13,7 +13,6 @@ from closeness import close
 
 import viscoroll as vr
 from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
-from viscoroll.scale import DIMENSIONS
 
 SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
 
@@ -57,15 +56,6 @@ def test_presets():
     assert PAPER_CYLINDER.scene() == vr.presets.PAPER_SECTION_5
     assert set(PRESETS) == {"paper-section-5", "paper-section-5-rounded", "paper-figures-2-3", "rubber-roller"}
     assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
-
-
-def test_units_by_hand():
-    cylinder = vr.Cylinder(**SI)
-    P, scale = cylinder.load, cylinder.scale
-    for name, one in {"V": 0.1 / 10.7, "omega": 1.0 / 10.7, "t": 10.7, "x": 0.1, "Q": P, "M": P * 0.1}.items():
-        assert close(scale[name], one, rel=tol.SCENE, what=name)
-    assert scale["beta"] == 1.0
-    assert all(vr.presets.PAPER_SECTION_5.scale[name] == 1.0 for name in DIMENSIONS)
 
 
 def test_force_and_torque():

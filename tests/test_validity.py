@@ -34,14 +34,6 @@ def test_small_contact():
     assert SCENE.replace(kappa=2.0).validity(30.0).small_contact.holds
 
 
-def test_arrays_of_scenes_and_speeds():
-    found = vr.Scene([2.0, 81.5], [[1.0], [2.91], [29.1]], 0.2).validity(0.3)
-    assert found.small_contact.holds.tolist() == [[False, False], [True, True], [True, True]]
-    assert found.under_axis.holds.tolist() == [[True, True], [True, False], [True, False]]
-    assert SCENE.validity([]).small_contact.value.shape == (0,)
-    assert "wholly ahead" in vr.Scene([2.0, 81.5], 2.91, 0.2).validity(0.3).under_axis.sentence
-
-
 def test_wave_speed():
     """Fifth of sqrt(G/density), in SI; unknown without a density."""
     cylinder, density = vr.presets.PAPER_CYLINDER, 1130.0

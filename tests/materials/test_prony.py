@@ -179,16 +179,3 @@ def test_slip_is_lost_and_regained_in_two_bands():
     assert [switch.regime for switch in motion.switches[:3]] == ["full slip", "partial slip", "full slip"]
     V = [motion.at([switch.t]).V.item() for switch in motion.switches[:3]]
     assert close(V, [1264.0, 804.0, 0.0840], rel=tol.SERIES_BANDS)
-
-
-def test_unit_of_time_of_a_flow_map():
-    """Another T_ref by a power of two: the same bits."""
-    three = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
-    starts, t = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 400)), np.linspace(0.0, 3e-3, 11)
-    slow = scene(three.slower(2.0**20), gamma=1e4 * 2.0**-40)
-    asked = {"rtol": 1e-6, "method": "flow", "fields": ("V", "omega", "x", "slip_loss")}
-    here = vr.ensemble(scene(three), *starts, t, **asked)
-    there = vr.ensemble(slow, *(starts * 2.0**-20), t * 2.0**20, **asked)
-    assert here.flow.all()
-    for name, power in {"V": 20, "x": 0, "slip_loss": 40, "onset_time": -20}.items():
-        assert np.array_equal(getattr(there, name) * 2.0**power, getattr(here, name), equal_nan=True), name
