@@ -177,7 +177,7 @@ def reference_rows() -> list[dict[str, Any]]:
 def balances(motion: ChosenMotion, rtol: float) -> dict[str, float]:
     """What is missing in (V - j omega)' = 2 gamma Q and in the balance of energy, by Gauss's rule between the steps."""
     scene = motion.scene
-    found = vr.roll(scene, motion.V0, motion.omega0, motion.end, rtol=rtol)
+    found = vr.roll(scene, motion.V0, motion.omega0, motion.end, rtol=rtol).course
     node, weight = np.polynomial.legendre.leggauss(12)
     edges = np.unique([*found.t, *(switch.t for switch in found.switches)])
     half = 0.5 * np.diff(edges)[:, None]
