@@ -17,7 +17,7 @@ TABLE = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x
 
 @pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
 def test_contact_states(body):
-    own = body.contact if body is ROLLER else lambda *given, **named: vr.contact(SCENE, *given, **named)
+    own = body.contact
     creep = xr.DataArray([0.0, 0.01, 0.02], dims="creep")
     found = own(V, delta=creep)
     assert found.M.dims == found.to_xarray()["M"].dims == ("run", "creep")
@@ -33,7 +33,7 @@ def test_contact_states(body):
 
 @pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
 def test_equilibria(body):
-    own = body.steady if body is ROLLER else lambda **named: vr.steady(SCENE, **named)
+    own = body.steady
     slope = xr.DataArray(np.radians([0.01, 0.02, 40.0]), dims="place", coords={"place": ["a", "b", "c"]})
     found, plain = own(slope=slope), own(slope=slope.values)
     assert found.V.dims == ("place", "equilibrium")
@@ -53,7 +53,7 @@ def test_equilibria(body):
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
 def test_ensembles(body):
-    own = body.ensemble if body is ROLLER else lambda *given, **named: vr.ensemble(SCENE, *given, **named)
+    own = body.ensemble
     found, plain = own(TABLE["V"], TABLE["V"], [1e-3, 2e-3]), own(TABLE["V"].values, TABLE["V"].values, [1e-3, 2e-3])
     assert np.array_equal(found.V, plain.V)
     data = found.to_xarray()

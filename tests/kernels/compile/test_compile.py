@@ -15,17 +15,14 @@ import warnings
 import zlib
 from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple
 
 import numba
-import numpy as np
 import pytest
 from ordinary_user import NOBODY, as_ordinary_user, let_in
 from processes import printed, python
 
 from viscoroll.kernels.compile import cache as cache_module
 from viscoroll.kernels.compile import deferred, folder, notice
-from viscoroll.kernels.compile.choice import by_record
 from viscoroll.kernels.compile.jit import kernel
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
@@ -90,14 +87,6 @@ def test_an_ordinary_function_between_kernels_works(kernels):
     assert top(2.0) == 9.0
 
 
-def test_numpy_functions_that_numba_compiles_itself_work(kernels):
-    @kernel(allocates=True)
-    def middle(x):
-        return np.median(x) + square(x[0])
-
-    assert middle(np.array([3.0, 1.0, 2.0])) == 11.0
-
-
 @pytest.mark.parametrize(
     ("holder", "name"),
     [
@@ -113,32 +102,6 @@ def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypat
     with pytest.warns(RuntimeWarning, match=r"does not compile cubed with what it calls \(.*one by one"):
         assert cubed(2.0) == 8.0
     assert square(2.0) == 4.0  # told once, and warnings are errors here
-
-
-class Known(NamedTuple):
-    x: float
-
-
-class Other(NamedTuple):
-    x: float
-
-
-def _one(record):
-    return record.x
-
-
-def _two(record):
-    return 2.0 * record.x
-
-
-def test_a_record_takes_its_own_version_and_never_that_of_another():
-    once, twice = kernel(_one), kernel(_two)
-    strict, open_ended = by_record(0, (Known, twice)), by_record(0, (Known, twice), otherwise=once)
-    asked = [kernel(lambda record, of=of: of(record)) for of in (strict, open_ended)]
-    assert asked[0](Known(3.0)) == asked[1](Known(3.0)) == 6.0
-    assert asked[1](Other(3.0)) == 3.0
-    with pytest.raises(TypeError, match="Other: must be one of Known"):
-        strict(Other(3.0))
 
 
 def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
