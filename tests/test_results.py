@@ -9,12 +9,15 @@ from functools import partial
 import numpy as np
 import pytest
 import tolerances as tol
+import xarray as xr
 from closeness import close
 from matplotlib.figure import Figure
 from places import ROOT
 from refusals import refused
 
 import viscoroll as vr
+from viscoroll.files import write_dataset
+from viscoroll.motion.batch import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -35,6 +38,7 @@ def results():
         "driven": vr.roll(SCENE, 0.0, 0.0, t, torque=vr.Schedule([0.0, 2e-3], [0.0, 0.1])),
         "motion in SI": ROLLER.roll(1.0, 0.0, np.linspace(0.0, 1.0, 9)),
         "ensemble": vr.ensemble(SCENE, np.linspace(0.5, 1.5, 12), 0.5, t),
+        "scenes each": vr.ensemble(SCENE.replace(mu=[0.1, 0.2, 0.3]), 1.0, 0.5, t, fields=FIELDS, rest=1e-3),
         "ensemble in SI": ROLLER.ensemble(np.linspace(0.5, 1.5, 3), 0.0, [0.1, 0.2]),
         "steady": vr.steady(SCENE, slope=np.radians([1.0, 2.0, 30.0])),
         "steady in SI": ROLLER.steady(slope=np.radians([0.01, 0.02])),
@@ -43,8 +47,8 @@ def results():
     }
 
 
-def test_each_shows_itself(results):
-    """A short text, HTML, a dataset with units, and a figure with labelled axes."""
+def test_each_shows_itself(results, tmp_path):
+    """A short text, HTML, a dataset with units that a file keeps, and a figure with labelled axes."""
     for name, result in results.items():
         assert len(repr(result)) < 1500, name
         assert len(repr(result).splitlines()) < 25, name
@@ -52,6 +56,9 @@ def test_each_shows_itself(results):
         data = result.to_xarray()
         for variable in () if name == "fit" else data.data_vars.values():
             assert variable.attrs.get("units") or "flag_values" in variable.attrs, (name, variable.name)
+        write_dataset(data, tmp_path / "result.nc")
+        with xr.open_dataset(tmp_path / "result.nc", engine="h5netcdf", decode_times=False) as stored:
+            xr.testing.assert_equal(stored.load(), data)
         figure = result.plot()
         assert isinstance(figure, Figure)
         figure.draw_without_rendering()

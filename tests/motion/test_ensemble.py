@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import tqdm
-import xarray as xr
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.files import write_dataset
 from viscoroll.motion.batch import FIELDS, STATES
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -162,22 +160,3 @@ def test_summary():
     assert close(summary.onset_time_quantiles, np.quantile(onset, (0.25, 0.5)), rel=1e-13)
     assert summary.attrs["motions"] == 50
     assert "angle_mean" not in summary
-
-
-@pytest.mark.parametrize("many", [SCENE, scenes(12)], ids=["one scene", "a scene each"])
-def test_to_xarray_and_back_from_a_file(many, tmp_path):
-    V0, omega0 = starts(12)
-    result = vr.ensemble(many, V0, omega0, T, fields=FIELDS, rest=1e-3)
-    data = result.to_xarray()
-    assert dict(data.sizes) == {"motion": 12, "t": 7}
-    path = tmp_path / "ensemble.nc"
-    write_dataset(data, path)
-    with xr.open_dataset(path, engine="h5netcdf") as again:
-        again.load()
-    assert set(again.variables) == set(data.variables)
-    for name in data.variables:
-        assert equal(again[name].values, data[name].values), name
-        assert again[name].attrs["long_name"]
-    assert again.alpha.dims == (("motion",) if many.shape else ())
-    assert again.attrs["Conventions"] == "CF-1.11"
-    assert equal(again.V.values, result.V)

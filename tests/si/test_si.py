@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from refusals import refused
 
@@ -223,19 +222,16 @@ def test_what_follows_from_a_change():
     assert SOLID.replace(T_epsilon=SLOW, T_sigma=FAST).T_ref == 2e-2
 
 
-def test_dataset_in_si(tmp_path):
-    brake = vr.Schedule([1.0, 1.0], [0.0, 3.0])
-    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, force=np.sin, brake=brake)
-    m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
-    with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
-        for name in DRIVEN[:-5]:
-            assert np.array_equal(data[name].values, getattr(m, name))
-        said = {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss", "drive_brake_time")}
-        assert said == {"t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1", "drive_brake_time": "s"}
-        assert data["drive_torque"].item() == 2.0
-        assert data["drive_brake_time"].values.tolist() == [1.0, 1.0]
-        assert data["drive_brake"].values.tolist() == [0.0, 3.0]
-        assert data.attrs["drive_force"] == "a function of t"
-        assert [data.attrs[name] for name in ("R", "load", "T_ref")] == [ROLLER.R, ROLLER.load, ROLLER.T_ref]
+def test_dataset_in_si():
+    """Units of all, and what drove it; that a file keeps them is in ``test_results.py``."""
+    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, force=np.sin, brake=vr.Schedule([1.0, 1.0], [0.0, 3.0]))
+    data = m.to_xarray()
+    said = {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss", "drive_brake_time")}
+    assert said == {"t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1", "drive_brake_time": "s"}
+    assert data["drive_torque"].item() == 2.0
+    assert data["drive_brake_time"].values.tolist() == [1.0, 1.0]
+    assert data["drive_brake"].values.tolist() == [0.0, 3.0]
+    assert data.attrs["drive_force"] == "a function of t"
+    assert [data.attrs[name] for name in ("R", "load", "T_ref")] == [ROLLER.R, ROLLER.load, ROLLER.T_ref]
     e = ROLLER.replace(mu=[0.2, 0.3]).ensemble(0.02, 0.1, TIMES)
     assert e.to_xarray()["V"].attrs["units"] == e.summary().V_mean.attrs["units"] == "m s-1"
