@@ -20,11 +20,12 @@ from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.measured import Measured
 from .materials.pair import Pair, Plane, effective_modulus
+from .materials.prony import Prony
 from .motion.warned import say
 from .parameters import frozen, same
 from .results import Row, Shown, short
 from .scale import Scale
-from .scaling import contact_length, scene_from_si, scene_of_pair, scene_of_solids
+from .scaling import contact_length, scene_of
 from .scene import Methods, Scene
 from .symbols import MEASURED
 
@@ -165,9 +166,14 @@ class Cylinder(Methods):
             given["material"] = None
         return Cylinder(**(given | changes))
 
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """What was given in numbers, by name."""
+        given = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
+        return {name: value for name, value in given.items() if value is not None}
+
     def some(self, which: NDArray[np.int64], count: int) -> Cylinder:
-        arrays = {name: value for name in _NUMBERS if np.shape(value := getattr(self, name)) == (count,)}
-        picked = {"load" if name == "pressed" else name: value[which] for name, value in arrays.items()}
+        picked = {name: value[which] for name, value in self.numbers.items() if np.shape(value) == (count,)}
         return self.replace(**picked) if picked else self
 
     def tilted(self, slope: Any) -> Cylinder:
@@ -185,8 +191,7 @@ class Cylinder(Methods):
         return hash((*parts, self.plane, self.material, self.base))
 
     def _card(self) -> tuple[str, list[Row]]:
-        names = (*(name for name in _NUMBERS if name != "pressed"), "load", "plane")
-        given = {name: value for name in names if (value := getattr(self, name)) is not None}
+        given = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [Row(name, short(value), UNITS.get(name, "")) for name, value in given.items()]
         for name in ("material", "base"):
             if (body := getattr(self, name)) is not None:
@@ -224,16 +229,17 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
-        if self._papers and np.ndim(self.T_epsilon):
-            return scene_of_solids(
-                self.R, self.m, self.E, self.nu, self.T_ref, (self.T_epsilon, self.T_sigma), self.mu, self.j, self.g,
-                self.plane, self.pressed,
-            )  # fmt: skip
+        law: Any = self.material if isinstance(self.material, LawTable) else None
         if self._papers:
-            solid: dict[str, Any] = {name: getattr(self, name) for name in (*_SOLID, "R", "m", "mu", "j", "g", "plane")}
-            return scene_from_si(**solid, load=self.pressed)
-        scene = scene_of_pair(self.R, self.m, self.pair, self.mu, self.j, self.g, self.pressed)
-        return scene.replace(material=self.material) if isinstance(self.material, LawTable) else scene
+            slow, fast = (np.asarray(each, np.float64) for each in (self.T_epsilon, self.T_sigma))
+            with np.errstate(all="ignore"):
+                law = (slow / fast)[()]
+            if slow.ndim:
+                slow, fast = np.broadcast_arrays(slow, fast)
+                law = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / self.T_ref)[:, np.newaxis], alpha=law)
+        return scene_of(
+            self.R, self.m, self.load, self.E_prime, self.T_ref, self.pair.law if law is None else law, self.mu, self.j
+        )
 
     def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         if density is not None:

@@ -58,11 +58,17 @@ class Rolls:
     """What rolls: a scene, or a cylinder.  Functions take its parameters, and answer in the units of its scale."""
 
     scale: Scale
+    material: Any
     #: attributes of datasets
     about: ClassVar[dict[str, Any]] = {}
 
     def scene(self) -> Parameters:
         """The dimensionless parameters."""
+        raise NotImplementedError
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Its parameters that are numbers or arrays, by name."""
         raise NotImplementedError
 
     def tilted(self, slope: Any) -> Self:

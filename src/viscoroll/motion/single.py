@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import fields
 from typing import Any
 
 from ..checks import number
@@ -120,7 +119,7 @@ def roll(
         drive = drive.acting
     roller, scene, scale = framed(roller, "roll", moves=True, slope=drive.slope)
     if scene.shape:
-        _refuse_many(roller)
+        refuse_many(material=roller.material, **roller.numbers)
     refuse_many(V0=V0, omega0=omega0)
     given: list[Any] = [("V0", V0), ("omega0", omega0)]
     V0, omega0 = (None if start is None and drive.prescribes else number(name, start) for name, start in given)
@@ -142,11 +141,3 @@ def roll(
         words = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)
     return motion
-
-
-def _refuse_many(roller: Any) -> None:
-    """Name what is an array of what rolls."""
-    refuse_many(material=roller.material)
-    refuse_many(
-        **{"load" if field.name == "pressed" else field.name: getattr(roller, field.name) for field in fields(roller)}
-    )

@@ -21,7 +21,7 @@ from ..materials.material import Material
 from ..materials.pair import cylinders_share, effective_modulus, joint_modulus
 from ..parameters import Parameters, Rolls
 from ..scale import Scale
-from ..scaling import scene_from_si, scene_of_law
+from ..scaling import scene_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +72,11 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
     sizes = {"R": one.R, "P": one.load, "m": one.m}
     if any(isinstance(body, _Solid) for body in bodies.values()):
         law, E_prime, T = _law(bodies["material"], bodies.get("base"), one.plane)
-        scene = scene_of_law(one.R, one.m, E_prime, T, law, one.mu, one.j, one.g, one.pressed)
+        scene = scene_of(one.R, one.m, one.load, E_prime, T, law, one.mu, one.j)
         return Rollers(scene, sizes | {"T": T})
     if np.ndim(one.T_epsilon):
-        given = {name: getattr(one, name) for name in ("R", "m", "E", "nu", "T_epsilon", "T_sigma", "mu", "j", "g")}
-        scene = scene_from_si(**given, plane=one.plane, load=one.pressed)
+        alpha = one.T_epsilon / one.T_sigma
+        scene = scene_of(one.R, one.m, one.load, one.E_prime, one.T_epsilon, alpha, one.mu, one.j)
         return Rollers(scene.replace(gamma=scene.gamma / one.T_epsilon), sizes | {"T": one.T_epsilon}, seconds=True)
     return one
 
