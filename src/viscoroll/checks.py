@@ -98,3 +98,12 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     except ValueError:
         shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
         raise ParameterError("shapes", shapes, "broadcastable against each other") from None
+
+
+def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
+    """A number, or a copy that nobody can write to."""
+    if array.ndim == 0:
+        return float(array)
+    array = array.copy()
+    array.flags.writeable = False
+    return array

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import known
 from .assumptions import WAVE_LIMIT, Assumption, Validity, coupling, inertia, measurement, passage, thickness
-from .checks import broadcast_shape, checked, number
+from .checks import broadcast_shape, checked, frozen, number
 from .drive import slope_factor
 from .errors import ParameterError, one_of
 from .free_rolling import rolling
@@ -22,7 +22,7 @@ from .materials.measured import Measured
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
 from .motion.warned import say
-from .parameters import frozen, same
+from .parameters import same
 from .results import Row, Shown, short
 from .scale import Scale
 from .scaling import contact_length, scene_of

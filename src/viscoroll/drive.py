@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .checks import checked
+from .checks import checked, frozen
 from .errors import ParameterError
 from .scale import Scale
 
@@ -35,7 +35,7 @@ class Schedule:
 
     def __post_init__(self) -> None:
         for name, low in (("times", 0.0), ("values", -np.inf)):
-            object.__setattr__(self, name, _own(name, getattr(self, name), low))
+            object.__setattr__(self, name, frozen(checked(name, getattr(self, name), low=low)))
         times, values = self.times, self.values
         fits = {np.ndim(times), np.ndim(values)} <= {1, 2}
         fits = fits and times.size > 0 and values.shape[-1] == times.shape[-1]
@@ -72,9 +72,9 @@ class Feedback:
 
     def __post_init__(self) -> None:
         if not (callable(self.value) or isinstance(self.value, Schedule)):  # those are checked with their motion
-            object.__setattr__(self, "value", _own("value", self.value))
+            object.__setattr__(self, "value", frozen(checked("value", self.value)))
         for name in ("V", "omega"):
-            object.__setattr__(self, name, gain := _own(name, getattr(self, name)))
+            object.__setattr__(self, name, gain := frozen(checked(name, getattr(self, name))))
             if np.ndim(gain) > 1:
                 raise ParameterError(name, f"of shape {np.shape(gain)}", "a number, or one a motion, (n,)")
 
@@ -82,16 +82,6 @@ class Feedback:
     def shape(self) -> tuple[int, ...]:
         """Of its gains."""
         return np.broadcast_shapes(np.shape(self.V), np.shape(self.omega))
-
-
-def _own(name: str, given: Any, low: float = -np.inf) -> Any:
-    """A number, or an array that nobody else writes to."""
-    value = checked(name, given, low=low)
-    if not value.ndim:
-        return float(value)
-    value = value.copy()
-    value.flags.writeable = False
-    return value
 
 
 def refuse_more_than_t(name: str, function: Callable[..., Any]) -> None:

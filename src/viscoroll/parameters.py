@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .assumptions import Validity
-from .checks import broadcast_shape, checked, checked_extent
+from .checks import broadcast_shape, checked, checked_extent, frozen
 from .drive import slope_factor
 from .errors import ParameterError, one_of
 from .free_rolling import Free
@@ -17,17 +17,8 @@ from .materials.bodies import Bodies
 from .materials.law_table import LawTable, law_table
 from .materials.prony import Prony
 from .materials.prony_forms import HIGHEST_ALPHA
+from .results import short
 from .scale import DIMENSIONLESS, Scale
-
-
-def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
-    """A number, or a copy that nobody can write to."""
-    if array.ndim == 0:
-        return float(array)
-    array = array.copy()
-    array.flags.writeable = False
-    return array
-
 
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 
@@ -45,13 +36,6 @@ RATIO_RANGE = (1e-290, 1e290)
 
 def _in_own_time(series: Prony) -> tuple[float | Prony, float]:
     return series.in_own_time() if series.E.size else (1.0, 1.0)
-
-
-def _short(value: Any) -> str:
-    """A number, or what an array holds, in few words."""
-    if not isinstance(value, np.ndarray):
-        return f"{value:.12g}" if isinstance(value, float) else repr(value)
-    return f"<{value.shape} in [{value.min():.6g}, {value.max():.6g}]>" if value.size else f"<{value.shape}>"
 
 
 class Rolls:
@@ -246,7 +230,7 @@ class Parameters(Rolls):
         given = self.numbers if self.material is None else {"material": self.material} | self.numbers
         if self.material is not None:
             del given["alpha"]
-        return f"Scene({', '.join(f'{name}={_short(value)}' for name, value in given.items())})"
+        return f"Scene({', '.join(f'{name}={short(value)}' for name, value in given.items())})"
 
 
 def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:

@@ -50,8 +50,9 @@ class Counted:
 
 def values(curve: schedule.Curve, t: np.ndarray) -> np.ndarray:
     """A curve of one motion at these times."""
-    k = np.searchsorted(curve.starts, t, side="right") - 1
-    x = 2.0 * (t - curve.starts[k]) / (curve.ends[k] - curve.starts[k]) - 1.0
+    (starts,), (ends,) = curve.starts, curve.ends
+    k = np.searchsorted(starts, t, side="right") - 1
+    x = 2.0 * (t - starts[k]) / (ends[k] - starts[k]) - 1.0
     return (curve.terms[0, k] * x[:, None] ** np.arange(curve.terms.shape[-1])).sum(axis=1)
 
 

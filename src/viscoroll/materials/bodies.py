@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import broadcast_shape, checked
+from ..checks import broadcast_shape, checked, frozen
 from ..errors import ParameterError
 from .prony import Block, OneOrMany, Prony, descending
 from .prony_forms import MOST_MODES
@@ -65,9 +65,7 @@ class Bodies(OneOrMany):
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
             raise ParameterError("cylinder, half_space", f"of {modes} modes together", f"at most {MOST_MODES}")
-        kept = share.copy()
-        kept.flags.writeable = False
-        object.__setattr__(self, "share", kept if kept.ndim else float(kept))
+        object.__setattr__(self, "share", frozen(share))
 
     @property
     def _same(self) -> bool:

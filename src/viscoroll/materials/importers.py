@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..checks import checked, number
 from ..errors import ParameterError, one_of
+from .bodies import Bodies
 from .prony import Prony
 
 
@@ -193,9 +194,5 @@ def plane_strain(G_inf: float, G: NDArray, tau: NDArray, K: float) -> tuple[floa
     """
     first, second = Prony(G / G_inf, tau), Prony(G / (3.0 * K + G_inf), tau)
     soft, hard = 0.25 / G_inf, 0.75 / (3.0 * K + G_inf)
-    share = soft / (soft + hard)
-    alpha = 1.0 / (share / first.alpha + (1.0 - share) / second.alpha)
-    strengths = np.concatenate([share * first.J, (1.0 - share) * second.J])
-    prony = Prony.creep(strengths, np.concatenate([first.T, second.T]), alpha=alpha)
     nu = (3.0 * K - 2.0 * G_inf) / (6.0 * K + 2.0 * G_inf)
-    return nu, prony
+    return nu, Bodies(first, second, soft / (soft + hard)).total

@@ -22,9 +22,9 @@ _ROUNDING_OF_SLOPE = 1e-12
 
 
 class Curve(NamedTuple):
-    """A function of time for one motion or m of them: starts and ends (k,), the last end infinite; terms (m, k, terms).
+    """A function of time of one motion or m: starts and ends (m, k), the last end infinite; terms (m, k, terms).
 
-    Where motions have times of their own starts and ends are (m, k), and pieces may have no length.
+    What is the same for all has one row.  Where motions have times of their own, pieces may have no length.
     error : the largest difference seen between a callable and its fit.
     """
 
@@ -51,7 +51,7 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         ends = np.r_[starts[1:], end, np.inf]
-        return Curve(np.append(starts, end), ends, np.concatenate([terms, after])[None], error)
+        return Curve(np.append(starts, end)[None], ends[None], np.concatenate([terms, after])[None], error)
     if isinstance(given, Schedule):
         return _linear(given.times, checked(f"values of {name}", given.values, low=low))
     values = checked(name, 0.0 if given is None else given, low=low)
@@ -59,33 +59,19 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         raise ParameterError(
             name, f"array of shape {values.shape}", "a number, one a motion, or a Schedule(times, values)"
         )
-    return Curve(np.zeros(1), np.array([np.inf]), values.reshape(-1, 1, 1))
+    return Curve(np.zeros((1, 1)), np.full((1, 1), np.inf), values.reshape(-1, 1, 1))
 
 
 def _linear(times: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
     """Linear between times, constant outside; a time given twice is a jump."""
-    values = np.atleast_2d(values)
-    if times.ndim == 2:
-        return _linear_each(times, values)
-    rises = np.flatnonzero(np.diff(times) > 0.0)
-    starts, ends = times[rises], times[rises + 1]
-    first, second = values[:, rises], values[:, rises + 1]
-    terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
-    if times[0] > 0.0:
-        starts, ends = np.r_[0.0, starts], np.r_[times[0], ends]
-        terms = np.concatenate([_flat(values[:, :1]), terms], axis=1)
-    starts, ends = np.r_[starts, times[-1]], np.r_[ends, np.inf]
-    return Curve(starts, ends, np.concatenate([terms, _flat(values[:, -1:])], axis=1))
-
-
-def _linear_each(times: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
-    """The same with times (m, k) of their own: all segments stay, and one before the first time."""
-    first, second = values[:, :-1], values[:, 1:]
+    times, values = np.atleast_2d(times, values)
+    first, second, none = values[:, :-1], values[:, 1:], np.zeros((len(times), 1))
     terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
     terms = np.concatenate([_flat(values[:, :1]), terms, _flat(values[:, -1:])], axis=1)
-    ends = np.concatenate([times, np.full((len(times), 1), np.inf)], axis=1)
-    starts = np.concatenate([np.zeros((len(times), 1)), times], axis=1)
-    return Curve(starts, ends, np.broadcast_to(terms, (len(times), *terms.shape[1:])))
+    terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
+    starts, ends = np.concatenate([none, times], axis=1), np.concatenate([times, none + np.inf], axis=1)
+    kept = (ends > starts).any(axis=0)
+    return Curve(starts[:, kept], ends[:, kept], terms[:, kept])
 
 
 def _flat(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -132,65 +118,41 @@ def _from_zero(terms: NDArray[np.float64], rounding: float = _ROUNDING) -> NDArr
 
 
 def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
-    """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms)."""
+    """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms).
+
+    Where motions have times of their own, pieces between equal times have no length, and are passed over.
+    """
     from ..kernels.motion.load import FIRST, SCALE, START
 
-    if any(each.starts.ndim == 2 for each in curves):
-        return _pieces_each(curves, end)
-    starts = np.unique(np.concatenate([each.starts for each in curves]))
-    starts = starts[starts < end] if end > 0.0 else starts[:1]
-    ends = np.append(starts[1:], np.inf)
-    for each in curves:
-        ends[-1] = min(ends[-1], each.ends[each.starts <= starts[-1]][-1])
-    count = max(each.terms.shape[0] for each in curves)
-    terms = max(each.terms.shape[-1] for each in curves)
-    rows = np.zeros((count, starts.size, FIRST + len(curves) * terms))
-    rows[..., START], rows[..., SCALE] = starts, 2.0 / (ends - starts)
-    for n, each in enumerate(curves):
-        part = _restricted(each, starts, ends)
-        first = FIRST + n * terms
-        rows[..., first : first + part.shape[-1]] = _from_zero(part)
-    return rows
-
-
-def _pieces_each(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
-    """The same where motions have times of their own; pieces between equal times have no length and are passed over."""
-    from ..kernels.motion.load import FIRST, SCALE, START
-
-    count = max(max(each.terms.shape[0], np.atleast_2d(each.starts).shape[0]) for each in curves)
-    own = [np.broadcast_to(each.starts, (count, each.starts.shape[-1])) for each in curves]
+    apart = max(len(each.starts) for each in curves)
+    own = [np.broadcast_to(each.starts, (apart, each.starts.shape[1])) for each in curves]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
-    ends = np.concatenate([starts[:, 1:], np.full((count, 1), np.inf)], axis=1)
-    terms = max(each.terms.shape[-1] for each in curves)
-    rows = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms))
-    lengths = ends - starts
+    new = np.concatenate([np.diff(starts, axis=1), np.ones((apart, 1))], axis=1) > 0.0
+    starts = starts[:, new.any(axis=0)]
+    ends = np.concatenate([starts[:, 1:], np.full((apart, 1), np.inf)], axis=1)
+    kept = max(int((starts < end).any(axis=0).sum()), 1)
+    starts, ends = starts[:, :kept], ends[:, :kept]
+    count, terms = max(len(each.terms) for each in curves), max(each.terms.shape[-1] for each in curves)
+    rows, lengths = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms)), ends - starts
     rows[..., START] = starts
-    np.divide(2.0, lengths, out=rows[..., SCALE], where=lengths > 0.0)
+    rows[..., SCALE] = np.divide(2.0, lengths, out=np.zeros(lengths.shape), where=lengths > 0.0)
     for n, (each, first) in enumerate(zip(curves, own, strict=True)):
         which = (first[:, None, :] <= starts[:, :, None]).sum(axis=2) - 1
-        last = np.take_along_axis(np.broadcast_to(each.ends, first.shape), which, axis=1)
+        begin, last = (np.take_along_axis(np.broadcast_to(of, first.shape), which, 1) for of in (first, each.ends))
+        which = np.broadcast_to(which, (max(apart, len(each.terms)), which.shape[1]))
         whole = np.take_along_axis(
-            np.broadcast_to(each.terms, (count, *each.terms.shape[1:])), which[..., None], axis=1
+            np.broadcast_to(each.terms, (len(which), *each.terms.shape[1:])), which[..., None], 1
         )
-        begin = np.take_along_axis(first, which, axis=1)
+        same = (begin == starts) & (last == ends)
+        part = np.where(same[..., None], whole, _moved(whole, begin, last, starts, ends))
         at = FIRST + n * terms
-        rows[..., at : at + whole.shape[-1]] = _from_zero(_moved(whole, begin, last, starts, ends))
+        rows[..., at : at + part.shape[-1]] = _from_zero(part)
     at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
     late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
-    acting = rows[np.arange(count), at_end, FIRST:]
-    rows[..., FIRST:] = np.where(late[..., None], acting[:, None], rows[..., FIRST:])  # the last acts at the end
+    if late.any():  # the last acts at the end
+        acting = rows[np.arange(count), np.broadcast_to(at_end, count), FIRST:]
+        rows[..., FIRST:] = np.where(late[..., None], acting[:, None], rows[..., FIRST:])
     return rows
-
-
-def _restricted(each: Curve, starts: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Terms of a curve over other pieces, each within one of its own."""
-    if each.starts.size == 1:  # it stays as it is
-        return np.repeat(each.terms, starts.size, axis=1)
-    own = np.searchsorted(each.starts, starts, side="right") - 1
-    terms, first, last = each.terms[:, own], each.starts[own], each.ends[own]
-    if (first == starts).all() and (last == ends).all():
-        return terms
-    return _moved(terms, first, last, starts, ends)
 
 
 def _moved(
