@@ -58,6 +58,9 @@ class _Reader:
         if not isinstance(given, dict):
             return given
         if not given.keys() & _ONE:
+            for name in given:
+                if near := hint(name, _ONE):
+                    raise fault(self.path, section, key, f"{key}: unknown key {name!r}{near}")
             *before, last = words
             own = (*before, *_WORDS.get(last, (last,)))
             return {
