@@ -39,7 +39,10 @@ def _warm_up(arguments: Namespace) -> int:
 
 
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
-    """A small call of each kind that has kernels of its own."""
+    """A small call of each kind that has kernels of its own.
+
+    Not of ``unsteady=True``: the engine of motions once more, 12 s of processor beside 16, for what few call.
+    """
 
     from .. import Prony, Scene, contact, ensemble, law, roll, steady, stress, tables
     from ..kernels.printed import motion as printed
