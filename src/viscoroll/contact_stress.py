@@ -58,7 +58,7 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
-    from .kernels.law.stress import Points, stress_loop
+    from .kernels.law.stress import Points
 
     _, scene, scale = framed(roller, "stress")
     if (delta is None) == (omega is None):
@@ -91,7 +91,7 @@ def stress(
         if many is not None:
             _of_each(many, numbers, points, out)
         else:
-            stress_loop(*kernel_series(numbers if scene.series is None else scene.series), points, *out)
+            _of_one(numbers if scene.series is None else scene.series, points, out)
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
@@ -99,12 +99,18 @@ def stress(
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 
+def _of_one(given: Any, points: Any, out: tuple[Array, Array]) -> None:
+    """The stresses at points of one series, or with an alpha each."""
+    from .kernels.law.stress import memories, stress_loop
+
+    series, alpha = kernel_series(given)
+    stress_loop(series, alpha, memories(series), memories(series), points, *out)
+
+
 def _of_each(materials: Prony | Bodies, numbers: Array, points: Any, out: tuple[Array, Array]) -> None:
     """The stresses at points with a material each, which lie together where they share one."""
-    from .kernels.law.stress import stress_loop
-
     for first, last in pairwise([0, *(1 + np.flatnonzero(np.diff(numbers))), out[0].size]):
         own = materials[int(numbers[min(first, numbers.size - 1)])]
         own = own.total if isinstance(own, Bodies) else own
         some = points._make(part[first:last] if part.size > 1 else part for part in points)
-        stress_loop(*kernel_series(own), some, *(part[first:last] for part in out))
+        _of_one(own, some, (out[0][first:last], out[1][first:last]))

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from .blocks import elements, run_blocks
 from .checks import extent
-from .contact_fields import SLOPES, SLOPES_OF_BODIES, UNSTEADY
+from .contact_fields import UNSTEADY
 from .errors import ParameterError
 from .materials.bodies import Bodies
 from .materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
-from .materials.law_modes import unsteadiness
+from .materials.law_modes import by_modes
 from .materials.law_table import LawTable
 from .materials.prony import Prony
 
@@ -72,36 +72,31 @@ def _fill(
     names: tuple[str, ...], out: NDArray, start: int, stop: int,
 ) -> None:  # fmt: skip
     """The fields of some states."""
-    k, States, to, values, slopes = _asked(names)
+    from .kernels.law.states import Asked, States
+    from .kernels.rows.contact import contact_loop
+
     each, kappa, mu, V, creep = parts
-    asked = k.Asked(States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
-    room = np.empty((2, _TOGETHER if isinstance(given, LawTable) else 1))
-    if values:
-        k.table_loop(law, asked, room, stop - start)
-    if slopes:
-        k.slopes_loop(law, asked, stop - start)
+    asked = Asked(States(kappa, mu, V, creep, creep_is_omega), order, _rows(names), out, start)
+    room = np.empty((3, _TOGETHER if isinstance(given, LawTable) else 1))
+    if set(names) - {UNSTEADY}:
+        contact_loop(law, asked, room, stop - start)
     if UNSTEADY in names:
-        N = names.index(UNSTEADY)
+        N = out[names.index(UNSTEADY), start:stop]
         if isinstance(given, LawTable):
-            k.unsteady_loop(law, given.unsteady_rows, asked.states, out[N], start, stop)
+            from .kernels.rows.added import unsteady_loop
+
+            unsteady_loop(given.unsteady_record, kappa, V, N)
         else:
-            to_N = np.where(_asked(("zeta",))[2] == 0, N, -1)
-            k.table_loop(law, asked._replace(to=to_N), room, stop - start)
-            out[N, start:stop] = unsteadiness(each, out[N, start:stop])
+            contact_loop(law, asked._replace(to=_rows(("zeta",)), out=N[None], first=0), room, stop - start)
+            N[:] = by_modes(each, N).N
 
 
 @lru_cache(maxsize=64)
-def _asked(names: tuple[str, ...]) -> tuple[Any, Any, NDArray, bool, bool]:
-    """(The kernels, what they take, the row of each of their fields or -1, whether there are values, and slopes)."""
-    from .kernels.law.states import ROWS, States
-    from .kernels.rows import contact as kernels
+def _rows(names: tuple[str, ...]) -> Any:
+    """The row of each field."""
+    from .kernels.law.states import Fields
 
-    to = np.full(len(ROWS), -1)
-    for row, name in enumerate(names):
-        if name != UNSTEADY:
-            to[ROWS.index(name)] = row
-    slopes = set(names) & set(SLOPES + SLOPES_OF_BODIES)
-    return kernels, States, to, bool(set(names) - slopes - {UNSTEADY}), bool(slopes)
+    return Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:

@@ -192,20 +192,16 @@ def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
 
 def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
     """The fields ``names`` by the printed equations, a row each, of alpha, kappa, mu, V and the creep."""
-    from .kernels.law.states import ROWS, States
+    from .kernels.law.states import Asked, Fields, States
     from .kernels.printed.loop import direct_loop
 
-    count = int(np.prod(shape))
-    rows = np.array([ROWS.index(name) for name in names], dtype=np.int64)
-    out = np.empty((len(names), count))
+    count, to = int(np.prod(shape)), Fields(**{name: row for row, name in enumerate(names)})
+    out, order = np.empty((len(names), count)), np.empty(0, np.int64)
     alphas, *parts = (elements(np.asarray(array, np.float64), shape) for array in arrays)
 
     def solve(start: int, stop: int) -> int:
-        found = np.empty((len(names), stop - start))
-        kappa, mu, V, creep = (part(start, stop) for part in parts)
-        states = States(kappa, mu, V, creep, creep_is_omega)
-        status: int = direct_loop(alphas(start, stop), states, rows, found, 0, stop - start)
-        out[:, start:stop] = found
+        states = States(*(part(start, stop) for part in parts), creep_is_omega)
+        status: int = direct_loop(alphas(start, stop), Asked(states, order, to, out, start), stop - start)
         return status
 
     solve_blocks(solve, count, _BLOCK, "contact: an iteration hit its cap near element {} (method 'direct')")

@@ -86,7 +86,7 @@ SYMBOLS = {
         "moment for each unit of V', M = M(V) + N V' in slow changes",
         "finite",
         "",
-        "kernels/law/unsteady.py",
+        "kernels/rows/modes.py",
     ),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),

@@ -36,12 +36,13 @@ def _rates(V, omega, t, par, du):
 
     par[0]: alpha, which the law is of whose rows and marks, addresses and sizes, are behind.
     """
-    law = Law(doubles(int(par[9]), int(par[10])), integers(int(par[11]), int(par[12])), 0, 0, 0)
+    rows, marks = doubles(int(par[9]), int(par[10])), integers(int(par[11]), int(par[12]))
+    law = Law(rows, marks, rows[:0], 0, 0, 0)
     state = State(par[1], par[2], V, omega, True)
     u = state.kappa * abs(V)
     at = place(u, law)
-    L, m, scale = speed(at, u, law)
-    Q, M = traction_of(u, L, state, law), way_of(at, u, scale, state) * m
+    found = speed(at, u, law)
+    Q, M = traction_of(u, found.L, state, law), way_of(at, u, found.scale, state) * found.m
     f, q = par[4] + par[5] * t, par[6] + par[7] * t
     du[0] = Q - 0.5 * M + f
     du[1] = (q - Q - 0.5 * M) / par[3]

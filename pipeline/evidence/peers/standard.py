@@ -11,7 +11,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from viscoroll.kernels.bessel.ratios import ratio_i2, ratio_k, ratio_r, ratios_and_slopes
+from viscoroll.kernels.bessel.ratios import (
+    K_LEAST,
+    k_from,
+    piece_of,
+    place_k,
+    place_r,
+    r_from,
+    ratio_i2,
+    ratio_k,
+    ratio_r,
+    small_k,
+)
 from viscoroll.kernels.compile.jit import kernel
 from viscoroll.kernels.numerics.nodes import gauss
 
@@ -45,6 +56,26 @@ def generators(z, material):
     p = r * k
     share = c / (1.0 + p)
     return share * p, share * r
+
+
+@kernel(inline=True)
+def ratios_and_slopes(z, alpha):
+    """(x = alpha z, r(x), k(z), r', k', 1/x, 1/z) for z > 0, by one division."""
+    x = alpha * z
+    per_x = 1.0 / x
+    per_z = alpha * per_x
+    row, t = place_r(x, per_x)
+    piece = piece_of(row, t)
+    r, r_complement = r_from(piece, x, piece * per_x)
+    if z < K_LEAST:
+        k, k_complement = small_k(z)
+    else:
+        row, t = place_k(z, per_z)
+        piece = piece_of(row, t)
+        k, k_complement = k_from(piece, z, piece * per_z)
+    # by the Riccati equations
+    s, dk = r_complement * (1.0 + r) - r * per_x, k * per_z - k_complement * (1.0 + k)
+    return x, r, k, s, dk, per_x, per_z
 
 
 @kernel(inline=True)

@@ -15,7 +15,8 @@ from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.contact_fields import OF_BODIES
-from viscoroll.kernels.rows.series import LANES, room_of, values
+from viscoroll.kernels.rows.modes import modes_loop
+from viscoroll.kernels.rows.series import FUNCTIONS, room_of
 from viscoroll.materials.law_modes import series_of
 
 from ..truth import series as raw
@@ -60,9 +61,10 @@ def relative(found: float, truth: Any) -> float:
 
 def of_z(p: vr.Prony, z: float, weights: Any = None) -> list[float]:
     """g, h and what of m is the half-space's and the cylinder's, by the modes."""
-    work = room_of(p.E.size)
-    values((z, z, z, z), False, series_of(p.modes, weights), work)
-    shift, rise, half_space, cylinder, _ = work.found[::LANES].tolist()
+    series, found, place = series_of(p.modes, weights), np.empty((2 * FUNCTIONS + 1, 1)), np.array([z])
+    place.flags.writeable = False
+    modes_loop(series, np.empty(0), room_of(p.E.size), place, found)
+    shift, rise, half_space, cylinder = found[:FUNCTIONS, 0].tolist()
     return [shift * z, rise * z, half_space, cylinder]
 
 

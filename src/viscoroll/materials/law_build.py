@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
+from .law_modes import AtPlaces
 
 Floats = NDArray[np.float64]
 
@@ -130,9 +131,9 @@ class Limits:
     means: Floats
     fast: Floats
 
-    def off(self, w: Floats, found: Floats) -> Floats:
+    def off(self, w: Floats, found: AtPlaces) -> Floats:
         """What the fast limit is off by, at most, at the places w where ``found`` was evaluated."""
-        shift, rise, *parts = found[::2]
+        shift, rise, *parts = found.values
         square, (W, C) = 1.0 + 2.0 * rise, self.fast.sum(axis=0)
         v, z = w / (1.0 + shift), np.sqrt(square / self.alpha) / w
         share = 1.0 - 0.5 * self.alpha * (C + W * np.log(v)) / v
@@ -152,37 +153,30 @@ class Fine:
     powers: Floats
     values: Floats  # at its nodes
 
-    def at(self, functions: list[int], w: Floats) -> tuple[Floats, Floats]:
-        """Values and slopes over ln w, a row each."""
-        return self.rows.read(self.powers[functions], w)
-
     def speed(self, u: Floats) -> tuple[Floats, Floats]:
         """lam, epsilon and the parts of M/V at u, and their slopes over ln u."""
-        w = self._near(u, 0.5 / np.sqrt(1.0 + 2.0 * self.values[1]))
-        for _ in range(_STEPS):
-            (rise,), (bend,) = self.at([1], w)
-            w += (2.0 * u * np.sqrt(1.0 + 2.0 * rise) - w) / (1.0 - bend / (1.0 + 2.0 * rise))
-        values, slopes = self.at([0, 1, 2, 3], w)
-        rise, bend = values[1], slopes[1]
-        turn = 1.0 / (1.0 - bend / (1.0 + 2.0 * rise))
-        values += slopes * ((2.0 * u * np.sqrt(1.0 + 2.0 * rise) / w - 1.0) * turn)
-        lam = 1.0 / np.sqrt(1.0 + 2.0 * values[1])
-        slopes *= turn
-        return np.stack([lam, *values[[0, 2, 3]]]), np.stack([-(lam**3) * slopes[1], *slopes[[0, 2, 3]]])
+        (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._turned(u, 1, lambda rise: 2.0 * np.sqrt(rise))
+        lam = 1.0 / np.sqrt(1.0 + 2.0 * rise)
+        return np.stack([lam, shift, *parts]), np.stack([-(lam**3) * d_rise, d_shift, *d_parts])
 
     def stick(self, v: Floats) -> tuple[Floats, Floats]:
         """eta/F and H/F^2 at v, and their slopes over ln v."""
-        w = self._near(v, 1.0 / (1.0 + self.values[0]))
+        (shift, rise, *_), (d_shift, d_rise, *_) = self._turned(v, 0, lambda shift: shift)
+        share = 1.0 / (1.0 + shift)
+        press, fall = (1.0 + 2.0 * rise) * share**2, share * d_shift
+        return np.stack([share, press]), np.stack([-share * fall, 2.0 * (d_rise * share**2 - press * fall)])
+
+    def _turned(self, x: Floats, which: int, factor: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
+        """Values, and slopes over ln x, where w = x factor(1 + g/z) or, ``which`` 1, x factor(1 + 2 h/z)."""
+        w = self._near(x, 1.0 / factor(1.0 + (1 + which) * self.values[which]))
         for _ in range(_STEPS):
-            (shift,), (bend,) = self.at([0], w)
-            w += (v * (1.0 + shift) - w) / (1.0 - bend / (1.0 + shift))
-        values, slopes = self.at([0, 1], w)
-        turn = 1.0 / (1.0 - slopes[0] / (1.0 + values[0]))
-        values += slopes * ((v * (1.0 + values[0]) / w - 1.0) * turn)
-        slopes *= turn
-        share = 1.0 / (1.0 + values[0])
-        press, fall = (1.0 + 2.0 * values[1]) * share**2, share * slopes[0]
-        return np.stack([share, press]), np.stack([-share * fall, 2.0 * (slopes[1] * share**2 - press * fall)])
+            (value,), (slope,) = self.rows.read(self.powers[[which]], w)
+            whole = 1.0 + (1 + which) * value
+            w += (x * factor(whole) - w) / (1.0 - slope / whole)
+        values, slopes = self.rows.read(self.powers, w)
+        whole = 1.0 + (1 + which) * values[which]
+        turn = 1.0 / (1.0 - slopes[which] / whole)
+        return values + slopes * ((x * factor(whole) / w - 1.0) * turn), slopes * turn
 
     def _near(self, x: Floats, per: Floats) -> Floats:
         """w to a thousandth where w per = x, from the nodes."""
@@ -196,12 +190,11 @@ def first_octave(slowest: float) -> int:
 
 
 def build(
-    evaluate: Callable[[Floats], Floats], slowest: float, fastest: float, limits: Limits, least: int = 0
+    evaluate: Callable[[Floats], AtPlaces], slowest: float, fastest: float, limits: Limits, least: int = 0
 ) -> Floats:
     """The table (rows, 24 powers, 7 functions) with NaN for N, of no fewer rows than ``least``.
 
-    ``evaluate``: from z, values and slopes over ln(1/z) of g/z, h/z and the parts of m, in turn; ``slowest``,
-    ``fastest``: rates of creep and of relaxation.
+    ``evaluate``: at places of z; ``slowest``, ``fastest``: rates of creep and of relaxation.
     """
     e0 = first_octave(slowest)
     tried = math.frexp(fastest)[1] + np.arange(_FIRST, _FIRST + _TRIED)
@@ -212,10 +205,9 @@ def build(
     rows, mean = Rows(e0, max(last - e0 + 1, least)), float(limits.means.sum())
     finer = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(limits.alpha)))
     found = evaluate(1.0 / finer.x.ravel())
-    shaped = found.reshape(-1, *finer.x.shape)
-    powers = finer.fit_slopes(shaped[::2], shaped[1::2])
+    powers = finer.fit_slopes(*(each.reshape(-1, *finer.x.shape) for each in (found.values, found.slopes)))
     powers[:2, 0, :2], powers[2:, 0, 0] = [0.0, math.ldexp(0.5 * mean, e0)], limits.means
-    fine = Fine(finer, powers, found[::2])
+    fine = Fine(finer, powers, found.values)
     (speed, d_speed), (stick, d_stick) = fine.speed(rows.x.ravel()), fine.stick(rows.x.ravel())
     values, slopes = (np.concatenate(both).reshape(-1, *rows.x.shape) for both in ((speed, stick), (d_speed, d_stick)))
     powers = rows.fit_slopes(values, slopes)
@@ -228,10 +220,8 @@ def build(
 def with_unsteady(table: Floats, e0: int, evaluate: Callable[[Floats], Floats]) -> Floats:
     """The table with N; ``evaluate``: N at places of z."""
     rows, whole = Rows(e0, len(table)), table.copy()
-    lam = np.zeros_like(rows.x)
-    for k in range(TERMS - 1, -1, -1):
-        lam = lam * rows.t + table[:, k, :1]
-    *N, slowest = evaluate(np.append(0.5 * lam / rows.x, np.inf))
+    (lam,), _ = rows.read(table[None, :, :, 0], rows.x.ravel())
+    *N, slowest = evaluate(np.append(0.5 * lam / rows.x.ravel(), np.inf))
     fitted = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
     fitted[0, 0] = slowest
     whole[:, :, FUNCTIONS.index("N")] = fitted

@@ -68,7 +68,8 @@ def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
     # the marks keep alive all that the kernels have the addresses of
     held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
     addresses = address_of(hold, kind), address_of(make, kind), int(source.ctypes.data)
-    return Law(_read_only(known["rows"].view()), _read_only(np.asarray(held)), *addresses)
+    rows, marks, added = known["rows"].view(), np.asarray(held), np.empty(0)
+    return Law(*map(_read_only, (rows, marks, added)), *addresses)
 
 
 def _meet(octave: int) -> None:
@@ -98,58 +99,47 @@ def law_of_materials(materials: Prony | Bodies, which: NDArray[np.int64]) -> Any
 
     For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).
     """
-    from ..kernels.rows.grid import HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
-    from ..kernels.rows.series import LANES, packed_size, working_size
+    from ..kernels.rows.grid import FRONT, HELD, LIMITS, SOURCE, grid_size, hold, make, numbers_size
+    from ..kernels.rows.series import LANES, packed_size, room_size
 
     some, of = np.unique(which, return_inverse=True)
     blocks = list(materials.blocks(some))
     most = max((block.modes.a.shape[-1] for block in blocks), default=0)
-    limits, counts = np.empty((some.size, LIMITS)), np.empty((some.size, 3), np.int64)
-    packed = np.zeros((some.size, packed_size(most)))
+    numbers = np.zeros((some.size, FRONT + packed_size(most)))
     for block in blocks:
-        own, N = block.rows, block.modes.a.shape[-1]
-        if N:
+        if block.modes.a.shape[-1]:
             refuse_far(block.modes.b.min(), block.modes.a.max())
-        limits[own], counts[own] = _limits(block), _counts(block)
-        *vectors, Q, weights = series_of(block.modes, _weights(block))
-        packed[own, : packed_size(N)] = np.concatenate([*vectors, weights, Q.reshape(own.size, -1)], axis=1)
-    nodes = grid_size(int(counts[:, 1].max(initial=1)), float(limits[:, 0].max(initial=1.0)))
-    rows, marks = _room(int(counts[:, 1].max(initial=1)))
-    marks[HELD], working = -1, working_size(most)
+        found = _numbers(block)
+        numbers[block.rows, : found.shape[1]] = found
+    count = int(numbers[:, LIMITS + 1].max(initial=1.0))
+    nodes, working = grid_size(count, float(numbers[:, 0].max(initial=1.0))), room_size(most)
+    rows, marks = _room(count)
+    marks[HELD] = -1
     return _record(
         hold, make, SOURCE, rows=rows, marks=marks, of=np.ascontiguousarray(of, dtype=np.int64), count=of.size,
-        packed=packed, limits=limits, counts=counts, numbers=np.empty(numbers_size(nodes)), nodes=nodes,
-        made=np.zeros(nodes // LANES, np.int64), series=np.empty(working), working=working, columns=packed.shape[1],
+        materials=numbers, columns=numbers.shape[1], numbers=np.empty(numbers_size(nodes)), nodes=nodes,
+        made=np.zeros(nodes // LANES, np.int64), room=np.empty(working), working=working,
         unlike=any(block.weights is not None for block in blocks),
     )  # fmt: skip
 
 
-def _weights(block: Block) -> Floats:
-    """What of every creep mode is the half-space's."""
-    return np.full(block.modes.J.shape, 0.5) if block.weights is None else block.weights
+def _numbers(block: Block) -> Floats:
+    """What the kernels take of materials, a row each (:mod:`..kernels.rows.grid`)."""
+    from ..kernels.rows.grid import FAST
 
-
-def _limits(block: Block) -> Floats:
-    """Numbers in front of the rows (:mod:`..kernels.rows.record`), and the sums J_j T_j of half-space and cylinder."""
-    modes, weights = block.modes, _weights(block)
-    alpha = np.broadcast_to(modes.alpha, block.rows.shape)
-    fast = modes.J * modes.b
+    modes, count = block.modes, block.rows.size
+    weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
+    alpha, fast = np.broadcast_to(modes.alpha, count), modes.J * modes.b
     logs = fast * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
     sums = [(share * term).sum(axis=-1) for share in (1.0, weights, 1.0 - weights) for term in (fast, logs)]
     means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
-    return np.stack([alpha, 1.0 / np.sqrt(alpha), *sums, *means], axis=1)
-
-
-def _counts(block: Block) -> NDArray[np.int64]:
-    """First row, rows, modes."""
-    from ..kernels.rows.grid import FAST
-
-    modes, found = block.modes, np.ones((block.rows.size, 3), np.int64)
-    found[:, 0], found[:, 2] = 0, modes.a.shape[-1]
+    first, rows, N = np.zeros(count), np.ones(count), np.full(count, modes.a.shape[-1])
     if modes.a.shape[-1]:
-        found[:, 0] = np.frexp(modes.b[:, 0])[1] - 5
-        found[:, 1] = np.frexp(modes.a[:, -1])[1] + FAST - found[:, 0] + 1
-    return found
+        first = np.frexp(modes.b[:, 0])[1] - 5
+        rows = np.frexp(modes.a[:, -1])[1] + FAST - first + 1
+    *vectors, Q = series_of(modes, weights)
+    front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, first, rows, N]
+    return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)
 
 
 def _read_only(values: Any) -> Any:

@@ -1,8 +1,8 @@
-"""A series as kernels take it by its modes, and N of these, which rows are made from."""
+"""A series as kernels take it by its modes, and what these make rows of."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,8 @@ from ..errors import ParameterError
 from .bodies import Bodies
 from .prony import Prony
 from .prony_forms import Modes
+
+Floats = NDArray[np.float64]
 
 #: times in T_ref beyond which numbers of rows leave the doubles
 _LONGEST = 1e100
@@ -23,32 +25,46 @@ def refuse_far(slowest: float, fastest: float) -> None:
         raise ParameterError("times", f"{1.0 / fastest:g} to {1.0 / slowest:g}", allowed)
 
 
-def series_of(modes: Modes, weights: NDArray[np.float64] | None = None) -> Any:
+def series_of(modes: Modes, weights: Floats | None = None) -> Any:
     """The record of one series, or of many; ``weights``: the half-space's, of two bodies that differ."""
     from ..kernels.rows.series import Series
 
     strengths = (modes.J * modes.b)[..., :, None] * (modes.E * modes.a)[..., None, :]
     e, t = np.sqrt(modes.E / modes.a), np.sqrt(modes.J / modes.b)
-    return Series(modes.a, modes.b, e, t, np.sqrt(strengths) / modes.gap, np.empty(0) if weights is None else weights)
+    return Series(modes.a, modes.b, e, t, np.empty(0) if weights is None else weights, np.sqrt(strengths) / modes.gap)
 
 
-def kernel_series(given: Any) -> tuple[Any, NDArray[np.float64]]:
+def kernel_series(given: Any) -> tuple[Any, Floats]:
     """(The record of a series, nothing), or (that of one mode, the alphas that it is to have); for one thread."""
     from ..kernels.rows.series import Series
 
-    if isinstance(given, Prony):
-        return series_of(given.modes), np.empty(0)
-    one = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.ones((1, 1)), np.empty(0))
+    if isinstance(given, Prony | Bodies):
+        unlike = isinstance(given, Bodies)
+        modes = given.total.modes if unlike else given.modes
+        return series_of(modes, given.half_space_weights if unlike else None), np.empty(0)
+    one = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.empty(0), np.ones((1, 1)))
     return one, np.array(given, dtype=np.float64).reshape(-1)
 
 
-def unsteadiness(given: Any, zeta: NDArray[np.float64]) -> NDArray[np.float64]:
-    """N of M = M(V) + N V' at every zeta; ``given``: a series or a pair, or alphas, one or one each."""
-    from ..kernels.law.unsteady import unsteady_loop
+class AtPlaces(NamedTuple):
+    """What rows are made of, at places of z: g/z, h/z and the parts of m in half-space and cylinder.
 
-    given, found, zeta = given.total if isinstance(given, Bodies) else given, np.zeros(zeta.size), zeta.view()
-    if isinstance(given, Prony) and not given.E.size:
-        return found
-    zeta.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
-    unsteady_loop(*kernel_series(given), zeta, found, 0, found.size)
-    return found
+    values, slopes : (4, places), slopes over ln(1/z).  N : of M = M(V) + N V'.
+    """
+
+    values: Floats
+    slopes: Floats
+    N: Floats
+
+
+def by_modes(given: Any, z: Floats) -> AtPlaces:
+    """By no table, at every z = zeta > 0; ``given``: a series, a pair, or alphas, one or one each."""
+    from ..kernels.rows.modes import modes_loop
+    from ..kernels.rows.series import FUNCTIONS, room_of
+
+    series, alpha = kernel_series(given)
+    found, z = np.zeros((2 * FUNCTIONS + 1, z.size)), z.view()
+    z.flags.writeable = False  # as all that a kernel reads, see ``blocks.elements``
+    if series.a.size:
+        modes_loop(series, alpha, room_of(series.a.size), z, found)
+    return AtPlaces(found[:FUNCTIONS], found[FUNCTIONS:-1], found[-1])

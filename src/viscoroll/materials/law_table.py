@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -14,7 +13,7 @@ import numpy as np
 from ..errors import ParameterError
 from .bodies import Bodies
 from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
-from .law_modes import refuse_far, series_of, unsteadiness
+from .law_modes import by_modes, refuse_far
 from .pair import Pair
 from .prony import Prony
 from .prony_forms import Modes
@@ -66,7 +65,7 @@ class LawTable:
         table = self.given_coefficients
         if not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
-        return _read_only(with_unsteady(table, self.e0, lambda z: unsteadiness(self.material, z)))
+        return _read_only(with_unsteady(table, self.e0, lambda z: by_modes(self.material, z).N))
 
     @cached_property
     def record(self) -> Any:
@@ -78,20 +77,13 @@ class LawTable:
         rows[:8] = self.alpha, 1.0 / math.sqrt(self.alpha), *self.fast_limit.ravel()
         rows[WIDTH:] = arranged(self.given_coefficients, self.e0, self.alpha, self.fast_limit[0]).ravel()
         marks[[COUNT, E0]] = count, self.e0
-        return Law(_read_only(rows), _read_only(marks), 0, 0, 0)
+        return Law(_read_only(rows), _read_only(marks), _read_only(np.empty(0)), 0, 0, 0)
 
     @cached_property
     def unsteady_record(self) -> Any:
         """As :attr:`record`, with N."""
-        from ..kernels.rows.record import UnsteadyLaw
-
         N = self.coefficients[:, :, FUNCTIONS.index("N")]
-        return UnsteadyLaw(**self.record._asdict(), added=_read_only(added(N, self.e0, self.alpha)))
-
-    @cached_property
-    def unsteady_rows(self) -> Floats:
-        """The polynomials of N, one row after another."""
-        return _read_only(self.coefficients[:, :, FUNCTIONS.index("N")].ravel())
+        return self.record._replace(added=_read_only(added(N, self.e0, self.alpha)))
 
 
 def law_table(given: float | Prony | Bodies | LawTable) -> LawTable:
@@ -138,8 +130,8 @@ def made(given: float | Prony | Bodies, least: int = 0, coefficients: Floats | N
         refuse_far(modes.b[0], modes.a[-1])
         if coefficients is None:
             means = _sums((modes.J / modes.b)[None], parts)[:, 0]
-            evaluate, ends = _evaluated(given, modes, weights), Limits(alpha, means, limits[1:])
-            coefficients = build(evaluate, modes.b[0], modes.a[-1], ends, least)
+            ends = Limits(alpha, means, limits[1:])
+            coefficients = build(lambda z: by_modes(given, z), modes.b[0], modes.a[-1], ends, least)
         table, e0 = coefficients, first_octave(modes.b[0])
     table, limits, weights = map(_read_only, (table, limits, weights))
     E, tau, J, T = map(_read_only, (modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b))
@@ -160,36 +152,6 @@ def _numbers(given: float | Prony | Bodies) -> tuple[float, float, Modes]:
         return given, (given - 1.0) / given, modes
     total = given.total if isinstance(given, Bodies) else given
     return total.alpha, total.T_mean, total.modes
-
-
-def by_modes(given: float | Prony | Bodies, z: Floats) -> Floats:
-    """(4, n): g/z, h/z and the parts of m in half-space and cylinder at every z > 0, by no table."""
-    _, _, modes = _numbers(given)
-    if not modes.a.size:
-        return np.zeros((4, z.size))
-    weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
-    return _evaluated(given, modes, weights)(z)[::2]
-
-
-def _evaluated(given: float | Prony | Bodies, modes: Modes, weights: Floats) -> Callable[[Floats], Floats]:
-    """What :func:`.law_build.build` takes, by the modes."""
-    from ..kernels.rows.modes import functions_loop, functions_of_alpha_loop, sloped_room
-    from ..kernels.rows.series import FUNCTIONS as OF_Z
-    from ..kernels.rows.series import LANES
-
-    series = series_of(modes, weights if isinstance(given, Bodies) else None)
-    room = sloped_room(modes.a.size)
-
-    def evaluate(z: Floats) -> Floats:
-        count, z = z.size, np.pad(z, (0, -z.size % LANES), mode="edge")
-        found = np.empty((2 * OF_Z, z.size))
-        if isinstance(given, float):
-            functions_of_alpha_loop(given, z, found)
-        else:
-            functions_loop(series, room, z, found)
-        return found[:, :count]
-
-    return evaluate
 
 
 def _elastic() -> Floats:

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..checks import checked
 from ..errors import ParameterError
+from ..kernels.numerics.nodes import powers_of_chebyshev
 
 #: terms of a polynomial, looks at a callable, values taken of it at most
 TERMS, LOOKS, MOST = 14, 1000, 500_000
@@ -40,9 +41,7 @@ _POINTS[TERMS - 1] = 0.0
 _TO_SERIES = chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
 _TO_SERIES[[0, -1]] *= 0.5
 _TO_SERIES[:, [0, -1]] *= 0.5
-_TO_TERMS = np.zeros((TERMS, TERMS))
-for _n in range(TERMS):
-    _TO_TERMS[_n, : _n + 1] = chebyshev.cheb2poly(np.eye(TERMS)[_n, : _n + 1])
+_TO_TERMS = powers_of_chebyshev(TERMS, 0.0, 1.0)
 _EPSILON = float(np.finfo(float).eps)
 
 

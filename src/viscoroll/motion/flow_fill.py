@@ -9,6 +9,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from ..kernels.flow import layout
@@ -197,7 +198,7 @@ def _fill_layers(case: Case, sign: float, first: int, slow: Slow, entry: Floats,
     V0 = onsets.at(_COARSE) / kappa
     k0 = _stiff_rate(case, V0)
     split_powers = _splits(case, sign, onsets)
-    split = _polynomial(split_powers, _COARSE.t)
+    split = polyval(_COARSE.t, split_powers.T)
     V, delta, V_end = _layer_motions(case, sign, V0, k0, split)
     # over (octave, V, octave of u, u)
     per = np.where(np.arange(_LAYER.half.size) < _BEFORE, split[..., None] / (1.0 - _LEAST_U), 1.0)
@@ -275,14 +276,6 @@ def _splits(case: Case, sign: float, onsets: Rows) -> Floats:
     turns = np.all(passed.any(axis=1).reshape(found.shape), axis=1)
     found[turns] = _SPLIT.powers(split[turns])
     return found
-
-
-def _polynomial(powers: Floats, t: Floats) -> Floats:
-    """(row, t)"""
-    total = np.zeros((len(powers), t.size))
-    for k in range(powers.shape[-1] - 1, -1, -1):
-        total = total * t + powers[:, k, None]
-    return total
 
 
 def _padded(powers: Floats) -> Floats:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernels.numerics.nodes import Interpolation, chebyshev, to_chebyshev
+from ..kernels.numerics.nodes import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
 from ..kernels.rows.lanes import TERMS
 
 Floats = NDArray[np.float64]
@@ -25,9 +25,7 @@ class Nodes:
         known = Interpolation(chebyshev(count))
         self.t = known.nodes
         self._integrals = known.integrals([*known.exact, 1])
-        self._chebyshev, self._powers = to_chebyshev(count), np.zeros((count, count))
-        for n in range(count):
-            self._powers[: n + 1, n] = np.polynomial.chebyshev.cheb2poly(np.eye(count)[n, : n + 1])
+        self._chebyshev, self._powers = to_chebyshev(count), powers_of_chebyshev(count, 0.0, 1.0).T.copy()
 
     def powers(self, values: Floats) -> Floats:
         """Coefficients of the powers of t in [-1, 1], by way of Chebyshev's, which keeps rounding out of them."""

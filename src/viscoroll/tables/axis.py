@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..materials.law_axis import FUNCTIONS, LawAxis, law_axis
 from ..materials.law_axis_file import as_dataset
-from ..materials.law_modes import unsteadiness
+from ..materials.law_modes import by_modes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,7 +92,7 @@ def _by_roots(alpha: Floats, x: Floats) -> Floats:
     g, h, p = generators(z)
     lam2 = 1.0 / (1.0 + 2.0 * h / z)
     m = (lam2 * ive(2, alpha * z) / i0e(alpha * z) + p) / (1.0 + p)
-    N = unsteadiness(alpha, z)
+    N = by_modes(alpha, z).N
     eta = _root(stick, 1.0 / x, 1.0 / (x * alpha), 1.0 / x)
     g_eta, h_eta, _ = generators(eta)
     share = 1.0 / (1.0 + g_eta / eta)

@@ -16,9 +16,9 @@ from ..cylinder import Cylinder
 from ..errors import ParameterError, one_of
 from ..files import write_text
 from ..materials.law_file import as_dataset, law_of, table_of
-from ..materials.law_modes import unsteadiness
+from ..materials.law_modes import by_modes
 from ..materials.law_store import CHECKSUM, check, content_of
-from ..materials.law_table import FUNCTIONS, LawTable, by_modes
+from ..materials.law_table import FUNCTIONS, LawTable
 from .axis import axis
 
 if TYPE_CHECKING:
@@ -82,8 +82,7 @@ def measured_errors(table: LawTable, count: int | None = None, seed: int = _SEED
     octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
     random = np.random.default_rng(seed)
     zeta = np.exp2(2.0 - e0 - octaves * random.random(count or int(_PLACES * octaves)))
-    shift, rise, half_space, cylinder = by_modes(table.material, zeta)
-    N = unsteadiness(table.material, zeta)
+    (shift, rise, half_space, cylinder), _, N = by_modes(table.material, zeta)
     root, F, M = np.sqrt(1.0 + 2.0 * rise), 1.0 + shift, half_space + cylinder
     exact = 1.0 / root, shift, half_space, cylinder, N, 1.0 / F, (root / F) ** 2
     scales = exact[0], exact[1], M, M, np.full(zeta.size, np.abs(N).max()), exact[5], exact[6]

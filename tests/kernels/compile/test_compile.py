@@ -145,7 +145,6 @@ def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path):
     """What one process compiled without checks is not what another one, that asks for them, is given."""
     script = """
 import numpy as np
-from viscoroll.kernels.compile.choice import by_record
 from viscoroll.kernels.compile.jit import kernel
 
 @kernel

@@ -177,31 +177,6 @@ def ratio_i2(x, r):
 
 
 @kernel(inline=True)
-def ratios_and_slopes(z, alpha):
-    """(x = alpha z, r(x), k(z), r', k', 1/x, 1/z) for z > 0, by one division."""
-    x = alpha * z
-    per_x = 1.0 / x
-    per_z = alpha * per_x
-    row, t = place_r(x, per_x)
-    piece = piece_of(row, t)
-    r, r_complement = r_from(piece, x, piece * per_x)
-    if z < K_LEAST:
-        k, k_complement = small_k(z)
-    else:
-        row, t = place_k(z, per_z)
-        piece = piece_of(row, t)
-        k, k_complement = k_from(piece, z, piece * per_z)
-    s, dk = slopes_of(r, r_complement, k, k_complement, per_x, per_z)
-    return x, r, k, s, dk, per_x, per_z
-
-
-@kernel(inline=True)
-def slopes_of(r, r_complement, k, k_complement, per_x, per_z):
-    """(r', k') by the Riccati equations."""
-    return r_complement * (1.0 + r) - r * per_x, k * per_z - k_complement * (1.0 + k)
-
-
-@kernel(inline=True)
 def slope_r(x, r, complement):
     """r'(x) = (1 - r)(1 + r) - r/x."""
     if x < 1e-8:

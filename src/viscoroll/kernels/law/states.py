@@ -8,16 +8,27 @@ import numpy as np
 
 from ..compile.jit import kernel
 
-#: Order of the rows of the kernel's output; the last four, of a pair alone.
-ROWS = (
-    "lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M",
-    "dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV",
-    "M_half_space", "M_cylinder", "dM_half_space_dV", "dM_cylinder_dV",
-)  # fmt: skip
-(
-    LAM, ZETA, EPSILON, DELTA_STAR, DELTA, FULL_SLIP, BETA, Q, M, DQ_DV, DQ_DDELTA, DQ_DOMEGA, DM_DV,
-    M_HALF_SPACE, M_CYLINDER, DM_HALF_SPACE_DV, DM_CYLINDER_DV,
-) = range(len(ROWS))  # fmt: skip
+
+class Fields(NamedTuple):
+    """The row that each quantity goes to, -1 for none."""
+
+    lam: int = -1
+    zeta: int = -1
+    epsilon: int = -1
+    delta_star: int = -1
+    delta: int = -1
+    full_slip: int = -1
+    beta: int = -1
+    Q: int = -1
+    M: int = -1
+    dQ_dV: int = -1
+    dQ_ddelta: int = -1
+    dQ_domega: int = -1
+    dM_dV: int = -1
+    M_half_space: int = -1
+    M_cylinder: int = -1
+    dM_half_space_dV: int = -1
+    dM_cylinder_dV: int = -1
 
 
 class State(NamedTuple):
@@ -40,6 +51,19 @@ class States(NamedTuple):
     creep_is_omega: bool
 
 
+class Asked(NamedTuple):
+    """States, in an order or, where that is empty, in theirs, and what is asked of them: its rows in ``out``.
+
+    first : the column of state 0
+    """
+
+    states: Any
+    order: Any
+    to: Any
+    out: Any
+    first: int
+
+
 @kernel(inline=True)
 def _element(values, n):
     return values[np.uint64(n * (values.size > 1))]
@@ -52,6 +76,13 @@ def state_of(states, n):
         _element(states.kappa, n), _element(states.mu, n), _element(states.V, n), _element(states.creep, n),
         states.creep_is_omega,
     )  # fmt: skip
+
+
+@kernel(inline=True)
+def put(row, value, n, asked):
+    """A quantity of state n into its row, if it has one."""
+    if row >= 0:
+        asked.out[np.uint64(row), np.uint64(n + asked.first)] = value
 
 
 @kernel(inline=True)

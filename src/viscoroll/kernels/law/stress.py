@@ -24,11 +24,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..bessel.ratios import ratio_k, ratio_r
+from ..bessel.ratios import ratio_r
 from ..compile.jit import kernel
-from ..numerics.linear import substitute
+from ..numerics.four import LANES, spread
 from ..numerics.nodes import gauss
-from .unsteady import set_alpha, system
+from ..rows.modes import set_alpha
+from ..rows.series import ratios, room_of, values
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
@@ -65,21 +66,18 @@ def _memory(u, w, a, r_complement):
 
 
 class Memories(NamedTuple):
-    """Of a series at z: 1/r, k, a X and 1 - r of its modes; the matrix of its system; z."""
+    """Of a series at z, those of its modes: the weight a X and 1 - r of each; z; room."""
 
-    per_r: Any
-    k: Any
     weight: Any
     complement: Any
-    matrix: Any
     z: Any
+    room: Any
 
 
-@kernel(allocates=True)
-def memories(series):
+def memories(series: Any) -> Memories:
     """Those of no z yet."""
     n = series.a.size
-    return Memories(np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty((n, n)), np.full(1, np.nan))
+    return Memories(np.empty(n), np.empty(n), np.full(1, np.nan), room_of(n))
 
 
 @kernel
@@ -88,14 +86,11 @@ def _remember(z, series, known):
     if known.z[0] == z:
         return
     known.z[0] = z
+    ratios((z, z, z, z), series, known.room)
+    values(False, spread(z), series, known.room)
     for i in range(series.a.size):
-        r, known.complement[i] = ratio_r(series.a[i] * z)
-        known.per_r[i], known.weight[i] = 1.0 / r, series.e[i]
-        known.k[i], _ = ratio_k(series.b[i] * z)
-    system(known.per_r, known.k, series, known.matrix)
-    substitute(known.matrix, known.weight, series.a.size)
-    for i in range(series.a.size):
-        known.weight[i] *= series.a[i] * series.e[i] * known.per_r[i]
+        known.weight[i] = series.a[i] * known.room.y[LANES * i]
+        _, known.complement[i] = ratio_r(series.a[i] * z)
 
 
 @kernel
@@ -151,10 +146,9 @@ def _stress(i, points, series, whole, stick):
     return p, mu * max(p - scale * stuck, 0.0)
 
 
-@kernel(allocates=True)
-def stress_loop(series, alpha, points, p, tau):
+@kernel
+def stress_loop(series, alpha, whole, stick, points, p, tau):
     """p/E' and |tau|/E' at every point; ``alpha``: none, or one each, of which ``series`` is then the one mode."""
-    whole, stick = memories(series), memories(series)
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
             whole.z[0] = stick.z[0] = np.nan

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..numerics.four import LANES, fused, load, multiply, spread, store
+from ..numerics.four import LANES, fused, load, spread, store
 from ..numerics.nodes import Interpolation, radau
 
 #: collocation nodes; the quadrature is of order 2 N - 1, the interpolant of degree N
@@ -76,8 +76,8 @@ def weighted_slopes(weights, diagonal, nodes, matrix):
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, WIDE):
         at, less = WIDE * k, spread(-nodes[diagonal + k])
-        store(matrix, at, fused(less, load(_ONE, at), multiply(load(SLOPES, at), low)))
-        store(matrix, at + LANES, fused(less, load(_ONE, at + LANES), multiply(load(SLOPES, at + LANES), high)))
+        store(matrix, at, fused(less, load(_ONE, at), load(SLOPES, at) * low))
+        store(matrix, at + LANES, fused(less, load(_ONE, at + LANES), load(SLOPES, at + LANES) * high))
 
 
 @kernel(inline=True)
@@ -90,13 +90,13 @@ def invert(matrix):
         at = WIDE * i
         pivot = spread(1.0 / matrix[at + i])
         others, rest = load(_OTHERS, at), load(_OTHERS, at + LANES)
-        low = fused(load(_ONE, at), pivot, multiply(multiply(load(matrix, at), others), pivot))
-        high = fused(load(_ONE, at + LANES), pivot, multiply(multiply(load(matrix, at + LANES), rest), pivot))
+        low = fused(load(_ONE, at), pivot, load(matrix, at) * others * pivot)
+        high = fused(load(_ONE, at + LANES), pivot, load(matrix, at + LANES) * rest * pivot)
         for k in range(1, WIDE):
             if k != i:
                 less = spread(-matrix[WIDE * k + i])
-                store(matrix, WIDE * k, fused(less, low, multiply(load(matrix, WIDE * k), others)))
-                store(matrix, WIDE * k + LANES, fused(less, high, multiply(load(matrix, WIDE * k + LANES), rest)))
+                store(matrix, WIDE * k, fused(less, low, load(matrix, WIDE * k) * others))
+                store(matrix, WIDE * k + LANES, fused(less, high, load(matrix, WIDE * k + LANES) * rest))
         store(matrix, at, low)
         store(matrix, at + LANES, high)
 

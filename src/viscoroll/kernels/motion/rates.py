@@ -29,7 +29,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..rows.added import added_mass
-from ..rows.law import bodies, body_slopes, place, press_secant, press_slopes, speed_seconds
+from ..rows.law import bodies, place, press, press_secants, speed
 from .load import acting
 
 #: k over the least with which dp/dV may vanish at d = -1, from which on V is collocated
@@ -68,20 +68,20 @@ class Rates(NamedTuple):
 def moments_slopes(u, scene):
     """(L, L', L'', M/V of half-space and cylinder, d(u M/V)/du of these) at u = kappa |V|."""
     law, at = scene.law, place(u, scene.law)
-    L, dL, ddL, m, rise = speed_seconds(at, u, law)
+    found = speed(at, u, law)
+    m, rise = found.scale * found.m, found.rise
     if not scene.unlike:
-        return L, dL, ddL, 0.5 * m, 0.5 * m, 0.5 * rise, 0.5 * rise
-    half_space, cylinder = bodies(at, u, law)
-    half_space_rise, cylinder_rise = body_slopes(at, u, law)
+        return found.L, found.dL, found.ddL, 0.5 * m, 0.5 * m, 0.5 * rise, 0.5 * rise
+    half_space, cylinder, half_space_rise, cylinder_rise = bodies(at, u, law)
     share = m / (half_space + cylinder) if m > 0.0 else 1.0  # 1, or z in the fast limit
-    return L, dL, ddL, share * half_space, share * cylinder, half_space_rise, cylinder_rise
+    return found.L, found.dL, found.ddL, share * half_space, share * cylinder, half_space_rise, cylinder_rise
 
 
 @kernel(inline=True)
 def creep_limit(V, scene):
     """delta_star at V."""
     u = scene.kappa * abs(V)
-    return 0.5 * scene.mu / scene.kappa * speed_seconds(place(u, scene.law), u, scene.law)[0]
+    return 0.5 * scene.mu / scene.kappa * speed(place(u, scene.law), u, scene.law).L
 
 
 @kernel(inline=True)
@@ -128,13 +128,13 @@ def stick_rates(V, d, load, frame, scene):
     if w > 0.0:
         v = 2.0 * u / w
         at = place(v, law)
-        press, slope = press_slopes(at, v, law)
-        A = press - 0.5 * v * slope
-        Q *= 1.0 - w * w * press
+        value, slope = press(at, v, law)
+        A = value - 0.5 * v * slope
+        Q *= 1.0 - w * w * value
         if rarely(abs(d) < _SLIGHT):  # no digits cancel
             D = abs(d) * L
-            press, rise = press_secant(at, place(2.0 * u / L, law), v, D / w, law)
-            Q = math.copysign(mu, d) * D * ((2.0 * L - D) * press - v * L * rise)
+            value, _, rise, _ = press_secants(at, place(2.0 * u / L, law), v, D / w, law)
+            Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * rise)
         Q_V, Q_d = -2.0 * sign * mu * w * (A * left * dL + slope) * turn, 2.0 * mu * w * L * A
     spread = L + u * dL
     omega, omega_V, omega_d = V * (1.0 + k * L * d), 1.0 + k * d * spread, k * V * L

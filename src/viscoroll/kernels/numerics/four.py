@@ -1,17 +1,18 @@
-"""Four numbers at once: one instruction of the processor adds, multiplies or divides them all.
+"""Four numbers at once: one instruction of the processor adds, multiplies or divides them all, by ``+ - * /``.
 
 Each of the four is rounded as it would be alone; of :func:`fused`, product and sum together.
 """
 
 from __future__ import annotations
 
+import operator
 from typing import Any, Callable
 
 import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.extending import intrinsic, models, register_model
+from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
 #: how many
 LANES = 4
@@ -25,12 +26,9 @@ def spread_over(builder: Any, x: Any) -> Any:
     return builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
 
 
-def side_by_side(builder: Any, numbers: Any) -> Any:
-    """Instructions that make a vector of four numbers."""
-    whole = ir.Constant(VECTOR, ir.Undefined)
-    for n, one in enumerate(numbers):
-        whole = builder.insert_element(whole, one, _INT(n))
-    return whole
+def split(builder: Any, vector: Any) -> list:
+    """Instructions that take a vector apart."""
+    return [builder.extract_element(vector, _INT(n)) for n in range(LANES)]
 
 
 class _FourType(types.Type):
@@ -47,20 +45,24 @@ class _FourModel(models.PrimitiveModel):
         super().__init__(manager, kind, VECTOR)
 
 
-def _binary(instruction: str, interpreted: Callable) -> Any:
-    """(a, b) -> a operation b of four numbers each."""
+def _operator(function: Callable, instruction: str) -> None:
+    """Have an operator of Python work on fours, and on a number and a four."""
 
-    def typed(typing_context, a, b):
-        def lower(context, builder, signature, given):
-            return getattr(builder, instruction)(*given)
+    def typed(context: Any) -> Callable:
+        return lambda a, b: _four if _four in (a, b) and {a, b} <= {_four, types.float64} else None
 
-        return _four(_four, _four), lower
+    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        each = zip(given, signature.args, strict=True)
+        return getattr(builder, instruction)(*(x if kind is _four else spread_over(builder, x) for x, kind in each))
 
-    return interpreted if numba.config.DISABLE_JIT else intrinsic(typed)
+    type_callable(function)(typed)
+    for kinds in ((_four, _four), (_four, types.float64), (types.float64, _four)):
+        lower_builtin(function, *kinds)(lower)
 
 
-add, subtract = _binary("fadd", np.add), _binary("fsub", np.subtract)
-multiply, divide = _binary("fmul", np.multiply), _binary("fdiv", np.divide)
+for _name, _instruction in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), ("truediv", "fdiv")):
+    _operator(getattr(operator, _name), _instruction)
+    _operator(getattr(operator, f"i{_name}"), _instruction)
 
 
 def _fused(typing_context, a, b, c):
@@ -88,7 +90,10 @@ def _spread(typing_context, x):
 
 def _four_of(typing_context, a, b, c, d):
     def lower(context, builder, signature, given):
-        return side_by_side(builder, given)
+        whole = ir.Constant(VECTOR, ir.Undefined)
+        for n, one in enumerate(given):
+            whole = builder.insert_element(whole, one, _INT(n))
+        return whole
 
     return _four(*[types.float64] * LANES), lower
 
@@ -98,11 +103,6 @@ def _parts(typing_context, four):
         return context.make_tuple(builder, signature.return_type, split(builder, given[0]))
 
     return types.UniTuple(types.float64, LANES)(four), lower
-
-
-def split(builder: Any, vector: Any) -> list:
-    """Instructions that take a vector apart."""
-    return [builder.extract_element(vector, _INT(n)) for n in range(LANES)]
 
 
 def _pointer(context, builder, kind, array, at):
@@ -141,8 +141,6 @@ if numba.config.DISABLE_JIT:
 else:
     #: four numbers as one
     four = intrinsic(_four_of)
-    #: and back
-    parts = intrinsic(_parts)
     #: the last of one before the first three of another: a load across two stores would wait for both
     slide = intrinsic(_slide)
     #: a b + c

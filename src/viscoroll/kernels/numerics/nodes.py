@@ -42,9 +42,9 @@ class Interpolation:
         self._basis = [_lagrange(self.exact, i) for i in range(len(self.exact))]
 
     @in_many_digits
-    def powers(self, half: float = 1.0) -> _Floats:
-        """To the coefficients of the powers of half * x, the constant first."""
-        return rounded([[c / Decimal(half) ** k for c in row] for k, row in enumerate(zip(*self._basis))])
+    def powers(self) -> _Floats:
+        """To the coefficients of the powers of x, the constant first."""
+        return rounded([*zip(*self._basis)])
 
     @in_many_digits
     def values(self, points: Iterable[Decimal]) -> _Floats:

@@ -5,60 +5,45 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.states import (
-    BETA,
-    DELTA,
-    DELTA_STAR,
-    EPSILON,
-    FULL_SLIP,
-    LAM,
-    ROWS,
-    ZETA,
-    M,
-    Q,
-    slip_and_creep,
-    state_of,
-)
+from ..law.states import put, slip_and_creep, state_of
 from .law import OK, direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 
 @kernel
-def direct_state(alpha, state, out):
-    """All rows of one state into ``out``; V = 0 is the limit of Sect. 3.4."""
+def direct_state(alpha, n, asked):
+    """What is asked for of state n; V = 0 is the limit of Sect. 3.4."""
+    state, to = state_of(asked.states, n), asked.to
     kappa, mu, speed = state.kappa, state.mu, abs(state.V)
     slip, delta = slip_and_creep(state)
-    sign = np.sign(slip)
-    status = OK
-    lam, zeta, epsilon = 1.0, np.inf, 0.0
-    out[M] = 0.0
+    status = stick_status = OK
+    lam, zeta, epsilon, M = 1.0, np.inf, 0.0, 0.0
     if speed > 0.0:
         lam, zeta, epsilon, status = direct_contact_length(kappa * speed, alpha)
-        out[M] = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
+        M = np.sign(state.V) * direct_moment(kappa, lam, epsilon, zeta, alpha)
     delta_star = direct_delta_star(kappa, mu, lam, epsilon)
-    full_slip = abs(delta) >= delta_star
-    out[LAM], out[ZETA], out[EPSILON] = lam, zeta, epsilon
-    out[DELTA_STAR], out[DELTA], out[FULL_SLIP] = delta_star, delta, 1.0 if full_slip else 0.0
-    if full_slip:
-        out[BETA], out[Q] = 0.0, mu * sign
-        return status
-    if speed == 0.0:
+    full_slip, beta, Q = abs(delta) >= delta_star, 0.0, mu
+    if not full_slip and speed == 0.0:
         s = abs(delta) / delta_star
-        out[BETA], out[Q] = 1.0 - s, mu * sign * s * (2.0 - s)
-        return status
-    beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
-    out[BETA] = beta
-    out[Q] = sign * direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
+        beta, Q = 1.0 - s, mu * s * (2.0 - s)
+    elif not full_slip:
+        beta, stick_status = direct_stick(abs(delta), kappa, mu, lam, epsilon, zeta, alpha)
+        Q = direct_traction(beta, abs(delta), kappa, mu, lam, epsilon, zeta)
+    put(to.lam, lam, n, asked)
+    put(to.zeta, zeta, n, asked)
+    put(to.epsilon, epsilon, n, asked)
+    put(to.delta_star, delta_star, n, asked)
+    put(to.delta, delta, n, asked)
+    put(to.full_slip, 1.0 if full_slip else 0.0, n, asked)
+    put(to.beta, beta, n, asked)
+    put(to.Q, np.sign(slip) * Q, n, asked)
+    put(to.M, M, n, asked)
     return max(status, stick_status)
 
 
-@kernel(allocates=True)
-def direct_loop(alpha, states, rows, out, start, stop):
-    """States start..stop; ``rows`` picks the output."""
-    state = np.empty(len(ROWS))
+@kernel
+def direct_loop(alpha, asked, count):
+    """What is asked for of ``count`` states."""
     worst = OK
-    for i in range(start, stop):
-        status = direct_state(alpha[min(i, alpha.size - 1)], state_of(states, i), state)
-        worst = max(worst, status)
-        for n in range(rows.size):
-            out[n, i] = state[rows[n]]
+    for n in range(count):
+        worst = max(worst, direct_state(alpha[min(n, alpha.size - 1)], n, asked))
     return worst

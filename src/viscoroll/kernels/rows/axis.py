@@ -14,24 +14,8 @@ import numpy as np
 from ..compile.address import doubles, integers, record_at
 from ..compile.bits import bits_of, from_bits
 from ..compile.jit import kernel
-from ..numerics.four import LANES, four, fused, load, multiply, spread, store
-from .record import (
-    ALPHA,
-    BODIES,
-    COUNT,
-    CYLINDER,
-    HALF_SPACE,
-    LENGTHS,
-    LOW,
-    OWN,
-    OWN_MARKS,
-    PART,
-    PARTS,
-    SPEED,
-    STAMP,
-    WHOLE,
-    WIDTH,
-)  # fmt: skip
+from ..numerics.four import LANES, four, fused, load, spread, store
+from .record import ALPHA, COUNT, LOW, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WHOLE, WIDTH
 
 #: terms of a sum; numbers of a part of a row for all alphas of an octave
 TERMS_OF_ALPHA = 16
@@ -66,49 +50,37 @@ def hold(n, source):
             rows[at] = 2.0 * rows[at - j // 2] * rows[at - j + j // 2] - rows[at - j + j % 2]
         c = (alpha - 1.0) / alpha
         rows[ALPHA], rows[LOW], rows[WHOLE], rows[WHOLE + 1] = alpha, 1.0 / np.sqrt(alpha), c, c * _FAST
-        for body in (HALF_SPACE, CYLINDER):
-            rows[body], rows[body + 1] = 0.5 * c, 0.5 * c * _FAST
         marks[STAMP] += 1
         marks[_OCTAVE], marks[COUNT] = octaves[2 * octave], octaves[2 * octave + 1] if alpha > 1.0 else 1
 
 
 @kernel(allocates=True)
 def make(start, source):
-    """A part of a row; at alpha = 1, where a sum would round, its closed form."""
+    """A part of a row, but those of bodies, which are alike; at alpha = 1, where a sum would round, its closed form."""
     given = record_at(source)
     rows, marks = doubles(given.rows, start + 2 * PART), integers(given.marks, start // PART + 1)
     part, c = start % WIDTH, rows[WHOLE]
-    piece = (SPEED if part == BODIES else part) // PART - (2 if part > BODIES else 0)
-    address = marks[_OCTAVE] + ((start // WIDTH - 1) * PIECES + piece) * _PIECE * 8
-    axis = doubles(address, 2 * _PIECE)
+    piece = part // PART - (2 if part >= PRESS else 0)
+    axis = doubles(marks[_OCTAVE] + ((start // WIDTH - 1) * PIECES + piece) * _PIECE * 8, 2 * _PIECE)
     terms = TERMS_OF_ALPHA if c > 0.0 else 0
-    if part == SPEED or part == BODIES or part == LENGTHS:
-        _sum(axis, 0, terms, c, rows, start)
+    _sum(axis, 0, terms, c if part < PRESS else 1.0, rows, start)
+    if part < PRESS:
         _sum(axis, _PIECE, terms, c, rows, start + PART)
-    else:
-        _sum(axis, 0, terms, 1.0, rows, start)
     if c == 0.0:
         rows[start] = 1.0
-    if part == BODIES:
-        for n in range(start, start + 2 * PART, LANES):
-            rows[n + 2], rows[n + 3] = 0.5 * rows[n + 2], 0.5 * rows[n + 3]
-            rows[n], rows[n + 1] = rows[n + 2], rows[n + 3]
     marks[start // PART] = marks[STAMP]
 
 
 @kernel(inline=True)
 def _sum(axis, at, terms, c, rows, to):
     """Twenty-four numbers of a row, every third and fourth times c."""
-    a0 = a1 = a2 = a3 = a4 = a5 = spread(0.0)
-    for j in range(terms):
-        weight, p = spread(rows[_WEIGHTS + j]), at + PART * j
-        a0, a1 = fused(weight, load(axis, p), a0), fused(weight, load(axis, p + LANES), a1)
-        a2, a3 = fused(weight, load(axis, p + 2 * LANES), a2), fused(weight, load(axis, p + 3 * LANES), a3)
-        a4, a5 = fused(weight, load(axis, p + 4 * LANES), a4), fused(weight, load(axis, p + 5 * LANES), a5)
     scale = four(1.0, 1.0, c, c)
-    store(rows, to, multiply(scale, a0))
-    store(rows, to + LANES, multiply(scale, a1))
-    store(rows, to + 2 * LANES, multiply(scale, a2))
-    store(rows, to + 3 * LANES, multiply(scale, a3))
-    store(rows, to + 4 * LANES, multiply(scale, a4))
-    store(rows, to + 5 * LANES, multiply(scale, a5))
+    for k in range(0, PART, 3 * LANES):
+        a0 = a1 = a2 = spread(0.0)
+        for j in range(terms):
+            weight, p = spread(rows[_WEIGHTS + j]), at + PART * j + k
+            a0, a1 = fused(weight, load(axis, p), a0), fused(weight, load(axis, p + LANES), a1)
+            a2 = fused(weight, load(axis, p + 2 * LANES), a2)
+        store(rows, to + k, scale * a0)
+        store(rows, to + k + LANES, scale * a1)
+        store(rows, to + k + 2 * LANES, scale * a2)

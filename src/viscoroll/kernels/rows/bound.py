@@ -21,7 +21,7 @@ from ..compile.address import doubles, integers
 from ..compile.jit import kernel
 from ..law.states import State
 from .contact import slopes_of_Q, traction_of
-from .law import bodies, body_slopes, place, speed, speed_slopes, way_of
+from .law import bodies, place, speed, way_of
 from .record import PARTS, WIDTH, Law
 
 #: beyond this kappa |V| the status is not 0
@@ -39,7 +39,8 @@ _SIGNATURE = types.int32(types.float64, types.float64, _DOUBLES, types.CPointer(
 
 @kernel(inline=True, allocates=True)
 def _law_of(scene):
-    return Law(doubles(scene.rows, scene.count * WIDTH), integers(scene.marks, scene.count * PARTS), 0, 0, 0)
+    rows, marks = doubles(scene.rows, scene.count * WIDTH), integers(scene.marks, scene.count * PARTS)
+    return Law(rows, marks, rows[:0], 0, 0, 0)
 
 
 @kernel(allocates=True)
@@ -53,19 +54,16 @@ def _loads(speed_of_axis, spin, to, scenes):
         return 1
     law, state = _law_of(scene), State(scene.kappa, scene.mu, V, omega, True)
     here = place(u, law)
-    L, m, scale = speed(here, u, law)
-    way = way_of(here, u, scale, state)
-    out[0], out[1] = traction_of(u, L, state, law), way * m
+    found = speed(here, u, law)
+    way = way_of(here, u, found.scale, state)
+    out[0], out[1] = traction_of(u, found.L, state, law), way * found.m
     out[2] = out[3] = 0.5 * out[1]
+    out[6] = out[7] = 0.5 * found.rise
     if scene.unlike:
-        half_space, cylinder = bodies(here, u, law)
+        half_space, cylinder, out[6], out[7] = bodies(here, u, law)
         out[2], out[3] = way * half_space, way * cylinder
     if scene.slopes:
-        _, dL, rise = speed_slopes(here, u, law)
-        out[4], _, out[5] = slopes_of_Q(u, L, dL, state, law)
-        out[6] = out[7] = 0.5 * rise
-        if scene.unlike:
-            out[6], out[7] = body_slopes(here, u, law)
+        out[4], _, out[5] = slopes_of_Q(u, found.L, found.dL, state, law)
         out[4], out[5] = out[4] * scene.Q / scene.V, out[5] * scene.Q / scene.omega
         out[6], out[7] = out[6] * scene.M / scene.V, out[7] * scene.M / scene.V
     out[0] *= scene.Q

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..compile.address import doubles, integers, record_at
 from ..compile.jit import kernel
-from ..numerics.four import LANES, divide, fused, load, multiply, slide, spread, store, subtract
+from ..numerics.four import LANES, four, fused, load, slide, spread, store
 from ..numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
 from .lanes import TERMS
 from .record import COUNT, E0, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WIDTH
-from .series import CYLINDER, HALF_SPACE, RISE, SHIFT, unpacked, values
+from .series import CYLINDER, HALF_SPACE, RISE, SHIFT, ratios, room_in, unpacked, values
 
 #: nodes of an octave of z; points of a polynomial; octaves behind the shortest time where the fast limit begins
 PER, POINTS, FAST = 10, 36, 34
@@ -57,18 +57,18 @@ _POWERS, _SLOW_POWERS = (powers_of_chebyshev(TERMS, shift, 1.0 + shift).ravel() 
 _SLOW_PLACES = _leja(0.5 + 0.5 * rounded(chebyshev(POINTS)))
 
 #: what these kernels know: addresses of the record's arrays; of states or motions the material of each, and how many;
-#: of materials their modes (:func:`.series.unpacked`), the numbers in front of rows, and first row, rows and
-#: modes; room for the grid of one material, how many numbers, and by which stamp it was made; room for its modes, how
-#: many numbers these are, and the most of any material; whether parts of M are asked for
+#: of materials their numbers, and how many; room for the grid of one material, how many nodes, and by which stamp they
+#: were made; room for its modes, and how many numbers; whether parts of M are asked for
 SOURCE = np.dtype(
-    [(name, np.int64) for name in ("rows", "marks", "of", "count", "packed", "limits", "counts")]
-    + [(name, np.int64) for name in ("numbers", "nodes", "made", "series", "working", "columns", "unlike")]
+    [(name, np.int64) for name in ("rows", "marks", "of", "count", "materials", "columns")]
+    + [(name, np.int64) for name in ("numbers", "nodes", "made", "room", "working", "unlike")]
 )
-#: numbers in front of rows, and those of them that are sums J_j T_j of half-space and cylinder
-LIMITS = OWN + 2
-_T_HALF_SPACE, _T_CYLINDER = OWN, OWN + 1
-#: marks: the material that is held, and its modes
-HELD, _MODES = OWN_MARKS, OWN_MARKS + 1
+#: numbers of a material: those in front of rows, of which the last are sums J_j T_j of half-space and cylinder; first
+#: row, rows, modes; then its modes (:func:`.series.unpacked`)
+_T_HALF_SPACE, _T_CYLINDER, LIMITS = OWN, OWN + 1, OWN + 2
+FRONT = LIMITS + 3
+#: marks: the material that is held, its modes, and where its numbers lie
+HELD, _MODES, _MATERIAL = OWN_MARKS, OWN_MARKS + 1, OWN_MARKS + 2
 
 
 class Grid(NamedTuple):
@@ -79,6 +79,7 @@ class Grid(NamedTuple):
     nodes: int
     made: Any
     series: Any
+    room: Any
     modes: int
     unlike: bool
     e0: int
@@ -106,15 +107,11 @@ def hold(n, source):
     if marks[HELD] != row:
         marks[HELD] = row
         marks[STAMP] += 1
-        counts = integers(given.counts + 8 * 3 * row, 3)
-        marks[E0], marks[COUNT], marks[_MODES] = counts[0], counts[1], counts[2]
-        rows, limits = doubles(given.rows, WIDTH), doubles(given.limits + 8 * LIMITS * row, LIMITS)
+        marks[_MATERIAL] = given.materials + 8 * given.columns * row
+        rows, numbers = doubles(given.rows, WIDTH), doubles(marks[_MATERIAL], FRONT)
         for k in range(LIMITS):
-            rows[k] = limits[k]
-        series = doubles(given.series, given.working)
-        packed = doubles(given.packed + 8 * given.columns * row, given.columns)
-        for k in range(given.columns):
-            series[k] = packed[k]
+            rows[k] = numbers[k]
+        marks[E0], marks[COUNT], marks[_MODES] = numbers[LIMITS], numbers[LIMITS + 1], numbers[LIMITS + 2]
 
 
 @kernel(allocates=True)
@@ -126,8 +123,9 @@ def make(start, source):
     lowest = PER * (2 - e0) + 2 * POINTS + LANES - nodes  # the next below it that is a multiple of four
     grid = Grid(
         doubles(given.rows, start + 2 * PART), doubles(given.numbers, _GRID + _FUNCTIONS * nodes), nodes,
-        integers(given.made, nodes // LANES), doubles(given.series, given.working), marks[_MODES],
-        given.unlike != 0 and marks[_MODES] > 0, e0, marks[STAMP], lowest - lowest % LANES,
+        integers(given.made, nodes // LANES), doubles(marks[_MATERIAL] + 8 * FRONT, given.columns - FRONT),
+        doubles(given.room, given.working), marks[_MODES], given.unlike != 0 and marks[_MODES] > 0, e0, marks[STAMP],
+        lowest - lowest % LANES,
     )  # fmt: skip
     _make(start % WIDTH, start // WIDTH - 1, grid)
     marks[start // PART] = marks[STAMP]
@@ -182,8 +180,9 @@ def _limit(function, grid):
 @kernel
 def _fill(places, at, grid):
     """The functions at four places of z, which are nodes ``at`` of the grid."""
-    series, work = unpacked(grid.series, grid.modes, grid.unlike)
-    values(places, False, series, work)
+    series, work = unpacked(grid.series, grid.modes, grid.unlike), room_in(grid.room, grid.modes)
+    ratios(places, series, work)
+    values(False, four(places[0], places[1], places[2], places[3]), series, work)
     numbers, nodes = grid.numbers, grid.nodes
     for c in range(LANES):
         z, to = places[c], _GRID + at + c
@@ -301,12 +300,11 @@ def _differences(count, numbers):
         first = POINTS - LANES
         while first > order - LANES:
             here = _X + LANES + first
-            apart = subtract(load(numbers, here), load(numbers, here - order))
-            per = divide(spread(1.0), apart)
+            per = 1.0 / (load(numbers, here) - load(numbers, here - order))
             for which in range(count):
                 at = _D + 2 * which * _ROOM + LANES + first
                 known = load(numbers, at)
-                store(numbers, at, multiply(subtract(known, slide(load(numbers, at - LANES), known)), per))
+                store(numbers, at, (known - slide(load(numbers, at - LANES), known)) * per)
             first -= LANES
         for which in range(count):
             at = _D + 2 * which * _ROOM + LANES + order
@@ -321,7 +319,7 @@ def _read(nodes, at, numbers):
         a0 = a1 = a2 = spread(numbers[at + LANES + POINTS - 1])
         for n in range(POINTS - 2, -1, -1):
             x, d = spread(numbers[_X + LANES + n]), spread(numbers[at + LANES + n])
-            a0, a1, a2 = fused(subtract(x0, x), a0, d), fused(subtract(x1, x), a1, d), fused(subtract(x2, x), a2, d)
+            a0, a1, a2 = fused(x0 - x, a0, d), fused(x1 - x, a1, d), fused(x2 - x, a2, d)
         store(numbers, _Y + k, a0)
         store(numbers, _Y + k + LANES, a1)
         store(numbers, _Y + k + 2 * LANES, a2)

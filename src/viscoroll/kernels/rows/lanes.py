@@ -15,7 +15,7 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from ..numerics.four import LANES, VECTOR, spread_over
+from ..numerics.four import LANES, VECTOR, split, spread_over
 
 TERMS = 24
 _INT, _PLACE = ir.IntType(64), ir.IntType(32)
@@ -61,7 +61,7 @@ class _Row:
             pairs = [terms[n : n + 2] for n in range(0, len(terms), 2)]
             terms = [self.fma(pair[1], power, pair[0]) if len(pair) > 1 else pair[0] for pair in pairs]
             power = self.builder.fmul(power, power)
-        return self.split(terms[0])
+        return split(self.builder, terms[0])
 
     def secants(self, terms: list, power: Any, other: Any) -> tuple[list, list]:
         """Values at ``power``, and their differences from those at ``other`` over that of the two."""
@@ -70,10 +70,7 @@ class _Row:
         for term in terms[-2:0:-1]:
             value = self.fma(power, value, term)
             total = self.fma(other, total, value)
-        return self.split(self.fma(power, value, terms[0])), self.split(total)
-
-    def split(self, vector: Any) -> list:
-        return [self.builder.extract_element(vector, _PLACE(n)) for n in range(LANES)]
+        return split(self.builder, self.fma(power, value, terms[0])), split(self.builder, total)
 
 
 def _pair(orders: int) -> Callable:
@@ -86,11 +83,7 @@ def _pair(orders: int) -> Callable:
             found += [row.builder.fma(t, a_odd, a_even), row.builder.fma(t, b_odd, b_even)]
         return found
 
-    def interpreted(numbers: Any, t: float) -> list:
-        a, b = numbers.reshape(-1, 2, 2).swapaxes(0, 1).reshape(2, -1)
-        return [value for order in range(orders) for value in (_value(a, t, order), _value(b, t, order))]
-
-    return _intrinsic(instructions, interpreted, _PAIR, 2 * orders, 1)
+    return _intrinsic(instructions, _PAIR, orders, 2)
 
 
 def _one(orders: int) -> Callable:
@@ -101,20 +94,17 @@ def _one(orders: int) -> Callable:
         fourth = row.builder.fmul(square, square)
         return [_joined(row, row.sums(terms, fourth), t, square) for terms in row.orders(orders)]
 
-    def interpreted(numbers: Any, t: float) -> list:
-        return [_value(numbers, t, order) for order in range(orders)]
-
-    return _intrinsic(instructions, interpreted, _ONE, orders, 1)
+    return _intrinsic(instructions, _ONE, orders)
 
 
-def _secant(orders: int) -> Callable:
-    """(table, at, t, s) -> p(t) and (p(t) - p(s))/(t - s) of one function, then of its slope where ``orders`` is 2."""
+def _secants() -> Callable:
+    """(table, at, t, s) -> p(t) and (p(t) - p(s))/(t - s) of one function, then of its slope."""
 
     def instructions(row: _Row, t: Any, s: Any) -> list:
         fma, add, multiply = row.builder.fma, row.builder.fadd, row.builder.fmul
         both, square, other = add(t, s), multiply(t, t), multiply(s, s)
         squares, found = add(square, other), []
-        for terms in row.orders(orders):
+        for terms in row.orders(2):
             values, rises = row.secants(terms, multiply(square, square), multiply(other, other))
             # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
             rise = multiply(multiply(both, squares), _joined(row, rises, s, other))
@@ -123,15 +113,7 @@ def _secant(orders: int) -> Callable:
             found += [_joined(row, values, t, square), add(rise, first)]
         return found
 
-    def interpreted(numbers: Any, t: float, s: float) -> list:
-        found: list = []
-        for order in range(orders):
-            each = np.polynomial.polynomial.polyder(numbers, order)
-            steps = [each[k] * sum(t**m * s ** (k - 1 - m) for m in range(k)) for k in range(each.size)]
-            found += [_value(numbers, t, order), sum(steps)]
-        return found
-
-    return _intrinsic(instructions, interpreted, _ONE, 2 * orders, 2)
+    return _intrinsic(instructions, _ONE, 2, 2, secants=True)
 
 
 def _joined(row: _Row, parts: list, t: Any, square: Any) -> Any:
@@ -140,17 +122,24 @@ def _joined(row: _Row, parts: list, t: Any, square: Any) -> Any:
     return fma(square, fma(t, parts[3], parts[2]), fma(t, parts[1], parts[0]))
 
 
-def _value(coefficients: Any, t: float, order: int) -> Any:
-    polynomial = np.polynomial.polynomial
-    return polynomial.polyval(t, polynomial.polyder(coefficients, order))
+def _interpreted(function: Any, t: float, *other: float) -> list:
+    """The value of a polynomial, and the mean slope from another place on."""
+    rises = [c * sum(t**m * s ** (k - 1 - m) for m in range(k)) for s in other for k, c in enumerate(function)]
+    return [np.polynomial.polynomial.polyval(t, function), *([sum(rises)] if other else [])]
 
 
-def _intrinsic(instructions: Callable, interpreted: Callable, layout: tuple, results: int, arguments: int) -> Callable:
-    """What kernels call with (table, where the row begins, places); where numba is switched off, the same in Python."""
-    count = TERMS // layout[2]
+def _intrinsic(instructions: Callable, layout: tuple, orders: int, each: int = 1, secants: bool = False) -> Callable:
+    """What kernels call with (table, where the row begins, places); where numba is switched off, the same in Python.
+
+    each : results of an order.
+    """
+    count, results = TERMS // layout[2], orders * each
 
     def plain(table: Any, at: int, *places: float) -> Any:
-        found = interpreted(table.ravel()[at : at + LANES * count], *places)
+        numbers = table.ravel()[at : at + LANES * count]
+        functions = [numbers] if layout is _ONE else numbers.reshape(-1, 2, 2).swapaxes(0, 1).reshape(2, -1)
+        slopes = [np.polynomial.polynomial.polyder(f, order) for order in range(orders) for f in functions]
+        found = [one for f in slopes for one in _interpreted(f, *places)]
         return found[0] if results == 1 else tuple(found)
 
     def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -160,14 +149,14 @@ def _intrinsic(instructions: Callable, interpreted: Callable, layout: tuple, res
 
     returned = types.float64 if results == 1 else types.UniTuple(types.float64, results)
 
-    def with_one(typing_context, table, at, t):
+    def at_one(typing_context, table, at, t):
         return returned(table, types.int64, types.float64), lower
 
-    def with_two(typing_context, table, at, t, s):
+    def at_two(typing_context, table, at, t, s):
         return returned(table, types.int64, types.float64, types.float64), lower
 
-    return plain if numba.config.DISABLE_JIT else intrinsic({1: with_one, 2: with_two}[arguments])
+    return plain if numba.config.DISABLE_JIT else intrinsic(at_two if secants else at_one)
 
 
 pair, pair_slopes, pair_seconds = _pair(1), _pair(2), _pair(3)
-one, one_slopes, secant, secant_slopes = _one(1), _one(2), _secant(1), _secant(2)
+one, one_slopes, secants = _one(1), _one(2), _secants()

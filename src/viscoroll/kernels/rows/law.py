@@ -2,13 +2,13 @@
 
     record.hold(law, n)                  the law is now that of motion or state n
     at = place(x, law)                   of x = u = kappa |V|, or x = v = 1/F(eta) = 2 u/(L - D)
-    speed, speed_slopes(at, u, law)      (L, M/V over a scale, the scale); (L, dL/du, d(u M/V)/du)
-    press, press_slopes(at, v, law)      H/F^2; (H/F^2, its slope)
-    lengths, bodies, body_slopes, share, press_secant, press_secants likewise
+    speed(at, u, law)                    L, M/V and their slopes
+    press(at, v, law)                    H/F^2 and its slope
+    lengths, bodies, share, press_secants likewise
 
-``law`` is one record (:class:`record.Law`) of two arrays and three numbers, whatever made its rows, so that what reads
-it is compiled once: ``LawTable.record`` of one material, whose rows all stand and which all threads share; that of an
-alpha each (``materials.law_each.law_of_alphas``) or of a series or pair each (``law_of_materials``), which is one
+``law`` is one record (:class:`record.Law`) of three arrays and three numbers, whatever made its rows, so that its
+readers are compiled once: ``LawTable.record`` of one material, whose rows all stand and which all threads share; that
+of an alpha each (``materials.law_each.law_of_alphas``) or of a series or pair each (``law_of_materials``), which is one
 thread's own, made once for a block of motions.
 
 Such a law holds one material at a time.  ``hold`` gives a new material the next stamp and puts its numbers in front of
@@ -86,6 +86,20 @@ def beyond(at):
 # --- over u = kappa |V| ---
 
 
+class Speed(NamedTuple):
+    """L, its slope over u and the slope of that; M/V over ``scale``; d(u M/V)/du.
+
+    Where the fast limit holds M/V may underflow: z is taken out of it, the scale.
+    """
+
+    L: float
+    dL: float
+    ddL: float
+    m: float
+    scale: float
+    rise: float
+
+
 @kernel(inline=True)
 def _fast(u, body, law):
     """(z, (alpha z/2) (C - W ln z), alpha z W/8) of the whole or a body, by the fast limit."""
@@ -96,41 +110,20 @@ def _fast(u, body, law):
 
 @kernel(inline=True)
 def speed(at, u, law):
-    """(L, M/V over ``scale``, scale) at u: where the fast limit holds M/V may underflow, and z is taken out of it."""
+    """What depends on the speed alone at u: what a caller does not take is not computed."""
     if beyond(at):
         z, shift, part = _fast(u, WHOLE, law)
-        return law.rows[LOW] * (1.0 + shift), shift + part, z
-    L, m = lanes.pair(law.rows, ready(SPEED, at.row, law), at.t)
-    return L, m, 1.0
+        per, fall = law.rows[LOW] / u, shift - 4.0 * part
+        bend = per * (2.0 * fall - 4.0 * part) / u
+        return Speed(law.rows[LOW] * (1.0 + shift), -per * fall, bend, shift + part, z, z * (3.0 * part - shift))
+    L, m, dL, dm, ddL, _ = lanes.pair_seconds(law.rows, ready(SPEED, at.row, law), at.t)
+    return Speed(L, dL * at.per, ddL * at.per * at.per, m, 1.0, m + u * at.per * dm)
 
 
 @kernel(inline=True)
 def way_of(at, u, scale, state):
     """What M/V over its scale is to be multiplied by: V, or V z."""
     return np.copysign(scale * u / state.kappa, state.V) if beyond(at) else state.V
-
-
-@kernel(inline=True)
-def speed_slopes(at, u, law):
-    """(L, dL/du, d(u M/V)/du) at u."""
-    if beyond(at):
-        z, shift, part = _fast(u, WHOLE, law)
-        low = law.rows[LOW]
-        return low * (1.0 + shift), -low * (shift - 4.0 * part) / u, z * (3.0 * part - shift)
-    L, m, dL, dm = lanes.pair_slopes(law.rows, ready(SPEED, at.row, law), at.t)
-    return L, dL * at.per, m + u * at.per * dm
-
-
-@kernel(inline=True)
-def speed_seconds(at, u, law):
-    """(L, dL/du, its slope, M/V, d(u M/V)/du) at u: what a motion asks for, and what Newton's iteration does."""
-    if beyond(at):
-        z, shift, part = _fast(u, WHOLE, law)
-        per, fall = law.rows[LOW] / u, shift - 4.0 * part
-        bend = per * (2.0 * fall - 4.0 * part) / u
-        return law.rows[LOW] * (1.0 + shift), -per * fall, bend, z * (shift + part), z * (3.0 * part - shift)
-    L, m, dL, dm, ddL, _ = lanes.pair_seconds(law.rows, ready(SPEED, at.row, law), at.t)
-    return L, dL * at.per, ddL * at.per * at.per, m, m + u * at.per * dm
 
 
 @kernel(inline=True)
@@ -144,24 +137,15 @@ def lengths(at, u, law):
 
 @kernel(inline=True)
 def bodies(at, u, law):
-    """Parts of M/V, over the scale of :func:`speed`, in the half-space and in the cylinder."""
-    if beyond(at):
-        _, half_space, part = _fast(u, HALF_SPACE, law)
-        _, cylinder, other = _fast(u, CYLINDER, law)
-        return half_space + part, cylinder + other
-    return lanes.pair(law.rows, ready(BODIES, at.row, law), at.t)
-
-
-@kernel(inline=True)
-def body_slopes(at, u, law):
-    """d(u M/V)/du of either body at u."""
+    """Parts of M/V, over the scale of :func:`speed`, in the half-space and in the cylinder; d(u M/V)/du of either."""
     if beyond(at):
         z, half_space, part = _fast(u, HALF_SPACE, law)
         _, cylinder, other = _fast(u, CYLINDER, law)
-        return z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
+        per_half_space, per_cylinder = z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
+        return half_space + part, cylinder + other, per_half_space, per_cylinder
     half_space, cylinder, d_half_space, d_cylinder = lanes.pair_slopes(law.rows, ready(BODIES, at.row, law), at.t)
     per = u * at.per
-    return half_space + per * d_half_space, cylinder + per * d_cylinder
+    return half_space, cylinder, half_space + per * d_half_space, cylinder + per * d_cylinder
 
 
 # --- over v = 1/F(eta), y = 1/v ---
@@ -185,15 +169,6 @@ def share(at, v, law):
 
 @kernel(inline=True)
 def press(at, v, law):
-    """H/F^2 at v."""
-    if beyond(at):
-        eta, _ = _fast_share(1.0 / v, law)
-        return law.rows[ALPHA] * eta * eta
-    return lanes.one(law.rows, ready(PRESS, at.row, law), at.t)
-
-
-@kernel(inline=True)
-def press_slopes(at, v, law):
     """(H/F^2, its slope) at v."""
     if beyond(at):
         y = 1.0 / v
@@ -204,46 +179,30 @@ def press_slopes(at, v, law):
 
 
 @kernel(inline=True)
-def press_secant(at, near, v, x, law):
-    """(H/F^2 at v, its mean slope between v and v/(1 + x), whose place is ``near``), x >= 0: no digits cancel."""
-    if beyond(at):
-        rise, _ = _fast_secants(v, x, law)
-        return press(at, v, law), rise
-    if near.row == at.row:
-        value, rise = lanes.secant(law.rows, ready(PRESS, at.row, law), at.t, near.t)
-        return value, rise * at.per
-    value, here = lanes.secant(law.rows, ready(PRESS, at.row, law), at.t, -1.0)
-    _, there = lanes.secant(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
-    part = _part(at, v, x)
-    return value, part * here * at.per + (1.0 - part) * there * near.per
-
-
-@kernel(inline=True)
 def press_secants(at, near, v, x, law):
-    """Mean slopes of H/F^2 and of its slope, likewise."""
-    if beyond(at):
-        return _fast_secants(v, x, law)
+    """(H/F^2 and its slope at v, mean slopes of either between v and v/(1 + x), whose place is ``near``), x >= 0.
+
+    No digits cancel.
+    """
     per, other = at.per, near.per
+    if beyond(at):
+        value, slope = press(at, v, law)
+        rise, bend = _fast_secants(v, x, law)
+        return value, slope, rise, bend
     if near.row == at.row:
-        _, rise, _, bend = lanes.secant_slopes(law.rows, ready(PRESS, at.row, law), at.t, near.t)
-        return rise * per, bend * per * per
-    _, here, _, bend_here = lanes.secant_slopes(law.rows, ready(PRESS, at.row, law), at.t, -1.0)
-    _, there, _, bend_there = lanes.secant_slopes(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
-    part = _part(at, v, x)
+        value, rise, slope, bend = lanes.secants(law.rows, ready(PRESS, at.row, law), at.t, near.t)
+        return value, slope * per, rise * per, bend * per * per
+    value, here, slope, bend_here = lanes.secants(law.rows, ready(PRESS, at.row, law), at.t, -1.0)
+    _, there, _, bend_there = lanes.secants(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
+    # of the way that lies in the row of v
+    part = min((at.t + 1.0) * (1.0 + x) / (per * v * x), 1.0)
     bend = part * bend_here * per * per + (1.0 - part) * bend_there * other * other
-    return part * here * per + (1.0 - part) * there * other, bend
-
-
-@kernel(inline=True)
-def _part(at, v, x):
-    """What of the way from v/(1 + x) to v lies in the row of v."""
-    part = (at.t + 1.0) * (1.0 + x) / (at.per * v * x)
-    return part if part < 1.0 else 1.0
+    return value, slope * per, part * here * per + (1.0 - part) * there * other, bend
 
 
 @kernel
 def _fast_secants(v, x, law):
-    """``press_secants`` in the fast limit."""
+    """Mean slopes of :func:`press_secants` in the fast limit."""
     alpha, W = law.rows[ALPHA], law.rows[WHOLE]
     y = 1.0 / v
     other = y * (1.0 + x)

@@ -1,152 +1,119 @@
-"""The functions of :mod:`series` with slopes over ln(1/z), at many places.
+"""What rows of one material are fitted to: the functions of :mod:`series` with slopes over ln(1/z), and N.
 
-The system B x = sqrt(r) e is differentiated: with y = sqrt(r) x and y' = sqrt(r) x~,
+N of M = M(V) + N(V) V', the first-order term of unsteady rolling, is where speed changes slowly, in closed form: with
+y = sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
 
-    B x~ = (r'/r) x - sqrt(r) Q^T k' f      f' = Q y'      X_i' = e_i (x~ - (r'/r) x)_i/sqrt(r_i)
+    W = H g - 2 z (h - z h') g - z H g' + z^2 (y - z y')
+    U = H g_s - g H_s + z^2 (y_s + T_mean g)
+    N = -[(3/2) U - (theta/2) U' + (theta g' - g) W]/H
+
+_s is the slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain
+T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
-from ..bessel.ratios import ratio_i2, ratios_and_slopes
+from ..bessel.ratios import asymptotic_series, ratio_i2, ratio_k, ratio_r, slope_k, slope_r
 from ..compile.jit import kernel
-from ..numerics.four import add, divide, four, load, multiply, spread, store, subtract
-from .series import CYLINDER, FUNCTIONS, HALF_SPACE, LANES, RISE, SHIFT, Room, room_of, rooted, substitute, values
+from ..numerics.four import LANES, four, parts, store
+from .series import FUNCTIONS, inverse, values
 
-
-class Sloped(NamedTuple):
-    """Room of the modes; for slopes, four numbers each, of x~, f, X and i2; and those found, four a function."""
-
-    room: Room
-    x: Any
-    f: Any
-    X: Any
-    i2: Any
-    found: Any
-
-
-def sloped_room(modes: int) -> Sloped:
-    """Room for a series of so many modes."""
-    return Sloped(room_of(modes), *(np.empty(LANES * modes) for _ in range(4)), np.empty(LANES * FUNCTIONS))
+#: from here on r and k by their asymptotic series, whose slopes keep their digits
+_FAR = 64.0
+_SERIES_R, _SERIES_K = (np.array([float(a) for a in asymptotic_series(sign, 17)]) for sign in (-1, 1))
+#: in longest and in shortest times, the z beyond which N is in its limits to rounding
+_SLOW, _FAST = 1e17, 1e-9
 
 
 @kernel
-def _slopes(places, series, work):
-    """Slopes of i2, x~, slopes of X and f."""
-    known, count = work.room, series.a.size
-    for at in range(LANES * count):
-        a = series.a[at // LANES]
-        x, root, i2 = a * places[at % LANES], known.root[at], known.i2[at]
-        r = root * root
-        near = a * (r - (2.0 / x + r) * i2)
-        work.i2[at] = near if x < 4.0 else 2.0 * (a * r / x - known.slope_r[at]) / x
-    for i in range(count):
-        root, total = load(known.root, LANES * i), spread(0.0)
-        for j in range(count):
-            bend = multiply(load(known.slope_k, LANES * j), load(known.f, LANES * j))
-            total = add(total, multiply(spread(series.Q[j, i]), bend))
-        rise = multiply(divide(load(known.slope_r, LANES * i), multiply(root, root)), load(known.x, LANES * i))
-        store(work.X, LANES * i, rise)
-        store(work.x, LANES * i, subtract(rise, multiply(root, total)))
-    substitute(known.matrix, work.x, count)
-    for i in range(count):
-        rise = subtract(load(work.x, LANES * i), load(work.X, LANES * i))
-        store(work.X, LANES * i, multiply(spread(series.e[i]), divide(rise, load(known.root, LANES * i))))
-    rooted(work.x, series, known, work.f)
+def _far(terms, x):
+    """(value, slope, second derivative) of sum a_n x^-n."""
+    w, value, slope, bend = 1.0 / x, 0.0, 0.0, 0.0
+    for n in range(terms.size - 1, 0, -1):
+        value = value * w + terms[n]
+        slope = slope * w - n * terms[n]
+        bend = bend * w + n * (n + 1) * terms[n]
+    return 1.0 + value * w, slope * w * w, bend * w * w * w
+
+
+@kernel(inline=True)
+def _jet(rate, z, function):
+    """Jet of a function of x = (rate - s) z from its value and derivatives over x."""
+    value, slope, bend = function
+    return four(value, rate * slope, -z * slope, -slope - rate * z * bend)
 
 
 @kernel
-def _share_slopes(lam2, d_lam2, series, work):
-    """Slopes of what either body's creep modes have in m; x~ is spoilt."""
-    known, count = work.room, series.a.size
-    for i in range(count):
-        at, a = LANES * i, series.a[i]
-        own, d_own = load(known.i2, at), load(work.i2, at)
-        du = d_own
-        for n in range(count):
-            weight, X = spread(a * series.a[n] / (a + series.a[n])), load(known.X, LANES * n)
-            apart, d_apart = subtract(own, load(known.i2, LANES * n)), subtract(d_own, load(work.i2, LANES * n))
-            rise = add(multiply(load(work.X, LANES * n), apart), multiply(X, d_apart))
-            du = add(du, multiply(weight, rise))
-        X, u, per = load(known.X, at), load(known.u, at), spread(1.0 / series.e[i])
-        rise, pressed = add(multiply(load(work.X, at), u), multiply(X, du)), multiply(X, u)
-        store(work.x, at, multiply(per, add(multiply(rise, lam2), multiply(pressed, d_lam2))))
-    half_space, cylinder = spread(0.0), spread(0.0)
-    for j in range(count):
-        at = LANES * j
-        share = add(multiply(load(known.slope_k, at), load(known.f, at)), multiply(load(known.k, at), load(work.f, at)))
-        for i in range(count):
-            share = add(share, multiply(spread(series.Q[j, i]), load(work.x, LANES * i)))
-        half_space = add(half_space, multiply(spread(series.weights[j] * series.t[j]), share))
-        cylinder = add(cylinder, multiply(spread((1.0 - series.weights[j]) * series.t[j]), share))
-    return half_space, cylinder
-
-
-@kernel
-def functions(places, series, work):
-    """Fill the room and ``found`` at four places z > 0: of every function four slopes."""
-    values(places, True, series, work.room)
-    _slopes(places, series, work)
-    known, z, one = work.room, four(places[0], places[1], places[2], places[3]), spread(1.0)
-    shift, rise = load(known.found, LANES * SHIFT), load(known.found, LANES * RISE)
-    m, lam2 = load(known.found, LANES * FUNCTIONS), divide(one, add(one, add(rise, rise)))
-    dg, dh, pressed, d_pressed = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+def _ratios(z, series, work):
+    """Jets of the ratios of every mode."""
     for i in range(series.a.size):
-        at = LANES * i
-        x, f, t = load(known.x, at), load(known.f, at), spread(series.t[i])
-        slope_k, X, i2 = load(known.slope_k, at), load(known.X, at), load(known.i2, at)
-        dg = add(dg, multiply(t, add(multiply(slope_k, f), multiply(load(known.k, at), load(work.f, at)))))
-        per = divide(x, load(known.root, at))
-        bend = subtract(multiply(load(known.slope_r, at), multiply(per, per)), multiply(slope_k, multiply(f, f)))
-        dh, pressed = add(dh, bend), add(pressed, multiply(X, i2))
-        d_pressed = add(d_pressed, add(multiply(load(work.X, at), i2), multiply(X, load(work.i2, at))))
-    d_lam2 = multiply(multiply(spread(2.0), multiply(lam2, lam2)), divide(subtract(rise, dh), z))
-    dm = add(dg, add(multiply(d_lam2, pressed), multiply(lam2, d_pressed)))
-    minus = subtract(spread(0.0), z)
-    dm = multiply(minus, dm)
-    half_space = cylinder = multiply(spread(0.5), dm)
-    if series.weights.size > 0:
-        half_space, cylinder = _share_slopes(lam2, d_lam2, series, work)
-        half_space, cylinder = multiply(minus, half_space), multiply(minus, cylinder)
-        miss = divide(subtract(dm, add(half_space, cylinder)), m)
-        half_space = add(half_space, multiply(miss, load(known.found, LANES * HALF_SPACE)))
-        cylinder = add(cylinder, multiply(miss, load(known.found, LANES * CYLINDER)))
-    store(work.found, LANES * SHIFT, subtract(shift, dg))
-    store(work.found, LANES * RISE, subtract(rise, dh))
-    store(work.found, LANES * HALF_SPACE, half_space)
-    store(work.found, LANES * CYLINDER, cylinder)
+        a, b = series.a[i], series.b[i]
+        x = a * z
+        r, complement = ratio_r(x)
+        dr = slope_r(x, r, complement)
+        ddr = (r / x - dr) / x - 2.0 * r * dr
+        if x >= _FAR:
+            r, dr, ddr = _far(_SERIES_R, x)
+        i2 = ratio_i2(x, r)
+        if x < 4.0:
+            di2 = r - (2.0 / x + r) * i2
+            ddi2 = dr - 2.0 * (di2 - i2 / x) / x - di2 * r - i2 * dr
+        else:  # of 1 - 2 r/x
+            di2 = 2.0 * (r / x - dr) / x
+            ddi2 = (4.0 * (dr - r / x) / x - 2.0 * ddr) / x
+        x = b * z
+        k, complement = ratio_k(x)
+        dk = slope_k(x, k, complement)
+        ddk = 2.0 * k * dk + (dk - k / x) / x
+        if x >= _FAR:
+            k, dk, ddk = _far(_SERIES_K, x)
+        store(work.per_r, LANES * i, inverse(True, _jet(a, z, (r, dr, ddr))))
+        store(work.i2, LANES * i, _jet(a, z, (i2, di2, ddi2)))
+        store(work.k, LANES * i, _jet(b, z, (k, dk, ddk)))
 
 
 @kernel
-def functions_loop(series, work, z, out):
-    """Values and slopes of the functions, a row each, at the places z, whose number is one of fours."""
-    for n in range(0, z.size, LANES):
-        functions((z[n], z[n + 1], z[n + 2], z[n + 3]), series, work)
-        for at in range(work.found.size):
-            row, place = at // LANES, n + at % LANES
-            out[2 * row, place], out[2 * row + 1, place] = work.room.found[at], work.found[at]
+def _unsteady(z, series, of_g, of_h, of_y):
+    """N at z = zeta > 0: from -sum E_i tau_i^2 as V -> 0 to sum J_j/(4 H) in fast rolling, z^2 sum E_i/4."""
+    T_mean = relaxed = strength = 0.0
+    for i in range(series.a.size):
+        square = series.e[i] * series.e[i]
+        T_mean, relaxed, strength = T_mean + square, relaxed + square / series.a[i], strength + square * series.a[i]
+    if not z * series.b[0] < _SLOW:
+        return -relaxed
+    if z * series.a[series.a.size - 1] < _FAST:
+        return 0.25 * strength * z * z
+    (g, dg, g_s, dg_s), (h, dh, h_s, dh_s), (y, dy, y_s, dy_s) = parts(of_g), parts(of_h), parts(of_y)
+    H, dH, H_s, dH_s = z * (z + 2.0 * h), 2.0 * (z + h + z * dh), 2.0 * z * h_s, 2.0 * (h_s + z * dh_s)
+    y_s, dy_s = y_s + T_mean * g, dy_s + T_mean * dg
+    W = H * g - 2.0 * z * (h - z * dh) * g - z * H * dg + z * z * (y - z * dy)
+    U = H * g_s - g * H_s + z * z * y_s
+    dU = (dH * g_s + H * dg_s) - (dg * H_s + g * dH_s) + z * (2.0 * y_s + z * dy_s)
+    theta = 2.0 * H / dH
+    return -(1.5 * U - 0.5 * theta * dU + (theta * dg - g) * W) / H
+
+
+@kernel(inline=True)
+def set_alpha(n, alpha, series):
+    """Make a series of one mode that of state n; ``alpha``: none, or one, or one each."""
+    if alpha.size > 0:
+        own = alpha[min(n, alpha.size - 1)]
+        series.a[0] = own
+        series.e[0] = series.t[0] = np.sqrt((own - 1.0) / own)
 
 
 @kernel
-def functions_of_alpha_loop(alpha, z, out):
-    """Likewise of one relaxation time, by its Bessel ratios, which is less to compile.
+def modes_loop(series, alpha, work, z, out):
+    """Values of the functions, a row each, at places z > 0, then their slopes, then N.
 
-    With p = r(alpha z) k(z), c = (alpha - 1)/alpha: g = c p/(1 + p), h = c r/(1 + p), m = c (lam^2 i2 + p)/(1 + p).
+    ``alpha``: none, or one each, of which ``series`` is then the one mode.
     """
-    c = (alpha - 1.0) / alpha
     for n in range(z.size):
-        x, r, k, s, dk, per_x, per_z = ratios_and_slopes(z[n], alpha)
-        dr, p = alpha * s, r * k
-        dp, whole, i2 = dr * k + r * dk, 1.0 / (1.0 + p), ratio_i2(x, r)
-        share = c * whole
-        g, h, dg, dh = share * p, share * r, share * whole * dp, share * whole * (dr - r * r * dk)
-        lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
-        d_lam2 = -2.0 * lam2 * lam2 * ((dh - h * per_z) * per_z)
-        m = c * (lam2 * i2 + r * k) * whole
-        dm = whole * (c * (d_lam2 * i2 + lam2 * (alpha * 2.0 * (r * r - i2) * per_x) + dp) - m * dp)
-        shift, rise = g / z[n], h / z[n]
-        out[0, n], out[1, n], out[2, n], out[3, n] = shift, shift - dg, rise, rise - dh
-        out[4, n], out[5, n], out[6, n], out[7, n] = 0.5 * m, -0.5 * z[n] * dm, 0.5 * m, -0.5 * z[n] * dm
+        set_alpha(n, alpha, series)
+        _ratios(z[n], series, work)
+        g, h, y = values(True, four(z[n], 1.0, 0.0, 0.0), series, work)
+        for row in range(FUNCTIONS):
+            out[row, n], out[FUNCTIONS + row, n] = work.found[LANES * row], -z[n] * work.found[LANES * row + 1]
+        out[2 * FUNCTIONS, n] = _unsteady(z[n], series, g, h, y)

@@ -34,29 +34,17 @@ class Law(NamedTuple):
         (M_half_space/V, M_cylinder/V), H/F^2, eta/F
     marks : those in front, as many as a row has; then of every part of every row the stamp of the material that it was
         made for
+    added : rows of N and of its integral (:func:`...materials.law_build.added`); none of a law of steady rolling
     hold, make, source : addresses of the kernels (n, source) and (where a part begins, source), and of what these know
         (:mod:`..compile.address`); 0 where all rows stand
     """
 
     rows: Any
     marks: Any
-    hold: int
-    make: int
-    source: int
-
-
-class UnsteadyLaw(NamedTuple):
-    """A law of one material with the term that follows it, M(V) + N(V) V'.
-
-    added : rows of N and of its integral (:func:`...materials.law_build.added`)
-    """
-
-    rows: Any
-    marks: Any
-    hold: int
-    make: int
-    source: int
     added: Any
+    hold: int
+    make: int
+    source: int
 
 
 @kernel(inline=True)

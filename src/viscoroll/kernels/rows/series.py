@@ -4,16 +4,18 @@ With E(t) = 1 + sum E_i exp(-a_i t) and J(t) = 1 - sum J_j exp(-b_j t), the two 
 
     Q_ji = sqrt(J_j b_j E_i a_i)/(a_i - b_j)      orthogonal: Q^T t = e, t_j = sqrt(J_j T_j), e_i = sqrt(E_i tau_i)
     r_i = r(a_i z)   k_j = k(b_j z)               the ratios of one relaxation time (:mod:`..bessel.ratios`)
-    B = 1 + sqrt(r) Q^T k Q sqrt(r)               symmetric, eigenvalues in [1, 2)
-    B x = sqrt(r) e      f = Q sqrt(r) x      X_i = e_i x_i/sqrt(r_i)
-    h = sum sqrt(r_i) e_i x_i      g = sum t_j k_j f_j      m = g + lam^2 sum X_i i2(a_i z)
+    (1/r + Q^T k Q) y = e      f = Q y      X_i = e_i y_i/r_i
+    h = sum e_i y_i      g = sum t_j k_j f_j      m = g + lam^2 sum X_i i2(a_i z)
 
 All sums but the last are of positive terms.  What a creep mode has in m, all of them positive as well,
 
-    m_j = t_j [k_j f_j + sum_i Q_ji y_i]      y_i = lam^2 X_i u_i/e_i
+    m_j = t_j [k_j f_j + sum_i Q_ji v_i]      v_i = lam^2 X_i u_i/e_i
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
 
 makes the parts of two bodies that deform unlike each other: the contact sees their sum, one series.
+
+Four numbers are those of four places, or those of a **jet** at one: value, d/dz, d/ds, d2/dz ds, s being taken from
+all rates a_i and b_j while E_i a_i, J_j b_j and Q stay what they are (:mod:`modes`).
 """
 
 from __future__ import annotations
@@ -22,9 +24,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..bessel.ratios import ratio_i2, ratio_k, ratio_r, slope_k, slope_r
+from ..bessel.ratios import ratio_i2, ratio_k, ratio_r
 from ..compile.jit import kernel
-from ..numerics.four import LANES, add, divide, four, load, multiply, spread, store, subtract
+from ..numerics.four import LANES, four, load, parts, spread, store
 
 #: functions of z that rows are made of: g/z, h/z, m of the half-space and of the cylinder
 SHIFT, RISE, HALF_SPACE, CYLINDER = range(4)
@@ -41,32 +43,28 @@ class Series(NamedTuple):
     b: Any
     e: Any
     t: Any
-    Q: Any
     weights: Any
+    Q: Any
 
 
 class Room(NamedTuple):
-    """What the evaluation at four places keeps, four numbers each, of every mode; then B, and what is found.
+    """What an evaluation keeps, four numbers each, of every mode: 1/r, k, i2, y and then X, f; a right side.
 
-    sqrt(r), a r', k, b k', x, f, X, i2, u and y; B; four values a function, and m
+    matrix : 1/r + Q^T k Q.  found : four numbers a function.
     """
 
-    root: Any
-    slope_r: Any
+    per_r: Any
     k: Any
-    slope_k: Any
-    x: Any
-    f: Any
-    X: Any
     i2: Any
-    u: Any
     y: Any
+    f: Any
+    right: Any
     matrix: Any
     found: Any
 
 
 _VECTORS = len(Room._fields) - 2
-_FOUND = LANES * (FUNCTIONS + 1)
+_FOUND = LANES * FUNCTIONS
 
 
 def room_of(modes: int) -> Room:
@@ -80,159 +78,182 @@ def packed_size(modes: int) -> int:
     return modes * (len(Series._fields) - 1 + modes)
 
 
-def working_size(modes: int) -> int:
-    """How many numbers it is evaluated in, with its own in front."""
-    return packed_size(modes) + LANES * modes * (_VECTORS + modes) + _FOUND
+def room_size(modes: int) -> int:
+    """How many numbers its room has, likewise."""
+    return LANES * modes * (_VECTORS + modes) + _FOUND
 
 
 @kernel(inline=True)
-def unpacked(numbers, modes, unlike):
-    """A series, and the room that it is evaluated in, from one vector."""
-    n, width = modes, LANES * modes
-    Q, work = numbers[5 * n : (5 + n) * n], numbers[(5 + n) * n :]
-    series = Series(
-        numbers[:n], numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n : 4 * n], Q.reshape(n, n),
-        numbers[4 * n : 5 * n] if unlike else numbers[:0],
-    )  # fmt: skip
-    return series, Room(
-        work[:width], work[width : 2 * width], work[2 * width : 3 * width], work[3 * width : 4 * width],
-        work[4 * width : 5 * width], work[5 * width : 6 * width], work[6 * width : 7 * width],
-        work[7 * width : 8 * width], work[8 * width : 9 * width], work[9 * width : 10 * width],
-        work[10 * width : (10 + n) * width], work[(10 + n) * width :],
-    )  # fmt: skip
+def unpacked(numbers, n, unlike):
+    """A series of n modes."""
+    weights = numbers[4 * n : 5 * n] if unlike else numbers[:0]
+    vectors = numbers[:n], numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n : 4 * n]
+    return Series(*vectors, weights, numbers[5 * n : (5 + n) * n].reshape(n, n))
 
 
 @kernel(inline=True)
-def ratios(places, sloped, series, work):
-    """Ratios and slopes of every mode."""
+def room_in(work, modes):
+    """Room for the evaluations of one."""
+    n = LANES * modes
+    vectors = work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n], work[4 * n : 5 * n]
+    return Room(*vectors, work[5 * n : 6 * n], work[6 * n : (6 + modes) * n], work[(6 + modes) * n :])
+
+
+@kernel(inline=True)
+def ratios(places, series, work):
+    """The ratios of every mode at four places."""
     for at in range(LANES * series.a.size):
         i, z = at // LANES, places[at % LANES]
-        x, y = series.a[i] * z, series.b[i] * z
-        r, complement = ratio_r(x)
-        root = np.sqrt(r)
-        work.root[at], work.i2[at] = root, ratio_i2(x, root * root)
-        k, k_complement = ratio_k(y)
-        work.k[at] = k
-        if sloped:
-            work.slope_r[at] = series.a[i] * slope_r(x, r, complement)
-            work.slope_k[at] = series.b[i] * slope_k(y, k, k_complement)
+        r, _ = ratio_r(series.a[i] * z)
+        work.per_r[at], work.i2[at] = 1.0 / r, ratio_i2(series.a[i] * z, r)
+        work.k[at], _ = ratio_k(series.b[i] * z)
+
+
+# --- four places or a jet ---
+
+
+@kernel(inline=True)
+def times(jets, p, q):
+    """The product."""
+    if not jets:
+        return p * q
+    p0, p1, p2, p3 = parts(p)
+    q0, q1, q2, q3 = parts(q)
+    return four(p0 * q0, p1 * q0 + p0 * q1, p2 * q0 + p0 * q2, p3 * q0 + p1 * q2 + p2 * q1 + p0 * q3)
+
+
+@kernel(inline=True)
+def inverse(jets, p):
+    """1/p."""
+    per = 1.0 / p
+    if not jets:
+        return per
+    w, _, _, _ = parts(per)
+    _, dz, ds, dzds = parts(p)
+    return four(w, -w * w * dz, -w * w * ds, w * w * (2.0 * w * dz * ds - dzds))
+
+
+@kernel(inline=True)
+def _strength(jets, strength, rate):
+    """e_i or t_j."""
+    return four(strength, 0.0, strength / rate, 0.0) if jets else spread(strength)
 
 
 @kernel(inline=True)
 def _factorize(matrix, count):
-    """Two triangular factors in place of a matrix, without pivoting: its eigenvalues lie in [1, 2)."""
-    row_of, one = LANES * count, spread(1.0)
+    """Two triangular factors in place of a matrix, without pivoting: it is positive definite."""
+    row_of = LANES * count
     for i in range(count):
-        inverse = divide(one, load(matrix, i * row_of + LANES * i))
+        per = 1.0 / load(matrix, i * row_of + LANES * i)
         for row in range(i + 1, count):
-            share = multiply(load(matrix, row * row_of + LANES * i), inverse)
+            share = load(matrix, row * row_of + LANES * i) * per
             store(matrix, row * row_of + LANES * i, share)
-            for column in range(i + 1, count):
-                at, above = row * row_of + LANES * column, load(matrix, i * row_of + LANES * column)
-                store(matrix, at, subtract(load(matrix, at), multiply(share, above)))
+            for column in range(LANES * (i + 1), row_of, LANES):
+                at = row * row_of + column
+                store(matrix, at, load(matrix, at) - share * load(matrix, i * row_of + column))
 
 
 @kernel(inline=True)
-def substitute(matrix, right, count):
+def _substitute(matrix, right, count):
     """Solve a linear system in place of its right side, from the factors of the matrix."""
     row_of = LANES * count
-    for row in range(1, count):
+    for row in range(count):
         total = load(right, LANES * row)
         for i in range(row):
-            total = subtract(total, multiply(load(matrix, row * row_of + LANES * i), load(right, LANES * i)))
+            total -= load(matrix, row * row_of + LANES * i) * load(right, LANES * i)
         store(right, LANES * row, total)
-    for i in range(count - 1, -1, -1):
-        total = load(right, LANES * i)
-        for column in range(i + 1, count):
-            total = subtract(total, multiply(load(matrix, i * row_of + LANES * column), load(right, LANES * column)))
-        store(right, LANES * i, divide(total, load(matrix, i * row_of + LANES * i)))
+    for row in range(count - 1, -1, -1):
+        total = load(right, LANES * row)
+        for i in range(row + 1, count):
+            total -= load(matrix, row * row_of + LANES * i) * load(right, LANES * i)
+        store(right, LANES * row, total / load(matrix, row * row_of + LANES * row))
 
 
 @kernel(inline=True)
-def rooted(x, series, work, f):
-    """f = Q sqrt(r) x."""
-    count = series.a.size
-    for j in range(count):
-        total = spread(0.0)
-        for i in range(count):
-            weighted = multiply(spread(series.Q[j, i]), load(work.root, LANES * i))
-            total = add(total, multiply(weighted, load(x, LANES * i)))
-        store(f, LANES * j, total)
+def solve(jets, series, work):
+    """y and f, from the ratios.
 
-
-@kernel(inline=True)
-def _solve(series, work):
-    """x from B x = sqrt(r) e, X and f."""
+    A jet takes the factors of the matrix's value for those of all of it, which leaves an error with d/dz or d/ds as a
+    factor: the second time with both, the third time none.
+    """
     count, matrix = series.a.size, work.matrix
     for i in range(count):
-        root = load(work.root, LANES * i)
         for n in range(i + 1):
-            total = spread(0.0)
+            total = load(work.per_r, LANES * i) if n == i else spread(0.0)
             for j in range(count):
-                weighted = multiply(spread(series.Q[j, i]), load(work.k, LANES * j))
-                total = add(total, multiply(weighted, spread(series.Q[j, n])))
-            total = multiply(total, multiply(root, load(work.root, LANES * n)))
-            if n == i:
-                total = add(total, spread(1.0))
+                total += series.Q[j, i] * series.Q[j, n] * load(work.k, LANES * j)
+            if jets:
+                total = spread(parts(total)[0])
             store(matrix, LANES * (i * count + n), total)
             store(matrix, LANES * (n * count + i), total)
-        store(work.x, LANES * i, multiply(root, spread(series.e[i])))
+        store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]))
+        store(work.y, LANES * i, spread(0.0))
     _factorize(matrix, count)
-    substitute(matrix, work.x, count)
-    for i in range(count):
-        weighted = multiply(spread(series.e[i]), load(work.x, LANES * i))
-        store(work.X, LANES * i, divide(weighted, load(work.root, LANES * i)))
-    rooted(work.x, series, work, work.f)
+    for turn in range(3 if jets else 1):
+        if turn > 0:
+            for i in range(count):
+                total = times(jets, load(work.per_r, LANES * i), load(work.y, LANES * i))
+                for j in range(count):
+                    total += series.Q[j, i] * times(jets, load(work.k, LANES * j), load(work.f, LANES * j))
+                store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]) - total)
+        _substitute(matrix, work.right, count)
+        for at in range(0, LANES * count, LANES):
+            store(work.y, at, load(work.y, at) + load(work.right, at))
+        for j in range(count):
+            total = spread(0.0)
+            for i in range(count):
+                total += series.Q[j, i] * load(work.y, LANES * i)
+            store(work.f, LANES * j, total)
 
 
 @kernel
-def _shares(lam2, series, work):
-    """(Of the half-space, of the cylinder): their creep modes' parts of m; u and y."""
+def _shares(jets, lam2, series, work):
+    """(Of the half-space, of the cylinder): their creep modes' parts of m; no slopes over s."""
     count, half_space, cylinder = series.a.size, spread(0.0), spread(0.0)
     for i in range(count):
         own, a = load(work.i2, LANES * i), series.a[i]
-        u = own
+        u = load(work.i2, LANES * i)
         for n in range(count):
-            weight = spread(a * series.a[n] / (a + series.a[n]))
-            apart = subtract(own, load(work.i2, LANES * n))
-            u = add(u, multiply(weight, multiply(load(work.X, LANES * n), apart)))
-        pressed = multiply(load(work.X, LANES * i), u)
-        store(work.u, LANES * i, u)
-        store(work.y, LANES * i, multiply(spread(1.0 / series.e[i]), multiply(pressed, lam2)))
+            weight = a * series.a[n] / (a + series.a[n])
+            u += weight * times(jets, load(work.y, LANES * n), own - load(work.i2, LANES * n))
+        pressed = times(jets, times(jets, load(work.y, LANES * i), u), lam2)
+        store(work.right, LANES * i, (1.0 / series.e[i]) * pressed)
     for j in range(count):
-        share = multiply(load(work.k, LANES * j), load(work.f, LANES * j))
+        share = times(jets, load(work.k, LANES * j), load(work.f, LANES * j))
         for i in range(count):
-            share = add(share, multiply(spread(series.Q[j, i]), load(work.y, LANES * i)))
-        half_space = add(half_space, multiply(spread(series.weights[j] * series.t[j]), share))
-        cylinder = add(cylinder, multiply(spread((1.0 - series.weights[j]) * series.t[j]), share))
+            share += series.Q[j, i] * load(work.right, LANES * i)
+        half_space += series.weights[j] * series.t[j] * share
+        cylinder += (1.0 - series.weights[j]) * series.t[j] * share
     return half_space, cylinder
 
 
-@kernel
-def values(places, sloped, series, work):
-    """Fill the room, and ``found``, at four places z > 0: of every function four values, and of m.
+@kernel(inline=True)
+def values(jets, z, series, work):
+    """(g, h, sum X_i i2_i) at z > 0, from the ratios there; ``found``.
 
     What the two bodies together differ from m by, roundings of alpha times the size of one, they take in proportion.
     """
-    ratios(places, sloped, series, work)
-    _solve(series, work)
-    z, one = four(places[0], places[1], places[2], places[3]), spread(1.0)
+    solve(jets, series, work)
+    one = four(1.0, 0.0, 0.0, 0.0) if jets else spread(1.0)
     g, h, pressed = spread(0.0), spread(0.0), spread(0.0)
     for i in range(series.a.size):
         at = LANES * i
-        h = add(h, multiply(multiply(load(work.root, at), spread(series.e[i])), load(work.x, at)))
-        g = add(g, multiply(multiply(spread(series.t[i]), load(work.k, at)), load(work.f, at)))
-        pressed = add(pressed, multiply(load(work.X, at), load(work.i2, at)))
-    rise = divide(h, z)
-    lam2 = divide(one, add(one, add(rise, rise)))
-    m = add(g, multiply(lam2, pressed))
-    half_space = cylinder = multiply(spread(0.5), m)
+        e, t = _strength(jets, series.e[i], series.a[i]), _strength(jets, series.t[i], series.b[i])
+        ey, kf = times(jets, e, load(work.y, at)), times(jets, load(work.k, at), load(work.f, at))
+        X = times(jets, ey, load(work.per_r, at))
+        store(work.y, at, X)
+        h, g, pressed = h + ey, g + times(jets, t, kf), pressed + times(jets, X, load(work.i2, at))
+    per_z = inverse(jets, z)
+    rise = times(jets, h, per_z)
+    lam2 = inverse(jets, one + 2.0 * rise)
+    m = g + times(jets, lam2, pressed)
+    half_space = cylinder = 0.5 * m
     if series.weights.size > 0:
-        half_space, cylinder = _shares(lam2, series, work)
-        whole = divide(m, add(half_space, cylinder))
-        half_space, cylinder = multiply(half_space, whole), multiply(cylinder, whole)
-    store(work.found, LANES * SHIFT, divide(g, z))
+        half_space, cylinder = _shares(jets, lam2, series, work)
+        whole = times(jets, m, inverse(jets, half_space + cylinder))
+        half_space, cylinder = times(jets, half_space, whole), times(jets, cylinder, whole)
+    store(work.found, LANES * SHIFT, times(jets, g, per_z))
     store(work.found, LANES * RISE, rise)
     store(work.found, LANES * HALF_SPACE, half_space)
     store(work.found, LANES * CYLINDER, cylinder)
-    store(work.found, LANES * FUNCTIONS, m)
+    return g, h, pressed

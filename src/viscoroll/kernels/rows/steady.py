@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.jit import kernel
-from .law import place, speed, speed_slopes
+from .law import place, speed
 
 #: a load this close to an extremum, relative, is at it
 SNAP = 1e-15
@@ -32,10 +32,8 @@ class Curve(NamedTuple):
 @kernel
 def _on_curve(u, gain, law):
     """(kappa (M - gain V), its slope over ln u) at u."""
-    at = place(u, law)
-    _, m, scale = speed(at, u, law)
-    _, _, slope = speed_slopes(at, u, law)
-    return u * scale * m - u * gain, u * (slope - gain)
+    found = speed(place(u, law), u, law)
+    return u * found.scale * found.m - u * gain, u * (found.rise - gain)
 
 
 @kernel
