@@ -200,7 +200,8 @@ def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool,
     alphas, *parts = (elements(np.asarray(array, np.float64), shape) for array in arrays)
 
     def solve(start: int, stop: int) -> int:
-        states = States(*(part(start, stop) for part in parts), creep_is_omega)
+        kappa, mu, V, creep = (part(start, stop) for part in parts)
+        states = States(kappa, mu, V, creep, creep_is_omega)
         status: int = direct_loop(alphas(start, stop), Asked(states, order, to, out, start), stop - start)
         return status
 

@@ -68,8 +68,8 @@ def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
     # the marks keep alive all that the kernels have the addresses of
     held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
     addresses = address_of(hold, kind), address_of(make, kind), int(source.ctypes.data)
-    rows, marks, added = known["rows"].view(), np.asarray(held), np.empty(0)
-    return Law(*map(_read_only, (rows, marks, added)), *addresses)
+    rows, marks, added = map(_read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
+    return Law(rows, marks, added, *addresses)
 
 
 def _meet(octave: int) -> None:

@@ -38,10 +38,10 @@ def kernel_series(given: Any) -> tuple[Any, Floats]:
     """(The record of a series, nothing), or (that of one mode, the alphas that it is to have); for one thread."""
     from ..kernels.rows.series import Series
 
-    if isinstance(given, Prony | Bodies):
-        unlike = isinstance(given, Bodies)
-        modes = given.total.modes if unlike else given.modes
-        return series_of(modes, given.half_space_weights if unlike else None), np.empty(0)
+    if isinstance(given, Bodies):
+        return series_of(given.total.modes, given.half_space_weights), np.empty(0)
+    if isinstance(given, Prony):
+        return series_of(given.modes), np.empty(0)
     one = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.empty(0), np.ones((1, 1)))
     return one, np.array(given, dtype=np.float64).reshape(-1)
 

@@ -198,7 +198,7 @@ def _fill_layers(case: Case, sign: float, first: int, slow: Slow, entry: Floats,
     V0 = onsets.at(_COARSE) / kappa
     k0 = _stiff_rate(case, V0)
     split_powers = _splits(case, sign, onsets)
-    split = polyval(_COARSE.t, split_powers.T)
+    split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
     V, delta, V_end = _layer_motions(case, sign, V0, k0, split)
     # over (octave, V, octave of u, u)
     per = np.where(np.arange(_LAYER.half.size) < _BEFORE, split[..., None] / (1.0 - _LEAST_U), 1.0)
