@@ -58,7 +58,7 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creep are arrays, the state of the contact is
     held beside the result: 56 bytes an element of theirs.
     """
-    from .kernels.law.stress import Points
+    from .kernels.rows.stress import Points
 
     _, scene, scale = framed(roller, "stress")
     if (delta is None) == (omega is None):
@@ -101,7 +101,7 @@ def stress(
 
 def _of_one(given: Any, points: Any, out: tuple[Array, Array]) -> None:
     """The stresses at points of one series, or with an alpha each."""
-    from .kernels.law.stress import memories, stress_loop
+    from .kernels.rows.stress import memories, stress_loop
 
     series, alpha = kernel_series(given)
     stress_loop(series, alpha, memories(series), memories(series), points, *out)

@@ -72,8 +72,8 @@ def _fill(
     names: tuple[str, ...], out: NDArray, start: int, stop: int,
 ) -> None:  # fmt: skip
     """The fields of some states."""
-    from .kernels.law.states import Asked, States
     from .kernels.rows.contact import contact_loop
+    from .kernels.rows.states import Asked, States
 
     each, kappa, mu, V, creep = parts
     asked = Asked(States(kappa, mu, V, creep, creep_is_omega), order, _rows(names), out, start)
@@ -94,7 +94,7 @@ def _fill(
 @lru_cache(maxsize=64)
 def _rows(names: tuple[str, ...]) -> Any:
     """The row of each field."""
-    from .kernels.law.states import Fields
+    from .kernels.rows.states import Fields
 
     return Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
 

@@ -120,7 +120,7 @@ def contact(
     Q, the parts of M over M, in lam and epsilon too but for one octave of speed at alpha from 20 to 35, where it is
     1.5e-14 and 3e-14, for any speed and creep (``tests/materials/test_law_table.py``); for an alpha or a material each
     1e-13 for alpha in [1, 1e4], kappa V in [1e-7, 1e5].  beta as lam, times 1/(1 - |delta|/delta_star), its condition
-    number.  N: 2e-14 of its largest size (``tests/kernels/law/test_unsteady.py``).
+    number.  N: 2e-14 of its largest size (``tests/kernels/rows/test_unsteady.py``).
 
     The law of one material is read from polynomials of one variable (:mod:`.materials.law_table`), made on first use in
     some milliseconds and kept.  A state's result depends on nothing else in the call.
@@ -192,8 +192,8 @@ def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
 
 def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
     """The fields ``names`` by the printed equations, a row each, of alpha, kappa, mu, V and the creep."""
-    from .kernels.law.states import Asked, Fields, States
     from .kernels.printed.loop import direct_loop
+    from .kernels.rows.states import Asked, Fields, States
 
     count, to = int(np.prod(shape)), Fields(**{name: row for row, name in enumerate(names)})
     out, order = np.empty((len(names), count)), np.empty(0, np.int64)

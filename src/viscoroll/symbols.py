@@ -98,9 +98,9 @@ SYMBOLS = {
         "Eq. (16)",
         "kernels/rows/series.py",
     ),
-    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)", "kernels/law/stress.py"),
+    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)", "kernels/rows/stress.py"),
     "tau": Symbol(
-        r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/law/stress.py"
+        r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/rows/stress.py"
     ),
     "slip_loss": Symbol(
         r"E_\mathrm{slip}",

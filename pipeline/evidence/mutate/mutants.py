@@ -38,8 +38,8 @@ LAW = [
     ("rows/series.py", "p1 * q0 + p0 * q1", "p1 * q0 - p0 * q1", _STATES),
     ("rows/series.py", "for turn in range(3 if jets else 1):", "for turn in range(1):", _STATES),
     ("numerics/nodes.py", "weights = [1 / ((1 - x * x)", "weights = [(1 + Decimal('1e-9')) / ((1 - x * x)", _SLOPES),
-    ("law/states.py", "return -creep if V < 0.0 else creep, creep", "return creep, creep", _LAW),
-    ("law/states.py", "else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "else np.copysign(np.inf, slip)", _LAW),
+    ("rows/states.py", "return -creep if V < 0.0 else creep, creep", "return creep, creep", _LAW),
+    ("rows/states.py", "else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "else np.copysign(np.inf, slip)", _LAW),
     ("rows/modes.py", "di2 = r - (2.0 / x + r) * i2", "di2 = r - (1.0 / x + r) * i2", _STATES),
     ("bessel/ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
     ("bessel/ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
@@ -51,12 +51,12 @@ LAW = [
     ("compile/fma.py", "fma(t, c[5], c[4])", "fma(t, c[4], c[5])", _RATIOS),
 ]  # fmt: skip
 STRESS = [
-    ("law/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _SLOPES),
-    ("law/stress.py", "_DEEP = 38.0\n", "_DEEP = 12.0\n", _SLOPES),
-    ("law/stress.py", "offset = w - r_complement", "offset = w + r_complement", _SLOPES),
-    ("law/stress.py", "scale = lam / (8.0 * np.pi * kappa)", "scale = lam / (8.0 * np.pi * kappa * (1.0 + 1e-9))", _SLOPES),
-    ("law/stress.py", "u = (1.0 - y) + epsilon", "u = (1.0 - y) - epsilon", _SLOPES),
-    ("law/stress.py", "2.0 - u / beta, beta * zeta", "2.0 - u / beta, zeta", _SLOPES),
+    ("rows/stress.py", "rear = w < 1.0 and a * w < 1.0", "rear = w < 1.0", _SLOPES),
+    ("rows/stress.py", "_DEEP = 38.0\n", "_DEEP = 12.0\n", _SLOPES),
+    ("rows/stress.py", "offset = w - r_complement", "offset = w + r_complement", _SLOPES),
+    ("rows/stress.py", "scale = lam / (8.0 * np.pi * kappa)", "scale = lam / (8.0 * np.pi * kappa * (1.0 + 1e-9))", _SLOPES),
+    ("rows/stress.py", "u = (1.0 - y) + epsilon", "u = (1.0 - y) - epsilon", _SLOPES),
+    ("rows/stress.py", "2.0 - u / beta, beta * zeta", "2.0 - u / beta, zeta", _SLOPES),
     ("printed/law.py", "bracket = 1.0 + epsilon - beta - 2.0", "bracket = 1.0 - beta - 2.0", _DIRECT),
     ("printed/law.py", "0.5 * epsilon * (1.0 - lam * lam) + 0.5", "0.5 * epsilon * (1.0 + lam * lam) + 0.5", _DIRECT),
 ]  # fmt: skip
@@ -92,7 +92,7 @@ MOTION = [
     ("motion/integrate.py", "p / (inertia + load.per_V * (1.0 + delta))", "p / (inertia + load.per_V * (1.0 - delta))", "tests/motion/test_sets_out.py"),
     ("motion/events.py", "    for _ in range(_STEPS):\n", "    for _ in range(0):\n", "tests/motion/test_sets_out.py"),
 ]  # fmt: skip
-_UNSTEADY = "tests/kernels/law/test_unsteady.py"
+_UNSTEADY = "tests/kernels/rows/test_unsteady.py"
 SERIES = [
     ("rows/series.py", "store(matrix, at, load(matrix, at) - share", "store(matrix, at, load(matrix, at) + share", claims("series", "states")),
     ("rows/series.py", "inverse(jets, one + 2.0 * rise)", "inverse(jets, one + rise)", claims("series", "states")),

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viscoroll.kernels.compile.address import doubles, integers
-from viscoroll.kernels.law.states import State
 from viscoroll.kernels.rows.contact import traction_of
 from viscoroll.kernels.rows.law import place, speed, way_of
 from viscoroll.kernels.rows.record import Law
+from viscoroll.kernels.rows.states import State
 from viscoroll.materials.law_table import law_table
 
 from ..bench.jit import compiled

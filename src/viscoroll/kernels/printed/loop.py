@@ -1,11 +1,11 @@
-"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..law.states`."""
+"""The contact law as printed, over arrays of states; rows and signs as in :mod:`..rows.states`."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.states import put, slip_and_creep, state_of
+from ..rows.states import put, slip_and_creep, state_of
 from .law import OK, direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 

@@ -1,6 +1,13 @@
 """The law of one material or pair as rows: an octave of kappa |V|, or of 1/F(eta), is one polynomial of 24 powers.
 
-With u = kappa |V|, L(u) = lam (1 + epsilon), D = 2 kappa |delta|/mu and w = L - D, Eq. (10) reads F(eta) = w/(2 u), so
+With F = z + g, H = z^2 + 2 z h and m of a material (:mod:`series`) Eqs. (6), (8)-(10), (15), (16) of the paper read,
+for V > 0 and delta >= 0,
+
+    H(zeta) = 1/(2 kappa V)^2               lam = 2 kappa V zeta        epsilon = g(zeta)/zeta
+    delta_star = mu V F(zeta)               F(zeta) - F(eta) = delta/(mu V)      beta = eta/zeta
+    Q = mu (1 - H(eta)/H(zeta))             M = V m(zeta)
+
+With u = kappa |V|, L(u) = lam (1 + epsilon), D = 2 kappa |delta|/mu and w = L - D, Eq. (10) is F(eta) = w/(2 u), so
 that with v = 2 u/w
 
     beta = share(v) w/lam       |Q|/mu = 1 - w^2 press(v)       share = eta/F(eta)      press = H(eta)/F(eta)^2

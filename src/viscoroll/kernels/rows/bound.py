@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from ..compile.address import doubles, integers
 from ..compile.jit import kernel
-from ..law.states import State
 from .contact import slopes_of_Q, traction_of
 from .law import bodies, place, speed, way_of
 from .record import PARTS, WIDTH, Law
+from .states import State
 
 #: beyond this kappa |V| the status is not 0
 FASTEST = 1e300

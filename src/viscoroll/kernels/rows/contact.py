@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..law.states import put, slip_and_creep, state_of
 from .law import bodies, lengths, place, press, press_secants, share, speed, way_of
 from .record import hold
+from .states import put, slip_and_creep, state_of
 
 #: share of L below which D is slight
 SLIGHT = 0.125

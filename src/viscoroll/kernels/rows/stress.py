@@ -15,7 +15,7 @@ With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = al
 part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40
 digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01
 to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum: a memory each, of
-weight a_i X_i (:mod:`..rows.series`) in place of alpha B.
+weight a_i X_i (:mod:`series`) in place of alpha B.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from ..bessel.ratios import ratio_r
 from ..compile.jit import kernel
 from ..numerics.four import LANES, spread
 from ..numerics.nodes import gauss
-from ..rows.modes import set_alpha
-from ..rows.series import ratios, room_of, values
+from .modes import set_alpha
+from .series import ratios, room_of, values
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
