@@ -307,7 +307,7 @@ STEADY_POWER = 1e-11
 STEADINESS = 1e-6
 #: |N| (kappa V)^2 over 1 - 1/alpha: 1.3418/16 was found at most, of one mode and alpha near 100.
 STEADINESS_BOUND = 1.35 / 16.0
-# --- kernels/law/unsteady.py (test_unsteady.py) ---
+# --- kernels/rows/modes.py (test_unsteady.py) ---
 #: One mode as a series and as an alpha; -S_E.
 UNSTEADY_SERIES = 1e-12
 #: The first terms of its limits: kappa V T = 1e-4, and 1e4 times the speed of the fastest mode.
