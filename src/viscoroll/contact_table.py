@@ -72,14 +72,12 @@ def _fill(
     names: tuple[str, ...], out: NDArray, start: int, stop: int,
 ) -> None:  # fmt: skip
     """The fields of some states."""
-    from .kernels.rows.contact import contact_loop
-    from .kernels.rows.states import Asked, States
-
+    loop, of, to = _asked(names)
     each, kappa, mu, V, creep = parts
-    asked = Asked(States(kappa, mu, V, creep, creep_is_omega), order, _rows(names), out, start)
+    asked = of.Asked(of.States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
     room = np.empty((3, _TOGETHER if isinstance(given, LawTable) else 1))
     if set(names) - {UNSTEADY}:
-        contact_loop(law, asked, room, stop - start)
+        loop(law, asked, room, stop - start)
     if UNSTEADY in names:
         N = out[names.index(UNSTEADY), start:stop]
         if isinstance(given, LawTable):
@@ -87,16 +85,17 @@ def _fill(
 
             unsteady_loop(given.unsteady_record, kappa, V, N)
         else:
-            contact_loop(law, asked._replace(to=_rows(("zeta",)), out=N[None], first=0), room, stop - start)
+            loop(law, asked._replace(to=_asked(("zeta",))[-1], out=N[None], first=0), room, stop - start)
             N[:] = by_modes(each, N).N
 
 
 @lru_cache(maxsize=64)
-def _rows(names: tuple[str, ...]) -> Any:
-    """The row of each field."""
-    from .kernels.rows.states import Fields
+def _asked(names: tuple[str, ...]) -> tuple[Any, Any, Any]:
+    """(The kernel, what it takes, the row of each field)."""
+    from .kernels.rows import states
+    from .kernels.rows.contact import contact_loop
 
-    return Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
+    return contact_loop, states, states.Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
