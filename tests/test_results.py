@@ -221,3 +221,12 @@ def test_the_way_of_one_state_is_short(call, most):
     finally:
         sys.setprofile(None)
     assert count <= most
+
+
+def test_results_say_whether_they_succeeded():
+    one, none = ROLLER.steady(force=2.0), ROLLER.steady(force=1e9)
+    assert (one.success, one.status, one.message) == (True, 0, "")
+    assert (none.success, none.status, none.message) == (False, 1, none.reason)
+    assert ROLLER.steady(force=[2.0, 1e9]).success.tolist() == [True, False]
+    assert ROLLER.contact(0.01, delta=0.0).success
+    assert ROLLER.roll(2.0, 20.0, [1.0]).success

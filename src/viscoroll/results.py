@@ -134,8 +134,11 @@ class Values(Shown):
 
     given : the arguments over which they were computed, by name.
     units : unit of each that has one; si : whether all that have a dimension are in SI units; title : what they are;
-    labels : those of the arguments; about : attributes of the dataset.
+    labels : those of the arguments; about : attributes of the dataset.  What could not be computed was refused:
+    ``success`` is True, as of motions and equilibria that were found.
     """
+
+    success, status, message = True, 0, "all of it was computed"
 
     def __init__(
         self,

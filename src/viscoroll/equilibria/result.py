@@ -121,6 +121,21 @@ class Steady(Shown):
         return Loss(*(self.labels.of(*each, "equilibrium") for each in zip(names, found, strict=True)))
 
     @property
+    def success(self) -> Any:
+        """Whether there is an equilibrium, of each load."""
+        return np.asarray(self.count)[()] > 0
+
+    @property
+    def status(self) -> Any:
+        """0 where there is one, else 1."""
+        return np.where(self.success, 0, 1)[()]
+
+    @property
+    def message(self) -> Any:
+        """As :attr:`reason`."""
+        return self.reason
+
+    @property
     def reason(self) -> Any:
         """Why there is no equilibrium; "" where there is one.  Of arrays of loads an array of strings."""
         return self.reasons.text()
