@@ -25,7 +25,24 @@ def block_inputs(run: Run, block: int) -> dict[str, NDArray[np.float64]]:
 
 
 def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: int | None = 1) -> Ensemble:
-    """Motions from inputs, numbers or ``count`` each."""
+    """Motions of a run from given inputs, in the units of its file.
+
+    Parameters
+    ----------
+    run : see :func:`read_run`.
+    values : of every uncertain input by name, a number or (n,).
+    count : motions, where all inputs are numbers.
+    threads : as of :func:`viscoroll.ensemble`.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    ParameterError
+        Inputs that a motion does not allow.
+    """
     content, settings = run.inputs.filled(values), run.settings
     start = content["start"]
     V0, omega0 = (np.broadcast_to(start[name], count) if name in start else None for name in START)
