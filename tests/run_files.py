@@ -128,7 +128,7 @@ R = U(0.1, 0.05)
 m = U(30.0, 10.0)
 E = 2.3e5
 nu = 0.49
-T_epsilon = 10.7
+T_epsilon = U(9.0, 3.0)
 T_sigma = 0.97
 mu = 0.2
 [start]
