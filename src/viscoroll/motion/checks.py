@@ -39,7 +39,10 @@ def output_times(t: ArrayLike) -> NDArray[np.float64]:
 def refuse_many(**given: Any) -> None:
     """Raise ParameterError for an array where roll wants one number."""
     for name, each in given.items():
-        if type(each) is not float and (shape := np.shape(each)):
+        # a ragged list has a shape only as one of objects
+        if type(each) is not float and (
+            shape := np.shape(each if hasattr(each, "shape") else np.asarray(each, object))
+        ):
             sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
             raise ParameterError(name, f"array of shape {shape}", "a single number", sentence)
 
