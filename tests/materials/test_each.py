@@ -77,7 +77,7 @@ def test_exported():
     assert stored.relaxation_strengths.dims == ("motion", "mode")
     stored = vr.ensemble(scene_of(pairs("one base")), 1.0, 0.0, T[:3]).to_xarray()
     assert stored.cylinder_relaxation_times.dims == ("motion", "cylinder_mode")
-    assert stored.half_space_relaxation_times.shape == (COUNT, 2)
+    assert stored.base_relaxation_times.shape == (COUNT, 2)
     assert stored.share.values.tolist() == [0.6] * COUNT
 
 

@@ -145,7 +145,7 @@ def test_slopes_of_the_parts_of_M():
     whole = slopes.dM_half_space_dV + slopes.dM_cylinder_dV
     assert (abs(whole - slopes.dM_dV) <= tol.BODIES * slopes.M / V).all()
     rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
-    half_space, cylinder = 0.7 * UNLIKE.half_space.T_mean, 0.3 * UNLIKE.cylinder.T_mean
+    half_space, cylinder = 0.7 * UNLIKE.base.T_mean, 0.3 * UNLIKE.cylinder.T_mean
     assert close((rest.dM_half_space_dV, rest.dM_cylinder_dV), (half_space, cylinder), rel=tol.BODIES)
     like = vr.contact(scene(WIDE), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV"))
     assert like.dM_cylinder_dV == 0.5 * like.dM_dV

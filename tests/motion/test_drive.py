@@ -17,7 +17,7 @@ SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 T = np.linspace(0.0, 8.0, 33)
 BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
-PAIR = vr.Bodies(cylinder=BROAD, half_space=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
+PAIR = vr.Bodies(cylinder=BROAD, base=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
 
 
 def test_how_a_schedule_is_written():
@@ -90,7 +90,7 @@ def test_bodies_that_differ():
         np.append(0.0, np.geomspace(0.1, 300.0, 20)),
     )
     assert balance(vr.roll(scene, 1.0, 0.4, t, rtol=1e-9)) <= 1e-7
-    nearly = vr.Bodies(cylinder=BROAD, half_space=BROAD, share=0.5 + 1e-12)
+    nearly = vr.Bodies(cylinder=BROAD, base=BROAD, share=0.5 + 1e-12)
     one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (nearly, BROAD))
     assert off(one, two) <= tol.DRIVE_FREE
 
@@ -106,7 +106,7 @@ def test_an_exception_of_a_callable_passes():
 def test_the_end_of_a_motion_of_bodies_that_differ():
     """V decays by a closed form, as of like bodies: steps went on to the smallest number, 430 of them."""
     modes = vr.Prony(E=[3.0] * 10, tau=10.0 ** np.arange(-9, 1))
-    on_steel = vr.Bodies(cylinder=modes, half_space=vr.Prony.elastic(), share=1.0)
+    on_steel = vr.Bodies(cylinder=modes, base=vr.Prony.elastic(), share=1.0)
     scene = vr.Scene(material=on_steel, kappa=2.91, mu=0.2, gamma=100.0)
     m = vr.roll(scene, 1.0, 0.0, [0.3, 0.5, 1.0, 2.0, 10.0])
     like = vr.roll(scene.replace(material=modes), 1.0, 0.0, m.t)

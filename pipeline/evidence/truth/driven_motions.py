@@ -21,8 +21,8 @@ STIFF = vr.Scene(alpha=300.0, kappa=40.0, mu=0.6, gamma=20.0, j=0.9)
 RING = vr.Scene(alpha=3.0, kappa=5.0, mu=0.15, gamma=2.0, j=1.3)
 BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
 THREE = vr.Prony(E=[1.5, 4.0, 9.0], tau=[1.0, 3e-2, 4e-4])
-PAIR = vr.Bodies(cylinder=BROAD, half_space=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
-ON_RIGID = vr.Bodies(cylinder=BROAD, half_space=vr.Prony.elastic(), share=1.0)
+PAIR = vr.Bodies(cylinder=BROAD, base=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
+ON_RIGID = vr.Bodies(cylinder=BROAD, base=vr.Prony.elastic(), share=1.0)
 
 
 class Driven(NamedTuple):

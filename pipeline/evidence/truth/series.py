@@ -72,9 +72,9 @@ def rates_of(mp: Any, material: Any) -> Rates:
     if isinstance(material, float):
         alpha = mp.mpf(material)
         return Rates([alpha], [mp.mpf(1)], alpha, 1 - 1 / alpha)
-    if isinstance(material, Bodies) and material.cylinder != material.half_space:
+    if isinstance(material, Bodies) and material.cylinder != material.base:
         share = mp.mpf(material.share)
-        bodies = [(share, rates_of(mp, material.cylinder)), (1 - share, rates_of(mp, material.half_space))]
+        bodies = [(share, rates_of(mp, material.cylinder)), (1 - share, rates_of(mp, material.base))]
         J = [part * strength for part, known in bodies for strength in creep_strengths(mp, known)]
         T = [1 / b for _, known in bodies for b in known.b]
         return rates_of_creep(mp, J, T, 1 / sum(part / known.alpha for part, known in bodies))

@@ -107,7 +107,7 @@ def solid_of(scene: Scene) -> Solid:
 def _sum(mp: Any, bodies: Bodies) -> tuple[series.Rates, list[Any]]:
     """Both bodies as one series, and what of each creep mode is the half-space's: bodies share no creep time."""
     share, modes, compliance = mp.mpf(bodies.share), [], mp.mpf(0)
-    for body, part, weight in ((bodies.cylinder, share, 0), (bodies.half_space, 1 - share, 1)):
+    for body, part, weight in ((bodies.cylinder, share, 0), (bodies.base, 1 - share, 1)):
         if not body.E.size:
             compliance += part
             continue

@@ -26,7 +26,7 @@ class Bodies(OneOrMany):
 
     Parameters
     ----------
-    cylinder, half_space : their series, times over one T_ref.
+    cylinder, base : their series, times over one T_ref.
     share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), in [0, 1]; 0: the cylinder is
         rigid, 1: the half-space is.
         Where a body is n series, or ``share`` is an array (n,), these are n pairs, ``p[i]`` one of them and ``p[i:k]``
@@ -49,11 +49,11 @@ class Bodies(OneOrMany):
     """
 
     cylinder: Prony
-    half_space: Prony
+    base: Prony
     share: Any = 0.5
 
     def __post_init__(self) -> None:
-        bodies = {"cylinder": self.cylinder, "half_space": self.half_space}
+        bodies = {"cylinder": self.cylinder, "base": self.base}
         for name, body in bodies.items():
             if not isinstance(body, Prony):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
@@ -64,12 +64,12 @@ class Bodies(OneOrMany):
         object.__setattr__(self, "shape", broadcast_shape(**many, share=share))
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
-            raise ParameterError("cylinder, half_space", f"of {modes} modes together", f"at most {MOST_MODES}")
+            raise ParameterError("cylinder, base", f"of {modes} modes together", f"at most {MOST_MODES}")
         object.__setattr__(self, "share", frozen(share))
 
     @property
     def _same(self) -> bool:
-        return self.cylinder == self.half_space
+        return self.cylinder == self.base
 
     @property
     def like(self) -> bool:
@@ -80,22 +80,22 @@ class Bodies(OneOrMany):
     @cached_property
     def alpha(self) -> Any:
         """Instantaneous over long-time stiffness of the pair, of each."""
-        first, second = self.cylinder.alpha, self.half_space.alpha
+        first, second = self.cylinder.alpha, self.base.alpha
         found = first if self._same else 1.0 / (self.share / first + (1.0 - self.share) / second)
         return np.broadcast_to(found, self.shape) if self.shape else found
 
     def __getitem__(self, which: Any) -> Bodies:
-        cylinder, half_space, share = (
-            each[which] if np.shape(each) else each for each in (self.cylinder, self.half_space, self.share)
+        cylinder, base, share = (
+            each[which] if np.shape(each) else each for each in (self.cylinder, self.base, self.share)
         )
-        return Bodies(cylinder, half_space, share)
+        return Bodies(cylinder, base, share)
 
     @cached_property
     def _both(self) -> tuple[NDArray, ...]:
         """Creep of both bodies together, strengths and times, and what of the strengths is the half-space's."""
         share, rest = (np.asarray(part)[..., np.newaxis] for part in (self.share, 1.0 - np.asarray(self.share)))
-        parts = share * self.cylinder.J, rest * self.half_space.J
-        bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.half_space.T)
+        parts = share * self.cylinder.J, rest * self.base.J
+        bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.base.T)
         own, J, T = (
             np.concatenate([np.broadcast_to(e, (*self.shape, e.shape[-1])) for e in each], -1) for each in bodies
         )
@@ -126,7 +126,7 @@ class Bodies(OneOrMany):
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
-        return self.cylinder, self.half_space, np.shape(self.share), np.asarray(self.share).tobytes()
+        return self.cylinder, self.base, np.shape(self.share), np.asarray(self.share).tobytes()
 
     def __eq__(self, other: object) -> bool:
         return self._key == other._key if isinstance(other, Bodies) else NotImplemented
@@ -136,6 +136,6 @@ class Bodies(OneOrMany):
 
     def __repr__(self) -> str:
         if self.shape:
-            modes = (body.E.shape[-1] for body in (self.cylinder, self.half_space))
+            modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
             return f"<{len(self)} pairs of {' and '.join(map(str, modes))} modes>"
-        return f"Bodies(cylinder={self.cylinder!r}, half_space={self.half_space!r}, share={self.share!r})"
+        return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r})"

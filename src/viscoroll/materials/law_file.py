@@ -145,7 +145,7 @@ def described(given: Any) -> str:
         text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
     if isinstance(given, Bodies):
-        parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "half_space"))
+        parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
         return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
     return f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
 
@@ -158,7 +158,7 @@ def _material_of(text: str, path: Any) -> Any:
         return Pair(found["material"], found.get("base"), content["plane"])
     if "bodies" in content:
         given = content["bodies"]
-        parts = (given[name] for name in ("cylinder", "half_space"))
+        parts = (given[name] for name in ("cylinder", "base"))
         series: Any = (series_of(path, "bodies", one) for one in parts)
         return Bodies(*series, given["share"])  # type: ignore[call-arg]
     given = content["scene"]

@@ -68,7 +68,7 @@ def _series(materials: Any, count: int) -> dict[str, xr.Variable]:
     share = {"long_name": "the cylinder's part of the long-time compliance", "units": "1"}
     return (
         _modes(materials.cylinder, count, "cylinder_", "cylinder: ")
-        | _modes(materials.half_space, count, "half_space_", "half space: ")
+        | _modes(materials.base, count, "base_", "base: ")
         | {"share": xr.Variable(("motion",), np.broadcast_to(materials.share, (count,)), share)}
     )
 
