@@ -132,7 +132,6 @@ def test_rest_while_sliding_and_from_the_start():
     assert math.isnan(sliding.onset_time)
 
 
-@pytest.mark.xfail(strict=True, reason="sought on one polynomial across the kink of max(|V|, |omega|): 0.25 % beside")
 def test_rest_is_where_the_faster_of_both_is_as_slow():
     """Sliding, with V and omega of nearly one size at the threshold."""
     for V0, omega0 in ((-0.7113467608790995, -1.3359553878111319), (0.7058009751523431, 1.3606752686335586)):

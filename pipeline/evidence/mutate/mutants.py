@@ -90,7 +90,7 @@ MOTION = [
     ("motion/rates.py", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.5 * n * V_rate", "drag = light * (V_V - 0.5 * per_V * n_V * V_rate), light * V_d, 0.4 * n * V_rate", "tests/motion/test_unsteady.py"),
     ("rows/added.py", "whole += law.added[start + row]", "whole -= law.added[start + row]", "tests/motion/test_unsteady.py"),
     ("motion/integrate.py", "p / (inertia + load.per_V * (1.0 + delta))", "p / (inertia + load.per_V * (1.0 - delta))", "tests/motion/test_sets_out.py"),
-    ("motion/events.py", "    for _ in range(_STEPS):\n", "    for _ in range(0):\n", "tests/motion/test_sets_out.py"),
+    ("motion/events.py", "    for _ in range(_STEPS):\n", "    for _ in range(0):\n", "tests/motion/test_motion.py"),
 ]  # fmt: skip
 _UNSTEADY = "tests/kernels/rows/test_unsteady.py"
 SERIES = [

@@ -135,22 +135,29 @@ def _dip(event, work):
 
 
 @kernel
-def located(event, v, frame, case):
-    """The same place by the function itself where that is no polynomial of the unknowns: the edge in full slip, and
-    omega in partial slip."""
-    if not ((event == EDGE and frame.slips) or (event == STOP and not frame.slips)):
-        return v
+def _itself(event, v, frame, case):
+    """An event's function at v by the unknowns there."""
     nodes, powers = case.work.nodes, case.work.powers
-    rise_terms(EVENT + WIDE * event, nodes, OF_EVENT, powers)
-    slope = (rise_at(v + _ASIDE, powers, OF_EVENT) - rise_at(v - _ASIDE, powers, OF_EVENT)) / (2.0 * _ASIDE)
+    speed, second = nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND)
+    if event == SLOW:
+        return max(abs(speed), abs(second)) - case.limits.rest
+    if event == STOP:
+        return frame.spin * (1.0 + creep_limit(speed, case.scene) * second)
+    return edge(speed, second, frame, case.scene)
+
+
+@kernel
+def located(event, v, frame, case):
+    """The same place by the function itself where that is no polynomial of the unknowns: the edge and the faster of
+    both speeds in full slip, and omega in partial slip."""
+    if not (((event == EDGE or event == SLOW) and frame.slips) or (event == STOP and not frame.slips)):
+        return v
+    rise = _itself(event, v + _ASIDE, frame, case) - _itself(event, v - _ASIDE, frame, case)
     for _ in range(_STEPS):
-        speed, second = nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND)
-        off = edge(speed, second, frame, case.scene)
-        if not frame.slips:
-            off = frame.spin * (1.0 + creep_limit(speed, case.scene) * second)
-        if not abs(off) < _NEAR_BY * abs(slope):
+        move = _itself(event, v, frame, case) * (2.0 * _ASIDE) / rise
+        if not abs(move) < _NEAR_BY:
             break
-        v = min(max(v - off / slope, 0.0), 2.0)
+        v = min(max(v - move, 0.0), 2.0)
     return v
 
 
