@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ConvergenceError, ParameterError
+from .errors import ParameterError
 
 #: blocks in hand, a worker
 _WAITING = 8
@@ -125,33 +125,6 @@ def run_blocks(
         edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
     with ThreadPoolExecutor(max(workers, 1)) as pool:
         _run(pool, work, edges, workers)
-
-
-def solve_blocks(
-    solve: Callable[[int, int], int],
-    count: int,
-    block: int,
-    problem: str,
-    *,
-    threads: int | None = None,
-    progress: str | None = None,
-) -> None:
-    """As :func:`run_blocks`, with a ``solve(start, stop)`` that returns a status, 0 where all went well.
-
-    Raises
-    ------
-    ConvergenceError
-        Where one is not 0: ``problem``, whose {} is the first element of the first such block.
-    """
-    failures: list[int] = []
-
-    def work(start: int, stop: int) -> None:
-        if solve(start, stop):
-            failures.append(start)
-
-    run_blocks(work, count, block, threads=threads, progress=progress)
-    if failures:
-        raise ConvergenceError(problem.format(min(failures)))
 
 
 def _run(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], workers: int) -> None:

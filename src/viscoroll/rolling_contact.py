@@ -13,11 +13,11 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .blocks import elements, solve_blocks
+from .blocks import elements, run_blocks
 from .checks import broadcast_shape, checked, checked_extent
 from .contact_fields import OF_BODIES, SAME, SLOPES_OF_BODIES, UNSTEADY, field_names
 from .contact_table import FASTEST, refuse_overflow, states_of
-from .errors import ParameterError, one_of
+from .errors import ConvergenceError, ParameterError, one_of
 from .labels import unlabelled
 from .materials.bodies import Bodies
 from .materials.law_table import LawTable
@@ -199,13 +199,13 @@ def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool,
     out, order = np.empty((len(names), count)), np.empty(0, np.int64)
     alphas, *parts = (elements(np.asarray(array, np.float64), shape) for array in arrays)
 
-    def solve(start: int, stop: int) -> int:
+    def work(start: int, stop: int) -> None:
         kappa, mu, V, creep = (part(start, stop) for part in parts)
         states = States(kappa, mu, V, creep, creep_is_omega)
-        status: int = direct_loop(alphas(start, stop), Asked(states, order, to, out, start), stop - start)
-        return status
+        if direct_loop(alphas(start, stop), Asked(states, order, to, out, start), stop - start):
+            raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
 
-    solve_blocks(solve, count, _BLOCK, "contact: an iteration hit its cap near element {} (method 'direct')")
+    run_blocks(work, count, _BLOCK)
     return out
 
 

@@ -158,15 +158,16 @@ class Material(FromPrograms):
         ParameterError
             A frequency that is negative, NaN or infinite.
         """
-        return self.E * self._storage(omega)[()]
+        return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
         """Loss modulus E'', Pa; arguments and errors of :meth:`storage`."""
-        return self.E * self._loss(omega)[()] if not self.is_rigid else 0.0 * self._loss(omega)[()]
+        return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
         """Loss factor E''/E'; arguments and errors of :meth:`storage`."""
-        return (self._loss(omega) / self._storage(omega))[()]
+        storage, loss = self._moduli(omega)
+        return loss / storage
 
     def relaxation(self, t: ArrayLike) -> Any:
         """Tensile relaxation modulus E(t), Pa, at times >= 0, s.
@@ -258,21 +259,15 @@ class Material(FromPrograms):
 
         return load(path, cls)
 
-    def _storage(self, omega: ArrayLike) -> NDArray[np.float64]:
-        product = self._products(omega)
-        ratio = np.where(product > 1.0, 1.0 / np.maximum(product, 1.0), product)
-        share = np.where(product > 1.0, 1.0, ratio * ratio) / (1.0 + ratio * ratio)
-        return 1.0 + (self.prony.E * share).sum(axis=-1)
-
-    def _loss(self, omega: ArrayLike) -> NDArray[np.float64]:
-        product = self._products(omega)
-        ratio = np.where(product > 1.0, 1.0 / np.maximum(product, 1.0), product)
-        return (self.prony.E * (ratio / (1.0 + ratio * ratio))).sum(axis=-1)
-
-    def _products(self, omega: ArrayLike) -> NDArray[np.float64]:
-        """omega times each relaxation time; beyond the doubles it is as good as infinite."""
+    def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
+        """Storage and loss modulus over E; omega times a relaxation time beyond the doubles is as good as infinite."""
         with np.errstate(over="ignore"):
-            return checked("omega", omega, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+            product = checked("omega", omega, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+        fast = product > 1.0
+        ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
+        whole, E = 1.0 + ratio * ratio, self.prony.E
+        storage = 1.0 + (E * (np.where(fast, 1.0, ratio * ratio) / whole)).sum(axis=-1)
+        return storage[()], (E * (ratio / whole)).sum(axis=-1)[()]
 
     def _over(self, t: ArrayLike, name: str, times: NDArray[np.float64]) -> NDArray[np.float64]:
         """t over each of the times."""
