@@ -302,3 +302,25 @@ def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
         refused(lambda run=run: sobol_indices(run, 16), "m, [cylinder] E = rows of sample.csv")
     text = SAMPLED.replace('"mass"', '"name"')
     refused(lambda: read(text), "line 3", "finite numbers", error=vr.FileError)
+
+
+def test_each_motion_has_the_temperature_that_was_drawn(read):
+    """As of the material at that temperature, also beside modes that are uncertain."""
+    shift = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
+    run = read("""
+        cylinder = { R = 0.1, m = 35.5, mu = 0.5 }
+        start = { V0 = 2.0, omega0 = 0.0 }
+        run = { n = 5, t = [0.5, 1.0], fields = ["V", "omega"], keep = "all" }
+        [material]
+        E = 2e6
+        nu = 0.49
+        T_ref = 0.01
+        prony = { E = [{ distribution = "uniform", loc = 1.0 }, 2.0], tau = [1.0, 0.1] }
+        wlf = { T0 = 20.0, C1 = 8.86, C2 = 101.6 }
+        temperature = { distribution = "uniform", loc = 10.0, scale = 30.0 }
+    """)
+    values, motions = roll_block(run, 0)
+    for i, (T, E_1) in enumerate(zip(values["temperature"], values["E_1"], strict=True)):
+        rubber = vr.Material(E=2e6, nu=0.49, T_ref=0.01, prony=vr.Prony([E_1, 2.0], [1.0, 0.1])).at(T, shift)
+        alone = vr.Cylinder(R=0.1, m=35.5, mu=0.5, material=rubber).roll(2.0, 0.0, run.t)
+        assert close(motions.V[i], alone.V, rel=tol.MOTION_RTOL * run.settings.rtol)

@@ -16,7 +16,7 @@ from ..cylinder import Cylinder
 from ..drive import Schedule, slope_factor
 from ..errors import ParameterError
 from ..materials.bodies import Bodies
-from ..materials.file import SECTIONS, materials_of, series_of
+from ..materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ..materials.material import Material
 from ..materials.pair import cylinders_share, effective_modulus, joint_modulus
 from ..parameters import Parameters, Rolls
@@ -99,13 +99,18 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 def _body(path: Path, name: str, given: Any) -> Material | _Solid:
     if isinstance(given, Material):
         return given
-    typical = materials_of(path, {name: _first(given)})[name]
+    first = _first(given)
+    typical = materials_of(path, {name: first})[name]
     series = series_of(path, name, given)
     series = typical.prony if series is None else series
-    if not (np.ndim(series.alpha) or np.ndim(given["E"]) or np.ndim(given["nu"])):
+    if np.ndim(given.get("temperature")):
+        shift = shifts_of(path, {name: first})[name]
+        series = series.slower([shift(each) for each in given["temperature"]])
+    E, nu = given.get("E", typical.E), given.get("nu", typical.nu)
+    if not (series.shape or np.ndim(E) or np.ndim(nu)):
         return typical
-    E = checked("E", given["E"], low=0.0, strict=True) if np.ndim(given["E"]) else typical.E
-    return _Solid(E, checked("nu", given["nu"], low=-1.0, strict=True, high=0.5), series, typical)
+    E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
+    return _Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical)
 
 
 def _first(part: Any) -> Any:
