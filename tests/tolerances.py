@@ -91,9 +91,6 @@ CLI_EDGE = 1e-7
 CLI_WRONG = 0.1
 
 # --- documentation and the measuring stage (test_readme.py) ---
-#: contact() against the printed law with 50 digits at a handful of well-conditioned states: a few roundings; measured
-#: 7.5e-16 over 600 states.
-MEASURED_CONTACT = 2e-15
 
 # --- motion (test_motion.py) ---
 #: section5.csv: V and omega, as measured against rtol 1e-11 here. The file's own error: late in a motion it carries
@@ -147,8 +144,6 @@ BENCH_PEER_DRIVEN = 3e-5
 BENCH_REFERENCE = 1e-9
 #: Q and M against 50 digits (the printed forms: 1e-10 where the slip is slight); measured 5e-16.
 BENCH_LAW = 1e-9
-#: Splines of an atlas with 8 x 16 x 16 nodes; measured 5e-3.
-BENCH_COARSE_ATLAS = 0.05
 #: A number in six digits, and what depends on such a one.
 SIX_DIGITS = 1e-5
 #: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.

@@ -116,15 +116,21 @@ def candidates(versions: list[str]) -> Iterator[str]:
             yield path
 
 
-def built(folder: Path) -> Packages:
-    """Both packages, the wheel made of the sdist."""
-    subprocess.run([sys.executable, "-m", "build", "--outdir", folder, ROOT], stdout=subprocess.DEVNULL, check=True)
+def packed(folder: Path, *options: str) -> tuple[Path, Path, bytes]:
+    """Wheel, made of the sdist, sdist, and the metadata."""
+    command = [sys.executable, "-m", "build", *options, "--outdir", folder, ROOT]
+    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL if options else None, check=True)
     (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
-    shutil.unpack_archive(sdist, folder)
     with zipfile.ZipFile(wheel) as archive:
         (name,) = (each for each in archive.namelist() if each.endswith(".dist-info/METADATA"))
-        metadata = message_from_bytes(archive.read(name))
-    required = [Requirement(line) for line in metadata.get_all("Requires-Dist", [])]
+        return wheel, sdist, archive.read(name)
+
+
+def built(folder: Path) -> Packages:
+    """Both packages, the second unpacked."""
+    wheel, sdist, found = packed(folder)
+    shutil.unpack_archive(sdist, folder)
+    required = [Requirement(line) for line in message_from_bytes(found).get_all("Requires-Dist", [])]
     return Packages(wheel, sdist, folder / sdist.name.removesuffix(".tar.gz"), required)
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import re
-import subprocess
 import sys
 import tarfile
 import tempfile
@@ -24,6 +23,7 @@ from readme_renderer import markdown
 
 import viscoroll as vr
 
+from .matrix import packed
 from .results import RESULTS
 from .stamps import SHORT, kernels_digest, outdated
 
@@ -49,20 +49,19 @@ class Packages(NamedTuple):
 
 def built(folder: Path) -> Packages:
     """Both packages of this tree."""
-    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, ROOT]
-    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
-    (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
+    wheel, sdist, found = packed(folder, "--no-isolation")
     texts = {}
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
-        (found,) = (name for name in names if name.endswith(".dist-info/METADATA"))
-        metadata = Metadata.from_email(archive.read(found), validate=True)  # raises where a field is not valid
     with tarfile.open(sdist) as archive:
         members = {each.name.partition("/")[2]: each for each in archive.getmembers() if each.isfile()}
         for name in ("LICENSE", "CITATION.cff", "CHANGELOG.md", f"{MATERIALS}README.md"):
             if name in members and (file := archive.extractfile(members[name])) is not None:
                 texts[name] = file.read().decode()
-    return Packages(names, {name: each.size for name, each in members.items()}, metadata, texts)
+    # raises where a field is not valid
+    return Packages(
+        names, {name: each.size for name, each in members.items()}, Metadata.from_email(found, validate=True), texts
+    )
 
 
 def metadata(packages: Packages) -> Iterator[str]:

@@ -85,18 +85,20 @@ def run_parts(
 
 
 class Results(dict[str, Any]):
-    """What stages have left, by the name of the file, from the first of the folders that has it."""
+    """What stages have left, by the name of the file, or "file part", from the first of the folders that has it."""
 
     def __init__(self, *folders: Path) -> None:
         super().__init__()
         self.folders = folders
 
     def __missing__(self, name: str) -> Any:
+        file, _, part = name.partition(" ")
         for folder in self.folders:
-            if (path := folder / f"{name}.json").exists():
-                self[name] = json.loads(path.read_text(encoding="utf-8"))
+            if (path := folder / f"{file}.json").exists():
+                found = json.loads(path.read_text(encoding="utf-8"))
+                self[name] = found["parts"][part] if part else found
                 return self[name]
-        raise KeyError(f"{name}.json")
+        raise KeyError(f"{file}.json")
 
     def found(self, name: str) -> Any:
         """None if there is no such file."""

@@ -39,71 +39,60 @@ def main() -> int:
     return int(here != there)
 
 
-def parts() -> Iterator[tuple[str, list[Any]]]:
-    """What is computed, and its name without blanks."""
+def parts() -> Iterator[tuple[str, Any]]:
+    """What is computed, and its name without blanks: a result, or arrays."""
     draw = np.random.default_rng(12)
-    V = 10.0 ** draw.uniform(-12.0, 12.0, _STATES) * draw.choice((-1.0, 1.0), _STATES)
-    delta = 10.0 ** draw.uniform(-9.0, 0.5, _STATES) * draw.choice((-1.0, 1.0), _STATES)
+    V, delta = (
+        10.0 ** draw.uniform(*ends, _STATES) * draw.choice((-1.0, 1.0), _STATES) for ends in ((-12, 12), (-9, 0.5))
+    )
     alpha = 1.0 + 10.0 ** draw.uniform(-8.0, 5.0, _STATES)
     V[:2], delta[2:4], alpha[4:8] = 0.0, 0.0, 1.0
     scene, scenes = vr.presets.PAPER_SECTION_5, vr.Scene(alpha=alpha, kappa=2.9, mu=0.2)
-    yield "contact", _values(vr.contact(scene, V, delta=delta))
-    yield "contact-own-alpha", _values(vr.contact(scenes, V, delta=delta))
-    yield "contact-slopes", _values(vr.contact(scenes, V, delta=delta, slopes=True))
-    slower = np.abs(V[:1000]) < 1e9
-    yield "contact-direct", _values(vr.contact(scene, V[:1000][slower], delta=delta[:1000][slower], method="direct"))
+    yield "contact", vr.contact(scene, V, delta=delta)
+    yield "contact-own-alpha", vr.contact(scenes, V, delta=delta)
+    yield "contact-slopes", vr.contact(scenes, V, delta=delta, slopes=True)
+    slower = np.flatnonzero(np.abs(V[:1000]) < 1e9)
+    yield "contact-direct", vr.contact(scene, V[slower], delta=delta[slower], method="direct")
     x = np.linspace(-1.0, 2.0, 301)[:, None]
-    yield "stress", _values(vr.stress(vr.Scene(alpha=alpha[:100], kappa=2.9, mu=0.2), x, V[:100], delta=delta[:100]))
-    V0, omega0 = draw.uniform(-2.0, 2.0, (2, _MOTIONS))
-    own = scene.replace(
-        alpha=alpha[:_MOTIONS], kappa=10.0 ** draw.uniform(-0.3, 2.0, _MOTIONS),
-        mu=10.0 ** draw.uniform(-2.0, 0.3, _MOTIONS), j=draw.uniform(0.2, 2.0, _MOTIONS),
-    )  # fmt: skip
-    t = np.linspace(0.0, 3e-3, 13)
+    yield "stress", vr.stress(vr.Scene(alpha=alpha[:100], kappa=2.9, mu=0.2), x, V[:100], delta=delta[:100])
+    starts, t = draw.uniform(-2.0, 2.0, (2, _MOTIONS)), np.linspace(0.0, 3e-3, 13)
+    kappa, mu = 10.0 ** draw.uniform([[-0.3], [-2.0]], [[2.0], [0.3]], (2, _MOTIONS))
+    own = scene.replace(alpha=alpha[:_MOTIONS], kappa=kappa, mu=mu, j=draw.uniform(0.2, 2.0, _MOTIONS))
     for rtol in (1e-6, 1e-10):
         for name, each in (("motions-own-scene", own), ("motions", scene)):
-            e = vr.ensemble(each, V0, omega0, t, rtol=rtol, method="integrate", rest=1e-3, fields=_ALL)
-            yield f"{name}-{rtol:g}", [*(getattr(e, field) for field in _ALL), e.onset_time, e.rest_time, e.steps]
+            e = vr.ensemble(each, *starts, t, rtol=rtol, method="integrate", rest=1e-3, fields=_ALL)
+            yield f"{name}-{rtol:g}", [*_fields(e), e.onset_time, e.rest_time, e.steps]
     m = vr.roll(scene.replace(mu=0.01), 1.0, 1.0, t)
     yield "roll", [m.V, m.omega, m.x, m.angle, m.delta, m.regime, [each.t for each in m.switches]]
-    e = vr.ensemble(scene, V0, omega0, t, method="flow", fields=_ALL)
-    yield "flow-map", [getattr(e, field) for field in _ALL]
-    yield from _bodies_and_drives(V, delta, V0, omega0, t)
-    axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
-    grid = vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)
-    yield "grid", [each.values for each in grid.data_vars.values()]
-    law = vr.tables.law(vr.presets.RUBBER_CYLINDER.material)
-    yield "law", [each.values for each in law.data_vars.values()]
-
-
-def _bodies_and_drives(V: Any, delta: Any, V0: Any, omega0: Any, t: Any) -> Iterator[tuple[str, list[Any]]]:
-    """Several relaxation times, two bodies, a material for each motion, drives, steady rolling."""
+    yield "flow-map", _fields(vr.ensemble(scene, *starts, t, method="flow", fields=_ALL))
     strengths, times = np.array([3.0, 5.0, 1.0]), (1e-3, 0.1, 10.0)
     rubber, plastic = vr.Prony(strengths, times), vr.Prony((2.0,), (1.0,))
     each = vr.Prony(np.linspace(1.0, 6.0, 50)[:, None] * strengths, times)
-    for name, material, own in (
-        ("series", rubber, each),
-        ("pair", vr.Bodies(plastic, rubber, 0.3), vr.Bodies(plastic, each, 0.3)),
-    ):
+    pair, pairs = (vr.Bodies(plastic, one, 0.3) for one in (rubber, each))
+    for name, material, many in (("series", rubber, each), ("pair", pair, pairs)):
         scene = vr.Scene(material=material, kappa=20.0, mu=0.2, gamma=100.0)
-        yield f"contact-{name}", _values(vr.contact(scene, V, delta=delta, slopes=True))
-        motions = vr.ensemble(scene.replace(material=own), V0[:50], omega0[:50], t, method="integrate", fields=_ALL)
-        yield f"motions-{name}-each", [getattr(motions, field) for field in _ALL]
-        driven = vr.ensemble(
-            scene, V0[:200], omega0[:200], t, force=0.03, torque=np.linspace(-0.1, 0.1, 200), fields=_ALL
-        )
-        yield f"driven-{name}", [getattr(driven, field) for field in _ALL]
+        yield f"contact-{name}", vr.contact(scene, V, delta=delta, slopes=True)
+        motions = vr.ensemble(scene.replace(material=many), *starts[:, :50], t, method="integrate", fields=_ALL)
+        yield f"motions-{name}-each", _fields(motions)
+        torque = np.linspace(-0.1, 0.1, 200)
+        yield f"driven-{name}", _fields(vr.ensemble(scene, *starts[:, :200], t, force=0.03, torque=torque, fields=_ALL))
         steady = vr.steady(scene, torque=np.geomspace(1e-4, 0.1, 50))
         yield f"steady-{name}", [steady.V, steady.omega, steady.Q, steady.M_half_space, steady.M_cylinder]
+    axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
+    for name, made in (
+        ("grid", vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)),
+        ("law", vr.tables.law(vr.presets.RUBBER_CYLINDER.material)),
+    ):
+        yield name, [each.values for each in made.data_vars.values()]
 
 
-def _values(result: Any) -> list[Any]:
-    return list(result.as_dict().values())
+def _fields(e: Any) -> list[Any]:
+    return [getattr(e, name) for name in _ALL]
 
 
-def _hash(values: list[Any]) -> str:
+def _hash(found: Any) -> str:
     total = hashlib.sha256()
-    for each in values:
+    for each in found if isinstance(found, list) else found.as_dict().values():
         total.update(np.ascontiguousarray(each, dtype=np.float64).tobytes())
     return total.hexdigest()[:16]
 

@@ -1,4 +1,4 @@
-"""Time and memory: alternating runs and their medians, processes of their own."""
+"""Time and memory: rounds of calls and their medians, processes of their own."""
 
 from __future__ import annotations
 
@@ -18,46 +18,34 @@ import numpy as np
 shortest = 0.1
 
 
-def seconds_of(call: Callable[[], Any], *, collect: bool = True) -> tuple[float, Any]:
-    """Wall time of one call, and its result; garbage is collected before, which takes longer than many quick calls."""
-    if collect and shortest:
+def seconds_of(call: Callable[[], Any], number: int = 1) -> tuple[float, Any]:
+    """Wall time of one call out of a number of them, and the result of the last."""
+    if shortest:
         gc.collect()
     start = time.perf_counter()
-    result = call()
-    return time.perf_counter() - start, result
-
-
-def _repeat(call: Callable[[], Any], number: int) -> None:
     for _ in range(number):
-        call()
+        result = call()
+    return (time.perf_counter() - start) / number, result
 
 
 def steady_seconds(call: Callable[[], Any]) -> tuple[float, Any]:
     """As :func:`seconds_of`; a quick call is repeated, so that cold caches and new memory do not count."""
     seconds, result = seconds_of(call)
-    if seconds < shortest:
-        number = int(shortest / seconds) + 1
-        seconds = seconds_of(lambda: _repeat(call, number))[0] / number
-    return seconds, result
+    return (seconds, result) if seconds >= shortest else seconds_of(call, int(shortest / seconds) + 1)
 
 
-def rounds(calls: dict[Any, Callable[[], Any]], repeats: int) -> dict[Any, list[float]]:
-    """Seconds of each call: rounds of all of them, so that a slow minute hits all alike."""
-    seconds: dict[Any, list[float]] = {name: [] for name in calls}
+def timed(calls: dict[Any, tuple[float, Callable[[], Any]]], repeats: int) -> dict[Any, dict[str, float]]:
+    """Name -> (count, call) -> nanoseconds that one of ``count`` takes: median and least, as on an idle machine.
+
+    The first calls compile; then come rounds of all of them, so that a slow minute hits all alike.
+    """
+    for _, call in calls.values():
+        call()
+    ns = {name: [] for name in calls}
     for _ in range(repeats):
-        for name, call in calls.items():
-            seconds[name].append(steady_seconds(call)[0])
-    return seconds
-
-
-def alternating(calls: dict[Any, Callable[[], Any]], repeats: int) -> dict[Any, float]:
-    """Median seconds of each call in :func:`rounds`."""
-    return {name: float(np.median(values)) for name, values in rounds(calls, repeats).items()}
-
-
-def nanoseconds(seconds: list[float], count: int) -> dict[str, float]:
-    """Median and least of what one of ``count`` took: the least is nearest to an idle machine's."""
-    return {"ns": 1e9 * float(np.median(seconds)) / count, "least_ns": 1e9 * min(seconds) / count}
+        for name, (count, call) in calls.items():
+            ns[name].append(1e9 * steady_seconds(call)[0] / count)
+    return {name: {"ns": float(np.median(each)), "least_ns": min(each)} for name, each in ns.items()}
 
 
 #: what a program of :func:`printed` begins with; ru_maxrss would be inherited from the parent

@@ -48,7 +48,7 @@ def test_motions(folder):
     assert {row["group"] for row in work["results"]} == {"IC1", "IC2", "IC3", "random"}
     assert (folder / "work-precision.png").stat().st_size > 0
     if work["skipped"]:
-        assert set(work["skipped"]) <= {"gsl-adams", "gsl-bdf"}, work["skipped"]
+        assert set(work["skipped"]) <= {"gsl-adams", "gsl-bdf", "lsoda"}, work["skipped"]
         pytest.skip("; ".join(f"{name}: {reason}" for name, reason in work["skipped"].items()))
 
 
@@ -67,16 +67,13 @@ def test_driven(folder):
     assert {row["method"] for row in found["rows"]} == {"viscoroll", "LSODA, saturated law"}
 
 
-def test_law_tables_and_the_rest(folder):
+def test_law_and_the_rest(folder):
     """Every other part runs at a smoke size, and errors are what they are stated to be."""
-    parts = "law", "tables", "skips", "scaling", "cold-start", "fixed-scene", "agreement", "bound-law", "series"
-    law, tables, _, scaling, cold, fixed, agreement, _, series = measured(folder, *parts)
+    parts = "law", "skips", "scaling", "cold-start", "fixed-scene", "agreement", "bound-law", "series"
+    law, _, scaling, cold, fixed, agreement, _, series = measured(folder, *parts)
     assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED
     assert agreement["within_stated"] == agreement["scenes_with_map"]
     assert all(max(row["error"].values()) < tol.BENCH_LAW for row in law.values())
-    errors = {row["kind"]: row["error"].values() for row in tables["rows"]}
-    assert max(errors["shipped ratios"]) < tol.BENCH_LAW < min(errors["3-D atlas"])
-    assert max(errors["3-D atlas"]) < tol.BENCH_COARSE_ATLAS
     assert {row["threads"] for row in scaling["rows"]} == {1, 2}
     assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
     assert {row["material"] for row in series if row["table_ms"]} >= {"1 modes", "30 modes", "pair of 10 and 3 modes"}

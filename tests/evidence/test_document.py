@@ -5,7 +5,6 @@ import re
 import tomllib
 
 import pytest
-import tolerances as tol
 from places import RESULTS, ROOT
 from processes import made, stage, stage_refused
 
@@ -34,8 +33,8 @@ def test_measure_runs_and_document_reads_it(tmp_path):
     measured = json.loads(results.read_text(encoding="utf-8"))
     committed = json.loads((RESULTS / "measured.json").read_text(encoding="utf-8"))
     assert measured.keys() == committed.keys()
-    assert all(field["worst"] <= tol.MEASURED_CONTACT for field in measured["contact_error"].values())
-    page.write_text("<!-- measured:headline -->\n<!-- end -->\n", encoding="utf-8")
+    assert measured["time"].keys() == committed["time"].keys()
+    page.write_text("<!-- measured:times -->\n<!-- end -->\n", encoding="utf-8")
     made("evidence.document", "--results", tmp_path, page)
     assert "not those of this version" not in page.read_text(encoding="utf-8")
 

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+import csv
+import json
+
 import numpy as np
 import tolerances as tol
 import xarray as xr
-from places import DATA, PIPELINE, RESULTS
+from places import DATA, RESULTS
 from processes import made, printed
 
 CHECK_VALUES = DATA / "reference/check_values.csv"
 
 
 def test_check_values_are_made_again(tmp_path):
-    """The stage with the same seed begins with the same rows."""
-    text = (PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8")
-    (tmp_path / "few.toml").write_text(text.replace("states = 2000", "states = 40"), encoding="utf-8")
-    made("evidence.truth.check_values", "--config", tmp_path / "few.toml", "--folder", tmp_path, "-o", tmp_path)
-    again = (tmp_path / "check_values.csv").read_text(encoding="utf-8").splitlines()
-    assert len(again) == 41
-    assert again == CHECK_VALUES.read_text(encoding="utf-8").splitlines()[:41]
+    """The first states and motions, to the last digit, from the inputs that the files hold."""
+    for what, count, name, lines in (("values", 40, "check_values.csv", 40), ("motions", 1, "check_motions.csv", 7)):
+        made("evidence.truth.reference", what, "--count", count, "-o", tmp_path)
+        again, kept = (
+            [
+                row | {"difference": ""}
+                for row in csv.DictReader((folder / name).read_text(encoding="utf-8").splitlines())
+            ]
+            for folder in (tmp_path, CHECK_VALUES.parent)
+        )
+        assert again == kept[:lines]
+    made("evidence.truth.reference", "driven", "--count", 1, "-o", tmp_path)
+    again, kept = (
+        json.loads((folder / "check_driven.json").read_text(encoding="utf-8"))["motions"][0]
+        for folder in (tmp_path, CHECK_VALUES.parent)
+    )
+    assert again | {"difference": 0} == kept | {"difference": 0}
 
 
 def test_a_planted_error_of_1e_9_fails_the_proof():

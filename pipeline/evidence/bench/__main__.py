@@ -2,7 +2,7 @@
 
     python -m pipeline.evidence.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
-Parts: work-precision, own-parameters, fixed-scene, agreement, law, bound-law, tables, scaling, cold-start, first-calls,
+Parts: work-precision, own-parameters, fixed-scene, agreement, law, bound-law, scaling, cold-start, first-calls,
 skips, series, driven, last-release; default: all.  Sizes are in [bench] of the configuration, those of --quick in
 [bench.PART.quick].
 Times are of this machine at this moment, medians of alternating runs on one core: run it with nothing else running.
@@ -12,36 +12,27 @@ A peer that is not installed is skipped with a printed reason (pipeline/evidence
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 import time
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 from ...stage import ROOT, told
 from .. import timing
-from ..document import bench as report
+from ..document.blocks import bench_peers
 from ..results import RESULTS, Results, machine, parser, read_sizes, write_results
 
-PARTS = {
-    "work-precision": ("work_precision", "work_precision"),
-    "own-parameters": ("work_precision", "own_parameters"),
-    "fixed-scene": ("fixed_scene", "fixed_scene"),
-    "agreement": ("fixed_scene", "agreement"),
-    "law": ("law", "law"),
-    "bound-law": ("bound_law", "bound_law"),
-    "tables": ("tables", "tables"),
-    "scaling": ("scaling", "scaling"),
-    "cold-start": ("cold_start", "cold_start"),
-    "first-calls": ("cold_start", "first_calls"),
-    "skips": ("skips", "skips"),
-    "series": ("series", "series"),
-    "driven": ("driven", "driven"),
-    "last-release": ("last_release", "last_release"),
+#: module -> its functions, each a part
+MODULES = {
+    "motions": ("work_precision", "own_parameters"),
+    "calls": ("fixed_scene", "agreement", "law", "bound_law", "skips", "series"),
+    "processes": ("scaling", "cold_start", "first_calls", "last_release"),
+    "driven": ("driven",),
 }
+PARTS = {part.replace("_", "-"): (module, part) for module, parts in MODULES.items() for part in parts}
 
 
 def main() -> int:
@@ -49,17 +40,22 @@ def main() -> int:
     options.add_argument("parts", nargs="*", metavar="PART", help=f"out of {', '.join(PARTS)}")
     options.add_argument("--figures", type=Path, default=ROOT / "docs/figures", help="folder of the figures")
     arguments = options.parse_args()
-    chosen = arguments.parts or list(PARTS)
-    if unknown := set(chosen) - PARTS.keys():
+    if unknown := set(arguments.parts) - PARTS.keys():
         options.error(f"unknown part {', '.join(sorted(unknown))}; choose from {', '.join(PARTS)}")
 
     def work() -> None:
-        for part in chosen:
-            run_part(part, read_sizes(arguments.config, section_of(part), arguments.quick), arguments.output)
+        for part in arguments.parts or PARTS:
+            module, name = PARTS[part]
+            sizes, start = read_sizes(arguments.config, f"bench.{name}", arguments.quick), time.perf_counter()
+            measured = getattr(import_module(f"pipeline.evidence.bench.{module}"), name)(sizes)
+            result = {"part": part, "measured": measured, "sizes": sizes, "machine": machine() | tools()}
+            path = arguments.output / f"bench-{part}.json"
+            write_results(path, result, ordered=False)  # in the order of the figures
+            print(f"{path}: written, {time.perf_counter() - start:.0f} s")
         from .figures import draw
 
         draw(arguments.output, arguments.figures)
-        print(report.peers(Results(arguments.output)))
+        print(bench_peers(Results(arguments.output)))
 
     if arguments.quick:
         timing.shortest = 0.0
@@ -67,36 +63,12 @@ def main() -> int:
     return told("benchmark", work)
 
 
-def section_of(part: str) -> str:
-    """The part's section of the configuration."""
-    return f"bench.{part.replace('-', '_')}"
-
-
-def run_part(part: str, sizes: dict[str, Any], folder: Path) -> None:
-    """Measure one part and write its results."""
-    module, name = PARTS[part]
-    start = time.perf_counter()
-    measured = getattr(import_module(f"pipeline.evidence.bench.{module}"), name)(sizes)
-    result = {"part": part, "measured": measured, "sizes": sizes, "machine": machine() | tools()}
-    path = folder / f"bench-{part}.json"
-    write_results(path, result, ordered=False)  # in the order of the figures
-    print(f"{path}: written, {time.perf_counter() - start:.0f} s")
-
-
 def tools() -> dict[str, str]:
     """Versions of what the peers are built with; those that are not there are left out."""
-    found = {}
-    for name in ("scipy", "numbalsoda"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    commands = {"cc": ("cc", "-dumpfullversion"), "gsl": ("pkg-config", "--modversion", "gsl")}
-    for name, command in commands.items():
-        if shutil.which(command[0]):
-            result = subprocess.run(command, check=False, capture_output=True, text=True)
-            if result.returncode == 0:
-                found[name] = result.stdout.strip()
+    found = {name: version(name) for name in ("scipy", "numbalsoda") if find_spec(name)}
+    for name, command in {"cc": "cc -dumpfullversion", "gsl": "pkg-config --modversion gsl"}.items():
+        done = subprocess.run(command, shell=True, check=False, capture_output=True, text=True)
+        found |= {} if done.returncode else {name: done.stdout.strip()}
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
+from pipeline.validation.direct_motion import roll_direct
 
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 #: outputs slower than this do not count as "moving": data/reference/section5.csv ends there too
@@ -26,29 +26,26 @@ class Problem:
     omega0: NDArray
     t: NDArray
 
-    @property
-    def fixed(self) -> bool:
-        """Whether all motions share one scene."""
-        return self.scene.shape == ()
+    def parameters(self) -> NDArray:
+        """alpha, kappa, mu, gamma, j of each motion, a row each."""
+        columns = (np.broadcast_to(getattr(self.scene, name), self.V0.shape) for name in PARAMETERS)
+        return np.array([*columns]).T
 
-    def parameters(self) -> list[NDArray]:
-        """alpha, kappa, mu, gamma, j, each of shape (n,)."""
-        return [np.broadcast_to(np.asarray(getattr(self.scene, name)), self.V0.shape) for name in PARAMETERS]
+    def take(self, count: int) -> Problem:
+        """The first motions."""
+        scene = self.scene if self.scene.shape == () else vr.Scene(*self.parameters()[:count].T)
+        return replace(self, scene=scene, V0=self.V0[:count].copy(), omega0=self.omega0[:count].copy())
 
-    def take(self, which: slice) -> Problem:
-        """Some of the motions."""
-        scene = self.scene
-        if not self.fixed:
-            scene = vr.Scene(*(column[which] for column in self.parameters()))
-        return replace(self, scene=scene, V0=self.V0[which].copy(), omega0=self.omega0[which].copy())
+    def copies(self, count: int) -> Problem:
+        """The first motion many times: a single one would time the call around it."""
+        return replace(self, V0=np.repeat(self.V0[:1], count), omega0=np.repeat(self.omega0[:1], count))
 
 
 @dataclass(frozen=True)
 class Outcome:
     """V, omega of shape (n, times), NaN where a method gave up.
 
-    ``seconds``: time of all motions where the method measured it itself.
-    ``evaluations``: right-hand sides in all, where the method counts them.
+    ``seconds``: time of all motions where the method measured it itself; ``evaluations``: right-hand sides in all.
     """
 
     V: NDArray
@@ -57,68 +54,31 @@ class Outcome:
     evaluations: float | None = None
 
 
-@dataclass(frozen=True)
-class Method:
-    """One way to roll motions.
+def _times(sizes: dict[str, Any], end: float) -> NDArray:
+    return np.linspace(0.0, end, sizes["times"] + 1)[1:]
 
-    ``prepare(problem, rtol)`` does what is not timed (compilation, tables, a flow map; its time is
-    recorded apart) and returns the call that is.  ``missing()`` says why it cannot run here, or None.
-    ``note`` stands in the results.  ``most_motions``: what it can be asked for in a sensible time.
+
+def paper_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
+    """IC1-IC3 of the paper, rounded parameters, to the end or the speed ``LEAST_SPEED``, if that is first; and random
+    starts in [-2, 2]^2, the paper's first.
     """
-
-    name: str
-    label: str
-    prepare: Callable[[Problem, float], Callable[[], Outcome]]
-    missing: Callable[[], str | None] = lambda: None
-    note: str = ""
-    most_motions: int = 1_000_000_000
-
-
-def output_times(end: float, count: int) -> NDArray[np.float64]:
-    """``count`` equal steps to ``end``; 0 is not among them."""
-    return np.linspace(0.0, end, count + 1)[1:]
-
-
-def paper_problems(times: int, end: float) -> dict[str, Problem]:
-    """IC1-IC3 of the paper, rounded parameters, each until ``end`` or the speed ``LEAST_SPEED``, if that is first."""
-    scene, problems = vr.presets.PAPER_SECTION_5_ROUNDED, {}
+    scene, end, problems = vr.presets.PAPER_SECTION_5_ROUNDED, sizes["end"], {}
     for name, start in vr.presets.PAPER_STARTS.items():
-        rest = vr.roll(scene, *start, np.array([end]), rtol=REFERENCE_RTOL, rest=LEAST_SPEED).rest_time
-        V0, omega0 = (np.array([value]) for value in start)
-        problems[name] = Problem(scene, V0, omega0, output_times(np.fmin(rest, end), times))
-    return problems
+        rest = vr.roll(scene, *start, [end], rtol=REFERENCE_RTOL, rest=LEAST_SPEED).rest_time
+        problems[name] = Problem(scene, *np.array(start)[:, None], _times(sizes, np.fmin(rest, end)))
+    random = np.random.default_rng(sizes["seed"]).uniform(-2.0, 2.0, (sizes["motions"], 2))
+    starts = np.concatenate([list(vr.presets.PAPER_STARTS.values()), random])[: sizes["motions"]]
+    return problems | {"random": Problem(scene, *starts.T.copy(), _times(sizes, end))}
 
 
-def copies(problem: Problem, count: int) -> Problem:
-    """The first motion ``count`` times: a single one would time the call around it."""
-    return replace(problem, V0=np.repeat(problem.V0[:1], count), omega0=np.repeat(problem.omega0[:1], count))
-
-
-def random_problem(motions: int, times: int, end: float, seed: int) -> Problem:
-    """Starts uniform in [-2, 2]^2, the paper's rounded parameters; IC1-IC3 come first."""
-    first = np.array(list(vr.presets.PAPER_STARTS.values()))
-    starts = np.random.default_rng(seed).uniform(-2.0, 2.0, (max(motions - len(first), 0), 2))
-    V0, omega0 = np.concatenate([first, starts])[:motions].T.copy()
-    return Problem(vr.presets.PAPER_SECTION_5_ROUNDED, V0, omega0, output_times(end, times))
-
-
-def own_problem(motions: int, times: int, end: float, seed: int) -> Problem:
-    """Every motion its own scene: alpha in [1.5, 100], kappa in [2, 30], gamma in [5e3, 2e4] log-uniform,
-    mu in [0.1, 0.6], j in [0.3, 1] uniform; starts uniform in [-2, 2]^2.
-
-    mu and kappa are such that full slip does not return, which LSODA without events could not follow.
+def own_problem(sizes: dict[str, Any]) -> dict[str, Problem]:
+    """Every motion its own scene, mu and kappa such that full slip does not return, which LSODA without events could
+    not follow.
     """
-    rng = np.random.default_rng(seed)
-
-    def log_uniform(low: float, high: float) -> NDArray:
-        return np.exp(rng.uniform(np.log(low), np.log(high), motions))
-
-    scene = vr.Scene(
-        alpha=log_uniform(1.5, 100.0), kappa=log_uniform(2.0, 30.0), mu=rng.uniform(0.1, 0.6, motions),
-        gamma=log_uniform(5e3, 2e4), j=rng.uniform(0.3, 1.0, motions),
-    )  # fmt: skip
-    V0, omega0 = rng.uniform(-2.0, 2.0, (2, motions))
-    return Problem(scene, V0, omega0, output_times(end, times))
+    random, n = np.random.default_rng(sizes["seed"]), sizes["motions"]
+    alpha, kappa, gamma = np.exp(random.uniform(*np.log([[1.5, 2.0, 5e3], [100.0, 30.0, 2e4]]), (n, 3))).T
+    scene = vr.Scene(alpha, kappa, random.uniform(0.1, 0.6, n), gamma, random.uniform(0.3, 1.0, n))
+    return {"own": Problem(scene, *random.uniform(-2.0, 2.0, (2, n)), _times(sizes, sizes["end"]))}
 
 
 def reference(problem: Problem) -> Outcome:
@@ -129,22 +89,18 @@ def reference(problem: Problem) -> Outcome:
 
 def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[str, Any]:
     """The reference against the printed equations by scipy's integrators, other unknowns, on the first motions."""
-    from pipeline.validation.direct_motion import roll_direct
-
-    few = problem.take(slice(motions))
-    columns = np.array(few.parameters()).T
-    V, omega = np.empty((2, *best.V[:motions].shape))
-    for i, parameters in enumerate(columns):
-        direct = roll_direct(vr.Scene(*map(float, parameters)), few.V0[i], few.omega0[i], few.t)
-        V[i], omega[i] = direct.V, direct.omega
-    difference = errors(Outcome(V, omega), Outcome(best.V[:motions], best.omega[:motions]))
-    return {"motions": motions, "second_method": "root solves of the printed equations, DOP853 and LSODA"} | difference
+    few = zip(problem.parameters()[:motions].tolist(), problem.V0, problem.omega0)
+    direct = [roll_direct(vr.Scene(*parameters), *start, problem.t) for parameters, *start in few]
+    found = Outcome(*(np.array([getattr(each, name) for each in direct]) for name in ("V", "omega")))
+    method = "root solves of the printed equations, DOP853 and LSODA"
+    return {"motions": len(direct), "second_method": method} | errors(found, best)
 
 
 def speed_error(tried: Any, best: Any) -> NDArray:
-    """Difference of (V, omega) over the larger of the two."""
-    off = np.maximum(np.abs(tried.V - best.V), np.abs(tried.omega - best.omega))
-    return off / np.maximum(np.abs(best.V), np.abs(best.omega))
+    """Difference of (V, omega) over the larger of the two, of as many motions as both have."""
+    n = min(len(tried.V), len(best.V))
+    off = np.maximum(np.abs(tried.V[:n] - best.V[:n]), np.abs(tried.omega[:n] - best.omega[:n]))
+    return off / np.maximum(np.abs(best.V[:n]), np.abs(best.omega[:n]))
 
 
 def errors(tried: Outcome, best: Outcome) -> dict[str, Any]:
@@ -153,16 +109,12 @@ def errors(tried: Outcome, best: Outcome) -> dict[str, Any]:
     max, median, p99: all outputs; max_moving, p99_moving: outputs with a speed of at least ``LEAST_SPEED``.
     failed: motions that were given up.
     """
-    n = len(tried.V)
-    best = Outcome(best.V[:n], best.omega[:n])
-    each, size = speed_error(tried, best), np.maximum(np.abs(best.V), np.abs(best.omega))
+    each = speed_error(tried, best)
+    size = np.maximum(np.abs(best.V), np.abs(best.omega))[: len(each)]
     done = np.isfinite(each).all(axis=1)
-    if not done.any():
-        return {"failed": n}
-    worst = each[done].max(axis=1)
-    moving = np.where(size >= LEAST_SPEED, each, 0.0)[done].max(axis=1)
-    return {
-        "max": float(worst.max()), "p99": float(np.quantile(worst, 0.99)), "median": float(np.median(worst)),
-        "max_moving": float(moving.max()), "p99_moving": float(np.quantile(moving, 0.99)),
-        "failed": int(n - done.sum()),
-    }  # fmt: skip
+    found: dict[str, Any] = {"failed": int((~done).sum())}
+    for name, counted in (("", each), ("_moving", np.where(size >= LEAST_SPEED, each, 0.0))):
+        worst = counted[done].max(axis=1)
+        if worst.size:
+            found |= {f"max{name}": float(worst.max()), f"p99{name}": float(np.quantile(worst, 0.99))}
+    return found | ({"median": float(np.median(each[done].max(axis=1)))} if done.any() else {})

@@ -2,7 +2,7 @@
 
     python -m pipeline.evidence.document [--check] [--results FOLDER] [FILE ...]
 
-A block is what stands between <!-- measured:NAME --> and <!-- end -->; NAME is a block of STAGES.
+A block is what stands between <!-- measured:NAME --> and <!-- end -->; NAME is one of BLOCKS.
 Below its numbers it says of which kernels they are, where not of those of this tree.
 Nothing else is touched, and a second run changes nothing.  With --check nothing is written: exit code 1
 if a block is out of date.  Exit code 2 for results that are missing or incomplete, and for broken marks.
@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 from viscoroll import ViscorollError
@@ -22,41 +21,13 @@ from viscoroll.files import write_text
 from ...stage import ROOT, told
 from ..results import RESULTS, Results
 from ..stamps import SHORT, kernels_digest, stamps
-from . import bench, ensembles, identification, symbols, tables, unsteady
+from . import identification
+from .blocks import BLOCKS
 
-#: who measures what a block shows
-STAGES: dict[str, dict[str, Callable[[Results], str]]] = {
-    "measure": {
-        "headline": tables.headline, "three": tables.three, "contact": tables.contact, "direct": tables.direct,
-        "stress": tables.stress, "motion": tables.motion, "times": tables.times,
-    },
-    "document": {"symbols": symbols.symbols},
-    "measure.large": {"large": tables.large},
-    "measure.outside": {"page": tables.page, "outside": tables.outside},
-    "measure.ensembles": {
-        "ensembles": ensembles.rates, "ensembles_cluster": ensembles.cluster, "ensembles_plan": ensembles.plan,
-    },
-    "measure.identification": {
-        "identify_learn": identification.learn, "identify_bearing": identification.bearing,
-        "identify_said": identification.said, "identify_times": identification.times,
-        "identify_coverage": identification.coverage, "identify_reach": identification.reach,
-    },
-    "prove": {"proofs": tables.proofs},
-    "prove.independent": {"independent": tables.independent, "independent_paper": tables.paper},
-    "prove.unsteady": {
-        "unsteady_gamma": unsteady.over_gamma, "unsteady": unsteady.errors, "unsteady_ways": unsteady.ways,
-    },
-    "torture": {"torture": tables.torture},
-    "bench": {
-        "bench_peers": bench.peers, "bench_fixed_scene": bench.fixed_scene,
-        "bench_own": bench.own_parameters, "bench_agreement": bench.agreement, "bench_law": bench.law,
-        "bench_bound_law": bench.bound_law,
-        "bench_scaling": bench.scaling, "bench_skips": bench.skips, "bench_cold_start": bench.cold_start,
-        "bench_first_calls": bench.first_calls, "bench_series": bench.series, "bench_driven": bench.driven,
-        "bench_last_release": bench.last_release,
-    },
-}  # fmt: skip
-BLOCKS = {name: (stage, text) for stage, texts in STAGES.items() for name, text in texts.items()}
+BLOCKS |= {
+    f"identify_{made.__name__}": ("measure.identification", made)
+    for made in (getattr(identification, name) for name in ("learn", "bearing", "said", "times", "coverage", "reach"))
+}
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")
@@ -83,7 +54,9 @@ def filled(text: str, folders: list[Path], name: str) -> str:
         try:
             return f"{match[1]}{block(results)}{provenance(results)}{match[3]}"
         except (KeyError, TypeError) as error:
-            raise DocumentError(f"results lack {error} for block {match[2]!r}: run pipeline.{stage}") from error
+            raise DocumentError(
+                f"results lack {error} for block {match[2]!r}: run pipeline.evidence.{stage}"
+            ) from error
 
     result, count = _BLOCK.subn(fill, text)
     if len(_MARK.findall(text)) != 2 * count:

@@ -20,8 +20,11 @@ def three(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
-#: two digits, two in thousandths, three, three in thousandths
-CONVERSIONS = {"n": two, "m": lambda value: two(1e3 * value), "t": three, "u": lambda value: three(1e3 * value)}
+#: two digits, two in thousandths, three, three in thousandths, thousands; nothing of None
+CONVERSIONS = {
+    "n": lambda value: "" if value is None else two(value), "m": lambda value: two(1e3 * value), "t": three,
+    "u": lambda value: three(1e3 * value), "k": lambda value: f"{1e-3 * value:.0f}",
+}  # fmt: skip
 
 
 class Cells(string.Formatter):
@@ -40,8 +43,3 @@ cell = Cells()
 def listed(columns: Mapping[str, str], rows: Iterable[Mapping[str, Any]]) -> str:
     """A Markdown table: a line for each of ``rows`` by the templates under their headings."""
     return table(columns, ([cell(template, row) for template in columns.values()] for row in rows))
-
-
-def stated(head: tuple[str, ...], lines: Mapping[str, str], values: Mapping[str, Any]) -> str:
-    """A Markdown table of one set of values: what, and how much, both templates."""
-    return table(head, ((cell(what, values), cell(how_much, values)) for what, how_much in lines.items()))

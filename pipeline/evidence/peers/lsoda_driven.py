@@ -13,6 +13,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+import viscoroll as vr
 from viscoroll.kernels.compile.address import doubles, integers
 from viscoroll.kernels.rows.contact import traction_of
 from viscoroll.kernels.rows.law import place, speed, way_of
@@ -20,7 +21,6 @@ from viscoroll.kernels.rows.record import Law
 from viscoroll.kernels.rows.states import State
 from viscoroll.materials.law_table import law_table
 
-from ..bench.jit import compiled
 from .lsoda_compiled import numbalsoda_driver
 
 INSTALLED = bool(find_spec("numbalsoda"))
@@ -30,34 +30,25 @@ ATOL_SHARE = 1e-3
 _MOST_STEPS = 20_000
 
 
-@compiled
-def _rates(V, omega, t, par, du):
-    """Rates over tau at f = par[4] + par[5] t and q = par[6] + par[7] t; counts the call in par[8].
-
-    par[0]: alpha, which the law is of whose rows and marks, addresses and sizes, are behind.
-    """
-    rows, marks = doubles(int(par[9]), int(par[10])), integers(int(par[11]), int(par[12]))
-    law = Law(rows, marks, rows[:0], 0, 0, 0)
-    state = State(par[1], par[2], V, omega, True)
-    u = state.kappa * abs(V)
-    at = place(u, law)
-    found = speed(at, u, law)
-    Q, M = traction_of(u, found.L, state, law), way_of(at, u, found.scale, state) * found.m
-    f, q = par[4] + par[5] * t, par[6] + par[7] * t
-    du[0] = Q - 0.5 * M + f
-    du[1] = (q - Q - 0.5 * M) / par[3]
-    par[8] += 1.0
-
-
 @cache
 def _compiled():
     driver = numbalsoda_driver()
     lsoda = driver.lsoda
 
-    @numba.cfunc(driver.lsoda_sig, cache=True)
+    @numba.cfunc(driver.lsoda_sig)
     def rates(t, u, du, p):
-        y = numba.carray(u, 2)
-        _rates(y[0], y[1], t, numba.carray(p, 13), numba.carray(du, 2))
+        """Over tau at f = par[3] + par[5] t and q = par[4] + par[6] t; addresses and sizes of rows and marks behind."""
+        y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 11)
+        V, omega = y
+        rows, marks = doubles(int(par[7]), int(par[8])), integers(int(par[9]), int(par[10]))
+        law = Law(rows, marks, rows[:0], 0, 0, 0)
+        state = State(par[0], par[1], V, omega, True)
+        u = state.kappa * abs(V)
+        at = place(u, law)
+        of = speed(at, u, law)
+        Q, M = traction_of(u, of.L, state, law), way_of(at, u, of.scale, state) * of.m
+        found[0] = Q - 0.5 * M + par[3] + par[5] * t
+        found[1] = (par[4] + par[6] * t - Q - 0.5 * M) / par[2]
 
     @numba.njit(nogil=True)
     def one(address, start, par, t, rtol, atol):
@@ -66,11 +57,11 @@ def _compiled():
     return rates.address, one
 
 
-def roll(par: NDArray, start: NDArray, t: NDArray, rtol: float) -> tuple[NDArray, int]:
-    """((V, omega) at ``t`` or NaN, evaluations) of one motion; ``par``: alpha, kappa, mu, j, f, f', q, q'."""
+def roll(scene: vr.Scene, drive: NDArray, start: NDArray, t: NDArray, rtol: float) -> NDArray:
+    """V and omega at ``t``, or NaN, of one motion; ``drive``: first values of force and torque, and their slopes."""
     address, one = _compiled()
-    law = law_table(float(par[0])).record
+    law = law_table(float(scene.alpha)).record
     pointers = [each for part in (law.rows, law.marks) for each in (part.ctypes.data, part.size)]
-    given = np.concatenate([par, [0.0], pointers])
+    given = np.concatenate([[scene.kappa, scene.mu, scene.j], drive.ravel(), pointers])
     found, good = one(address, start.copy(), given, t, rtol, ATOL_SHARE * rtol)
-    return (found if good else np.full((t.size, 2), np.nan)), int(given[8])
+    return found if good else np.full((t.size, 2), np.nan)

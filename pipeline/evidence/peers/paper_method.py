@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -43,7 +42,7 @@ def build(folder: Path) -> Path:
 def run(
     program: Path,
     method: str,
-    parameters: Sequence[NDArray],
+    parameters: NDArray,
     starts: NDArray,
     t: NDArray,
     rtol: float,
@@ -54,11 +53,11 @@ def run(
     Parameters
     ----------
     method : "adams" or "bdf".
-    parameters : alpha, kappa, mu, gamma, j, each of shape (n,).
+    parameters : alpha, kappa, mu, gamma, j, a row a motion.
     starts : (n, 2), V and omega at t = 0.
     """
     head = f"{method} {rtol!r} {1e-3 * rtol!r} {most_evaluations} {len(starts)} {t.size}"
-    rows = np.column_stack([*parameters, starts])
+    rows = np.column_stack([parameters, starts])
     lines = [head, " ".join(map(repr, t.tolist())), *(" ".join(map(repr, row)) for row in rows.tolist())]
     result = subprocess.run([program], input="\n".join(lines), capture_output=True, text=True, check=True)
     table = result.stdout.splitlines()

@@ -11,8 +11,6 @@ tau = gamma t; with a = V'/V = Q/V - M/(2V), d = sign(D) (F(zeta) - F(eta)) = de
     d' = -((1 + 1/j) Q/V + (1/j - 1) M/(2V))/(mu V) - 2 d a
     (D - D0)' = D' - D0'(y) y'
 
-and the distance and the angle turned (times gamma) follow V and omega = V + mu V^2 d.
-
 For eta < 0 the law is continued by F(eta) = eta, H(eta) = 0: then Q = +-mu and d still
 measures the slip, so the equations go over into those of full slip without a jump.
 """
@@ -47,8 +45,7 @@ def leading_order(zeta, b, db, scene):
 
     Q = -M (1 - j)/(2 (1 + j)) with Q = mu D H'/H.
     """
-    _, kappa, mu, j = scene
-    factor = -(1.0 - j) / (8.0 * (1.0 + j) * kappa * mu)
+    factor = -(1.0 - scene.j) / (8.0 * (1.0 + scene.j) * scene.kappa * scene.mu)
     return factor * b, factor * (zeta * db)
 
 
@@ -56,7 +53,7 @@ def leading_order(zeta, b, db, scene):
 def slow_D(y, scene):
     """(D0, dD0/dy) at y = ln zeta."""
     zeta = np.exp(y)
-    _, _, _, _, _, _, b, db = at_contact(zeta, scene.material)
+    _, _, _, _, _, b, db = at_contact(zeta, scene.material)
     return leading_order(zeta, b, db, scene)
 
 
@@ -74,58 +71,22 @@ def slip_differences(zeta, D, g, h, g_eta, h_eta, material):
 
 @kernel(inline=True)
 def partial_rates(y, offset, scene):
-    """(y', offset', V, delta, d(y', offset', delta)/d offset, D; d offset' to leading order in V)."""
-    zeta = np.exp(y)
-    contact = at_contact(zeta, scene.material)
-    D0, D0_y = leading_order(zeta, contact[6], contact[7], scene)
-    D = D0 + offset
-    dy, dD, V, delta, _, dy_D, dD_D, delta_D, _ = _rates(zeta, D, np.sign(D), contact, scene)
-    return dy, dD - D0_y * dy, V, delta, dy_D, dD_D - D0_y * dy_D, delta_D, D
-
-
-@kernel(inline=True)
-def branch_rates(y, D, sign, scene):
-    """:func:`_rates` on the branch of the law with this sign of delta, which goes on through D = 0."""
-    zeta = np.exp(y)
-    return _rates(zeta, D, sign, at_contact(zeta, scene.material), scene)
-
-
-@kernel
-def stiff_rates(y, D, sign, scene):
-    """(y', D', V, delta, d(y', D')/dD) on the branch with this sign of delta, where calls are few; d D' to leading
-    order in V."""
-    dy, dD, V, delta, _, dy_D, dD_D, _, _ = branch_rates(y, D, sign, scene)
-    return dy, dD, V, delta, dy_D, dD_D
-
-
-@kernel(inline=True)
-def _rates(zeta, D, sign, contact, scene):
-    """(y', D', V, delta, V'/V, d(y', D', delta)/dD, Q/V); that of D' to leading order in V."""
+    """(y', (D - D0)')."""
     material, kappa, mu, j = scene
-    g, h, dg, dh, m, _, _, _ = contact
-    size = sign * D
-    g_eta, h_eta, dg_eta, dh_eta = generator_slopes(zeta - size, material)
+    zeta = np.exp(y)
+    g, h, dg, dh, m, b, db = at_contact(zeta, material)
+    D0, D0_y = leading_order(zeta, b, db, scene)
+    D = D0 + offset
+    sign, size = np.sign(D), abs(D)
+    g_eta, h_eta, dg_eta, _ = generator_slopes(zeta - size, material)
     rise_F, rise_H = slip_differences(zeta, size, g, h, g_eta, h_eta, material)
-    per = 1.0 / zeta
-    square = 1.0 + 2.0 * h * per  # 1/lam^2
-    U = 1.0 + h * per + dh  # H'/(2 zeta)
-    lam2, per_V = 1.0 / square, 2.0 * kappa * zeta * np.sqrt(square)
-    V = 1.0 / per_V
-    scale = mu * lam2 * per * per_V
-    q_over_V = sign * rise_H * scale
+    square = 1.0 + 2.0 * h / zeta  # 1/lam^2
+    per_V = 2.0 * kappa * zeta * np.sqrt(square)
+    q_over_V = sign * rise_H * mu / square / zeta * per_V
     rate = q_over_V - 0.5 * m
-    per_rise = -square / U
-    dy = rate * per_rise
-    d = sign * rise_F
-    dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) * (per_V / mu) - 2.0 * d * rate
-    slope_F = 1.0 + dg_eta
-    per_F = 1.0 / slope_F
-    dD = (dd - sign * (dg - dg_eta) * zeta * dy) * per_F
-    # dQ/dD = mu H'(eta)/H(zeta)
-    eta = max(zeta - size, 0.0)
-    stiffness = 2.0 * scale * per * (eta + h_eta + eta * dh_eta)
-    dD_D = -(1.0 + 1.0 / j) * stiffness * (per_V / mu) * per_F
-    return dy, dD, V, mu * V * d, rate, stiffness * per_rise, dD_D, mu * V * slope_F, q_over_V
+    dy = -rate * square / (1.0 + h / zeta + dh)  # H'/(2 zeta)
+    dd = -((1.0 + 1.0 / j) * q_over_V + (1.0 / j - 1.0) * 0.5 * m) * (per_V / mu) - 2.0 * sign * rise_F * rate
+    return dy, (dd - sign * (dg - dg_eta) * zeta * dy) / (1.0 + dg_eta) - D0_y * dy
 
 
 @kernel

@@ -94,45 +94,28 @@ def generator_slopes(z, material):
 
 
 @kernel(inline=True)
-def assemble(per_z, per_x, r, k, s, dk, material):
-    """(g, h, g', h', g'', h'') from the ratios and their slopes s = r', dk = k'; per_z = 1/z, per_x = 1/(alpha z)."""
-    alpha, c = material.alpha, material.T_mean
-    dr = alpha * s
-    ddr = alpha * alpha * ((r * per_x - s) * per_x - 2.0 * r * s)
-    ddk = 2.0 * k * dk + (dk - k * per_z) * per_z
-    p = r * k
-    dp = dr * k + r * dk
-    ddp = ddr * k + 2.0 * dr * dk + r * ddk
-    whole = 1.0 / (1.0 + p)
-    share = c * whole
-    dg = share * whole * dp
-    dh_top = dr - r * r * dk
-    ddh_top = ddr - 2.0 * r * dr * dk - r * r * ddk
-    ddg = whole * (share * ddp - 2.0 * dg * dp)
-    ddh = share * whole * (ddh_top - 2.0 * whole * dp * dh_top)
-    return share * p, share * r, dg, share * whole * dh_top, ddg, ddh
-
-
-@kernel(inline=True)
 def at_contact(z, material):
-    """(g, h, g', h', m, m', b, b') at z = zeta from one pair of ratios; M = V m."""
+    """(g, h, g', h', m, b, b') at z = zeta from one pair of ratios; M = V m."""
     alpha, c = material.alpha, material.T_mean
     if c == 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     x, r, k, s, dk, per_x, per_z = ratios_and_slopes(z, alpha)
-    g, h, dg, dh, _, ddh = assemble(per_z, per_x, r, k, s, dk, material)
-    i2 = ratio_i2(x, r)
-    lam2 = 1.0 / (1.0 + 2.0 * h * per_z)
-    whole = 1.0 / (1.0 + r * k)
-    bend = (dh - h * per_z) * per_z
-    d_lam2 = -2.0 * lam2 * lam2 * bend
-    d_i2 = alpha * 2.0 * (r * r - i2) * per_x
-    m = c * (lam2 * i2 + r * k) * whole
-    dp = alpha * s * k + r * dk
-    dm = whole * (c * (d_lam2 * i2 + lam2 * d_i2 + dp) - m * dp)
+    dr, p = alpha * s, r * k
+    ddr = alpha * alpha * ((r * per_x - s) * per_x - 2.0 * r * s)
+    dp, whole = dr * k + r * dk, 1.0 / (1.0 + p)
+    rise, share = dr - r * r * dk, c * whole
+    g, h, dg, dh = share * p, share * r, share * whole * dp, share * whole * rise
+    ddh = (
+        share
+        * whole
+        * (ddr - 2.0 * r * dr * dk - r * r * (2.0 * k * dk + (dk - k * per_z) * per_z) - 2.0 * whole * dp * rise)
+    )
+    i2, lam2, bend = ratio_i2(x, r), 1.0 / (1.0 + 2.0 * h * per_z), (dh - h * per_z) * per_z
+    m = c * (lam2 * i2 + p) * whole
+    dm = whole * (c * (lam2 * alpha * 2.0 * (r * r - i2) * per_x - 2.0 * lam2 * lam2 * bend * i2 + dp) - m * dp)
     per_U = 1.0 / (1.0 + h * per_z + dh)  # U = H'/(2 z)
-    per_lam_U = np.sqrt(1.0 + 2.0 * h * per_z) * per_U
-    return g, h, dg, dh, m, dm, per_lam_U * m, per_lam_U * (dm - m * ((bend + ddh) * per_U - bend * lam2))
+    per_lam_U = per_U / np.sqrt(lam2)
+    return g, h, dg, dh, m, per_lam_U * m, per_lam_U * (dm - m * ((bend + ddh) * per_U - bend * lam2))
 
 
 @kernel

@@ -1,26 +1,31 @@
 """Hold what is stated against truth that shares nothing with it -> data/results/proofs.json (kept in git).
 
-    python -m pipeline.evidence.prove [--config FILE] [--quick] [--only PROOF] [-o FILE]
+    python -m pipeline.evidence.prove [--config FILE] [--quick] [--only PART] [-o FILE]
 
-Each proof holds its sizes, the machine, and rows: the claim, its domain, the bound, the worst that was
-found, and where.  Sizes and seeds are in [prove] of the configuration, those of --quick in [prove.quick].
-Exit code 1 where a bound is exceeded.  pipeline/evidence/document/ puts the table into docs/accuracy.md.
+One table of proofs (claim.py): what is drawn, and which claims are made of its errors.  Each part holds its sizes, the
+machine, and rows: the claim, its domain, the bound, the worst that was found, and where.  Sizes and seeds are in
+[prove] of the configuration, those of --quick in [prove.quick].  Exit code 1 where a bound is exceeded.
+pipeline/evidence/document/ puts the table into docs/accuracy.md.
 """
 
 from __future__ import annotations
 
 import sys
+from functools import partial
 from typing import Any
 
 from ..results import run_parts
-from . import boundary, contact, driven, motion, ratios, series, shape, slopes
+from .table import TABLE
 
-#: name -> function of the sizes that returns rows of claim, domain, bound, worst, points, where
-PROOFS = {
-    "ratios": ratios.rows, "contact": contact.rows, "shape": shape.rows, "slopes": slopes.rows, "motion": motion.rows,
-    "series": series.rows, "states": series.rows_of_states, "boundary": boundary.rows, "driven": driven.rows,
-    "check_driven": driven.precise_rows,
-}  # fmt: skip
+
+def part(name: str, sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """The rows of its proofs, each with random numbers of its own."""
+    numbered = ((n, proof) for n, proof in enumerate(TABLE) if proof.part == name)
+    return [row for n, proof in numbered for row in proof.rows([sizes["seed"], n], sizes[proof.size])]
+
+
+#: name -> function of the sizes that returns rows
+PROOFS = {proof.part: partial(part, proof.part) for proof in TABLE}
 
 
 def beyond(row: dict[str, Any]) -> str | None:

@@ -1,43 +1,54 @@
-"""One row of a proof: a claim, its domain and bound, and the errors that were found, as they come."""
+"""A proof: states or motions that are drawn, their errors against a truth, and the claims on these."""
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from tqdm import tqdm
+
+#: (where it was, errors of it or of many, by name), one after the other
+Found = Iterable[tuple[str, dict[Any, Any]]]
 
 
-class Claim:
-    """Keeps the worst error and where it was, the mean, and the number of points.
+class Proof(NamedTuple):
+    """One row a claim.
 
-    A NaN counts as infinite: it must neither pass a bound nor be forgotten behind a later number.
+    part : of the file, which --only renews.
+    size : how many are drawn, a name in [prove] of the sizes.
+    domain : what is drawn.
+    claims : name of an error -> (sentence, bound); one that begins with "share" is held by the mean.
+    found : (random numbers, size) -> errors; names of which nothing is claimed are left out.
     """
 
-    def __init__(self, claim: str, domain: str, bound: float) -> None:
-        self.claim, self.domain, self.bound = claim, domain, bound
-        self.worst, self.where = 0.0, ""
-        self.points, self._sum = 0, 0.0
+    part: str
+    size: str
+    domain: str
+    claims: dict[Any, tuple[str, float]]
+    found: Callable[[np.random.Generator, Any], Found]
 
-    def add(self, errors: ArrayLike, where: str = "") -> None:
-        """One error or an array of them; negative ones, which are within what was allowed for, count as 0."""
-        found = np.asarray(errors, dtype=float)
-        found = np.where(np.isnan(found), np.inf, np.maximum(found, 0.0))
-        self.points += found.size
-        self._sum += float(np.sum(found))
-        worst = float(np.max(found, initial=0.0))
-        if worst > self.worst or not self.where:
-            self.worst, self.where = max(worst, self.worst), where
+    def rows(self, seed: Any, size: Any) -> list[dict[str, Any]]:
+        """Claim, domain, bound, points, worst, mean, and where the worst was.
 
-    @property
-    def row(self) -> dict[str, Any]:
-        """The row as proofs.json has it."""
-        mean = self._sum / self.points if self.points else math.nan
-        return {
-            "claim": self.claim, "domain": self.domain, "bound": self.bound, "points": self.points,
-            "worst": self.worst, "mean": mean, "where": self.where,
-        }  # fmt: skip
+        A NaN counts as infinite, an error below 0, within what was allowed for, as 0.
+        """
+        kept = {name: [0, 0.0, -1.0, ""] for name in self.claims}  # points, sum, worst, where
+        progress = tqdm(self.found(np.random.default_rng(seed), size), self.part, delay=1.0, leave=False)
+        for where, errors in progress:
+            for name in self.claims.keys() & errors.keys():
+                each = np.atleast_1d(np.asarray(errors[name], float)).ravel()
+                each = np.where(np.isnan(each), np.inf, np.maximum(each, 0.0))
+                row, worst = kept[name], float(each.max(initial=0.0))
+                row[0] += each.size
+                row[1] += float(each.sum())
+                row[2:] = (worst, where) if worst > row[2] else row[2:]
+        rows = []
+        for name, (points, total, worst, where) in kept.items():
+            (claim, bound), mean = self.claims[name], total / max(points, 1)
+            found = {"points": points, "worst": mean if claim.startswith("share") else max(worst, 0.0)}
+            rows.append({"claim": claim, "domain": self.domain, "bound": bound, "mean": mean, "where": where} | found)
+        return [row for row in rows if row["points"]]
 
 
 def at(**values: float) -> str:

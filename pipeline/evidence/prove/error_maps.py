@@ -14,124 +14,91 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from tqdm import tqdm
 
 from viscoroll.files import write_dataset
 from viscoroll.plots.style import new_figure, save
 from viscoroll.symbols import SYMBOLS, label, meaning
 
-from ...stage import ROOT, told
+from ...stage import ROOT, make_folder, told
 from ..results import RESULTS, parser, read_sizes
 from ..stamps import kernels_digest
 from ..truth import contact_enclosure
-from .contact import by_axis, by_rows, relative_error
+from .states import by_axis, by_rows, relative_error
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-BY_ALPHA = ("lam", "epsilon", "delta_star", "M")
-BY_CREEP = ("Q", "beta")
+#: field and way of each map, over alpha and over s; what the fields over s are divided by, and their names
+BY_ALPHA = [(name, "one by one") for name in ("lam", "epsilon", "delta_star", "M")]
+BY_CREEP = [(name, way) for name in ("Q", "beta") for way in ("one by one", "slice")]
 WAYS = {"one by one": by_axis, "slice": by_rows}
 #: the figure: half a unit in the last place, and steps of shade in units of it, up to less than 1e-13
-ROUNDING = 2.0**-53
-LEVELS = (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 40.0)
+ROUNDING, LEVELS = 2.0**-53, (0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 40.0)
+#: cells of the figure: single ones of few states are noise
 POOLED = 4
-State = tuple[float, float, float, float, float]
 
 
-def log_edges(low: float, high: float, cells: int) -> NDArray:
-    return np.linspace(np.log10(low), np.log10(high), cells + 1)
-
-
-def errors_of(states: list[State], ways: dict[str, Any], fields: tuple[str, ...]) -> dict[tuple[str, str], NDArray]:
-    """(field, way) -> relative error of every state."""
-    found = {way: method(states).as_dict() for way, method in ways.items()}
-    errors = {(name, way): np.empty(len(states)) for name in fields for way in ways}
+def mapped(
+    sizes: dict[str, Any],
+    random: np.random.Generator,
+    up: str,
+    ends: Any,
+    maps: list[tuple[str, str]],
+    alpha: float = 0.0,
+) -> xr.Dataset:
+    """Over ``up``, even in its logarithm, at alpha, or over it where that is 0; kappa = mu = 1, which only scale."""
+    edges = [np.linspace(*np.log10(pair), n + 1) for pair, n in zip((ends, sizes["kappa_V"]), sizes["cells"])]
+    shape = (*sizes["cells"], sizes["states"])
+    low, wide = (np.meshgrid(*each, indexing="ij") for each in ([e[:-1] for e in edges], map(np.diff, edges)))
+    rise, V = (10.0 ** (a[..., None] + b[..., None] * random.random(shape)).ravel() for a, b in zip(low, wide))
+    states = [(alpha or 1.0 + each, 1.0, 1.0, v, 0.0) for each, v in zip(rise.tolist(), V.tolist())]
+    if alpha:  # up is s/(1 - s)
+        s = (rise / (1.0 + rise)).tolist()
+        states = [(*one[:4], part * float(contact_enclosure(*one)["delta_star"])) for one, part in zip(states, s)]
+    found = {way: WAYS[way](states).as_dict() for _, way in maps}
+    errors = {each: np.empty(len(states)) for each in maps}
     for i, state in enumerate(tqdm(states, desc="error maps", delay=1.0, leave=False)):
         exact = contact_enclosure(*state)
-        for name, way in errors:
-            errors[name, way][i] = relative_error(float(found[way][name][i]), exact[name])
-    return errors
-
-
-def cells(errors: NDArray, shape: tuple[int, ...]) -> NDArray:
-    """Largest over the last axis of ``shape``, the states of a cell; three digits of it are enough."""
-    return errors.reshape(shape).max(axis=-1).astype(np.float32)
-
-
-def within(edges: NDArray, shape: tuple[int, ...], axis: int, rng: np.random.Generator) -> NDArray:
-    """A random point of its cell for each of ``shape``."""
-    low, width = edges[:-1], np.diff(edges)
-    along = [1] * len(shape)
-    along[axis] = low.size
-    return low.reshape(along) + width.reshape(along) * rng.random(shape)
-
-
-def over_alpha(sizes: dict[str, Any], rng: np.random.Generator) -> xr.Dataset:
-    """Without creep; kappa = mu = 1, which only scale."""
-    rows, across = sizes["cells"]
-    edges = log_edges(*sizes["alpha_less_1"], rows), log_edges(*sizes["kappa_V"], across)
-    shape = (rows, across, sizes["states"])
-    alpha, V = 1.0 + 10.0 ** within(edges[0], shape, 0, rng), 10.0 ** within(edges[1], shape, 1, rng)
-    states = [(a, 1.0, 1.0, v, 0.0) for a, v in zip(alpha.ravel().tolist(), V.ravel().tolist(), strict=True)]
-    errors = errors_of(states, {"one by one": by_axis}, BY_ALPHA)
-    return xr.Dataset(
-        {n: (("alpha_cell", "kappa_V_cell"), cells(off, shape), described(n)) for (n, _), off in errors.items()},
-        coords={"alpha_less_1_edge": 10.0 ** edges[0], "kappa_V_edge": 10.0 ** edges[1]},
-    )
-
-
-def over_creep(sizes: dict[str, Any], rng: np.random.Generator) -> xr.Dataset:
-    """At one alpha, even in log(s/(1 - s)): fine toward s = 0 and toward s = 1."""
-    rows, across = sizes["cells"]
-    end = sizes["s_least"] / (1.0 - sizes["s_least"])
-    edges = log_edges(end, 1.0 / end, rows), log_edges(*sizes["kappa_V"], across)
-    shape = (rows, across, sizes["states"])
-    odds, V = 10.0 ** within(edges[0], shape, 0, rng), 10.0 ** within(edges[1], shape, 1, rng)
-    alpha = sizes["alpha"]
-    limit = [float(contact_enclosure(alpha, 1.0, 1.0, v, 0.0)["delta_star"]) for v in V.ravel().tolist()]
-    delta = np.array(limit) * (odds / (1.0 + odds)).ravel()
-    states = [(alpha, 1.0, 1.0, v, d) for v, d in zip(V.ravel().tolist(), delta.tolist(), strict=True)]
+        for (name, way), values in errors.items():
+            values[i] = relative_error(float(found[way][name][i]), exact[name]) / (1.0 + (name == "beta") * rise[i])
     data = {}
-    for (name, way), errors in errors_of(states, WAYS, BY_CREEP).items():
-        conditioned = errors / (1.0 + odds.ravel()) if name == "beta" else errors
-        about = described(name) | {"way": way} | ({"comment": "times 1 - s"} if name == "beta" else {})
-        data[variable(name, way)] = (("s_cell", "kappa_V_cell"), cells(conditioned, shape), about)
-    return xr.Dataset(data, coords={"s_over_1_less_s_edge": 10.0 ** edges[0]}, attrs={"alpha": alpha})
+    for (name, way), values in errors.items():
+        about = {"long_name": f"largest relative error in a cell of: {meaning(name)}", "units": "1", "way": way}
+        about |= {"comment": "times 1 - s"} if name == "beta" else {}
+        cells = values.reshape(shape).max(axis=-1).astype(np.float32)  # three digits are enough
+        data[variable(name, way, alpha)] = ((f"{up}_cell", "kappa_V_cell"), cells, about)
+    return xr.Dataset(data, {f"{up}_edge": 10.0 ** edges[0], "kappa_V_edge": 10.0 ** edges[1]})
 
 
-def variable(name: str, way: str) -> str:
-    return f"{name}_{way.replace(' ', '_')}"
+def variable(name: str, way: str, alpha: float = 1.0) -> str:
+    return f"{name}_{way.replace(' ', '_')}" if alpha else name
 
 
-def described(name: str) -> dict[str, str]:
-    return {"long_name": f"largest relative error in a cell of: {meaning(name)}", "units": "1"}
-
-
-def drawn(maps: xr.Dataset) -> Figure:
+def drawn(maps: xr.Dataset) -> Any:
     """lam, epsilon, delta_star, M above; Q and beta by both ways below; one scale, in roundings."""
     from matplotlib import colormaps
     from matplotlib.colors import BoundaryNorm
 
     title = f"Largest relative error, in roundings of {ROUNDING:.2g}; {POOLED} by {POOLED} cells of the data together"
     figure, panels = new_figure(title, 2, 4, (12.0, 6.0), sharex=True)
-    shades = colormaps["YlGnBu"].resampled(len(LEVELS))
-    scale = BoundaryNorm(LEVELS, len(LEVELS), extend="max")
-    across = maps["kappa_V_edge"].values
-    below = [(name, way) for name in BY_CREEP for way in WAYS]
-    for axes, name in zip(panels[0], BY_ALPHA, strict=True):
-        _map(axes, across, maps["alpha_less_1_edge"].values, maps[name].values, norm=scale, cmap=shades)
-        axes.set_title(f"{label(name)}: up to {float(maps[name].max()) / ROUNDING:.2g}", fontsize="medium")
-    for axes, (name, way) in zip(panels[1], below, strict=True):
-        errors = maps[variable(name, way)]
-        mesh = _map(axes, across, maps["s_over_1_less_s_edge"].values, errors.values, norm=scale, cmap=shades)
-        shown = label(name) + (" times $1 - s$" if name == "beta" else "")
-        axes.set_title(f"{shown}, {way}: up to {float(errors.max()) / ROUNDING:.2g}", fontsize="medium")
+    style = {
+        "norm": BoundaryNorm(LEVELS, len(LEVELS), extend="max"),
+        "cmap": colormaps["YlGnBu"].resampled(len(LEVELS)),
+    }
+    below = [
+        (variable(*each), f"{label(each[0])}{' times $1 - s$' * (each[0] == 'beta')}, {each[1]}") for each in BY_CREEP
+    ]
+    rows = [(name, label(name)) for name, _ in BY_ALPHA], below
+    for axes, (name, text) in zip(panels.ravel(), [*rows[0], *rows[1]], strict=True):
+        errors, edges = maps[name] / ROUNDING, [maps[dim.replace("cell", "edge")].values for dim in maps[name].dims]
+        pooled = errors.coarsen(dict.fromkeys(errors.dims, POOLED), boundary="trim").max().values
+        up, across = (edge[: POOLED * n + 1 : POOLED] for edge, n in zip(edges, pooled.shape))
+        mesh = axes.pcolormesh(across, up, pooled, **style)
+        axes.set(xscale="log", yscale="log")
+        axes.set_title(f"{text}: up to {float(errors.max()):.2g}", fontsize="medium")
+    for axes in panels[1]:
         axes.set_xlabel(label("kappa_V"))
     panels[0, 0].set_ylabel(rf"${SYMBOLS['alpha'].latex} - 1$")
     panels[1, 0].set_ylabel(r"$s/(1 - s)$")
@@ -139,39 +106,27 @@ def drawn(maps: xr.Dataset) -> Figure:
     return figure
 
 
-def _map(axes: Any, across: NDArray, up: NDArray, errors: NDArray, **style: Any) -> Any:
-    """Errors in roundings, the largest of POOLED by POOLED cells: single cells of few states are noise."""
-    kept = [(n // POOLED) * POOLED for n in errors.shape]
-    blocks = errors[: kept[0], : kept[1]].reshape(kept[0] // POOLED, POOLED, kept[1] // POOLED, POOLED)
-    values = blocks.max(axis=(1, 3)) / ROUNDING
-    axes.set(xscale="log", yscale="log")
-    return axes.pcolormesh(across[: kept[1] + 1 : POOLED], up[: kept[0] + 1 : POOLED], values, **style)
-
-
 def main() -> int:
     options = parser(__doc__, RESULTS / "error-maps.nc")
     options.add_argument("--figure", type=Path, default=ROOT / "docs/figures/error-maps.png")
     options.add_argument("--draw", action="store_true", help="draw the figure from the file alone")
-    arguments = options.parse_args()
-    if arguments.draw:
-        return told("error_maps", lambda: save(drawn(xr.load_dataset(arguments.output)), arguments.figure))
-    return told("error_maps", lambda: make(arguments.config, arguments.quick, arguments.output, arguments.figure))
+    given = options.parse_args()
 
+    def work() -> None:
+        if not given.draw:
+            sizes = read_sizes(given.config, "error_maps", given.quick)
+            random, far = np.random.default_rng(sizes["seed"]), (1.0 - sizes["s_least"]) / sizes["s_least"]
+            over_alpha = mapped(sizes, random, "alpha_less_1", sizes["alpha_less_1"], BY_ALPHA)
+            over_creep = mapped(sizes, random, "s_over_1_less_s", (1.0 / far, far), BY_CREEP, sizes["alpha"])
+            maps = xr.merge([over_alpha, over_creep])
+            title = "Relative error of the contact law in double precision, largest in a cell"
+            maps.attrs = {"title": title, "alpha": sizes["alpha"], "kernels": kernels_digest()}
+            make_folder(given.output.parent)
+            write_dataset(maps, given.output)
+        save(drawn(xr.load_dataset(given.output)), given.figure)
+        print(f"{given.output}, {given.figure}: written")
 
-def make(config: Path, quick: bool, output: Path, figure: Path) -> None:
-    """The maps and their picture."""
-    sizes = read_sizes(config, "error_maps", quick)
-    rng = np.random.default_rng(sizes["seed"])
-    maps = xr.merge([over_alpha(sizes, rng), over_creep(sizes, rng)], combine_attrs="no_conflicts")
-    maps.attrs |= {
-        "title": "Relative error of the contact law in double precision, largest in a cell",
-        "kernels": kernels_digest(),
-    }
-    for path in (output, figure):
-        path.parent.mkdir(parents=True, exist_ok=True)
-    write_dataset(maps, output)
-    save(drawn(maps), figure)
-    print(f"{output}, {figure}: written")
+    return told("error_maps", work)
 
 
 if __name__ == "__main__":

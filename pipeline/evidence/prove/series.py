@@ -6,12 +6,11 @@ solve; the Chebyshev solver knows neither Bessel functions nor the relaxation fo
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import mpmath
 import numpy as np
-from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.contact_fields import OF_BODIES
@@ -21,26 +20,14 @@ from viscoroll.materials.law_modes import series_of
 
 from ..truth import series as raw
 from ..truth import spectral
-from .claim import Claim, at
+from .claim import Found, Proof, at
+from .draws import powers
 
-MODES = (1, 3, 10, 30)
 DIGITS, DECADES = 60, 14.0
 #: e-folds beyond the shortest and the longest time
 BELOW, ABOVE = 30.0, 28.0
-CONDITIONS, CHEBYSHEV = 1e-13, 1e-11
 #: slopes are differences, and M is small in fast rolling
 DIGITS_OF_STATES = 90
-#: fields of a state, as :func:`state_errors` measures them; for alpha from 20 to 35, 24 powers of
-#: one octave leave 1.4e-14 of epsilon and 6.5e-15 of lam
-STATES = {
-    "delta_star, Q, M, relative": (5e-15, ("delta_star", "Q", "M")),
-    # strengths of 1e4 beside 1: what a slow mode takes of M is then a difference
-    "parts of M in the bodies, over M": (1e-12, OF_BODIES),
-    "lam, relative, and beta, over its condition": (1.5e-14, ("lam", "beta")),
-    "epsilon, relative": (3e-14, ("epsilon",)),
-    "dQ_ddelta, relative, and dQ_dV, over mu/V, over the condition of beta": (1e-14, ("dQ_ddelta", "dQ_dV")),
-    "dM_dV, over M/V": (5e-14, ("dM_dV",)),
-}  # fmt: skip
 #: of the Chebyshev solver: z over its shortest time, and terms that resolve the layers there
 THICKEST, TERMS = 300.0, 220
 
@@ -54,11 +41,6 @@ def random_series(
     return vr.Prony(E, 10.0 ** random.uniform(-span, 0.0, modes)).in_own_time()[0]
 
 
-def relative(found: float, truth: Any) -> float:
-    """Relative error at the precision of the moment."""
-    return float(abs(mpmath.mpf(float(found)) / truth - 1))
-
-
 def of_z(p: vr.Prony, z: float, weights: Any = None) -> list[float]:
     """g, h and what of m is the half-space's and the cylinder's, by the modes."""
     series, found, place = series_of(p.modes, weights), np.empty((2 * FUNCTIONS + 1, 1)), np.array([z])
@@ -68,21 +50,27 @@ def of_z(p: vr.Prony, z: float, weights: Any = None) -> list[float]:
     return [shift * z, rise * z, half_space, cylinder]
 
 
-def functions(random: np.random.Generator, modes: int, count: int) -> Claim:
-    """g, h and m, which rows are made of, over all z."""
-    claim = Claim(
-        f"g, h, m of {modes} mode{'s' * (modes > 1)}",
-        f"times over up to {DECADES:g} decades, z from the least e^-{BELOW:g} to the longest e^{ABOVE:g}", CONDITIONS,
-    )  # fmt: skip
-    for n in tqdm(range(count), desc=claim.claim, leave=False):
-        if n % 10 == 0:  # ten z a material
-            p = random_series(random, modes)
+def functions(random: np.random.Generator, count: int, modes: int) -> Found:
+    """g, h and m, which rows are made of, over all z: ten z a material, of many modes fewer."""
+    for _ in range(max(count // modes // 10, 1)):
+        p = random_series(random, modes)
+        with mpmath.workdps(DIGITS):
             known = raw.rates(mpmath, p.E.tolist(), p.tau.tolist())
-        z = float(np.exp(random.uniform(np.log(p.tau[-1]) - BELOW, np.log(p.T[0]) + ABOVE)))
-        truth, (g, h, half_space, cylinder) = raw.functions(mpmath, known, z), of_z(p, z)
-        pairs = zip((g, h, half_space + cylinder), (truth.g, truth.h, truth.m), strict=True)
-        claim.add([relative(value, exact) for value, exact in pairs], at(z=z) + f", {p!r}")
-    return claim
+            for z in np.exp(random.uniform(np.log(p.tau[-1]) - BELOW, np.log(p.T[0]) + ABOVE, 10)).tolist():
+                truth, (g, h, half_space, cylinder) = raw.functions(mpmath, known, z), of_z(p, z)
+                pairs = zip((g, h, half_space + cylinder), (truth.g, truth.h, truth.m))
+                yield f"{at(z=z)}, {p!r}", {"": [abs(float(mpmath.mpf(a) / exact - 1)) for a, exact in pairs]}
+
+
+def by_chebyshev(random: np.random.Generator, count: int) -> Found:
+    """g, h, m and what of m is a body's by way of a solver that has nothing in common with the others."""
+    for _ in range(count):
+        p = random_series(random, int(random.integers(1, 5)), 3.0, (-1.0, 1.0))
+        z = float(p.tau[-1] * 10.0 ** random.uniform(-2.0, np.log10(THICKEST)))
+        other, weights = spectral.contact(p, z, TERMS), random.random(p.T.size)
+        g, h, half_space, cylinder = of_z(p, z, weights)
+        found = np.array([g, h, half_space + cylinder, half_space])
+        yield f"{at(z=z)}, {p!r}", {"": abs(found / [*other[:3], weights @ other.shares] - 1.0)}
 
 
 def state_errors(material: Any, known: raw.Rates, zeta: float, share: float) -> dict[str, float]:
@@ -95,13 +83,12 @@ def state_errors(material: Any, known: raw.Rates, zeta: float, share: float) -> 
     found = vr.contact(scene, V, delta=delta, fields=(*exact, *OF_BODIES))
     condition = 1 / (1 - delta / exact["delta_star"])
     scales = {"dQ_dV": max(abs(exact["dQ_dV"]), 1 / V), "dM_dV": whole.m, **dict.fromkeys(OF_BODIES, exact["M"])}
+    half = mpmath.mpf(0.5)
     if isinstance(material, vr.Bodies):
         parts = raw.shares(mpmath, known, zeta, whole)
-        half = sum(weight * part for weight, part in zip(material.half_space_weights.tolist(), parts, strict=True))
+        half = sum(weight * part for weight, part in zip(material.half_space_weights.tolist(), parts))
         half /= sum(parts)  # V and zeta differ by a rounding
-    else:
-        half = mpmath.mpf(0.5)
-    exact |= dict(zip(OF_BODIES, (half * exact["M"], (1 - half) * exact["M"]), strict=True))
+    exact |= dict(zip(OF_BODIES, (half * exact["M"], (1 - half) * exact["M"])))
     errors = {name: abs(getattr(found, name) - truth) / scales.get(name, truth) for name, truth in exact.items()}
     for name in ("beta", "dQ_dV", "dQ_ddelta"):
         errors[name] /= condition
@@ -112,67 +99,63 @@ def any_state(random: np.random.Generator, known: raw.Rates) -> tuple[float, flo
     """zeta, from 14 decades below the fastest time to 14 above the slowest or near them, and 1 - beta, about."""
     near, far = (float(mpmath.log10(1 / rate)) for rate in (known.a[-1], known.b[0]))
     beyond = 14.0 if random.random() < 0.3 else 2.0
-    share = (10.0 ** random.uniform(-14.0, 0.0), random.random(), 1.0 - 10.0 ** random.uniform(-7.0, 0.0))
-    return 10.0 ** random.uniform(near - beyond, far + beyond), share[random.integers(3)]
+    small, gap = powers(random, (-14.0, 0.0), (-7.0, 0.0))
+    return powers(random, (near - beyond, far + beyond))[0], (small, random.random(), 1.0 - gap)[random.integers(3)]
 
 
-def states(random: np.random.Generator, count: int) -> list[Claim]:
-    """Every field of states by their rows, five a material."""
-    kinds = "1.01 <= alpha <= 1e6, 1 to 10 and 30 modes, pairs of 1 to 5 modes a body"
-    where = "kappa V from 1e-14 over the slowest time to 1e14 over the fastest, creep from 1e-14 delta_star to its end"
-    claims = {group: Claim(f"{group}, by rows", f"{kinds}; {where}", bound) for group, (bound, _) in STATES.items()}
-    materials = [make for make, share in _MATERIALS for _ in range(max(count // share, 1))]
-    for make in tqdm(materials, desc="states", leave=False):
-        material = make(random)
-        known = raw.rates_of(mpmath, material)
-        for _ in range(5):
-            zeta, share = any_state(random, known)
-            errors = state_errors(material, known, zeta, share)
-            for group, (_, names) in STATES.items():
-                claims[group].add([errors[name] for name in names], at(zeta=zeta, share=share) + f", {material!r}")
-    return list(claims.values())
-
-
-def _any_bodies(random: np.random.Generator) -> vr.Bodies:
-    cylinder, half_space = (random_series(random, int(random.integers(1, 6))) for _ in range(2))
-    return vr.Bodies(cylinder, half_space, random.uniform(0.05, 0.95))
-
-
-#: materials, and of how many there is one
-_MATERIALS: list[tuple[Callable[[np.random.Generator], Any], int]] = [
-    (lambda random: float(10.0 ** random.uniform(np.log10(1.01), 6.0)), 1),
-    (lambda random: float(random.uniform(20.0, 35.0)), 4),
-    (lambda random: random_series(random, int(random.integers(1, 11))), 1),
-    (lambda random: random_series(random, 30), 20),
-    (_any_bodies, 1),
-]
-
-
-def chebyshev(random: np.random.Generator, count: int) -> Claim:
-    """g, h, m and what of m is a body's by way of a solver that has nothing in common with the others."""
-    claim = Claim(
-        "g, h, m, shares against Chebyshev polynomials",
-        f"1 to 4 modes of E in [0.1, 10] over up to 3 decades, z up to {THICKEST:g} of the shortest time", CHEBYSHEV,
+def any_material(random: np.random.Generator, n: int) -> Any:
+    """An alpha, a series, a pair by turns; now and then an alpha whose rows are least exact, and 30 modes."""
+    if n % 10 == 4:
+        return float(random.uniform(20.0, 35.0))
+    if n % 20 == 19:
+        return random_series(random, 30)
+    made = (
+        lambda: powers(random, (np.log10(1.01), 6.0))[0],
+        lambda: random_series(random, int(random.integers(1, 11))),
+        lambda: vr.Bodies(*(random_series(random, int(m)) for m in random.integers(1, 6, 2)), random.uniform(0.1, 0.9)),
     )  # fmt: skip
-    for _ in tqdm(range(count), desc="Chebyshev", leave=False):
-        p = random_series(random, int(random.integers(1, 5)), 3.0, (-1.0, 1.0))
-        z = float(p.tau[-1] * 10.0 ** random.uniform(-2.0, np.log10(THICKEST)))
-        other, weights = spectral.contact(p, z, TERMS), random.random(p.T.size)
-        g, h, half_space, cylinder = of_z(p, z, weights)
-        found = np.array([g, h, half_space + cylinder, half_space])
-        claim.add(abs(found / [*other[:3], weights @ other.shares] - 1.0), at(z=z) + f", {p!r}")
-    return claim
+    return made[n % 3]()
 
 
-def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """All rows."""
-    random = np.random.default_rng(sizes["seed"] + 6)
-    with mpmath.workdps(DIGITS):
-        made = [functions(random, modes, max(sizes["series_states"] // modes, 10)) for modes in MODES]
-    return [claim.row for claim in [*made, chebyshev(random, sizes["series_pairs"])]]
+def states(random: np.random.Generator, count: int) -> Found:
+    """Every field of states by their rows, five a material."""
+    for n in range(count):
+        material = any_material(random, n)
+        with mpmath.workdps(DIGITS_OF_STATES):
+            known = raw.rates_of(mpmath, material)
+            for _ in range(5):
+                zeta, share = any_state(random, known)
+                yield f"{at(zeta=zeta, share=share)}, {material!r}", state_errors(material, known, zeta, share)
 
 
-def rows_of_states(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """Rows of states."""
-    with mpmath.workdps(DIGITS_OF_STATES):
-        return [claim.row for claim in states(np.random.default_rng(sizes["seed"] + 11), sizes["state_materials"])]
+def _states(sentence: str, bound: float, *names: str) -> dict[str, tuple[str, float]]:
+    return {name: (f"{name}, {sentence}, by rows", bound) for name in names}
+
+
+PROOFS = [
+    *(
+        Proof(
+            "series", "series_states",
+            f"times over up to {DECADES:g} decades, z from the least e^-{BELOW:g} to the longest e^{ABOVE:g}",
+            {"": (f"g, h, m of {modes} mode{'s' * (modes > 1)}", 1e-13)}, partial(functions, modes=modes),
+        ) for modes in (1, 3, 10, 30)
+    ),
+    Proof(
+        "series", "series_pairs",
+        f"1 to 4 modes of E in [0.1, 10] over up to 3 decades, z up to {THICKEST:g} of the shortest time",
+        {"": ("g, h, m, shares against Chebyshev polynomials", 1e-11)}, by_chebyshev,
+    ),
+    Proof(
+        "states", "state_materials", "1.01 <= alpha <= 1e6, 1 to 10 and 30 modes, pairs of 1 to 5 modes a body; kappa "
+        "V from 1e-14 over the slowest time to 1e14 over the fastest, creep from 1e-14 delta_star to its end",
+        _states("relative", 5e-15, "delta_star", "Q", "M")
+        # strengths of 1e4 beside 1: what a slow mode takes of M is then a difference
+        | _states("over M", 1e-12, *OF_BODIES)
+        # for alpha from 20 to 35, 24 powers of one octave leave 1.4e-14 of epsilon and 6.5e-15 of lam
+        | _states("relative", 1.5e-14, "lam") | _states("relative", 3e-14, "epsilon")
+        | _states("over its condition", 1.5e-14, "beta")
+        | _states("relative, over the condition of beta", 1e-14, "dQ_ddelta")
+        | _states("over mu/V, over the condition of beta", 1e-14, "dQ_dV")
+        | _states("over M/V", 5e-14, "dM_dV"), states,
+    ),
+]  # fmt: skip

@@ -43,8 +43,6 @@ MOTIONS = [
     (ALPHA_11, 30.0, 120.0), (WEAK, 30.0, 30.0), (WEAK, 100.0, 1000.0), (STRONG, 30.0, 30.0), (STRONG, 100.0, 1000.0),
     (DMA, 30.0, 583.0), (DMA, 100.0, 583.0), (DMA, 318.0, 5000.0),
 ]  # fmt: skip
-#: those of the table over gamma
-FEW = 6
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0)
 #: of V at the start, what a start from rest has to leave: below, the formula for it is short by a tenth and more
 _CLEAR = 0.9

@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -47,63 +47,53 @@ _REMOVED = 0.3
 
 
 def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """What was done to caches and what came of it."""
-    rng = np.random.default_rng(sizes["seed"])
+    """The bits of motions rolled with an empty cache by one process, and with caches of other histories."""
+    rng, works = np.random.default_rng(sizes["seed"]), list(_WORK)
     with tempfile.TemporaryDirectory() as name:
-        caches = Caches(Path(name), sizes["motions"], rng)
-        return [
-            row("compiled kernels: other programs filled the cache", caches.in_turn(sizes["in_turn"])),
-            row("compiled kernels: several processes fill the cache at once", caches.at_once(sizes["at_once"])),
-            row("compiled kernels: files of the cache removed", caches.removed(sizes["removed"])),
-        ]
+        first, cache = Path(name) / "first", Path(name) / "cache"
 
+        def begin(works: list[str], cache: Path) -> subprocess.Popen:
+            """A process that does these works."""
+            code = "\n".join([_START.format(motions=sizes["motions"]), *(_WORK[name] for name in works), _END])
+            environment = os.environ | {"VISCOROLL_CACHE_DIR": str(cache)}
+            return subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, text=True)
 
-class Caches:
-    """The bits of motions rolled with an empty cache by one process, and other caches to roll them with."""
+        def in_turn() -> None:
+            """One program after the other, in any order, each with what the others left in the cache."""
+            for work in rng.permutation(works):
+                finish(begin([work], cache))
 
-    def __init__(self, folder: Path, motions: int, rng: np.random.Generator) -> None:
-        self.folder, self.rng, self.start = folder, rng, _START.format(motions=motions)
-        self.expected = self.finish(self.begin(list(_WORK), folder / "first"))
-        if not self.expected:
+        def at_once() -> None:
+            for process in [begin([work], cache) for work in works]:
+                finish(process)
+
+        def removed() -> None:
+            """A part of the functions, at random: they are compiled again, against those that are left."""
+            shutil.copytree(first, cache)
+            gap(cache, rng)
+
+        def outcomes(count: int, fill: Callable[[], None]) -> Iterator[str]:
+            for _ in tqdm(range(count), desc=fill.__name__, delay=1.0, leave=False):
+                fill()
+                printed = finish(begin(works, cache))
+                shutil.rmtree(cache)
+                yield "unharmed" if printed == expected else "other bits" if printed else "an error"
+
+        expected = finish(begin(works, first))
+        if not expected:
             raise subprocess.CalledProcessError(1, "motions on an empty cache")
+        return [
+            row(f"compiled kernels: {done}", outcomes(sizes[fill.__name__], fill)) for done, fill in (
+                ("other programs filled the cache", in_turn), ("several processes fill the cache at once", at_once),
+                ("files of the cache removed", removed),
+            )
+        ]  # fmt: skip
 
-    def begin(self, works: list[str], cache: Path) -> subprocess.Popen:
-        """A process that does these works."""
-        code = "\n".join([self.start, *(_WORK[name] for name in works), _END])
-        environment = os.environ | {"VISCOROLL_CACHE_DIR": str(cache)}
-        return subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, text=True)
 
-    @staticmethod
-    def finish(process: subprocess.Popen) -> str:
-        """What it printed; nothing if it failed."""
-        printed, _ = process.communicate()
-        return printed if process.returncode == 0 else ""
-
-    def outcome(self, cache: Path) -> str:
-        printed = self.finish(self.begin(list(_WORK), cache))
-        shutil.rmtree(cache)
-        return "unharmed" if printed == self.expected else "other bits" if printed else "an error"
-
-    def in_turn(self, count: int) -> Iterator[str]:
-        """One program after the other, in any order, each with what the others left in the cache."""
-        for _ in tqdm(range(count), desc="caches in turn", delay=1.0, leave=False):
-            for name in self.rng.permutation(list(_WORK)):
-                self.finish(self.begin([name], self.folder / "turn"))
-            yield self.outcome(self.folder / "turn")
-
-    def at_once(self, count: int) -> Iterator[str]:
-        for _ in tqdm(range(count), desc="caches at once", delay=1.0, leave=False):
-            for process in [self.begin([name], self.folder / "once") for name in _WORK]:
-                self.finish(process)
-            yield self.outcome(self.folder / "once")
-
-    def removed(self, count: int) -> Iterator[str]:
-        """A part of the functions, at random: they are compiled again, against those that are left."""
-        for _ in tqdm(range(count), desc="caches with gaps", delay=1.0, leave=False):
-            cache = self.folder / "gaps"
-            shutil.copytree(self.folder / "first", cache)
-            gap(cache, self.rng)
-            yield self.outcome(cache)
+def finish(process: subprocess.Popen) -> str:
+    """What it printed; nothing if it failed."""
+    printed, _ = process.communicate()
+    return printed if process.returncode == 0 else ""
 
 
 def gap(cache: Path, rng: np.random.Generator) -> None:

@@ -67,8 +67,8 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         ensemble = Ensemble(run, content(folder / "whole.zarr"), folder, rng)
         return [
             row("SIGKILL of an ensemble", ensemble.kills(sizes["ensembles"], seconds)),
-            row("SIGKILL of a dask worker", ensemble.workers(sizes["clusters"])),
-            row("SIGKILL of the dask scheduler", ensemble.schedulers(sizes["clusters"])),
+            row("SIGKILL of a dask worker", ensemble.cluster_kills(sizes["clusters"], "worker")),
+            row("SIGKILL of the dask scheduler", ensemble.cluster_kills(sizes["clusters"], "scheduler")),
             row("ensemble on a full disk", ensemble.full_disks(sizes["full_ensembles"])),
             row("export of a store to a full disk", ensemble.full_exports(sizes["full_ensembles"])),
             row("one bit of a file of a store flipped", ensemble.damage(sizes["stores"], flip)),
@@ -106,21 +106,15 @@ class Ensemble:
                 code = process.exitcode or 0
             yield self.outcome()
 
-    def workers(self, count: int) -> Iterator[str]:
-        """The run goes on by itself: dask gives the block to another worker."""
-        for _ in tqdm(range(count), desc="workers", delay=1.0, leave=False):
-            with self.cluster() as (_, workers, process):
-                workers[int(self.rng.integers(len(workers)))].kill()
+    def cluster_kills(self, count: int, whom: str) -> Iterator[str]:
+        """Of a worker: dask gives its block to another, and the run goes on by itself; of the scheduler: it may end
+        with an error of its own, and the same command goes on.
+        """
+        for _ in tqdm(range(count), desc=whom, delay=1.0, leave=False):
+            with self.cluster() as (scheduler, workers, process):
+                (scheduler if whom == "scheduler" else workers[int(self.rng.integers(len(workers)))]).kill()
                 code = process.wait(PATIENCE)
-            yield self.outcome() if code == 0 else f"exit code {code}"
-
-    def schedulers(self, count: int) -> Iterator[str]:
-        """The run ends with an error of its own, and the same command goes on."""
-        for _ in tqdm(range(count), desc="schedulers", delay=1.0, leave=False):
-            with self.cluster() as (scheduler, _, process):
-                scheduler.kill()
-                code = process.wait(PATIENCE)
-            yield self.outcome() if code in (0, 2) else f"exit code {code}"
+            yield self.outcome() if code == 0 or (code == 2 and whom == "scheduler") else f"exit code {code}"
 
     @contextmanager
     def cluster(self) -> Iterator[tuple[subprocess.Popen, list[subprocess.Popen], subprocess.Popen]]:

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 SCENES = (
     b'preset = "paper-section-5"\n',
@@ -25,31 +26,15 @@ SCENES = (
 LONGEST = 1 << 17
 
 
-def read_toml(path: Path) -> None:
-    from viscoroll import ViscorollError
-    from viscoroll.config import read_bodies, read_body
+def readers(what: str) -> tuple[Callable[[Path], Any], ...]:
+    if what == "toml":
+        from viscoroll.config import read_bodies, read_body
 
-    for read in (read_body, read_bodies):
-        try:
-            read(path)
-        except ViscorollError as error:
-            own(error)
-
-
-def read_table(path: Path) -> None:
-    from viscoroll import ViscorollError, load_law
+        return read_body, read_bodies
+    from viscoroll import load_law
     from viscoroll.tables import load
 
-    for read in (load, load_law):
-        try:
-            read(path)
-        except ViscorollError as error:
-            own(error)
-
-
-def own(error: Exception) -> None:
-    if not str(error) or "\n" in str(error):
-        raise AssertionError(f"not one line: {error!r}")
+    return load, load_law
 
 
 def seeds(what: str, folder: Path) -> None:
@@ -70,15 +55,20 @@ def fuzz(what: str, seconds: int, corpus: Path) -> None:
     import atheris
 
     with atheris.instrument_imports(include=["viscoroll", "tomllib", "h5netcdf"]):
-        import viscoroll.config
-        import viscoroll.tables.store  # noqa: F401
+        from viscoroll import ViscorollError
+
+        found = readers(what)
     seeds(what, corpus)
-    read: Callable[[Path], None] = {"toml": read_toml, "table": read_table}[what]
     path = Path(tempfile.mkdtemp()) / "input"
 
     def one(data: bytes) -> None:
         path.write_bytes(data)
-        read(path)
+        for read in found:
+            try:
+                read(path)
+            except ViscorollError as error:
+                if not str(error) or "\n" in str(error):
+                    raise AssertionError(f"not one line: {error!r}") from error
 
     options = [f"-max_total_time={seconds}", f"-max_len={LONGEST}", "-timeout=20", "-rss_limit_mb=4096"]
     atheris.Setup([sys.argv[0], *options, str(corpus)], one)

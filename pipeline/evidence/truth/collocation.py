@@ -1,9 +1,7 @@
 """Radau IIA collocation of any order for small stiff systems, in the digits that Arb is asked for.
 
-A step solves u' = f(u) at the nodes for the polynomial of degree n through the start.  Newton's
-iteration takes residuals with all digits and its matrix in double precision: each correction gains
-about as many digits as a double has.  (E. Hairer, G. Wanner, Solving Ordinary Differential Equations
-II, Springer 1996, Sect. IV.5.)
+A step (:mod:`step`) solves u' = f(u) at the nodes for the polynomial of degree n through the start.  (E. Hairer, G.
+Wanner, Solving Ordinary Differential Equations II, Springer 1996, Sect. IV.5.)
 """
 
 from __future__ import annotations
@@ -12,29 +10,15 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.errors import ConvergenceError
 from viscoroll.extras import imported
 
-_MOST_ITERATIONS = 15
-#: a correction below this share leaves one of its square, or of 1e-14 of it, to be made
-_LAST_CORRECTION = 1e-20
 #: a zero is found to this share of a step on its polynomial
 _LOCATED, _MOST_BISECTIONS = 1e-25, 200
-
-
-class System(Protocol):
-    """What is integrated."""
-
-    def rates(self, u: Sequence[Any]) -> tuple[list[Any], NDArray]:
-        """(u', matrix of du'/du as doubles); raises ConvergenceError where u has left the domain."""
-
-    def sizes(self, values: Sequence[Sequence[Any]], taus: Sequence[Any]) -> list[float]:
-        """What errors of the unknowns are measured by, in a step with these values at these times after its start."""
 
 
 @dataclass(frozen=True)
@@ -52,32 +36,6 @@ class Radau:
     bary: list[Any]
     tail: tuple[list[Any], list[Any]]
     matrix: NDArray
-
-    def step(self, system: System, start: Sequence[Any], guess: list[list[Any]], h: Any) -> list[list[Any]] | None:
-        """Values at the nodes of one step of length ``h``; None where the iteration does not converge."""
-        arb_mat = imported("flint", "python-flint", "dev").arb_mat
-        n, size, length = len(self.nodes), len(start), float(h)
-        values, taus = guess, [h * c for c in self.nodes]
-        for _ in range(_MOST_ITERATIONS):
-            try:
-                found = [system.rates(value) for value in values]
-            except ConvergenceError:
-                return None
-            defect = self.slopes * arb_mat([list(start), *values])
-            matrix = np.kron(self.matrix, np.eye(size))
-            right = np.empty(n * size)
-            for i, (rate, slope) in enumerate(found):
-                here = slice(i * size, (i + 1) * size)
-                matrix[here, here] -= length * slope
-                right[here] = [float(defect[i, m] - h * rate[m]) for m in range(size)]
-            if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
-                return None
-            change = np.linalg.solve(matrix, right).reshape(n, size)
-            values = [[(u - float(d)).mid() for u, d in zip(*pair, strict=True)] for pair in zip(values, change)]
-            scale = system.sizes(values, taus)
-            if np.max(np.abs(change) / scale) < _LAST_CORRECTION:
-                return values
-        return None
 
     def at(self, start: Sequence[Any], values: list[list[Any]], theta: Any) -> list[Any]:
         """The polynomial at the share ``theta`` of the step, not at a node."""

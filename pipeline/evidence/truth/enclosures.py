@@ -14,10 +14,10 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from viscoroll.checks import checked
-from viscoroll.errors import ConvergenceError, ParameterError
+from viscoroll.errors import ConvergenceError
 from viscoroll.extras import imported
-from viscoroll.scene import Scene
+
+from .precise import single_numbers
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14
@@ -58,20 +58,11 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
     Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
     most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
     """
-    scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
-    speed, creep = checked("V", V), checked("delta", delta)
-    if scene.shape or speed.ndim or creep.ndim:
-        raise ParameterError("contact_enclosure", "arrays", "called with single numbers")
-    if speed == 0.0:
-        raise ParameterError("V", 0.0, "different from 0")
+    given, sign_V, sign_delta = single_numbers("contact_enclosure", alpha, kappa, mu, V, delta)
     flint = _flint()
-    given = (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep))
-    state = enclosed({name: flint.arb(float(value)) for name, value in zip(INPUTS, given, strict=True)}, bits)
+    state = enclosed({name: flint.arb(value) for name, value in zip(INPUTS, given, strict=True)}, bits)
     with flint.ctx.workprec(_MOST_BITS):  # a change of sign shall not round
-        if (speed < 0.0) != (creep < 0.0):
-            state["Q"] = -state["Q"]
-        if speed < 0.0:
-            state["M"] = -state["M"]
+        state["Q"], state["M"] = state["Q"] * (sign_V * sign_delta or 1), state["M"] * sign_V
     return state
 
 
@@ -92,24 +83,11 @@ def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]
 
     By differences with a relative step of 2^-180, far above the balls and far below anything that bends.
     """
-    flint = _flint()
-    bits += _STEP_BITS
-    base = enclosed(given, bits)
-    total = dict.fromkeys((name for name in base if name != "full_slip"), 0.0)
-    with flint.ctx.workprec(4 * bits):
-        step = flint.arb(2) ** -_STEP_BITS
-        for name in INPUTS:
-            moved = enclosed(_moved(given, name, step), bits)
-            for field, sum_so_far in total.items():
-                if not base[field].is_zero():
-                    change = abs((moved[field] - base[field]) / (base[field] * step))
-                    total[field] = sum_so_far + float(change.mid())
-    return total
 
+    def fields(given: dict[str, Any], bits: int) -> dict[str, Any]:
+        return {name: value for name, value in enclosed(given, bits).items() if name != "full_slip"}
 
-def _moved(given: dict[str, Any], name: str, step: Any) -> dict[str, Any]:
-    """One input moved by a relative step: alpha up, away from 1, and delta down, away from delta_star."""
-    return given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}
+    return _changes(fields, given, bits + _STEP_BITS, _STEP_BITS, lambda value: value)
 
 
 def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
@@ -131,16 +109,20 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
 
 def slope_changes(given: dict[str, Any], bits: int = 40) -> dict[str, float]:
     """Sum over the inputs of |d slope/d ln input| for every slope: its change for a relative error of one in each."""
-    flint = _flint()
-    bits += _OUTER_BITS
-    base = slopes(given, bits)
+    return _changes(slopes, given, bits + _OUTER_BITS, _OUTER_BITS, lambda value: 1)
+
+
+def _changes(function: Any, given: dict[str, Any], bits: int, step_bits: int, scale: Any) -> dict[str, float]:
+    """Sums of differences over their scales; alpha moves up, away from 1, and delta down, away from delta_star."""
+    flint, base = _flint(), function(given, bits)
     total = dict.fromkeys(base, 0.0)
     with flint.ctx.workprec(4 * (bits + _STEP_BITS)):
-        step = flint.arb(2) ** -_OUTER_BITS
+        step = flint.arb(2) ** -step_bits
         for name in INPUTS:
-            moved = slopes(_moved(given, name, step), bits)
-            for slope, sum_so_far in total.items():
-                total[slope] = sum_so_far + float(abs((moved[slope] - base[slope]) / step).mid())
+            moved = function(given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits)
+            for field, value in base.items():
+                if scale(value) != 0:
+                    total[field] += float(abs((moved[field] - value) / (scale(value) * step)).mid())
     return total
 
 

@@ -16,8 +16,7 @@ from viscoroll.scene import Scene
 
 from .collocation import Radau, radau
 from .load import Piece, course_of, pieces_of
-from .phase import Law, Phase, sign
-from .phases import Sticking
+from .phases import Law, Phase, Sticking, sign
 from .rest import begun, departed, leaving
 from .solid import solid_of
 from .step import met, solved

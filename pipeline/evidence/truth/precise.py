@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from viscoroll.checks import checked
 from viscoroll.errors import ConvergenceError, ParameterError
 from viscoroll.extras import imported
@@ -54,24 +56,28 @@ def contact_precise(alpha: float, kappa: float, mu: float, V: float, delta: floa
     Each value to ``digits`` relative digits for alpha - 1 >= 1e-8, kappa V in [1e-8, 1e8] and
     |delta|/delta_star in [1e-8, 1 - 1e-8] (``tests/docs/test_readme.py`` compares 20 with 50 digits).
     """
-    scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
-    speed, creep = checked("V", V), checked("delta", delta)
-    if scene.shape or speed.ndim or creep.ndim:
-        raise ParameterError("contact_precise", "arrays", "called with single numbers")
-    if speed == 0.0:
-        raise ParameterError("V", 0.0, "different from 0")
+    given, sign_V, sign_delta = single_numbers("contact_precise", alpha, kappa, mu, V, delta)
     if digits < _LEAST_DIGITS:
         raise ParameterError("digits", digits, f">= {_LEAST_DIGITS}")
     mp = imported("mpmath", "mpmath", "dev")
     with mp.workdps(digits + _GUARD):
-        given = (mp.mpf(float(value)) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep)))
-        state = printed_state(mp, *given)
-        if creep == 0.0:
-            state["Q"] = mp.mpf(0)
+        state = printed_state(mp, *map(mp.mpf, given))
         # Eqs. (17), (18): omega - V = delta V
-        state["Q"] *= mp.sign(float(creep)) * mp.sign(float(speed))
-        state["M"] *= mp.sign(float(speed))
+        state["Q"] *= sign_delta * sign_V
+        state["M"] *= sign_V
     return state
+
+
+def single_numbers(caller: str, alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> tuple[list[float], int, int]:
+    """(alpha, kappa, mu, |V| and |delta| as floats, signs of V and of delta), of one state with V other than 0."""
+    scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
+    speed, creep = checked("V", V), checked("delta", delta)
+    if scene.shape or speed.ndim or creep.ndim:
+        raise ParameterError(caller, "arrays", "called with single numbers")
+    if speed == 0.0:
+        raise ParameterError("V", 0.0, "different from 0")
+    given = [float(value) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep))]
+    return given, int(np.sign(speed)), int(np.sign(creep))
 
 
 def printed_state(mp: Any, alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any]:

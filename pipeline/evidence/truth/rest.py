@@ -8,8 +8,7 @@ from typing import Any
 from viscoroll.errors import ConvergenceError
 
 from .load import Piece
-from .phase import Contact, Law, Phase, root, sign
-from .phases import Slipping, Sticking
+from .phases import Contact, Law, Phase, Slipping, Sticking, root, sign
 
 #: share of a piece behind which it is looked at where it begins with what moves nothing, and parts of it looked at
 _SOON, _PARTS = 1e-6, 64

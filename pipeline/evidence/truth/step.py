@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from viscoroll.extras import imported
 
 from .collocation import Radau, zero_between
-from .phase import Phase
+from .phases import Phase
 
 #: iterations of a step, of which the first take a new matrix, and steps that look for an event
 _MOST_ITERATIONS, _MATRICES, _CUTS = 14, 3, 12

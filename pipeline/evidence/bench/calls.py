@@ -1,0 +1,253 @@
+"""Calls that are timed in turn on one core: states of the law, motions of materials, what is left out, a map."""
+
+from __future__ import annotations
+
+import ctypes
+from functools import partial
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+import viscoroll as vr
+from viscoroll.materials.law_table import made
+from viscoroll.motion import flow
+
+from ..timing import seconds_of, timed
+from ..truth import contact_precise
+from .problem import speed_error
+
+PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
+#: error of the integrator that is allowed for, in rtol: see the docstring of viscoroll.roll
+_INTEGRATOR = 30
+
+
+def speeds_and_creep(random: np.random.Generator, count: int) -> tuple[NDArray, NDArray]:
+    """V of a motion's end to its start, and creep over that of full slip."""
+    return np.exp(random.uniform(np.log(1e-3), np.log(2.0), count)), random.uniform(size=count)
+
+
+def creep(scene: vr.Scene, V: NDArray, s: NDArray) -> NDArray:
+    return s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+
+
+def starts(random: np.random.Generator, count: int) -> NDArray:
+    """V0 and omega0."""
+    return random.uniform(-2.0, 2.0, (2, count))
+
+
+def ensemble(scene: vr.Scene, start: NDArray, t: Any, fields: tuple[str, ...] = ("V", "omega"), **how: Any) -> Any:
+    """A call on one thread, by the integrator unless told."""
+    given = {"method": "integrate", "threads": 1} | how
+    return partial(vr.ensemble, scene, *start, t, fields=fields, **given)
+
+
+def law(sizes: dict[str, Any]) -> dict[str, Any]:
+    """ns a state for each way to ask for Q and M, and the largest relative error against 50 digits."""
+    random, n, fields = np.random.default_rng(sizes["seed"]), sizes["states"], ("Q", "M")
+    alpha = np.exp(random.uniform(np.log(1.1), np.log(100.0), n))
+    V, s = speeds_and_creep(random, n)
+    calls, errors = {}, {}
+    for name, given, method in (
+        ("one_alpha", PAPER.alpha, "table"), ("an_alpha_each", alpha, "table"), ("alpha_1", 1.0, "table"),
+        ("direct_one_alpha", PAPER.alpha, "direct"), ("direct_an_alpha_each", alpha, "direct"),
+    ):  # fmt: skip
+        count = max(n // sizes["direct_share"], 1) if method == "direct" else n
+        own = given[:count] if np.ndim(given) else given
+        scene = PAPER.replace(alpha=own)
+        delta = creep(scene, V[:count], s[:count])
+        calls[name] = count, partial(vr.contact, scene, V[:count], delta=delta, fields=fields, method=method)
+        found, worst = calls[name][1]().as_dict(), dict.fromkeys(fields, 0.0)
+        for i in range(min(sizes["exact_states"], count)):
+            exact = contact_precise(own[i] if np.ndim(own) else own, PAPER.kappa, PAPER.mu, V[i], delta[i], 50)
+            for field in fields:
+                off = abs(float(found[field][i]) - exact[field])
+                worst[field] = max(worst[field], float(off / abs(exact[field]) if exact[field] else off))
+        errors[name] = {"error": worst}
+    return {name: row | errors[name] for name, row in timed(calls, sizes["repeats"]).items()}
+
+
+@numba.njit
+def jitted_states(law, V, omega):
+    """Sum over states, so that none is left out."""
+    total = 0.0
+    for i in range(V.size):
+        state = law(V[i], omega[i])
+        total += state.Q + state.M + state.dQ_dV + state.dQ_domega + state.dM_cylinder_dV
+    return total
+
+
+def bound_law(sizes: dict[str, Any]) -> dict[str, Any]:
+    """A row for each material and way to call the law of a scene, with that of contact() called alike.
+
+    The states are those of one motion: creep from 0 to delta_star, speeds within a factor of 2.
+    """
+    random, n, few = np.random.default_rng(sizes["seed"]), sizes["states"], sizes["numbers"]
+    V, share = random.uniform(0.2, 0.4, n), random.uniform(size=n)
+    series = rubber(3)
+    materials = {
+        "one alpha": {}, "3 modes": {"material": series},
+        "3 modes on an elastic base": {"material": vr.Bodies(series, vr.Prony.elastic(), 0.8)},
+    }  # fmt: skip
+    calls, bound = {}, {}
+    for name, material in materials.items():
+        scene = PAPER.replace(**material)
+        omega = V * (1.0 + creep(scene, V, share))
+        contact = partial(vr.contact, scene, fields=("Q", "M", "M_half_space", "M_cylinder"))
+        law = vr.law(scene)  # compiled
+        bound[name] = 1e3 * seconds_of(partial(vr.law, scene.replace(mu=0.3)))[0]
+        numbers = list(zip(V[:few].tolist(), omega[:few].tolist()))
+        (function, data), out = law.ctypes, (ctypes.c_double * 8)()
+
+        def each(call, numbers=numbers):
+            return lambda: [call(v, w) for v, w in numbers]
+
+        for slopes in (False, True):
+            one = partial(lambda contact, slopes, v, w: contact(v, omega=w, slopes=slopes), contact, slopes)
+            calls[name, "numbers", slopes] = few, each(partial(law, slopes=slopes))
+            calls[name, "numbers, contact", slopes] = few, each(one)
+            calls[name, "array", slopes] = n, partial(law, V, omega, slopes=slopes)
+            calls[name, "array, contact", slopes] = n, partial(contact, V, omega=omega, slopes=slopes)
+        calls[name, "jitted", True] = n, partial(jitted_states, law.jitted, V, omega)
+        calls[name, "C by ctypes", True] = (
+            few,
+            each(lambda v, w, call=function, out=out, data=data: call(v, w, out, data)),
+        )
+    found = timed(calls, sizes["repeats"])
+    rows = [
+        {"material": name, "way": way, "slopes": slopes} | ns
+        | {"contact": found[name, ("array" if way == "array" else "numbers") + ", contact", slopes]}
+        for (name, way, slopes), ns in found.items() if not way.endswith(", contact")
+    ]  # fmt: skip
+    return {"rows": rows, "bind_ms": bound}
+
+
+def rubber(modes: int, strength: float = 10.0) -> vr.Prony:
+    """Equal strengths that sum up to ``strength``, times a third of a decade apart, as a fit has them."""
+    return vr.Prony(np.full(modes, strength / modes), 3.0 ** -np.arange(float(modes)))
+
+
+def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+    """A row a material: nanoseconds a state and a motion, and milliseconds of its table."""
+    random, n, m = np.random.default_rng(sizes["seed"]), sizes["states"], sizes["motions"]
+    V, s = speeds_and_creep(random, n)
+    start, t = starts(random, m), np.linspace(0.0, sizes["end"], sizes["times"])
+
+    def spread(modes: int) -> vr.Prony:
+        """Materials whose strengths and times are off by some 10 and 30 %."""
+        mean, off = rubber(modes), random.standard_normal((2, m, modes))
+        return vr.Prony(mean.E * np.exp(0.1 * off[0]), mean.tau * np.exp(0.3 * off[1]))
+
+    materials = {"alpha = 11": None} | {f"{modes} modes": rubber(modes) for modes in (1, 3, 10, 30)}
+    materials["pair of 10 and 3 modes"] = vr.Bodies(rubber(10), rubber(3, 2.0), 0.4)
+    many = {f"{modes} modes, a material each": spread(modes) for modes in (1, 3, 10)}
+    many["3 and 3 modes, a pair each"] = vr.Bodies(spread(3), spread(3), 0.4)
+    calls = {}
+    for name, material in (materials | many).items():
+        scene = PAPER.replace(material=material) if material else PAPER
+        if name in materials:
+            fields = ("Q", "M") if scene.like_bodies else ("Q", "M", "M_half_space")
+            calls[name, "contact"] = n, partial(vr.contact, scene, V, delta=creep(scene, V, s), fields=fields)
+        calls[name, "motion"] = m, ensemble(scene, start, t, ("V", "omega", "x"), rtol=sizes["rtol"])
+    found = timed(calls, sizes["repeats"])
+    return [
+        {
+            "material": name,
+            "table_ms": 1e3 * seconds_of(partial(made, material))[0] if material and name in materials else None,
+        }
+        | {kind: found[name, kind] for kind in ("contact", "motion") if (name, kind) in found}
+        for name, material in (materials | many).items()
+    ]
+
+
+def skips(sizes: dict[str, Any]) -> dict[str, Any]:
+    """What a scene does not need and what leaving it out saves: pairs of calls that differ in one thing."""
+    random, m = np.random.default_rng(sizes["seed"]), sizes["motions"]
+    V, s = speeds_and_creep(random, sizes["states"])
+    start, elastic = starts(random, m), PAPER.replace(alpha=1.0)
+    t, early, three = np.linspace(0.0, 3e-3, 31)[1:], np.linspace(0.0, 1e-6, 31)[1:], ("V", "omega", "x")
+
+    def contact(scene=PAPER, s=s, fields=("Q", "M")):
+        return partial(vr.contact, scene, V, delta=creep(scene, V, s), fields=fields)
+
+    states, motions, slow = contact(), ensemble(PAPER, start, t), np.full((2, m), 1e-9)
+    pairs = {
+        "alpha = 1: no Bessel ratio (contact)": (states, contact(elastic)),
+        "alpha = 1: no Bessel ratio (motion)": (motions, ensemble(elastic, start, t)),
+        "full slip only: neither beta nor Q (contact)": (states, contact(s=2.0)),
+        "full slip only (motion)": (motions, ensemble(PAPER, start, early)),
+        "only lam asked for (contact)": (contact(fields=None), contact(fields=("lam",))),
+        "only M asked for (contact)": (contact(fields=None), contact(fields=("M",))),
+        "final state only (motion)": (motions, ensemble(PAPER, start, t[-1:])),
+        "rest: outputs filled behind it": (motions, ensemble(PAPER, start, t, rest=1e-1)),
+        "one scene: looked up, not integrated": (motions, ensemble(PAPER, start, t, method="flow")),
+        "distance not asked for (flow map)": (
+            ensemble(PAPER, start, t, three, method="flow"), ensemble(PAPER, start, t, method="flow"),
+        ),
+        "all at rest": (motions, ensemble(PAPER, 0.0 * start, t)),
+        "all below the rest threshold": (ensemble(PAPER, slow, t), ensemble(PAPER, slow, t, rest=1e-6)),
+    }  # fmt: skip
+    calls = {(name, n): (1e9, call) for name, both in pairs.items() for n, call in enumerate(both)}
+    found = {key: row["ns"] for key, row in timed(calls, sizes["repeats"]).items()}
+    return {
+        name: {"all_s": found[name, 0], "skipped_s": found[name, 1], "ratio": found[name, 0] / found[name, 1]}
+        for name in pairs
+    }
+
+
+def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Many motions of one scene by its flow map: ns a motion by fields and output times; the map's own figures."""
+    request, start = flow.asked(PAPER, 2.0), starts(np.random.default_rng(sizes["seed"]), sizes["motions"])
+    t = np.linspace(0.0, sizes["end"], sizes["times"] + 1)[1:]
+
+    def load() -> Any:
+        flow._recent.clear()
+        return flow.flow_map(PAPER, 2.0)
+
+    table, calls = load(), {}
+    for end, times in (("final ", t[-1:]), ("", t)):
+        for fields in (("V", "omega"), ("V", "omega", "x")):
+            name = f"{end}{', '.join(fields)}" + ("" if end else f" at {t.size} times")
+            calls[name] = start[0].size, ensemble(PAPER, start, times, fields, method="flow")
+    found = {name: call() for name, (_, call) in calls.items()}
+    rows = timed(calls, sizes["repeats"])
+    once = timed({"build": (1e9, partial(flow.build, *request, 1)), "load": (1e9, load)}, sizes["repeats"])
+    few = slice(sizes["exact"])
+    best = ensemble(PAPER, start[:, few], t, rtol=1e-11)()
+    mine = found[f"V, omega at {t.size} times"]
+    by_map, off = mine.flow[few], speed_error(mine, best)
+    return {
+        "rows": {name: row | {"answered": float(found[name].flow.mean())} for name, row in rows.items()},
+        "error": {
+            "final": float(off[by_map, -1].max()), "all_times": float(off[by_map].max()),
+            "with_integrated": float(off.max()),
+        },
+        "compared": by_map.size, "not_in_map": int((~by_map).sum()),
+        "stated_error": table.error, "stated_path_error": table.path_error,
+        "build_s": once["build"]["ns"], "load_s": once["load"]["ns"], "bytes": int(table.table.nbytes),
+    }  # fmt: skip
+
+
+def agreement(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Flow and integrator on the same random starts of random scenes: how much of the stated error is used."""
+    random, rows = np.random.default_rng(sizes["seed"]), []
+    for _ in tqdm(range(sizes["scenes"]), desc="scenes", leave=False, disable=None):
+        alpha, kappa, mu = np.exp(random.uniform(*np.log([[1.001, 0.5, 0.01], [1e4, 200.0, 3.0]]))).tolist()
+        scene = vr.Scene(alpha, kappa, mu, 1.0, random.uniform(0.1, 2.0))
+        start = starts(random, sizes["starts"])
+        t = np.geomspace(1e-3, 5.0, sizes["times"]) * (1.0 + scene.j) * alpha / (alpha - 1.0)
+        quick = ensemble(scene, start, t, method="flow", rtol=1e-3, threads=sizes["threads"])()
+        slow = ensemble(scene, start, t, rtol=sizes["rtol"], threads=sizes["threads"])()
+        worst = float(speed_error(quick, slow)[quick.flow].max(initial=0.0))
+        rows.append(
+            {name: getattr(scene, name) for name in ("alpha", "kappa", "mu", "j")}
+            | {"by_map": float(quick.flow.mean()), "why_not": quick.flow_problem, "stated": quick.flow_error}
+            | {"worst": worst, "failed": int((quick.status > 1).sum())}
+        )
+    shares = [row["worst"] / (row["stated"] + _INTEGRATOR * sizes["rtol"]) for row in rows if row["by_map"] > 0.0]
+    return {
+        "rows": rows, "starts": sizes["starts"] * len(rows), "scenes_with_map": len(shares),
+        "within_stated": sum(share <= 1.0 for share in shares), "worst_share": max(shares, default=0),
+    }  # fmt: skip

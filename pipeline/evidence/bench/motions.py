@@ -1,0 +1,183 @@
+"""Error against time per motion, for every method and tolerance of the configuration.
+
+A new method needs a function that prepares it, a row of METHODS, and its tolerances in [bench.*.methods] of the
+configuration; one that the configuration does not name is not run.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from tqdm import tqdm
+
+import viscoroll as vr
+
+from ...runtime import rolled
+from ..peers import lsoda_compiled, paper_method, scipy_peers
+from ..timing import seconds_of, steady_seconds
+from . import implicit
+from .problem import Outcome, Problem, errors, own_problem, paper_problems, reference, reference_difference
+
+#: right-hand sides after which a peer gives up: 15 s of the paper's method, 1 min of scipy's
+_MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000
+Call = Callable[[], Outcome]
+
+
+def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
+    """This package: :func:`viscoroll.ensemble` on one thread."""
+    given = {"rtol": rtol, "method": method, "fields": ("V", "omega"), "threads": 1}
+    call = partial(vr.ensemble, problem.scene, problem.V0, problem.omega0, problem.t, **given)
+    call()  # compiles, and builds what is built once
+    return call
+
+
+def _implicit(problem: Problem, rtol: float, law: Any) -> Call:
+    """The Rosenbrock method of pipeline/runtime.py on another law of one scene."""
+    alpha, kappa, mu, gamma, j = problem.parameters()[0].tolist()
+    one, t = partial(rolled, law(alpha, kappa, mu), gamma, j, 0.5 * mu / kappa), np.concatenate([[0.0], problem.t])
+
+    def call(count: int | None = None) -> Outcome:
+        found = [one(start, t, rtol) for start in list(zip(problem.V0, problem.omega0))[:count]]
+        return Outcome(*np.array(found)[:, :, 1:].transpose(1, 0, 2))
+
+    call(1)  # compiles
+    return call
+
+
+def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
+    program, starts = paper_method.build(Path(_build_folder().name)), np.column_stack([problem.V0, problem.omega0])
+    given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST_COMPILED)
+    return lambda: Outcome(*paper_method.run(*given))
+
+
+@cache
+def _build_folder() -> tempfile.TemporaryDirectory:
+    return tempfile.TemporaryDirectory(prefix="viscoroll-peers-")
+
+
+def _scipy(problem: Problem, rtol: float, name: str) -> Call:
+    motions = list(zip(problem.parameters().tolist(), zip(problem.V0.tolist(), problem.omega0.tolist())))
+
+    def call() -> Outcome:
+        found = [scipy_peers.roll(name, *motion, problem.t, rtol, _MOST_PYTHON) for motion in motions]
+        V, omega, evaluations = zip(*found)
+        return Outcome(np.array(V), np.array(omega), evaluations=float(sum(evaluations)))
+
+    return call
+
+
+def _lsoda(problem: Problem, rtol: float) -> Call:
+    stuck = lsoda_compiled.prepare(problem.parameters(), problem.V0, problem.omega0, problem.t)
+    lsoda_compiled.run(stuck, problem.t, 1e-2)
+    return lambda: Outcome(*lsoda_compiled.run(stuck, problem.t, rtol))
+
+
+class Method(NamedTuple):
+    """One way to roll motions: ``prepare(problem, rtol)`` does what is not timed and returns the call that is.
+
+    ``missing()`` says why it cannot run here, or None.
+    """
+
+    label: str
+    prepare: Callable[[Problem, float], Call]
+    note: str = ""
+    missing: Callable[[], str | None] = lambda: None
+
+
+_GSL = ("Brent-Dekker in each right-hand side, C; time measured inside the program", paper_method.missing)
+_ROSENBROCK = "the Rosenbrock method of pipeline/runtime.py, pipeline/evidence/bench/implicit.py"
+METHODS = {
+    "flow": Method(
+        "viscoroll, flow map", partial(_ensemble, method="flow"),
+        "a fixed scene only; building the map is in setup_s; its error is the map's, whatever rtol",
+    ),
+    "table": Method("viscoroll, integrated", partial(_ensemble, method="integrate")),
+    "direct": Method(
+        "root solves + Rosenbrock", partial(_implicit, law=implicit.by_roots),
+        f"printed equations by Brent-Dekker in numba; {_ROSENBROCK}",
+    ),
+    "atlas": Method(
+        "3-D atlas spline + Rosenbrock", partial(_implicit, law=implicit.by_atlas),
+        f"ends at kappa V = 1e-3: below, its law is held, 1e-3 in M; {_ROSENBROCK}",
+    ),
+    "lsoda": Method(
+        "LSODA, explicit right-hand side", _lsoda, "by numbalsoda; full slip is given to it and not timed",
+        lsoda_compiled.missing,
+    ),
+    "gsl-adams": Method("the paper's method (GSL Adams)", partial(_paper_method, name="adams"), *_GSL),
+    "gsl-bdf": Method("GSL BDF, root solves", partial(_paper_method, name="bdf"), *_GSL),
+    "scipy-lsoda": Method("scipy LSODA, brentq", partial(_scipy, name="LSODA")),
+    "scipy-radau": Method("scipy Radau, brentq", partial(_scipy, name="Radau")),
+}  # fmt: skip
+
+
+def work_precision(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Groups IC1, IC2, IC3 (one motion each) and ``random`` (the same starts for all methods)."""
+    return compare(paper_problems(sizes), sizes)
+
+
+def own_parameters(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Every motion its own scene."""
+    return compare(own_problem(sizes), sizes)
+
+
+def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, Any]:
+    """Every method on every problem: rows in ``results``, what could not run in ``skipped``."""
+    best = {name: reference(problem) for name, problem in problems.items()}
+    chosen = {name: METHODS[name] for name in sizes["methods"]}
+    skipped = {name: reason for name, method in chosen.items() if (reason := method.missing())}
+    for name, reason in skipped.items():
+        print(f"benchmark: {name} skipped: {reason}")
+    calls = [
+        entry
+        for name, method in chosen.items() if name not in skipped
+        for group, problem in problems.items()
+        for entry in _calls(name, method, group, problem, {"repeats": sizes["repeats"]} | sizes["methods"][name])
+    ]  # fmt: skip
+    with tqdm(total=sum(entry["repeats"] for entry in calls), desc="runs", leave=False, disable=None) as bar:
+        for turn in range(max((entry["repeats"] for entry in calls), default=0)):
+            for entry in (entry for entry in calls if turn < entry["repeats"]):
+                seconds, entry["outcome"] = steady_seconds(entry["call"])
+                own = entry["outcome"].seconds if isinstance(entry["outcome"], Outcome) else None
+                entry["seconds"].append(seconds if own is None else own)
+                bar.update()
+    return {
+        "reference": {
+            name: reference_difference(problem, best[name], sizes["reference_motions"])
+            for name, problem in problems.items()
+        },
+        "methods": {name: {"label": method.label, "note": method.note} for name, method in chosen.items()},
+        "results": [_row(best[entry["row"]["group"]], **entry) for entry in calls],
+        "skipped": skipped,
+    }
+
+
+def _calls(name: str, method: Method, group: str, problem: Problem, settings: dict[str, Any]) -> list[dict[str, Any]]:
+    """What is to be timed: one entry for each tolerance of the method."""
+    if problem.V0.size == 1:
+        problem = problem.copies(settings.get("copies", 1))
+    elif settings["motions"] == 0:
+        return []
+    else:
+        problem = problem.take(settings["motions"])
+    entries = []
+    for rtol in settings["rtol"]:
+        setup, call = seconds_of(partial(method.prepare, problem, rtol))
+        row = {"method": name, "group": group, "rtol": rtol, "motions": problem.V0.size, "setup_s": setup}
+        entries.append({"row": row, "call": call, "seconds": [], "repeats": settings["repeats"]})
+    return entries
+
+
+def _row(best: Outcome, row: dict[str, Any], outcome: Any, seconds: list[float], **_: Any) -> dict[str, Any]:
+    """What is kept of an entry."""
+    motions = row["motions"]
+    if len(best.V) < motions:
+        best = Outcome(np.repeat(best.V, motions, axis=0), np.repeat(best.omega, motions, axis=0))
+    us = {"us": 1e6 * float(np.median(seconds)) / motions, "least_us": 1e6 * min(seconds) / motions}
+    counted = getattr(outcome, "evaluations", None)
+    return row | us | ({} if counted is None else {"evaluations": counted / motions}) | errors(outcome, best)

@@ -1,0 +1,256 @@
+"""Contact states against certified enclosures, root solves of the printed equations and boundary elements; stress."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import flint
+import numpy as np
+from flint import arb
+
+import viscoroll as vr
+from pipeline.validation.states import ALLOWED, differences, random_states
+from pipeline.validation.stresses import closures
+
+from ..peers.standard import generators, standard
+from ..truth import boundary
+from ..truth.enclosures import (
+    INPUTS,
+    condition_numbers,
+    contact_enclosure,
+    shape_enclosure,
+    slope_changes,
+    slopes,
+)
+from .claim import Found, Proof, at
+from .draws import STATES, chosen_alpha, chosen_state, powers
+
+FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
+SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+#: relative error where the condition number leaves it, else that many roundings of the inputs
+WELL, ROUNDINGS, UNIT = 1e-13, 4.0, 2.0**-53
+#: the two bounds meet here
+WELL_CONDITIONED = WELL / (ROUNDINGS * UNIT)
+SLOPE, CLOSURE = 1e-10, 1e-11
+#: the last subnormals have no relative accuracy: their spacing, some times over
+_LEAST = 8 * 5e-324
+#: where the edges of the contact and of the stick zone lie: four roundings of x and lam, four of beta
+_SHIFT = 8.0 * UNIT
+#: states of a call
+_TOGETHER = 150
+#: elements in either zone, and twice as many
+_ELEMENTS = 60
+
+
+def by_axis(states: list[tuple[float, ...]]) -> Any:
+    """States with an alpha each."""
+    alpha, kappa, mu, V, delta = np.array([*states, states[0]]).T  # of one alone its rows would be made
+    state = vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
+    return vr.rolling_contact.Values({name: value[:-1] for name, value in state.as_dict().items()})
+
+
+def by_rows(states: list[tuple[float, ...]]) -> Any:
+    """States of one alpha."""
+    alpha, kappa, mu, V, delta = np.array(states).T
+    return vr.contact(vr.Scene(float(alpha[0]), kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
+
+
+def relative_error(value: float, exact: Any) -> float:
+    """|value - exact|/|exact|, less what the last subnormals cannot hold."""
+    with flint.ctx.workprec(200):
+        off = abs(arb(value) - exact)
+        if off <= _LEAST:
+            return 0.0
+        return math.inf if exact.contains(0) else float((off / abs(exact)).upper())
+
+
+def given(state: tuple[float, ...]) -> dict[str, Any]:
+    """Inputs as the doubles they are, without their signs."""
+    return {name: arb(abs(value)) for name, value in zip(INPUTS, state)}
+
+
+def contact(random: np.random.Generator, count: int, by: Any) -> Found:
+    """full_slip, then each field over its bound."""
+    for first in range(0, count, _TOGETHER):
+        one = None if by is by_axis else chosen_alpha(random)
+        states = [chosen_state(random, one or chosen_alpha(random)) for _ in range(min(_TOGETHER, count - first))]
+        values = by(states).as_dict()
+        for i, state in enumerate(states):
+            exact, where = contact_enclosure(*state), at(**dict(zip(INPUTS, state)))
+            if values["full_slip"][i] != exact["full_slip"]:
+                star = exact["delta_star"]
+                off = abs(arb(abs(state[4])) - star) / arb(float(np.spacing(float(star))))
+                yield where, {"full_slip": float(off.upper())}
+                continue
+            yield where, {"full_slip": 0.0}
+            factors = condition_numbers(given(state))
+            for name in FIELDS:
+                error, factor = relative_error(values[name][i], exact[name]), factors[name]
+                well = factor <= WELL_CONDITIONED
+                yield where, {(name, well): error if well else error / (factor * UNIT)}
+
+
+def direct(random: np.random.Generator, count: int) -> Found:
+    """Rows against root solves of the printed equations in doubles, in the units of pipeline.validation."""
+    scene, V, delta = random_states(count, int(random.integers(1 << 31)))
+    both = (vr.contact(scene, V, delta=delta, fields=FIELDS, method=method) for method in ("table", "direct"))
+    yield f"{count} states", differences(*both, scene)
+
+
+def slope_scales(mu: float, V: Any, alpha: float, star: Any) -> dict[str, Any]:
+    """What a slope may be measured by: a change of Q by mu as V or delta changes by all of itself; c for M."""
+    c = (alpha - 1.0) / alpha if alpha > 1.0 else 1.0
+    return {"dQ_dV": mu / V, "dQ_ddelta": mu / star, "dQ_domega": mu / (V * star), "dM_dV": c}
+
+
+def of_slopes(random: np.random.Generator, count: int) -> Found:
+    """dQ_ddelta, dQ_domega: relative, over what four roundings times the condition of beta exceed 1e-10; else by scale.
+
+    dQ_dV and dM_dV pass through zero; the others go to it with beta.  dQ_dV depends on eta through A = H'/F', which
+    rises from 0 within eta ~ 1/alpha: near the end of stick a relative error in delta, mu or V comes back up to about
+    2 alpha lam^2 (1 + epsilon)^2 times as large over mu/V.  Where it is beyond the bound its condition number is asked.
+    """
+    for _ in range(count):
+        alpha, ends = chosen_alpha(random), ((-6, 6), (-6, 6), (-8, 8), (-12, 0), (-12, 0))
+        kappa, mu, kappa_V, small, gap = powers(random, *ends)
+        V, s = kappa_V / kappa, small if random.random() < 0.5 else 1.0 - gap
+        scene = vr.Scene(alpha, kappa, mu)
+        star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+        found = vr.contact(scene, V, delta=s * star, fields=(), slopes=True)
+        inputs = given((alpha, kappa, mu, V, s * star))
+        exact, scales = slopes(inputs), slope_scales(mu, V, alpha, star)
+        excuse = max(1.0, ROUNDINGS * UNIT * condition_numbers(inputs)["beta"] / SLOPE)
+        with flint.ctx.workprec(200):
+            exact["dQ_domega"] = exact["dQ_ddelta"] / V
+            errors = {name: float(abs(arb(getattr(found, name)) - exact[name]).upper()) for name in SLOPES}
+        for name in SLOPES:
+            of_scale = name in ("dQ_dV", "dM_dV")
+            errors[name] /= scales[name] if of_scale else float(abs(exact[name])) * excuse
+        if errors["dQ_dV"] > SLOPE:
+            errors["dQ_dV"] /= max(1.0, ROUNDINGS * UNIT * slope_changes(inputs)["dQ_dV"] / scales["dQ_dV"] / SLOPE)
+        yield at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s), errors
+
+
+def enclosed_stress(exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: Any, x: Any) -> tuple[Any, Any]:
+    """p/E' and tau/E' at x."""
+    zeta = exact["zeta"]
+    eta, Y, scale = exact["beta"] * zeta, x / (kappa * V) - zeta * exact["epsilon"], V / (4 * arb.pi())
+    whole = shape_enclosure(Y, zeta, alpha)
+    stuck = shape_enclosure(Y - (zeta - eta), eta, alpha) if eta > 0 else arb(0)
+    return scale * whole, mu * scale * (whole - stuck)
+
+
+def of_stress(random: np.random.Generator, count: int) -> Found:
+    """At x in l0 within 1e-16 to 1 of either edge and of the stick point, on both sides, and between."""
+    for _ in range(count):
+        alpha, a, kappa, mu, small = powers(random, (0, 4), (-8, 8), (0, 2), (-2, 0), (-8, 0))
+        zeta = a / alpha
+        V = 0.5 / kappa / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, standard(alpha))[1])
+        s = (small, 1.0 - small, float(random.random()), 1.2)[random.integers(4)]
+        scene = vr.Scene(alpha, kappa, mu)
+        delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+        state = vr.contact(scene, V, delta=delta)
+        half, middle = 0.5 * state.lam, 0.5 * state.lam * state.epsilon
+        rear, front, stick = middle - half, middle + half, middle + half - state.lam * state.beta
+        near, between = half * 10.0 ** random.uniform(-16, 0, 3), random.uniform(rear, front, 3)
+        x = np.concatenate([rear + near, front - near, [stick], stick + near[:2], stick - near[:2], between])
+        found = vr.stress(scene, x, V, delta=delta)
+        peak = vr.stress(scene, middle + half * np.linspace(-1, 1, 401), V, delta=delta).p.max()
+        exact = contact_enclosure(alpha, kappa, mu, V, delta, 200)
+        for i, place in enumerate(x.tolist()):
+            shift, where = _SHIFT * max(abs(place), front), at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s, x=place)
+            with flint.ctx.workprec(260):
+                inputs = map(arb, (alpha, kappa, mu, V))
+                of_x = partial(enclosed_stress, exact, *inputs)
+                here, *moved = (of_x(arb(place) + move) for move in (0, shift, -shift))
+                for n, (name, scale) in enumerate((("p", peak), ("tau", peak * mu))):
+                    off = float(abs(arb(float(getattr(found, name)[i])) - here[n]).upper())
+                    allowed = max(float(abs(other[n] - here[n]).mid()) for other in moved)
+                    yield where, {name: (off - allowed) / scale}
+
+
+def of_closures(random: np.random.Generator, count: int) -> Found:
+    scene, V, delta = random_states(count, int(random.integers(1 << 31)))
+    for i in range(count):
+        one = vr.Scene(scene.alpha[i], scene.kappa[i], scene.mu[i])
+        found = closures(one, float(V[i]), float(delta[i]))
+        yield f"{one!r}, V = {V[i]!r}, delta = {delta[i]!r}", {name: abs(error) for name, error in found.items()}
+
+
+def by_elements(random: np.random.Generator, count: int) -> Found:
+    """The package's half lengths are the elements', which find load, offset, moment, creep and friction."""
+    for _ in range(count):
+        modes = int(random.integers(1, 4))
+        tau = 10.0 ** random.uniform(-2.0, 0.0, modes)
+        E, both = 10.0 ** random.uniform(-0.5, 1.0, modes), int(random.integers(0, modes + 1))
+        one, other = (vr.Prony(E[part], tau[part] / tau.max()) for part in (slice(None, both), slice(both, None)))
+        bodies = vr.Bodies(one, other, share=float(random.uniform(0.2, 0.8)))
+        V, creep = powers(random, (-1.5, 1.0))[0], random.uniform(0.05, 0.95)
+        scene = vr.Scene(alpha=None, kappa=1.0, mu=0.5, material=bodies)
+        delta = creep * float(vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star)
+        c = vr.contact(scene, V, delta=delta)
+        z = float(c.zeta)
+        found = boundary.extrapolated(bodies.total, z, float(c.beta) * z, _ELEMENTS)
+        theirs = {
+            "load": found.H,
+            "epsilon": found.g / z,
+            "M": V * found.m,
+            "delta": 0.5 * V * found.d,
+            "Q": 0.5 * found.Q,
+        }
+        ours = {"load": 1.0 / (2.0 * V) ** 2, "delta": delta}
+        errors = {name: abs(value / float(ours.get(name) or getattr(c, name)) - 1.0) for name, value in theirs.items()}
+        part = V * float(found.shares @ bodies.half_space_weights) - float(c.M_half_space)
+        hurt = {"part": abs(part) / float(c.M), "hurt": not found.least > 0.0}
+        yield at(V=V, creep=creep) + f", {bodies!r:.200}", errors | hurt
+
+
+def _contact(way: str, size: str, by: Any) -> Proof:
+    ill = f"over condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f} ({way})"
+    claims = {
+        (name, True): (f"{name}, relative, condition below {WELL_CONDITIONED:.0f} ({way})", WELL) for name in FIELDS
+    }
+    claims |= {(name, False): (f"{name}, {ill}", ROUNDINGS) for name in FIELDS}
+    slip = {"full_slip": (f"full_slip: distance from delta_star where wrong, ULP ({way})", 2.0)}
+    return Proof("contact", size, STATES, claims | slip, partial(contact, by=by))
+
+
+_RELATIVE = "relative, over max(1, condition of beta × 4.4e-6)"
+_BY_ELEMENTS = f"against {_ELEMENTS} and {2 * _ELEMENTS} boundary elements a zone, extrapolated"
+PROOFS = [
+    _contact("an alpha each", "states", by_axis),
+    _contact("one alpha", "slice_states", by_rows),
+    Proof(
+        "direct", "direct_states", "alpha in [1, 1e4], kappa V in [1e-3, 1e3], root solves of the printed equations",
+        {name: (f"{name}, {unit}", bound) for name, (bound, unit) in ALLOWED.items()}, direct,
+    ),
+    Proof(
+        "slopes", "slope_states", "alpha in [1, 1e6], kappa V in [1e-8, 1e8], s in [1e-12, 1 - 1e-12]", {
+            "dQ_dV": ("dQ_dV, over μ/V, or where beyond the bound over its condition × 4.4e-6 μ/V", SLOPE),
+            "dQ_ddelta": (f"dQ_ddelta, {_RELATIVE}", SLOPE), "dQ_domega": (f"dQ_domega, {_RELATIVE}", SLOPE),
+            "dM_dV": ("dM_dV, over (α − 1)/α", SLOPE),
+        }, of_slopes,
+    ),
+    Proof(
+        "slopes", "stress_states",
+        "alpha zeta in [1e-8, 1e8], alpha in [1, 1e4], s over its range, x at edges, stick point and between",
+        {name: (f"{name} beyond a shift of x by 8 roundings, over its peak", CLOSURE) for name in ("p", "tau")},
+        of_stress,
+    ),
+    Proof(
+        "slopes", "closures", "alpha in [1, 1e4], kappa V in [1e-3, 1e3]", {
+            "load": ("Int p dx = P, over the load", CLOSURE), "Q": ("Int tau dx = Q, over the load", CLOSURE),
+            "M": ("Int x p dx = M, over the load", CLOSURE),
+        }, of_closures,
+    ),
+    Proof(
+        "boundary", "boundary_states",
+        "1 to 3 modes over up to 2 decades, kappa V in [0.03, 10], creep in [0.05, 0.95] of delta_star",
+        {name: (f"{name} {_BY_ELEMENTS}", 1e-4) for name in ("load", "epsilon", "M", "delta", "Q")} | {
+            "part": (f"part of M in the half-space, over M, {_BY_ELEMENTS}", 1e-3),
+            "hurt": ("share of states in which p, p - q, q or the slip is negative somewhere", 0.0),
+        }, by_elements,
+    ),
+]  # fmt: skip
