@@ -5,7 +5,8 @@
 
 A case is a fresh environment outside the tree.  The newest dependencies come with the wheel, the lowest, which
 the metadata declare for this Python, with the sdist.  There the program answers once, and tests of the unpacked
-sdist run: the README, the how-to, a run file, and contact states, motions and a flow map against data/reference.
+sdist run: the README, the how-to, a run file, contact states against enclosures, motions
+and a flow map.
 
 Pythons are those of the classifiers: this one, pyenv's and those on the PATH, or those that $PYTHONS names.  One
 that is not found is told, and is no failure.  Exit code 1 if a case fails.
@@ -38,9 +39,9 @@ SAMPLE = (
     "tests/docs/test_readme.py::test_readme_block_runs",
     "tests/docs/test_readme.py::test_howto_blocks_run",
     "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
-    "tests/truth/test_enclosures.py::test_contact_has_the_check_values",
+    "tests/test_claims.py::test_claims[contact]",
     "tests/truth/test_motions.py::test_roll_has_the_check_motions",
-    "tests/truth/test_motions.py::test_flow_map_has_the_check_motions",
+    "tests/motion/test_flow.py::test_as_the_integrator_to_its_stated_error",
 )
 _VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
 _LIBRARIES = "import importlib.metadata as m, sys; print(*(f'{n} {m.version(n)}' for n in sys.argv[1:]), sep=', ')"
