@@ -49,7 +49,7 @@ EACH = vr.Scene(ALPHA, KAPPAS, MUS)
 
 def test_an_alpha_each_against_50_digits():
     delta = S * delta_star(EACH, V)
-    found = vr.contact(EACH, V, delta=delta)
+    found = vr.contact(EACH, V, delta=delta, fields=(*FIELDS, "grip"))
     for n in range(ALPHA.size):
         with mp.workdps(precise.DIGITS):
             exact = precise.state(ALPHA[n], KAPPAS[n], MUS[n], V[n], delta[n])
@@ -57,6 +57,8 @@ def test_an_alpha_each_against_50_digits():
                 bound = tol.EACH_SHIFT if name == "epsilon" else tol.EACH_ALPHA
                 bound /= float(1 - mp.mpf(delta[n]) / exact.delta_star) if name == "beta" else 1.0
                 assert close(getattr(found, name)[n], float(getattr(exact, name)), rel=bound), (name, ALPHA[n], V[n])
+            left = float(1 - mp.mpf(delta[n]) / exact.delta_star)
+            assert close(found.grip[n], float(1 - exact.Q / MUS[n]), rel=2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
 
 
 @pytest.mark.parametrize("name", MATERIALS)

@@ -10,11 +10,11 @@ FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", 
 OF_BODIES = ("M_half_space", "M_cylinder")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
-#: on request alone
-UNSTEADY = "N"
+#: on request alone, and not by the printed equations
+UNSTEADY, GRIP = "N", "grip"
 #: of which field each of these is made by units alone: the length is over l0, C_rr = M/(P R)
 SAME = {"length": "lam", "C_rr": "M"}
-KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, *SAME)
+KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, *SAME)
 #: what is given without a word, of like bodies and of others, and of a cylinder in SI units
 DEFAULT = {
     (True, False): FIELDS,
@@ -42,6 +42,7 @@ def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
         raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
-    if method == "direct" and UNSTEADY in names:
-        raise ParameterError("fields", repr(UNSTEADY), "computed by method='table' alone: it is not in the paper")
+    for name in (UNSTEADY, GRIP):
+        if method == "direct" and name in names:
+            raise ParameterError("fields", repr(name), "computed by method='table' alone: it is not in the paper")
     return names

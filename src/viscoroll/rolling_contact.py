@@ -81,9 +81,9 @@ def contact(
     fields : names out of ``lam zeta epsilon delta_star delta full_slip beta Q M`` (and,
         for one slope alone, ``dQ_dV dQ_ddelta dQ_domega dM_dV dM_half_space_dV dM_cylinder_dV``), and
         ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
-        changes slowly, in units of T_ref^2; ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the
-        coefficient of rolling resistance; only these are computed.  Default: the first nine; of bodies that differ,
-        and of a Cylinder, the two parts too; of a Cylinder ``length`` and ``C_rr``.
+        changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits;
+        ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the coefficient of rolling resistance; only
+        these are computed.  Default: the first nine; of bodies that differ, and of a Cylinder, the two parts too; of a Cylinder ``length`` and ``C_rr``.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
@@ -119,8 +119,9 @@ def contact(
     Accuracy of method "table" for one material (one alpha, a series or two bodies): 5e-15 relative in delta_star, M and
     Q, the parts of M over M, in lam and epsilon too but for one octave of speed at alpha from 20 to 35, where it is
     1.5e-14 and 3e-14, for any speed and creep (``tests/materials/test_law_table.py``); for an alpha or a material each
-    1e-13 for alpha in [1, 1e4], kappa V in [1e-7, 1e5].  beta as lam, times 1/(1 - |delta|/delta_star), its condition
-    number.  N: 2e-14 of its largest size (``tests/kernels/rows/test_unsteady.py``).
+    1e-13 for alpha in [1, 1e4], kappa V in [1e-7, 1e5].  beta as lam, and grip, times
+    1/(1 - |delta|/delta_star), their condition number, of the grip twice that.  N: 2e-14 of its largest size
+    (``tests/kernels/rows/test_unsteady.py``).
 
     The law of one material is read from polynomials of one variable (:mod:`.materials.law_table`), made on first use in
     some milliseconds and kept.  A state's result depends on nothing else in the call.

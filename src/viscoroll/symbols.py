@@ -72,7 +72,7 @@ SYMBOLS = {
     "torque": Symbol("q", "torque along omega", "finite", "", "kernels/motion/load.py"),
     "brake": Symbol("B", "most torque that a brake takes", ">= 0", "", "kernels/motion/load.py"),
     "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
-    "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "equilibria/result.py"),
+    "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),
     "rate_fast": Symbol(
         r"\lambda_1", "rate of the faster small disturbance", "finite", "Eq. (22)", "equilibria/result.py"
     ),

@@ -43,6 +43,16 @@ def _cancels(part, D, L):
 
 
 @kernel(inline=True)
+def grip(u, L, D, law):
+    """1 - |Q|/mu in partial slip, with all its digits where little is left."""
+    w = L - D
+    if not w > 0.0:
+        return 0.0
+    v = 2.0 * u / w
+    return min(w * w * press(place(v, law), v, law)[0], 1.0)
+
+
+@kernel(inline=True)
 def stick_share(u, lam, L, D, law):
     """beta in partial slip."""
     w = L - D
@@ -152,6 +162,8 @@ def _at_creep(k, at, room, law, asked):
         put(to.Q, np.copysign(state.mu * part, slip), n, asked)
     if to.beta >= 0:
         put(to.beta, 0.0 if full_slip else stick_share(u, room[1, at], L, D, law), n, asked)
+    if to.grip >= 0:
+        put(to.grip, 0.0 if full_slip else grip(u, L, D, law), n, asked)
     put(to.delta_star, delta_star, n, asked)
     put(to.delta, delta, n, asked)
     put(to.full_slip, 1.0 if full_slip else 0.0, n, asked)

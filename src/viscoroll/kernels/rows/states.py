@@ -19,6 +19,7 @@ class Fields(NamedTuple):
     delta: int = -1
     full_slip: int = -1
     beta: int = -1
+    grip: int = -1
     Q: int = -1
     M: int = -1
     dQ_dV: int = -1
