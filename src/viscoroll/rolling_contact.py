@@ -83,7 +83,8 @@ def contact(
         ``M_half_space M_cylinder``, the parts of M in either body, and ``N``, of M(V) + N V' where speed
         changes slowly, in units of T_ref^2; ``grip``, 1 - |Q|/mu to all its digits;
         ``length`` of the contact, over l0 or in m, and ``C_rr`` = M/(P R), the coefficient of rolling resistance; only
-        these are computed.  Default: the first nine; of bodies that differ, and of a Cylinder, the two parts too; of a Cylinder ``length`` and ``C_rr``.
+        these are computed.  Default: the first nine; of bodies that differ, and of a Cylinder, the two parts too;
+        of a Cylinder ``length`` and ``C_rr``.
     slopes : also ``dQ_ddelta`` and ``dQ_domega`` at fixed V, ``dM_dV``, and ``dQ_dV`` at
         fixed delta or fixed omega, whichever was given.  Where full slip begins Q has a
         corner in V only; the slopes there are those of full slip.  At rest (V = omega = 0)
