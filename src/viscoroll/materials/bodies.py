@@ -114,7 +114,7 @@ class Bodies(OneOrMany):
         """What of the strength of each creep mode of ``total``, slowest first, is the half-space's."""
         J = self.total.J
         if self._same:
-            return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape)
+            return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
         own = self._both[2][..., : J.shape[-1]]
         return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 

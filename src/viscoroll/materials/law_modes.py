@@ -39,7 +39,8 @@ def kernel_series(given: Any) -> tuple[Any, Floats]:
     from ..kernels.rows.series import Series
 
     if isinstance(given, Bodies):
-        return series_of(given.total.modes, given.half_space_weights), np.empty(0)
+        # a copy, which can be written to: the table of a pair keeps its weights read only
+        return series_of(given.total.modes, given.half_space_weights.copy()), np.empty(0)
     if isinstance(given, Prony):
         return series_of(given.modes), np.empty(0)
     one = Series(np.ones(1), np.ones(1), np.ones(1), np.ones(1), np.empty(0), np.ones((1, 1)))
