@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -107,3 +108,17 @@ def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
     array = array.copy()
     array.flags.writeable = False
     return array
+
+
+def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
+    """``value`` as a whole number from ``least`` to ``most``.
+
+    Raises
+    ------
+    ParameterError
+        Otherwise.
+    """
+    if not (isinstance(value, int | np.integer) and least <= value <= most):
+        allowed = f"a whole number >= {least}" + ("" if most == math.inf else f", <= {most}")
+        raise ParameterError(name, f"{value!r:.60}", allowed)
+    return int(value)

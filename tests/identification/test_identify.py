@@ -226,7 +226,8 @@ def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
         if self.mu > 0.45:
             raise vr.ConvergenceError("planted")
         m = rolled(self, V0, *more, **options)
-        return m if self.mu > 0.2 else type("Failed", (), {"V": m.V * np.nan, "omega": m.V, "x": m.V})
+        nothing = {"V": m.V * np.nan, "omega": m.V, "x": m.V, "regime": m.regime}
+        return m if self.mu > 0.2 else type("Failed", (), nothing)
 
     monkeypatch.setattr(vr.Cylinder, "roll", fails)
     data = [thrown(seed=2)]

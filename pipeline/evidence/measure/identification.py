@@ -262,7 +262,7 @@ def _counted(sizes: dict[str, Any], experiments: dict[str, Any]) -> list[dict[st
 def rise_at_truth(fit: Identification, product: str) -> float:
     """By what chi2 rises with an unknown, or a product of some, held at its true value, all others following."""
     powers = np.array([float(name in product.split()) for name in fit.values])
-    walk = Walk(fit._problem, fit._best, fit._cov, powers)
+    walk = Walk(fit, powers)
     true = np.log([TRUTH.get(name, 1.0) for name in fit.values])
     return walk.at(walk.way(true), fit._best.u).chi2 - fit.chi2
 

@@ -6,14 +6,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ..checks import number
+from ..checks import whole
 from ..cylinder import Cylinder
 from ..errors import ParameterError
 from ..errors import unknown as not_among
+from ..materials.file import SECTIONS
 from .fit import Identification
-from .problem import Found, Prior, Problem, Vector
-from .records import Record
-from .unknowns import OF_RECORDS, Shift, Unknown, refuse_unshifted, unknowns_of
+from .problem import Found, Problem, Vector
+from .records import OF_RECORDS, Record
+from .unknowns import Shift, cylinder_of, unknowns_of
 
 #: minima so far above the best are not told of: they are no alternatives
 _ALTERNATIVE = 15.0
@@ -57,7 +58,7 @@ def identify(
         and unknowns of records.
     shift : a_T over the temperature of records: :class:`WLF`, :class:`Arrhenius` or a function, 1 at the temperature
         of the cylinder; where its bodies differ {"material": ..., "base": ...}.
-    robust : let outliers count less, as |r| in place of r^2.
+    robust : let outliers count less, as |r| in place of r^2, of data and prior.
     starts : searches, the first from the cylinder, the others spread over the ranges.
     seed : of the latter.
     progress : draw a progress bar if it takes longer than a second.
@@ -73,33 +74,38 @@ def identify(
         standard deviations where values are missing, records with and without values, two records of one name.
     """
     shifts = {"material": shift, "base": shift} if callable(shift) else shift or {}
-    data = [data] if isinstance(data, Record) else data
+    data, prior = [data] if isinstance(data, Record) else data, prior or {}
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"), ("unknown", unknown, Mapping, "{name: (low, high)}"),
         ("data", data, Iterable, "a list of records"), ("shift", shifts, Mapping, "a function, or one for each body"),
+        ("prior", prior, Mapping, "{name: (value, standard deviation)}"),
     ):  # fmt: skip
         if not isinstance(value, kind):
             raise ParameterError(name, f"{value!r:.60}", allowed)
-    records = _called(cylinder, data, shifts)
-    unknowns = unknowns_of(cylinder, unknown, records)
+    for name in shifts:
+        if name not in SECTIONS:
+            raise not_among("shift", name, SECTIONS, "a body")
+    count, seed = whole("starts", starts, 1), whole("seed", seed, 0)
+    records = _called(data)
+    for record in records.values():
+        cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
+    unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
-    for name, count, least in (("starts", starts, 1), ("seed", seed, 0)):
-        if not (isinstance(count, (int, np.integer)) and count >= least):
-            raise ParameterError(name, count, f"a whole number >= {least}")
-    problem = Problem(cylinder, unknowns, records, _priors(prior or {}, unknowns), bool(robust), shifts)
-    points = problem.y.size + len(problem.priors)
-    if points < len(unknowns) + any(one.estimated for one in problem.columns):
-        sentence = f"{len(unknowns)} unknowns, but {points} points: measure more, give sigma, or leave unknowns out"
-        raise ParameterError("unknown", len(unknowns), f"at most {points}", sentence)
-    idle = problem.flat()
+    problem = Problem(cylinder, unknowns, records, bool(robust), shifts)
+    if problem.points < len(unknowns) + any(one.estimated for one in problem.columns):
+        sentence = (
+            f"{len(unknowns)} unknowns, but {problem.points} points: measure more, give sigma, or leave unknowns out"
+        )
+        raise ParameterError("unknown", len(unknowns), f"at most {problem.points}", sentence)
+    idle = problem.idle()
     problem.live = [i for i in problem.live if i not in idle]
-    if problem.planned:
-        return Identification(problem, [Found(problem.start, problem.cost(problem.residuals(problem.start)))])
-    return Identification(problem, _minima(problem, int(starts), seed, progress))
+    planned = not any(record.measured for record in records.values())
+    found = [Found(problem.start, problem.cost(problem.start))] if planned else _minima(problem, count, seed, progress)
+    return Identification(problem, found, planned)
 
 
-def _called(cylinder: Cylinder, data: Sequence[Record], shifts: Mapping[str, Shift]) -> dict[str, Record]:
+def _called(data: Iterable[Record]) -> dict[str, Record]:
     """The records by name; those without one are called by their kind."""
     found: dict[str, Record] = {}
     for record in data:
@@ -109,30 +115,14 @@ def _called(cylinder: Cylinder, data: Sequence[Record], shifts: Mapping[str, Shi
         called = record.name or (f"{record.KIND} {alike + 1}" if alike else record.KIND)
         if called in found:
             raise ParameterError("name", repr(called), "another for each record")
-        if record.planned and not record.sigma:
+        if not record.sigma:
             raise ParameterError(f"{called}: sigma", None, "given where there are no values")
-        if record.temperature is not None:
-            refuse_unshifted(cylinder, called, record.temperature, shifts)
         found[called] = record
     if not found:
         raise ParameterError("data", "no record", "at least one")
-    if len({record.planned for record in found.values()}) > 1:
+    if len({bool(record.measured) for record in found.values()}) > 1:
         sentence = "some records have values and some have none: fit those first, then plan with its cylinder"
         raise ParameterError("data", "mixed", "all with values, or none", sentence)
-    return found
-
-
-def _priors(given: Mapping[str, tuple[float, float]], unknowns: list[Unknown]) -> list[Prior]:
-    found, names = [], [one.name for one in unknowns]
-    for name, pair in given.items():
-        if name not in names:
-            raise not_among("prior", name, names, "an unknown")
-        if np.shape(pair) != (2,):
-            raise ParameterError(f"prior {name}", f"{pair!r:.40}", "(value, standard deviation)")
-        one = unknowns[names.index(name)]
-        mean = number(f"prior {name}", pair[0], low=0.0 if one.unit is None else -np.inf, strict=True)
-        sd = number(f"standard deviation of prior {name}", pair[1], low=0.0, strict=True)
-        found.append(Prior(names.index(name), float(one.to_u(mean)), sd / (one.unit or 1.0)))
     return found
 
 
@@ -146,10 +136,9 @@ def _minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Fou
     tries = [first, *(problem.least(u, None, _ROUGH, _STEPS) for u in others)]
     good = min(found.chi2 for found in tries) + _HOPELESS
     near = [problem.least(one.u) for one in tries if one.chi2 < good]
-    best = _settled(problem, min(near, key=lambda found: found.chi2))
-    kept = [best]
-    for one in sorted((Found(one.u, problem.cost(problem.residuals(one.u))) for one in near), key=lambda one: one.chi2):
-        if one.chi2 - best.chi2 < _ALTERNATIVE and not any(_joined(problem, one, other) for other in kept):
+    kept = [_settled(problem, min(near, key=lambda found: found.chi2))]
+    for one in sorted((Found(one.u, problem.cost(one.u)) for one in near), key=lambda one: one.chi2):
+        if one.chi2 - kept[0].chi2 < _ALTERNATIVE and not any(_joined(problem, one, other) for other in kept):
             kept.append(one)
     return kept
 

@@ -17,8 +17,7 @@ from ..errors import FileError, ParameterError
 from ..materials.file import shifts_of
 from ..scale import refuse_other_unit
 from ..sections import fault, hint, read, refuse_unknown
-from .motions import Coastdown
-from .records import Record, Resistance, Traction
+from .records import Coastdown, Record, Resistance, Traction
 
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}

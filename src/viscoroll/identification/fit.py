@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..checks import number
+from ..checks import number, whole
 from ..errors import ParameterError, unknown
 from ..results import Row, Shown, Values
 from .problem import Found, Noise, Problem, Vector, slopes
 from .products import Product, products, undetermined
 from .profile import Profile, profile
-from .records import Record
-from .unknowns import OF_RECORDS, cylinder_of
+from .records import OF_RECORDS, Record
+from .unknowns import cylinder_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 _LEVEL = 0.95
 #: of coordinates, what is one place
 _SAME = 1e-6
-#: draws that are thrown away, at most, for one that lies within the ranges
-_TRIES = 50
+#: most draws of a band, and of them that are thrown away, at most, for one that lies within the ranges
+_DRAWS, _TRIES = 100_000, 50
 
 
 class Band(NamedTuple):
@@ -70,41 +70,57 @@ class Identification(Shown):
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
     """
 
-    def __init__(self, problem: Problem, found: list[Found]) -> None:
-        self._problem, self._best, self._others = problem, found[0], [one.u for one in found[1:]]
+    def __init__(self, problem: Problem, found: list[Found], planned: bool) -> None:
+        self._problem, self._best = problem, found[0]
         u, self.chi2 = self._best
+        begun = [problem.start] * bool(np.abs(problem.start - u).max() > _SAME)
+        self._others = [*(one.u for one in found[1:]), *begun]
         self.values = problem.values(u)
         self.minima = [(one.chi2, problem.values(one.u)) for one in found]
-        self.dof = problem.y.size + len(problem.priors) - u.size
-        self.records, self.planned = problem.records, problem.planned
+        self.dof = problem.points - u.size
+        self.records, self.planned = problem.records, planned
         self.sigma = {str(one): problem.sigma[one.at].copy() for one in problem.columns}
-        self.noise: dict[str, Noise] = {} if self.planned else problem.noise(u)
+        self.noise: dict[str, Noise] = {} if planned else problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
-        self.cylinder = cylinder_of(problem.cylinder, {n: v for n, v in self.values.items() if ":" not in n})
+        self.cylinder = cylinder_of(problem.cylinder, self.values)
+        self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.live)
         # by slopes, and as far as the ranges let them
         J = problem.weighed(u)[1]
         self._cov: Any = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
-        sd, acts = np.sqrt(np.diag(self._cov)), np.isin(np.arange(u.size), problem.live)
-        spread = [one.spread(value) for one, value in zip(problem.unknowns, self.values.values(), strict=True)]
-        self.stderr = dict(zip(self.values, np.where(acts, sd * spread, np.inf).tolist(), strict=True))
+        sd = np.sqrt(np.diag(self._cov))
         self.correlations = self._cov / np.outer(sd, sd)
-        self.does_not_act = tuple(np.array(problem.names)[~acts].tolist())
+        self.stderr = {
+            one.name: math.inf if one.name in self.does_not_act else float(one.spread(self.values[one.name]) * size)
+            for one, size in zip(problem.unknowns, sd, strict=True)
+        }
         self._profiles: dict[tuple[float, ...], Profile] = {}
+        self._ends: list[Vector] = []
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record, with its bands."""
         return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
 
+    def _axis(self, which: Any) -> Vector:
+        """Of one coordinate, or of some."""
+        return np.eye(len(self.values))[which]
+
     def _profile(self, powers: Vector, level: float = _LEVEL) -> Profile:
         """Of a combination of coordinates."""
         key = (level, *powers.tolist())
         if key not in self._profiles:
-            problem, best = self._problem, self._best
-            begun = [problem.start] * bool(np.abs(problem.start - best.u).max() > _SAME)
-            others = [*self._others, *begun]
-            self._profiles[key] = profile(problem, best, self._cov, powers, self._rise(level), others)
+            self._profiles[key] = profile(self, powers, self._rise(level))
         return self._profiles[key]
+
+    def _axes(self, level: float = _LEVEL) -> dict[int, Profile]:
+        """Of each unknown that acts; where a side is open, as seen from the ends of what fits of the others too."""
+        found = {i: self._profile(self._axis(i), level) for i in self._problem.live}
+        if not self._ends and any(None in one.ends for one in found.values()):
+            places = ((one.within, one.within[:, i]) for i, one in found.items())
+            self._ends = [within[n] for within, way in places for n in (np.argmin(way), np.argmax(way))]
+            self._profiles.clear()
+            return self._axes(level)
+        return found
 
     def _rise(self, level: float) -> float:
         """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
@@ -131,16 +147,16 @@ class Identification(Shown):
             Another level.
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
-        for i in self._problem.live:
-            one, sides = self._problem.unknowns[i], self._profile(np.eye(len(found))[i], level)
-            low, high = (None if end.at is None else float(one.to_value(end.at)) for end in sides.ends)
+        for i, sides in self._axes(level).items():
+            one = self._problem.unknowns[i]
+            low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
             found[one.name] = (low, high)
         return found
 
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
         """See above."""
-        return tuple(self._problem.names[i] for i in undetermined(self._problem, self._cov, self._profile))
+        return tuple(self._problem.names[i] for i in undetermined(self))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
         """What is determined of the :attr:`undetermined` unknowns: products of powers, with profiles as intervals.
@@ -148,11 +164,7 @@ class Identification(Shown):
         Exponents are those in which all that fits lies nearest to each other; the interval is of just these.  Where no
         exponents do, those by slopes at the best fit.
         """
-        which = [self._problem.names.index(name) for name in self.undetermined]
-        return products(
-            self._problem, self._best.u, self._cov, which, lambda powers: self._profile(powers, level),
-            self._rise(level),
-        )  # fmt: skip
+        return products(self, level)
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
         """What a record would show, with bands.
@@ -162,8 +174,8 @@ class Identification(Shown):
         record : places, load and temperature; for a motion with V0, which may be another than those fitted.
         draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
             unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
-        level : of the bands.
-        seed : of the draws.
+        level : of the bands, in (0, 0.9999].
+        seed : of the draws, >= 0.
 
         Returns
         -------
@@ -174,7 +186,7 @@ class Identification(Shown):
         Raises
         ------
         ParameterError
-            A record without a start.
+            A record without a start, draws, level or seed out of range.
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
@@ -182,31 +194,28 @@ class Identification(Shown):
             if isinstance(getattr(record, name, 0.0), tuple | None):
                 sentence = f"{name} of the record is not given: a prediction needs it"
                 raise ParameterError(name, None, "a number", sentence)
-        return self._predicted(record, "", level, draws, seed)
+        return self._predicted(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
 
     def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         problem, u = self._problem, self._best.u
 
         def seen(u: Vector) -> Vector:
-            return np.ravel([*problem.predicted(record, called, u).values()])
+            values = problem.predicted(record, u, called)
+            return np.array([values[name] for name in record.KINDS])
 
-        value = seen(u)
+        value, half = seen(u), math.sqrt(self._rise(level))
         if draws:
             many = np.random.default_rng(seed).multivariate_normal(u, self._cov, draws * _TRIES, method="eigh")
             inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
-            share, drawn = 0.5 * (1.0 - level), [seen(at) for at in (inside if len(inside) else [u])]
+            share = 0.5 * (1.0 - level)
+            drawn = [seen(at) for at in (inside if len(inside) else [u])]
             low, high = np.nanquantile(drawn, (share, 1.0 - share), axis=0)
         else:
-            J = slopes(seen, u, problem.low, problem.high)
-            half = math.sqrt(self._rise(level)) * np.sqrt(np.maximum(((J @ self._cov) * J).sum(axis=1), 0.0))
-            low, high = value - half, value + half
-        shape = (len(record.KINDS), *record.shape)
+            J = slopes(seen, u, problem.low, problem.high, range(u.size)).T
+            spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, self._cov, J), 0.0))
+            low, high = value - spread, value + spread
         ends = {"": value, "_low": low, "_high": high}
-        found = {
-            name + end: one
-            for end, flat in ends.items()
-            for name, one in zip(record.KINDS, flat.reshape(shape), strict=True)
-        }
+        found = {name + end: rows[n] for end, rows in ends.items() for n, name in enumerate(record.KINDS)}
         places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
         units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
         return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
@@ -227,6 +236,8 @@ class Identification(Shown):
         for name in values:
             if name not in self.values:
                 raise unknown("values", name, self.values, "an unknown")
+            one = self._problem.unknowns[self._problem.names.index(name)]
+            number(name, values[name], low=one.least, strict=True)
         return self._problem.coordinates(values)
 
     def _card(self) -> tuple[str, list[Row]]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -14,14 +15,14 @@ from numpy.typing import NDArray
 from ..cylinder import Cylinder
 from ..errors import ViscorollError
 from .records import Record
-from .unknowns import Shift, Unknown, cylinder_of, of_record
+from .unknowns import Shift, Unknown, cylinder_of
 
 #: of numbers, of coordinates mostly, or of residuals
 Vector = NDArray[np.float64]
 #: of central differences in a coordinate: their error is 1e-8 of the largest slope (1e-7 where motions are driven)
 _STEP = 3e-4
-#: of those to one side, which a search takes: 1e-6
-_SIDE = 1e-6
+#: of those to one side, which a search takes: 1e-5; at less the last digits of a motion show, and it stops early
+_SIDE = 1e-5
 #: a residual where there is no motion: as far off as it gets
 FAR = 1e6
 #: weight of a combination that is held, over what the data know of any
@@ -34,6 +35,8 @@ _NONE = 1e-2
 _PLACES = 4
 #: of a range, how near to an end counts as at it
 _AT_END = 1e-6
+#: predictions that are kept
+_KEPT = 16
 
 
 class Column(NamedTuple):
@@ -67,47 +70,42 @@ class Found(NamedTuple):
     chi2: float
 
 
-class Prior(NamedTuple):
-    """What is known beforehand of a coordinate."""
-
-    which: int
-    mean: float
-    sd: float
-
-
-def slopes(of: Callable[[Vector], Vector], u: Vector, low: Vector, high: Vector, at_u: Vector | None = None) -> Vector:
-    """Of a vector over coordinates within a box: central differences, or to one side of what it is ``at_u``."""
-    step, columns = _STEP if at_u is None else _SIDE, []
-    for i in range(u.size):
+def slopes(
+    of: Callable[[Vector], Vector], u: Vector, low: Vector, high: Vector, which: Sequence[int], sided: bool = False
+) -> Vector:
+    """Of a vector over some coordinates within a box: central differences, or to one side."""
+    step, columns = _SIDE if sided else _STEP, []
+    for i in which:
         up, down = u.copy(), u.copy()
         up[i] = min(u[i] + step, high[i])
-        if at_u is None or up[i] < u[i] + step:
+        if not sided or up[i] < u[i] + step:
             down[i] = max(u[i] - step, low[i])
-        columns.append((of(up) - (of(down) if at_u is None or down[i] < u[i] else at_u)) / (up[i] - down[i]))
+        columns.append((of(up) - of(down)) / (up[i] - down[i]))
     return np.array(columns).T
 
 
 class Problem:
     """What is minimised.
 
-    cylinder, unknowns, records, priors, shifts : what is known; y, sigma : all data, one after the other, by
-    ``columns``; live : which unknowns are searched, the others stay at their start.
+    cylinder, unknowns, records, shifts : what is known; y, sigma : all data, one after the other, by ``columns``;
+    points : how many, and priors; live : which unknowns are searched, the others stay at their start.
     """
 
     def __init__(
-        self, cylinder: Cylinder, unknowns: list[Unknown], records: dict[str, Record], priors: list[Prior],
-        robust: bool, shifts: Mapping[str, Shift],
+        self, cylinder: Cylinder, unknowns: list[Unknown], records: dict[str, Record], robust: bool,
+        shifts: Mapping[str, Shift],
     ) -> None:  # fmt: skip
-        self.cylinder, self.unknowns, self.records, self.priors = cylinder, unknowns, records, priors
-        self.robust, self.shifts = robust, shifts
-        self.names = [one.name for one in unknowns]
+        self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
+        self.robust, self.names = robust, [one.name for one in unknowns]
         self.start, self.low, self.high = np.array([one.to_u(np.array(one[1:4])) for one in unknowns]).T
         self.live = list(range(len(unknowns)))
-        self.planned = all(record.planned for record in records.values())
+        mean, sd = np.array([(one.mean, one.sd) for one in unknowns]).T
+        self._known, self._mean, self._sd = np.isfinite(sd), mean, sd
+        self._model = lru_cache(_KEPT)(self._modelled)
         self.columns: list[Column] = []
         y, sigma, size = [], [], 0
         for called, record in records.items():
-            values = self.predicted(record, called, self.start) if record.planned else vars(record)
+            values = vars(record) if record.measured else self.predicted(record, self.start, called)
             for quantity, given in record.sigma.items():
                 own = np.ravel(values[quantity])
                 spread = max(_GUESS * float(np.std(own)), 1e-300) if given is None else np.ravel(given)
@@ -115,7 +113,7 @@ class Problem:
                 sigma.append(np.broadcast_to(spread, own.shape))
                 self.columns.append(Column(called, quantity, slice(size, size + own.size), given is None))
                 size += own.size
-        self.y, self.sigma = np.concatenate(y), np.concatenate(sigma)
+        self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._known.sum())
 
     def values(self, u: Vector) -> dict[str, float]:
         """By name, at coordinates."""
@@ -125,57 +123,51 @@ class Problem:
         """The other way; what is not given is at its start."""
         return np.array([one.to_u(values.get(one.name, one.start)) for one in self.unknowns], float)
 
-    def predicted(self, record: Record, called: str, u: Vector) -> dict[str, Vector]:
+    def predicted(self, record: Record, u: Vector, called: str = "") -> dict[str, NDArray]:
         """What would be seen of a record."""
         values = self.values(u)
-        return record.model(self.cylinder_of(record, values), of_record(values, called))
+        own = {name.removesuffix(f":{called}"): value for name, value in values.items()}
+        return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
-    def cylinder_of(self, record: Record, values: Mapping[str, float]) -> Cylinder:
-        """The cylinder of these values as a record had it."""
-        return cylinder_of(self.cylinder, values, record, self.shifts)
-
-    def residuals(self, u: Vector) -> Vector:
-        """Of data and prior, over their sigma; of values that make no cylinder or no motion as far off as it gets."""
-        r = np.full(self.y.size, FAR)
+    def _modelled(self, u: bytes) -> Vector:
+        """All data as predicted; of values that make no cylinder or no motion NaN."""
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
             warnings.simplefilter("ignore")
-            seen = {called: self.predicted(record, called, u) for called, record in self.records.items()}
-            model = np.concatenate([np.ravel(seen[one.record][one.quantity]) for one in self.columns])
-            r = np.clip(np.nan_to_num((model - self.y) / self.sigma, nan=FAR), -FAR, FAR)
-        return np.append(r, [(u[i] - mean) / sd for i, mean, sd in self.priors])
+            at = np.frombuffer(u)
+            seen = {called: self.predicted(record, at, called) for called, record in self.records.items()}
+            return np.concatenate([np.ravel(seen[one.record][one.quantity]) for one in self.columns])
+        return np.full(self.y.size, np.nan)
+
+    def residuals(self, u: Vector) -> Vector:
+        """Of data and what is known beforehand, over their sigma; where there is no motion as far off as it gets."""
+        r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
+        return np.append(r, ((u - self._mean) / self._sd)[self._known])
 
     def jacobian(self, u: Vector) -> Vector:
         """Slopes of the residuals over the coordinates."""
-        return slopes(self.residuals, u, self.low, self.high)
+        return slopes(self.residuals, u, self.low, self.high, range(u.size))
 
-    def cost(self, r: Vector) -> float:
-        """chi2 of residuals: their squares, or what outliers count less in."""
-        return float(self._rho(r * r)[0].sum())
+    def cost(self, u: Vector) -> float:
+        """chi2: squares of the residuals, or what outliers count less in."""
+        z = self.residuals(u) ** 2
+        return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
     def weighed(self, u: Vector) -> tuple[Vector, Vector]:
         """Residuals and slopes by the weight that each has in chi2."""
-        r = self.residuals(u)
-        weight = np.sqrt(self._rho(r * r)[1])
-        return r * weight, self.jacobian(u) * weight[:, np.newaxis]
-
-    def _rho(self, z: Vector) -> Vector:
-        """Of squares z what chi2 adds up, and its derivatives: z, or of robust data 2 (sqrt(1 + z) - 1)."""
-        rho = np.array([z, np.ones_like(z), np.zeros_like(z)])
-        if self.robust:
-            root = np.sqrt(1.0 + z[: self.y.size])
-            rho[:, : self.y.size] = 2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3
-        return rho
+        r, J = self.residuals(u), self.jacobian(u)
+        weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
+        return r * weight, J * weight[:, np.newaxis]
 
     def least(self, u: Vector, held: Vector | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
         """The least chi2 near ``u``, perhaps with a combination of coordinates, of powers ``held``, as it is there."""
         from scipy.optimize import least_squares
 
-        single = held is not None and np.count_nonzero(held) == 1
-        free = [i for i in self.live if not (single and held is not None and held[i])]
-        rule = np.empty(0) if held is None or single else _STIFF * held
+        powers = np.zeros_like(u) if held is None else held
+        fixed = np.count_nonzero(powers) == 1
+        free = [i for i in self.live if not (fixed and powers[i])]
+        rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
         whole = np.clip(u, self.low, self.high)
-        seen: dict[bytes, Vector] = {}
 
         def at(v: Vector) -> Vector:
             inside = whole.copy()
@@ -183,21 +175,18 @@ class Problem:
             return inside
 
         def residuals(v: Vector) -> Vector:
-            r = np.append(self.residuals(at(v)), rule @ (at(v) - u) if rule.size else [])
-            return seen.setdefault(v.tobytes(), r)
+            return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
         def jacobian(v: Vector) -> Vector:
-            return slopes(residuals, v, self.low[free], self.high[free], seen[v.tobytes()])
+            return np.vstack([slopes(self.residuals, at(v), self.low, self.high, free, sided=True), rule])
 
         if free:
-            narrow = 1e-9 * (self.high - self.low)
-            first = np.clip(whole, self.low + narrow, self.high - narrow)[free]
             found = least_squares(
-                residuals, first, jacobian, (self.low[free], self.high[free]), x_scale="jac", ftol=tolerance,
-                xtol=tolerance, gtol=tolerance, loss=self._rho if self.robust else "linear", max_nfev=steps,
+                residuals, whole[free], jacobian, (self.low[free], self.high[free]), x_scale="jac", ftol=tolerance,
+                xtol=tolerance, gtol=tolerance, loss="soft_l1" if self.robust else "linear", max_nfev=steps,
             )  # fmt: skip
             whole = at(found.x)
-        return Found(whole, self.cost(self.residuals(whole)))
+        return Found(whole, self.cost(whole))
 
     def noise(self, u: Vector) -> dict[str, Noise]:
         """Of each column, by record and quantity; lag by the order of its places."""
@@ -211,24 +200,17 @@ class Problem:
             found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
         return found
 
-    def flat(self) -> list[int]:
+    def idle(self) -> list[int]:
         """Unknowns that act nowhere: at the start one may have ceased to, so that other places are asked too."""
         rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (_PLACES, middle.size))
-        sizes = [np.linalg.norm(self.jacobian(u), axis=0) for u in (self.start, *others)]
-        return np.flatnonzero(np.max(sizes, axis=0) < _NONE).tolist()
+        found = self.live
+        for u in (self.start, *others):
+            J = slopes(self.residuals, u, self.low, self.high, found)
+            found = [i for i, column in zip(found, J.T, strict=True) if np.linalg.norm(column) < _NONE]
+        return found
 
     def at_end(self, u: Vector) -> list[int]:
         """Unknowns that lie at an end of their range."""
-        return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_END * (self.high - self.low)).tolist()
-
-    def pushes(self, u: Vector, powers: Vector) -> dict[str, float]:
-        """What chi2 would gain, by slopes, if an unknown at an end of its range went beyond, the combination held."""
-        at = [i for i in self.at_end(u) if not powers[i]]
-        if not at:
-            return {}
-        r, J = self.weighed(u)
-        rest = [i for i in self.live if i not in at and i != np.flatnonzero(powers)[0]]
-        own = J[:, at] - J[:, rest] @ np.linalg.lstsq(J[:, rest], J[:, at], rcond=None)[0]
-        gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)
-        return {self.names[i]: float(gain) for i, gain in zip(at, gains, strict=True)}
+        width = self.high - self.low
+        return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_END * width).tolist()

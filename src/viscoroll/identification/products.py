@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from .problem import Problem, Vector
-from .profile import Profile
+from .problem import Vector
+from .profile import without
 
 #: width of an interval of a coordinate from which on it counts as not determined, and of a product
 _WIDE, _NARROW = 2.0, 1.0
 #: correlation beyond which unknowns go together
 _TOGETHER = 0.95
 #: exponents are rounded to whole numbers, halves, ... where places stay as near to each other as by this factor
-_PARTS, _AS_NEAR = (1, 2, 10, 100), 1.5
-#: how much wider the interval of a product with rounder exponents may be
-_ROUNDER = 5.0
-
-#: the profile of a combination, and ends of its interval over what it is, if it has both
-ProfileOf = Callable[[Vector], Profile]
-EndsOf = Callable[[Vector], tuple[float, float] | None]
+_PARTS, _AS_NEAR = (1, 2, 10, 100), 2.0
 
 
 class Product(NamedTuple):
@@ -41,80 +35,63 @@ class Product(NamedTuple):
     near: bool
 
 
-def undetermined(problem: Problem, cov: Vector, profile_of: ProfileOf) -> list[int]:
+def undetermined(fit: Any) -> list[int]:
     """Unknowns whose interval tells little, and what is correlated with these."""
-    wide, sd = [], np.sqrt(np.diag(cov))
-    for i in problem.live:
-        low, high = profile_of(np.eye(sd.size)[i]).ends
-        width = (problem.high[i] if high.at is None else high.at) - (problem.low[i] if low.at is None else low.at)
-        if width > min(_WIDE, 0.5 * (problem.high[i] - problem.low[i])):
+    problem, wide = fit._problem, []
+    for i, one in fit._axes().items():
+        bounds = problem.low[i], problem.high[i]
+        low, high = (bound if end is None else end for end, bound in zip(one.ends, bounds, strict=True))
+        if high - low > min(_WIDE, 0.5 * (bounds[1] - bounds[0])):
             wide.append(i)
-    return [i for i in problem.live if (np.abs(cov[i, wide]) > _TOGETHER * sd[i] * sd[wide]).any()]
+    return [i for i in problem.live if (np.abs(fit.correlations[i, wide]) > _TOGETHER).any()]
 
 
-def products(
-    problem: Problem, u: Vector, cov: Vector, which: list[int], profile_of: ProfileOf, rise: float
-) -> list[Product]:
-    """What is determined of ``which``: by places that all fit, by slopes at u where that is narrower by far.
+def products(fit: Any, level: float) -> list[Product]:
+    """What is determined of the undetermined: by places that all fit, else by slopes at the best.
 
-    Where neither has an interval, by slopes with what these say of their interval, at a ``rise`` of chi2.
+    Where neither has an interval, by slopes with what these say of their interval.
     """
+    which = undetermined(fit)
     if len(which) < 2:
         return []
-    steep = _by_slopes(problem, u, which)
-
-    def asked(powers: Vector) -> tuple[float, float] | None:
-        low, high = profile_of(powers).ends
-        centre = float(powers @ u)
-        return None if low.at is None or high.at is None else (low.at - centre, high.at - centre)
-
-    def guessed(powers: Vector) -> tuple[float, float]:
-        half = math.sqrt(rise * (powers @ cov @ powers))
-        return -half, half
-
-    by_places = _narrow(problem, u, _by_places(which, profile_of, u.size), asked)
-    by_slopes = _narrow(problem, u, steep, asked)
-    widths = [math.log(family[0].high / family[0].low) if family else math.inf for family in (by_places, by_slopes)]
-    if by_places and widths[0] < _ROUNDER * widths[1]:
-        return by_places
-    return by_slopes or [one._replace(near=True) for one in _narrow(problem, u, steep, guessed)]
+    steep = [*_by_slopes(fit, which)]
+    return (
+        _narrow(fit, _by_places(fit, which), level, False) or _narrow(fit, steep, level, False)
+        or _narrow(fit, steep, level, True)
+    )  # fmt: skip
 
 
-def _narrow(problem: Problem, u: Vector, family: Iterable[Vector], ends_of: EndsOf) -> list[Product]:
-    """Products with their intervals, up to the first one that is open or wide."""
-    found, values = [], problem.values(u)
+def _narrow(fit: Any, family: Any, level: float, near: bool) -> list[Product]:
+    """Products with their intervals, by profiles or ``near`` the best, up to the first one that is open or wide."""
+    found = []
     for powers in family:
-        ends = ends_of(powers)
-        if ends is None or ends[1] - ends[0] > _NARROW:
+        half = math.sqrt(fit._rise(level) * (powers @ fit._cov @ powers))
+        low, high = (-half, half) if near else fit._profile(powers, level).ends
+        if low is None or high is None or high - low > _NARROW:
             break
-        exponents = {
-            one.name: float(p if one.unit is None else p * values[one.name] / one.unit)
-            for one, p in zip(problem.unknowns, powers, strict=True) if p
-        }  # fmt: skip
-        value = math.prod(values[name] ** p for name, p in exponents.items())
-        found.append(Product(exponents, value, math.exp(ends[0]), math.exp(ends[1]), False))
+        centre = 0.0 if near else powers @ fit._best.u
+        each = [
+            (one, fit.values[one.name], p) for one, p in zip(fit._problem.unknowns, powers.tolist(), strict=True) if p
+        ]
+        exponents = {one.name: p * (value / one.spread(value)) for one, value, p in each}
+        value = math.prod(fit.values[name] ** p for name, p in exponents.items())
+        found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
     return found
 
 
-def _by_places(which: list[int], profile_of: ProfileOf, n: int) -> Iterator[Vector]:
+def _by_places(fit: Any, which: list[int]) -> Iterator[Vector]:
     """Combinations in which all places that fit lie nearest to each other, best first, and as round as that allows."""
-    within = np.concatenate([profile_of(np.eye(n)[i]).within for i in which])[:, which]
-    for v in np.linalg.svd(within - within.mean(axis=0), full_matrices=True)[2][::-1]:
+    within = np.concatenate([fit._axes()[i].within for i in which])[:, which]
+    for v in np.linalg.svd(within - within.mean(axis=0))[2][::-1]:
         exact = v / v[np.argmax(np.abs(v))]
         rounded = (np.round(exact * parts) / parts for parts in _PARTS)
         width = _AS_NEAR * np.ptp(within @ exact)
-        yield _among(which, n, next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2)))
+        yield next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2)) @ fit._axis(which)
 
 
-def _by_slopes(problem: Problem, u: Vector, which: list[int]) -> list[Vector]:
+def _by_slopes(fit: Any, which: list[int]) -> Iterator[Vector]:
     """Combinations along which slopes are largest, without what other unknowns take of them."""
-    J, others = problem.weighed(u)[1], [i for i in problem.live if i not in which]
-    own = J[:, which] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, which], rcond=None)[0]
-    Vt = np.linalg.svd(own, full_matrices=False)[2]
-    return [_among(which, u.size, np.round(v / v[np.argmax(np.abs(v))], 2)) for v in Vt]
-
-
-def _among(which: list[int], n: int, powers: Vector) -> Vector:
-    whole = np.zeros(n)
-    whole[which] = powers
-    return whole
+    problem = fit._problem
+    own = without(problem.weighed(fit._best.u)[1], which, [i for i in problem.live if i not in which])
+    for v in np.linalg.svd(own, full_matrices=False)[2]:
+        yield np.round(v / v[np.argmax(np.abs(v))], 2) @ fit._axis(which)

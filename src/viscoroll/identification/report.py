@@ -5,15 +5,12 @@ The same as a dataset, and as what JSON holds.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import __version__
-from .motions import Coastdown
-from .unknowns import of_record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,18 +23,13 @@ _CLOSE, _BETTER = 0.9, 0.1
 
 def report(fit: Any) -> str:
     """The report that ``print(fit)`` shows, of a :class:`viscoroll.identification.Identification`."""
-    width, intervals = max(map(len, fit.values)), fit.intervals()
-    rows = [
-        f"  {name:<{width}}  {value:<12.6g} +- {fit.stderr[name]:<9.2g} 95%: {_end(low)} to {_end(high)}"
-        for (name, value), (low, high) in zip(fit.values.items(), intervals.values(), strict=True)
-    ]
-    said = [[f"  ! {line}" for line in lines] for lines in (_noise(fit), _limits(fit))]
-    return "\n".join([_heading(fit), *said[0], *rows, *said[1]])
-
-
-def sentences(fit: Any) -> list[str]:
-    """All that is no value: what to beware of, and what the data do not say, a sentence each."""
-    return [*_noise(fit), *_limits(fit)]
+    width = max(map(len, fit.values))
+    rows = []
+    for name, ends in fit.intervals().items():
+        low, high = ("open" if end is None else f"{end:.6g}" for end in ends)
+        rows.append(f"  {name:<{width}}  {fit.values[name]:<12.6g} +- {fit.stderr[name]:<9.2g} 95%: {low} to {high}")
+    noise, limits = ([f"  ! {line}" for line in lines] for lines in (_noise(fit), _limits(fit)))
+    return "\n".join([_heading(fit), *noise, *rows, *limits])
 
 
 def _heading(fit: Any) -> str:
@@ -47,15 +39,10 @@ def _heading(fit: Any) -> str:
     head = f"{len(fit.values)} unknowns, {problem.y.size} points"
     if fit.planned:
         return f"{head}, planned: what to expect if the cylinder is the truth"
-    estimated = [f"{one} {fit.sigma[str(one)][0]:.3g}" for one in problem.columns if one.estimated]
-    if estimated:
+    if estimated := [f"{one} {fit.sigma[str(one)][0]:.3g}" for one in problem.columns if one.estimated]:
         return f"{head}; standard deviation estimated: {', '.join(estimated)}"
     chance = "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
     return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
-
-
-def _end(value: float | None) -> str:
-    return "open" if value is None else f"{value:.6g}"
 
 
 def _noise(fit: Any) -> Iterator[str]:
@@ -70,7 +57,11 @@ def _noise(fit: Any) -> Iterator[str]:
 
 def _limits(fit: Any) -> Iterator[str]:
     yield from (f"{name} does not act on these data" for name in fit.does_not_act)
-    yield from _loose(fit)
+    *names, last = fit.undetermined or ("",)
+    if names:
+        yield f"{', '.join(names)} and {last} cannot be told apart by these data: {_products(fit.products())}"
+    elif last:
+        yield f"{last} is not determined by these data"
     yield from _sides(fit)
     for chi2, values in fit.minima[1:]:
         yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_listed(values)}"
@@ -81,46 +72,37 @@ def _limits(fit: Any) -> Iterator[str]:
             yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
 
 
-def _loose(fit: Any) -> Iterator[str]:
-    """What cannot be told apart."""
-    *names, last = fit.undetermined or ("",)
-    if last and not names:
-        yield f"{last} is not determined by these data"
-    elif last:
-        products = fit.products()
-        only = f"only {' and '.join(map(_product, products))} {'is' if len(products) == 1 else 'are'} determined"
-        only += ", near these values" if products and products[0].near else ""
-        only = only if products else "no product of their powers is determined"
-        yield f"{', '.join(names)} and {last} cannot be told apart by these data: {only}"
-
-
-def _product(one: Any) -> str:
-    ordered = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
-    text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in ordered)
-    low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
-    return f"{text} = {one.value:.4g} (95%: {low} to {high})"
+def _products(found: list[Any]) -> str:
+    texts = []
+    for one in found:
+        powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
+        text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
+        low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
+        texts.append(f"{text} = {one.value:.4g} (95%: {low} to {high})")
+    if not texts:
+        return "no product of their powers is determined"
+    near = ", near these values" * found[0].near
+    return f"only {' and '.join(texts)} {'is' if len(texts) == 1 else 'are'} determined{near}"
 
 
 def _sides(fit: Any) -> Iterator[str]:
     """What ends of intervals are not of the data."""
     made: dict[str, list[str]] = {}
     problem = fit._problem
-    for i in problem.live:
-        name, found = problem.names[i], fit._profile(np.eye(len(problem.names))[i])
-        for side, end in zip(("lower", "upper"), found.ends, strict=True):
-            if end.at is None:
+    for i, found in fit._axes().items():
+        name = problem.names[i]
+        for side, end, bounds in zip(("lower", "upper"), found.ends, found.made_by, strict=True):
+            if end is None:
                 yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
-            for bound in end.bounds:
+            for bound in bounds:
                 made.setdefault(bound, []).append(f"the {side} end of {name}")
         if found.pieces:
-            yield f"the interval of {name} is not in one piece: chi2 rises within it above what its ends have"
+            yield f"the interval of {name} joins branches of the fit: one value within it may fit worse than its ends"
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _listed(problem.values(found.best.u))
             yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
-    for i in problem.at_end(fit._best.u):
-        yield f"the best fit has {problem.names[i]} at the end of its range"
-    for bound, ends in made.items():
-        yield f"the range of {bound}, not the data, makes {', '.join(ends)}"
+    yield from (f"the best fit has {problem.names[i]} at the end of its range" for i in problem.at_end(fit._best.u))
+    yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in made.items())
 
 
 def _listed(values: dict[str, float]) -> str:
@@ -130,11 +112,9 @@ def _listed(values: dict[str, float]) -> str:
 def _phases(fit: Any) -> Iterator[str]:
     """Motions with too few points in a phase."""
     for called, record in fit.records.items() if "mu" in fit.values else ():
-        if isinstance(record, Coastdown):
-            cylinder = fit._problem.cylinder_of(record, fit.values)
-            slips = record.slipping(cylinder, of_record(fit.values, called))
-            if 0 < slips < _FEW:
-                yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
+        slips = int(np.sum(fit._problem.predicted(record, fit._best.u, called).get("slips", 0)))
+        if 0 < slips < _FEW:
+            yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
 
 
 def as_dataset(fit: Any) -> xr.Dataset:
@@ -149,10 +129,10 @@ def as_dataset(fit: Any) -> xr.Dataset:
         "correlation": (("unknown", "other"), fit.correlations),
     }  # fmt: skip
     for called, record in fit.records.items():
-        bands = fit.predicted[called]
         columns = {name: getattr(record, name) for name in (*record.PLACES, *record.measured)}
         for name in record.sigma:
-            columns |= {f"{name} fit": getattr(bands, name).value, f"{name} sigma": fit.sigma[f"{name} of {called}"]}
+            fitted = getattr(fit.predicted[called], name).value
+            columns |= {f"{name} fit": fitted, f"{name} sigma": fit.sigma[f"{name} of {called}"]}
         for name, values in columns.items():
             data[f"{called} {name}"] = (f"{called} point", np.ravel(values), {"units": record.unit(name.split()[0])})
     about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
@@ -163,14 +143,17 @@ def as_json(fit: Any) -> dict[str, Any]:
     """What the report says, by name; null where a side is open or nothing acts."""
     told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     unknowns = {
-        name: {"value": value, "stderr": sd if math.isfinite(sd) else None, "interval": interval}
-        for (name, value), sd, interval in zip(
-            fit.values.items(), fit.stderr.values(), fit.intervals().values(), strict=True
-        )
+        name: {
+            "value": fit.values[name],
+            "stderr": fit.stderr[name] if name not in fit.does_not_act else None,
+            "interval": ends,
+        }
+        for name, ends in fit.intervals().items()
     }
     return {
         "source": f"viscoroll {__version__}", "unknowns": unknowns, **{name: getattr(fit, name) for name in told},
         "products": [one._asdict() for one in fit.products()], "correlations": fit.correlations.tolist(),
         "noise": {name: noise._asdict() for name, noise in fit.noise.items()},
-        "sigma": {name: float(values[0]) for name, values in fit.sigma.items()}, "says": sentences(fit),
+        "sigma": {name: float(values[0]) for name, values in fit.sigma.items()},
+        "says": [*_noise(fit), *_limits(fit)],
     }  # fmt: skip

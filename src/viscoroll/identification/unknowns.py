@@ -6,7 +6,7 @@ with its name, as V0:run.
 
 from __future__ import annotations
 
-import re
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -20,28 +20,37 @@ from ..cylinder import Cylinder
 from ..errors import ParameterError, unknown
 from ..materials.material import Material
 from ..materials.prony import Prony
-from .records import Record
+from .records import OF_RECORDS, Record
 
 #: degrees Celsius -> a_T
 Shift = Callable[[float], float]
 _OWN = ("R", "m", "mu", "j", "g", "load")
 _OF_BODY = ("E", "nu", "T_ref")
-OF_RECORDS = ("V0", "omega0", "t0")
 #: what goes linearly, others go by their logarithm
 _LINEAR = ("brake", "drag", "nu", "base_nu", *OF_RECORDS)
-_MODE = re.compile(r"(E|tau)_(\d+)$")
 #: of its range, the least unit of what is counted from 0
 _UNIT = 0.1
+_PREFIX = {"material": "", "base": "base_"}
 
 
 class Unknown(NamedTuple):
-    """Where it starts, and its range; ``unit`` is what a linear one is counted in, None of logarithms."""
+    """Where it starts, and its range; ``unit`` is what a linear one is counted in, None of logarithms.
+
+    mean, sd : of its coordinate, as known beforehand.
+    """
 
     name: str
     start: float
     low: float
     high: float
     unit: float | None
+    mean: float = 0.0
+    sd: float = math.inf
+
+    @property
+    def least(self) -> float:
+        """What it is above."""
+        return 0.0 if self.unit is None else -math.inf
 
     def to_u(self, value: Any) -> Any:
         """The coordinate of a value."""
@@ -56,56 +65,34 @@ class Unknown(NamedTuple):
         return value if self.unit is None else self.unit
 
 
-def _bodies(cylinder: Cylinder) -> dict[str, Material]:
-    """By section; names of the half-space have a prefix."""
-    pair = cylinder.pair
-    return {"material": pair.cylinder} | ({} if pair.base is None else {"base": pair.base})
-
-
-def _prefix(section: str) -> str:
-    return "base_" if section == "base" else ""
-
-
-def _starts(cylinder: Cylinder) -> dict[str, float]:
-    """All that may be unknown of a cylinder and its bearing, by name."""
-    values = {name: getattr(cylinder, name) for name in _OWN} | {"brake": 0.0, "drag": 0.0}
-    for section, body in _bodies(cylinder).items():
-        modes = {
-            f"{name}_{n}": value
-            for name, column in (("E", body.prony.E), ("tau", body.prony.tau))
-            for n, value in enumerate(column.tolist(), 1)
-        }
-        own = {name: getattr(body, name) for name in _OF_BODY} | modes
-        values |= {_prefix(section) + name: value for name, value in own.items()}
-    return {name: number(name, value) for name, value in values.items()}
-
-
-def refuse_unshifted(cylinder: Cylinder, called: str, temperature: float, shifts: Mapping[str, Shift]) -> None:
-    """Raise ParameterError for a temperature at which the times of a body are not known."""
-    for section, body in _bodies(cylinder).items():
-        if body.prony.alpha > 1.0 and section not in shifts:
-            sentence = f"{called}: temperature = {temperature:g} needs a shift of the {section}, as vr.WLF(T0=20.0)"
-            raise ParameterError("temperature", temperature, "given with shift", sentence)
-
-
-def unknowns_of(cylinder: Cylinder, given: Mapping[str, Any], records: Mapping[str, Record]) -> list[Unknown]:
+def unknowns_of(
+    cylinder: Cylinder, given: Mapping[str, Any], records: Mapping[str, Record], priors: Mapping[str, Any]
+) -> list[Unknown]:
     """The unknowns that are asked for, and those that records bring along.
 
     Raises
     ------
     ParameterError
-        A name that is none, a range that does not hold the start, a cylinder with arrays.
+        A name that is none, a range that does not hold the start, a cylinder with arrays; a prior of what is known.
     """
-    starts, ranges = _starts(cylinder), dict(given)
+    starts = {name: getattr(cylinder, name) for name in _OWN} | {"brake": 0.0, "drag": 0.0}
+    for section, body in _bodies(cylinder).items():
+        starts |= {_PREFIX[section] + name: value for name, value in _inputs(body).items()}
+    starts, ranges = {name: number(name, value) for name, value in starts.items()}, dict(given)
     for called, record in records.items():
-        for name, (start, span) in record.starts(cylinder).items():
+        for name, (start, span) in record.starts(cylinder.R).items():
             starts[f"{name}:{called}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{called}", span)
-    for name in ranges:
-        if name not in starts:
-            raise unknown("unknown", name, starts, "an input")
-    return [_unknown(name, starts[name], span) for name, span in ranges.items()]
+    for asked, among, argument, kind in (
+        (ranges, starts, "unknown", "an input"),
+        (priors, ranges, "prior", "an unknown"),
+    ):
+        for name in asked:
+            if name not in among:
+                raise unknown(argument, name, among, kind)
+    found = {name: _unknown(name, starts[name], span) for name, span in ranges.items()}
+    return [*(found | {name: _known(found[name], pair) for name, pair in priors.items()}).values()]
 
 
 def _unknown(name: str, start: float, span: Any) -> Unknown:
@@ -116,11 +103,20 @@ def _unknown(name: str, start: float, span: Any) -> Unknown:
     if not low <= start <= high:
         sentence = f"{called}: its range ({low:g}, {high:g}) must hold the start, here {start:.6g}"
         raise ParameterError(called, f"({low:g}, {high:g})", f"around {start:g}", sentence)
-    if name.split(":")[0] in _LINEAR:
-        return Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)))
-    if not low > 0.0:
+    linear = name.split(":")[0] in _LINEAR
+    if not (linear or low > 0.0):
         raise ParameterError(called, f"({low:g}, {high:g})", "above 0: it goes by its logarithm")
-    return Unknown(name, start, low, high, None)
+    return Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
+
+
+def _known(one: Unknown, pair: Any) -> Unknown:
+    """With what is known beforehand."""
+    called = f"prior {one.name}"
+    if np.shape(pair) != (2,):
+        raise ParameterError(called, f"{pair!r:.40}", "(value, standard deviation)")
+    mean = number(called, pair[0], low=one.least, strict=True)
+    sd = number(f"standard deviation of {called}", pair[1], low=0.0, strict=True)
+    return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 
 def cylinder_of(
@@ -134,41 +130,59 @@ def cylinder_of(
     Raises
     ------
     ParameterError
-        Values that make no cylinder; a temperature that the shift does not allow.
+        Values that make no cylinder; a temperature without a shift of a body, or that the shift does not allow.
     """
     changes: dict[str, Any] = {name: values[name] for name in _OWN if name in values}
     bodies = _bodies(cylinder)
-    made = {section: _changed(body, _prefix(section), values) for section, body in bodies.items()}
+    made = {section: _changed(body, _PREFIX[section], values) for section, body in bodies.items()}
     if record is not None:
         changes |= record.own
-        if record.temperature is not None:
-            made |= {section: made[section].at(record.temperature, shifts[section]) for section in shifts & made.keys()}
-    if any(made[section] is not bodies[section] for section in bodies):
+        for section, body in made.items() if record.temperature is not None else ():
+            made[section] = _warmed(body, section, record, shifts)
+    if any(made[section] is not body for section, body in bodies.items()):
         changes |= made
     return cylinder.replace(**changes) if changes else cylinder
 
 
-def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
-    own = {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
-    changes: dict[str, Any] = {name: own[name] for name in _OF_BODY if name in own}
-    if any(map(_MODE.match, own)):
-        strengths, times = (
-            tuple(own.get(f"{name}_{n}", value) for n, value in enumerate(column.tolist(), 1))
-            for name, column in (("E", body.prony.E), ("tau", body.prony.tau))
+def _warmed(body: Material, section: str, record: Record, shifts: Mapping[str, Shift]) -> Material:
+    if body.prony.alpha == 1.0:
+        return body
+    if section not in shifts:
+        sentence = (
+            f"{record.of('temperature')} = {record.temperature:g} needs a shift of the {section}, as vr.WLF(T0=20.0)"
         )
-        # it is no longer what was measured
+        raise ParameterError("temperature", record.temperature, "given with shift", sentence)
+    return body.at(record.temperature, shifts[section])  # type: ignore[arg-type]
+
+
+def _bodies(cylinder: Cylinder) -> dict[str, Material]:
+    pair = cylinder.pair
+    return {"material": pair.cylinder} | ({} if pair.base is None else {"base": pair.base})
+
+
+def _inputs(body: Material) -> dict[str, float]:
+    """All that may be unknown of a body, by name."""
+    series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
+    modes = {f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)}
+    return {name: getattr(body, name) for name in _OF_BODY} | modes
+
+
+def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
+    whole = _inputs(body)
+    own = {name: values[prefix + name] for name in whole if prefix + name in values}
+    if not own:
+        return body
+    changes: dict[str, Any] = {name: own.pop(name) for name in _OF_BODY if name in own}
+    if own:  # of the modes: it is no longer what was measured
+        whole |= own
+        strengths, times = (tuple(whole[name] for name in whole if name.startswith(of)) for of in ("E_", "tau_"))
         changes |= {"prony": _series(strengths, times), "measured": None}
     elif body.measured is not None and "T_ref" in changes:
         changes["measured"] = body.measured.shifted(changes["T_ref"] / body.T_ref)
-    return replace(body, **changes) if changes else body
+    return replace(body, **changes)
 
 
 @lru_cache(maxsize=256)
 def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
     """A series once: what does not change it pays no table of it."""
     return Prony(strengths, times)
-
-
-def of_record(values: Mapping[str, float], called: str) -> dict[str, float]:
-    """``values`` with those of the record ``called`` by their bare names."""
-    return {name.removesuffix(f":{called}"): value for name, value in values.items()}
