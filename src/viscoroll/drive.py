@@ -128,7 +128,7 @@ def over(name: str, given: Any, scale: Scale) -> Any:
     """
     if given is None or not scale.si:
         return given
-    unit, low = scale[name], 0.0 if name == "brake" else -np.inf
+    unit, low = scale[name], 0.0 if name in ("brake", "drag") else -np.inf
     if isinstance(given, Feedback):
         gains = given.V * scale["V"] / unit, given.omega * scale["omega"] / unit
         return Feedback(over(name, given.value, scale), *gains)

@@ -70,6 +70,7 @@ SYMBOLS = {
     ),
     "force": Symbol("f", "force along V", "finite", "", "kernels/motion/load.py"),
     "torque": Symbol("q", "torque along omega", "finite", "", "kernels/motion/load.py"),
+    "drag": Symbol("c", "torque of the bearing against omega, for each unit of it", ">= 0", "", "motion/driven.py"),
     "brake": Symbol("B", "most torque that a brake takes", ">= 0", "", "kernels/motion/load.py"),
     "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)", "", "equilibria/loads.py"),
     "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),

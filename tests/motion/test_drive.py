@@ -172,3 +172,18 @@ def test_a_ramp_whose_start_is_rounding():
         assert m.status == vr.MotionStatus.DONE
         assert m.steps <= 2 * plain.steps
         assert close(m.V[-1], plain.V[-1], rel=30e-8)
+
+
+def test_a_drag_is_a_torque_that_grows_with_omega():
+    """The same bits as by feedback, of a scene, of a cylinder in its units, and of one motion in each of many."""
+    scene, c = vr.presets.RUBBER_ROLLER, 3e-4
+    by_drag = vr.roll(scene, 2.0, 0.5, [1.0, 5.0], torque=0.01, drag=c)
+    by_feedback = vr.roll(scene, 2.0, 0.5, [1.0, 5.0], torque=vr.Feedback(0.01, omega=-c))
+    assert np.array_equal(by_drag.omega, by_feedback.omega)
+    assert np.array_equal(by_drag.torque, by_feedback.torque)
+    cylinder = vr.presets.RUBBER_CYLINDER
+    coast = cylinder.roll(2.0, 20.0, 3.0, drag=0.05)
+    assert coast.omega[-1] < cylinder.roll(2.0, 20.0, 3.0).omega[-1]
+    assert close(coast.torque[-1], -0.05 * coast.omega[-1], rel=tol.SCENE)
+    many = vr.ensemble(scene, 2.0, 0.5, [1.0, 5.0], torque=0.01, drag=[0.0, c])
+    assert np.array_equal(many.V[1], by_drag.V)

@@ -45,6 +45,7 @@ def ensemble(
     torque: Course | Feedback | None = None,
     slope: Numbers | None = None,
     brake: Course | None = None,
+    drag: Numbers | None = None,
     omega: Course | None = None,
     V: Course | None = None,
     method: Literal["auto", "flow", "integrate"] = "auto",
@@ -66,8 +67,8 @@ def ensemble(
         have a scene of its own.
     V0, omega0 : start speeds, scalars or arrays (n,); labels of xarray and pandas come back in ``to_xarray``.
     t : output times, ascending, common to all; one number: the final state only.
-    force, torque, slope, brake, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays of n,
-        times and values of a :class:`Schedule` of shape (n, k).
+    force, torque, slope, brake, drag, omega, V : what drives the motions, as for :func:`roll`; numbers may be arrays
+        of n, times and values of a :class:`Schedule` of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
@@ -111,7 +112,7 @@ def ensemble(
     times, names = output_times(t), _names(fields)
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
-    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, omega, V))
+    starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V))
     begun = begin(roller, starts, given, times[-1], (rtol, rest, max_steps), unsteady=unsteady, rested=rested)
     roller, inputs, count = begun.roller, begun.inputs, begun.caught.size
     scene, scale, ready, drive = roller.scene(), roller.scale, begun.ready, given.acting

@@ -32,12 +32,13 @@ class Drive(NamedTuple):
     torque: Any = None
     slope: Any = None
     brake: Any = None
+    drag: Any = None
     omega: Any = None
     V: Any = None
 
     @property
     def acting(self) -> Drive:
-        """The same without a force, torque, slope or brake of 0."""
+        """The same without a force, torque, slope, brake or drag of 0."""
         gone = {name: None for name, each in self.given.items() if name not in ("omega", "V") and _still(each)}
         return self._replace(**gone)
 
@@ -58,7 +59,7 @@ class Drive(NamedTuple):
     @property
     def acts(self) -> bool:
         """Whether anything does."""
-        return not (self.force is self.torque is self.slope is self.brake is self.omega is self.V is None)
+        return not (self.force is self.torque is self.slope is self.brake is self.drag is self.omega is self.V is None)
 
     @property
     def prescribes(self) -> bool:
@@ -140,9 +141,11 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
         if own is not None and given is not None:
             sentence = f"{found} is given beside {name}=: leave it out, it is what the prescribed {name} needs"
             raise ParameterError(found, given, "left out", sentence)
-    if drive.brake is not None and drive.omega is not None:
-        sentence = "brake is given beside omega=: leave it out, omega is prescribed"
-        raise ParameterError("brake", drive.brake, "left out", sentence)
+    for name in ("brake", "drag"):
+        if drive.omega is not None and (held := getattr(drive, name)) is not None:
+            raise ParameterError(
+                name, held, "left out", f"{name} is given beside omega=: leave it out, omega is prescribed"
+            )
     force = _added(curve("force", drive.force, end, rtol), tangent)
     torque = curve("torque", drive.torque, end, rtol)
     brake = curve("brake", drive.brake, end, rtol, low=0.0)
@@ -178,6 +181,7 @@ def _gains(drive: Drive) -> NDArray[np.float64]:
     """Of force over V, force over omega, torque over V, torque over omega."""
     pairs = [(each.V, each.omega) if isinstance(each, Feedback) else (0.0, 0.0) for each in (drive.force, drive.torque)]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
+    rows[3] = rows[3] - checked("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
     return np.array([np.broadcast_to(row, count) for row in rows])
 

@@ -34,6 +34,7 @@ def roll(
     torque: Acting | None = None,
     slope: float | None = None,
     brake: Course | None = None,
+    drag: float | None = None,
     omega: Course | None = None,
     V: Course | None = None,
     rest: float | None = None,
@@ -65,6 +66,8 @@ def roll(
         then, over which of a scene force, torque, Q and M are; ``scene`` of the result has kappa and gamma of it.
     brake : the most torque over P R that a brake takes, >= 0, as for ``force``.  It acts against omega, and holds
         omega = 0 while |Q + M_cylinder - torque| is no more.
+    drag : torque over P R against omega, for each unit of omega, as a bearing has it, >= 0; part of ``torque`` of the
+        result.  It drives to the end: speeds decay by it too.
     omega : prescribed speed of the motor, in place of ``torque``; ``omega0`` is None or what it starts at.
     V : prescribed speed of the axis, in place of ``force``; ``V0`` likewise.  A prescribed speed must not jump.
     rest : end the motion where max(|V|, R |omega|) falls below this once nothing drives any more; refused where
@@ -113,7 +116,7 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    times, drive = output_times(t), Drive(force, torque, slope, brake, omega, V)
+    times, drive = output_times(t), Drive(force, torque, slope, brake, drag, omega, V)
     if drive.acts:
         refuse_many(**drive.numbers)
         drive = drive.acting

@@ -75,6 +75,7 @@ class DriveSection(msgspec.Struct):
     torque: float | CourseSection | None = None
     brake: float | CourseSection | None = None
     slope: float | None = None
+    drag: float | None = None
     V: float | CourseSection | None = None
     omega: float | CourseSection | None = None
 
