@@ -2,7 +2,7 @@
 
 import warnings
 
-from viscoroll.errors import ModelWarning
+from viscoroll.core.errors import ModelWarning
 
 # they compute the paper's example, which steady rolling may not drive, and say so where it is shown
 warnings.simplefilter("ignore", ModelWarning)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
-from viscoroll.plots.style import save
+from viscoroll.core.plots.style import save
 
 from . import stage
 from .runtime import Way, from_file, motions

@@ -15,11 +15,11 @@ import xarray as xr
 from scipy.stats import uniform
 
 import viscoroll as vr
-from viscoroll.blocks import thread_count
-from viscoroll.config import preset
-from viscoroll.errors import ParameterError
-from viscoroll.files import write_dataset
-from viscoroll.sampling import sample
+from viscoroll.core.blocks import thread_count
+from viscoroll.core.errors import ParameterError
+from viscoroll.core.files import write_dataset
+from viscoroll.io.config import preset
+from viscoroll.io.sampling import sample
 
 from . import stage
 

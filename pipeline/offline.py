@@ -17,7 +17,7 @@ from typing import Any
 import msgspec
 
 import viscoroll as vr
-from viscoroll.errors import FileError
+from viscoroll.core.errors import FileError
 from viscoroll.materials.file import SUFFIX, materials_of, read_materials
 from viscoroll.materials.law_store import errors_of
 

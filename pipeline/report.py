@@ -18,8 +18,8 @@ from typing import Any
 import msgspec
 
 import viscoroll as vr
-from viscoroll.errors import FileError
-from viscoroll.files import write_text
+from viscoroll.core.errors import FileError
+from viscoroll.core.files import write_text
 from viscoroll.materials.law_store import errors_of
 from viscoroll.presets import PRESETS
 

@@ -23,8 +23,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.files import write_dataset
-from viscoroll.symbols import attributes
+from viscoroll.core.files import write_dataset
+from viscoroll.core.symbols import attributes
 
 from . import stage
 

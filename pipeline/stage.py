@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from viscoroll import ViscorollError
-from viscoroll.errors import FileError
-from viscoroll.files import write_text
+from viscoroll.core.errors import FileError
+from viscoroll.core.files import write_text
 
 if TYPE_CHECKING:
     import xarray as xr

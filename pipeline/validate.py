@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 import viscoroll as vr
 from pipeline.validation import report_dataset, validate
 from pipeline.validation.direct_motion import roll_direct
-from viscoroll.errors import FileError
-from viscoroll.files import write_dataset, write_text
+from viscoroll.core.errors import FileError
+from viscoroll.core.files import write_dataset, write_text
+from viscoroll.io.tables.check import Check
 from viscoroll.materials.law_store import errors_of
-from viscoroll.tables.check import Check
 
 from . import corners, stage
 from .runtime import motions

@@ -11,7 +11,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import pytest
 from memory import forget
 
-from viscoroll import known
+from viscoroll.contact_law import known
 from viscoroll.motion import flow_store
 
 # what a user chose for other work does not reach the tests

@@ -1,4 +1,4 @@
-"""Elements of broadcast arrays by blocks, and blocks on threads (blocks.py)."""
+"""Elements of broadcast arrays by blocks, and blocks on threads (core/blocks.py)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import viscoroll as vr
-from viscoroll.blocks import cores, run_blocks, thread_count
+from viscoroll.core.blocks import cores, run_blocks, thread_count
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

@@ -1,4 +1,4 @@
-"""TOML files (config.py): what is read, and what is refused in which words."""
+"""TOML files (io/config.py): what is read, and what is refused in which words."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from places import PIPELINE
 
 import viscoroll as vr
-from viscoroll.config import read_bodies, read_body
+from viscoroll.io.config import read_bodies, read_body
 from viscoroll.materials.file import read_materials
 
 PRODUCTION = PIPELINE / "config.toml"

@@ -17,7 +17,7 @@ from closeness import close
 from many import MATERIALS
 
 import viscoroll as vr
-from viscoroll.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
+from viscoroll.contact_law.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
 from viscoroll.materials import law_each
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED

@@ -15,7 +15,7 @@ from places import DATA, ROOT
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.dma.spectrum import FLOOR
+from viscoroll.app.dma.spectrum import FLOOR
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
 #: a rubber of ten modes over eight decades, times in s

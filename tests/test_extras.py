@@ -14,8 +14,8 @@ import pytest
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.extras import imported
-from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble
+from viscoroll.core.extras import imported
+from viscoroll.io.runs import export_netcdf, open_summaries, read_run, run_ensemble
 
 RUN = """
 preset = "paper-section-5"
@@ -97,7 +97,7 @@ import viscoroll
 for module in pkgutil.walk_packages(viscoroll.__path__, "viscoroll."):
     if not module.name.endswith("__main__"):
         importlib.import_module(module.name)
-from viscoroll.runs import estimate, export_netcdf, read_run, run_ensemble
+from viscoroll.io.runs import estimate, export_netcdf, read_run, run_ensemble
 run = read_run("run.toml")
 run_ensemble(run, "store.zarr")
 export_netcdf("store.zarr", "store.nc")

@@ -18,7 +18,7 @@ from places import ROOT
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll import files
+from viscoroll.core import files
 
 DATA = xr.Dataset({"V": ("t", np.random.default_rng(1).random(20_000))})
 WRITERS: dict[str, Callable[[Path], object]] = {

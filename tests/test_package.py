@@ -10,8 +10,8 @@ import pytest
 from processes import printed
 
 import viscoroll as vr
-from viscoroll.contact_fields import FIELDS
-from viscoroll.symbols import SYMBOLS
+from viscoroll.contact_law.contact_fields import FIELDS
+from viscoroll.core.symbols import SYMBOLS
 
 PACKAGE = Path(vr.__file__).parent
 HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}

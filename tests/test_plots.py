@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from viscoroll.errors import FileError
-from viscoroll.plots.runs import run_distributions
-from viscoroll.plots.style import save
-from viscoroll.runs import open_summaries, read_run, run_ensemble
+from viscoroll.core.errors import FileError
+from viscoroll.core.plots.runs import run_distributions
+from viscoroll.core.plots.style import save
+from viscoroll.io.runs import open_summaries, read_run, run_ensemble
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

@@ -14,8 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
-from viscoroll.contact_fields import FIELDS as CONTACT_FIELDS
-from viscoroll.errors import MotionStatus
+from viscoroll.contact_law.contact_fields import FIELDS as CONTACT_FIELDS
+from viscoroll.core.errors import MotionStatus
 from viscoroll.materials.law_table import law_table
 from viscoroll.motion.batch import FIELDS
 

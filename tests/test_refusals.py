@@ -18,12 +18,13 @@ from scipy import stats
 
 import viscoroll as vr
 from pipeline.validation import validate
-from viscoroll import errors, fmu
-from viscoroll.config import read_bodies, read_body
-from viscoroll.identification.file import read_measurements
+from viscoroll import fmu
+from viscoroll.app.identification.file import read_measurements
+from viscoroll.core import errors
+from viscoroll.io.config import read_bodies, read_body
+from viscoroll.io.runs import read_run
+from viscoroll.io.sampling import sample
 from viscoroll.materials.file import read_materials
-from viscoroll.runs import read_run
-from viscoroll.sampling import sample
 
 TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]

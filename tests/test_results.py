@@ -16,7 +16,7 @@ from places import ROOT
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.files import write_dataset
+from viscoroll.core.files import write_dataset
 from viscoroll.motion.batch import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

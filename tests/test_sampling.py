@@ -1,4 +1,4 @@
-"""Random inputs (sampling.py): designs, distributions, and what is refused."""
+"""Random inputs (io/sampling.py): designs, distributions, and what is refused."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll import sampling
-from viscoroll.sampling import Sample, sample
+from viscoroll.io.sampling import Sample, sample
 
 
 @pytest.mark.parametrize("design", ["random", "latin", "sobol"])

@@ -14,9 +14,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import viscoroll as vr
+from viscoroll.contact_law.steadiness import Steadiness
+from viscoroll.core.scale import Scale
 from viscoroll.motion import warned
-from viscoroll.scale import Scale
-from viscoroll.steadiness import Steadiness
 
 #: a fit of docs/examples/dma.csv, and a roller on it as of docs/may_i.md: 0.1 m, T_ref 3 s
 DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])

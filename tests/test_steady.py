@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 import viscoroll as vr
 from pipeline.evidence.truth.series import functions, rates
-from viscoroll.contact_fields import SLOPES_OF_BODIES
+from viscoroll.contact_law.contact_fields import SLOPES_OF_BODIES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 KAPPA, MU = SCENE.kappa, SCENE.mu

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from viscoroll import stored
+from viscoroll.core import stored
 
 
 @pytest.fixture

@@ -42,7 +42,6 @@ def test_checkers_and_python_see_the_same_names():
             for name in node.names:
                 assert name.asname == name.name  # else it is not exported
                 homes[name.name] = node.module
-    packages = {name for name, home in homes.items() if home is None}
-    assert {name: home for name, home in homes.items() if home} == vr._HOME
-    assert packages == set(vr._SUBPACKAGES)
-    assert set(vr.__all__) == homes.keys() | {"__version__"}
+    modules = {name: f"{homes.pop(name) or ''}.{name}".lstrip(".") for name in vr._MODULES}
+    assert (homes, modules) == (vr._HOME, vr._MODULES)
+    assert set(vr.__all__) == homes.keys() | modules.keys() | {"__version__"}

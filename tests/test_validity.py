@@ -10,7 +10,7 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.assumptions import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
+from viscoroll.contact_law.assumptions import REACH_LIMIT, THICK_LIMIT, WAVE_LIMIT, coupling
 
 SCENE = vr.presets.PAPER_SECTION_5
 V = np.array([0.0, 5e-324, 1e-3, -0.3, 1.0, 1e3, 1e150])

@@ -12,7 +12,7 @@ DIRECT_CARTER = 4e-13
 #: alpha/(kappa V) ln; measured 8e-10.
 DIRECT_EXTREME = 1e-8
 
-# --- contact_stress.py (test_stress.py) ---
+# --- contact_law/stress.py (test_stress.py) ---
 #: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
 STRESS_ELLIPSE = 1e-15
 #: Carter's shear: near the stick edge the reference's beta^2 - (..)^2 cancels; relative to mu times the peak;
@@ -46,7 +46,7 @@ RATIO_ULP = 2.0
 #: 1 - r and 1 - k: just below the seams x = 2 and z = 1 the difference triples the error of r and k; measured 2.8.
 RATIO_COMPLEMENT_ULP = 4.0
 
-# --- rolling_contact.py (test_contact.py) ---
+# --- contact_law/contact.py (test_contact.py) ---
 #: A state by the rows of its law against 50 digits, relative: delta_star, Q and M; measured 3e-15 over 900 states.
 CONTACT = 5e-15
 #: lam and zeta, and beta times 1/(1 - s), and epsilon: 24 powers leave so much of lam and epsilon in one octave for
@@ -114,7 +114,7 @@ RETURN_TIME = 3e-9
 #: Closed forms of the elastic cylinder, over the speed and the duration: roundings.
 SLIDE = 1e-14
 
-# --- sampling.py (test_ensemble.py) ---
+# --- io/sampling.py (test_ensemble.py) ---
 #: Kolmogorov-Smirnov p-value of a recorded seed: fixed, so no chance of a false alarm.
 KOLMOGOROV = 0.01
 
@@ -297,7 +297,7 @@ STEADY_GRIP = 1e-14
 #: What goes in and what is lost, where force and torque nearly cancel; measured 2e-13.
 STEADY_POWER = 1e-11
 
-# --- steadiness.py (test_steadiness.py) ---
+# --- contact_law/steadiness.py (test_steadiness.py) ---
 #: N, M and their integrals by splines over sixteenths of octaves, against quadrature of the law itself.
 STEADINESS = 1e-6
 #: |N| (kappa V)^2 over 1 - 1/alpha: 1.3418/16 was found at most, of one mode and alpha near 100.
@@ -386,7 +386,7 @@ LAYER_THIN = 2e-3
 #: The file keeps three digits.
 LAYER_KEPT = 5e-3
 
-# --- fmu/test_fmu.py ---
+# --- app/fmu/test_fmu.py ---
 #: A few roundings of the last place.
 FMU_ROUNDED = 1e-14
 #: Forces of an element against the law: omega R - v of an FMU and omega - V of the law round apart, which is amplified

@@ -37,7 +37,7 @@ TOOLS = ("hypothesis", "mpmath", "pytest", "python-flint")
 ASKED = ("roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3")
 SAMPLE = (
     "tests/docs/test_readme.py::test_readme_block_runs",
-    "tests/docs/test_readme.py::test_howto_blocks_run",
+    "tests/docs/test_readme.py::test_howto_runs",
     "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
     "tests/test_claims.py::test_claims[contact]",
     "tests/truth/test_motions.py::test_roll_has_the_check_motions",

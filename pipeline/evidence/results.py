@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.blocks import cores
-from viscoroll.errors import FileError
-from viscoroll.files import write_text
+from viscoroll.core.blocks import cores
+from viscoroll.core.errors import FileError
+from viscoroll.core.files import write_text
 
 from ..stage import ROOT, make_folder, read_toml, told
 from .stamps import kernels_digest

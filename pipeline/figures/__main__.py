@@ -14,7 +14,7 @@ import matplotlib as mpl
 from tqdm import tqdm
 
 from viscoroll import ModelWarning
-from viscoroll.plots.style import save
+from viscoroll.core.plots.style import save
 
 from .. import stage
 from ..validate import loaded

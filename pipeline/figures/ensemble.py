@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from viscoroll.plots.style import new_figure, number, quantile_bands, scaled
-from viscoroll.symbols import label
+from viscoroll.core.plots.style import new_figure, number, quantile_bands, scaled
+from viscoroll.core.symbols import label
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from viscoroll.contact_stress import stress
-from viscoroll.plots.style import LINES, THIN, new_figure
-from viscoroll.rolling_contact import contact
+from viscoroll.contact_law.contact import contact
+from viscoroll.contact_law.stress import stress
+from viscoroll.core.plots.style import LINES, THIN, new_figure
+from viscoroll.core.symbols import label
 from viscoroll.scene import Scene
-from viscoroll.symbols import label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

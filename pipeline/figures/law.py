@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from viscoroll.plots.style import LINES, THIN, new_figure, scaled
+from viscoroll.contact_law.contact import contact
+from viscoroll.core.plots.style import LINES, THIN, new_figure, scaled
+from viscoroll.core.symbols import label
 from viscoroll.presets import PAPER_FIGURES_2_3
-from viscoroll.rolling_contact import contact
-from viscoroll.symbols import label
 
 from .title import describe
 

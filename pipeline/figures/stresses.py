@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.contact_stress import stress
+from viscoroll.contact_law.stress import stress
+from viscoroll.core.plots.style import LINES, THIN, new_figure, number
+from viscoroll.core.symbols import label
 from viscoroll.motion import Motion, roll
-from viscoroll.plots.style import LINES, THIN, new_figure, number
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
-from viscoroll.symbols import label
 
 from .title import caveat, describe
 

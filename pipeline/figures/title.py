@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from viscoroll import Scene
-from viscoroll.plots.style import number
-from viscoroll.symbols import SYMBOLS
+from viscoroll.core.plots.style import number
+from viscoroll.core.symbols import SYMBOLS
 
 
 def describe(scene: Scene, *names: str) -> str:

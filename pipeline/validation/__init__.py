@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from viscoroll.errors import ParameterError
-from viscoroll.tables.check import Check, Report, check_table
+from viscoroll.core.errors import ParameterError
+from viscoroll.io.tables.check import Check, Report, check_table
 
 from .report import report_dataset
 
@@ -34,7 +34,7 @@ def validate(
 
     Parameters
     ----------
-    tables : of :func:`viscoroll.tables.load` or ``build``; each is checked at its nodes and off them.
+    tables : of :func:`viscoroll.io.tables.load` or ``build``; each is checked at its nodes and off them.
     states : random states at which method "table" meets method "direct".
     stress_states : random states at which the stresses are integrated.
     table_points : random nodes, and as many points between nodes, of each table.

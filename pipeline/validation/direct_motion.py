@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.errors import ConvergenceError
+from viscoroll.core.errors import ConvergenceError
 from viscoroll.scene import Scene
 
 #: The tightest that run smoothly; delta's absolute one is the noise of Q as printed, 1e-16 mu/(4 kappa) and more.

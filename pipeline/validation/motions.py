@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from viscoroll.io.tables.check import Check
 from viscoroll.motion import roll
 from viscoroll.presets import PAPER_SECTION_5_ROUNDED, PAPER_STARTS
 from viscoroll.scene import Scene
-from viscoroll.tables.check import Check
 
 from .direct_motion import roll_direct
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from viscoroll import __version__
-from viscoroll.tables.check import Report
+from viscoroll.io.tables.check import Report
 
 
 def report_dataset(report: Report) -> xr.Dataset:

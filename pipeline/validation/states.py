@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from viscoroll.contact_law.contact import Values, contact
+from viscoroll.io.tables.check import Check
 from viscoroll.motion import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_SECTION_5_ROUNDED, PAPER_STARTS
-from viscoroll.rolling_contact import Values, contact
 from viscoroll.scene import Scene
-from viscoroll.tables.check import Check
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: Field -> (largest difference allowed, its unit in words).  lam and epsilon: what the rows of the law state of them

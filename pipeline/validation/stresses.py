@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.contact_stress import stress
-from viscoroll.rolling_contact import contact
+from viscoroll.contact_law.contact import contact
+from viscoroll.contact_law.stress import stress
+from viscoroll.io.tables.check import Check
 from viscoroll.scene import Scene
-from viscoroll.tables.check import Check
 
 from .states import random_states
 

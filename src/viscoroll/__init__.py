@@ -26,47 +26,53 @@ _HOME = {
     "Measured": "materials.measured",
     "WLF": "materials.shift",
     "Arrhenius": "materials.shift",
-    "fit_prony": "dma",
-    "Fit": "dma",
-    "read_dma": "dma",
-    "identify": "identification",
-    "Resistance": "identification",
-    "Traction": "identification",
-    "Coastdown": "identification",
-    "contact": "rolling_contact",
-    "stress": "contact_stress",
-    "law": "bound_law",
+    "fit_prony": "app.dma",
+    "Fit": "app.dma",
+    "read_dma": "app.dma",
+    "identify": "app.identification",
+    "Resistance": "app.identification",
+    "Traction": "app.identification",
+    "Coastdown": "app.identification",
+    "contact": "contact_law.contact",
+    "stress": "contact_law.stress",
+    "law": "contact_law.bound",
     "load_law": "materials.law_file",
-    "Law": "bound_law",
-    "steady": "equilibria",
-    "humps": "equilibria",
-    "validity": "judged",
-    "Feedback": "drive",
-    "Schedule": "drive",
+    "Law": "contact_law.bound",
+    "steady": "contact_law.equilibria",
+    "humps": "contact_law.equilibria",
+    "validity": "contact_law.judged",
+    "Feedback": "core.drive",
+    "Schedule": "core.drive",
     "Motion": "motion.one",
     "Ensemble": "motion.many",
-    "Steady": "equilibria",
-    "Values": "results",
-    "Validity": "assumptions",
+    "Steady": "contact_law.equilibria",
+    "Values": "core.results",
+    "Validity": "contact_law.assumptions",
     "roll": "motion",
     "ensemble": "motion",
-    "ViscorollError": "errors",
-    "ParameterError": "errors",
-    "FileError": "errors",
-    "ConvergenceError": "errors",
-    "MissingDependencyError": "errors",
-    "ModelWarning": "errors",
-    "MotionStatus": "errors",
+    "ViscorollError": "core.errors",
+    "ParameterError": "core.errors",
+    "FileError": "core.errors",
+    "ConvergenceError": "core.errors",
+    "MissingDependencyError": "core.errors",
+    "ModelWarning": "core.errors",
+    "MotionStatus": "core.errors",
 }
-_SUBPACKAGES = ("presets", "sampling", "tables")
-__all__ = ["__version__", *_HOME, *_SUBPACKAGES]  # noqa: PLE0604
+_MODULES = {
+    "presets": "presets",
+    "sampling": "io.sampling",
+    "tables": "io.tables",
+    "runs": "io.runs",
+    "fmu": "app.fmu",
+}
+__all__ = ["__version__", *_HOME, *_MODULES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
     if name in _HOME:
         value = getattr(import_module(f".{_HOME[name]}", __name__), name)
-    elif name in _SUBPACKAGES:
-        value = import_module(f".{name}", __name__)
+    elif name in _MODULES:
+        value = import_module(f".{_MODULES[name]}", __name__)
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value

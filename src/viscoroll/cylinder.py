@@ -10,24 +10,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import known
-from .assumptions import WAVE_LIMIT, Assumption, Validity, coupling, inertia, measurement, passage, thickness
-from .checks import broadcast_shape, checked, frozen, number
-from .drive import slope_factor
-from .errors import ParameterError, one_of
-from .free_rolling import rolling
+from .contact_law import known
+from .contact_law.assumptions import (
+    WAVE_LIMIT,
+    Assumption,
+    Validity,
+    coupling,
+    inertia,
+    measurement,
+    passage,
+    thickness,
+)
+from .contact_law.free_rolling import rolling
+from .contact_law.parameters import same
+from .core.checks import broadcast_shape, checked, frozen, number
+from .core.drive import slope_factor
+from .core.errors import ParameterError, one_of
+from .core.results import Row, Shown, short
+from .core.scale import Scale
+from .core.symbols import MEASURED
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.measured import Measured
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
 from .motion.warned import say
-from .parameters import same
-from .results import Row, Shown, short
-from .scale import Scale
 from .scaling import contact_length, scene_of
 from .scene import Methods, Scene
-from .symbols import MEASURED
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
 _NUMBERS = ("R", "m", *_SOLID, "mu", "j", "g", "pressed")

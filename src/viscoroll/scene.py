@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from .bound_law import law
-from .contact_stress import stress
-from .equilibria import humps, steady
-from .judged import validity
+from .contact_law.bound import law
+from .contact_law.contact import contact
+from .contact_law.equilibria import humps, steady
+from .contact_law.judged import validity
+from .contact_law.parameters import Parameters, Rolls
+from .contact_law.stress import stress
 from .motion import ensemble, roll
-from .parameters import Parameters, Rolls
-from .rolling_contact import contact
 
 
 class Methods(Rolls):

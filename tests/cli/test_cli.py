@@ -22,7 +22,7 @@ from places import ROOT
 from processes import printed, python
 
 import viscoroll as vr
-from viscoroll.cli import main
+from viscoroll.app.cli import main
 from viscoroll.materials.file import read_materials
 from viscoroll.materials.law_store import checksum, content_of
 
@@ -109,7 +109,7 @@ def test_version_and_module():
 def test_help_imports_nothing_heavy():
     printed(
         "import sys\n"
-        "from viscoroll.cli import main\n"
+        "from viscoroll.app.cli import main\n"
         f"for command in {COMMANDS!r}: assert main([*command.split(), '--help']) == 0\n"
         "assert main(['--help']) == 0\n"
         "heavy = {'numpy', 'numba', 'scipy', 'xarray', 'matplotlib', 'h5py'} & sys.modules.keys()\n"

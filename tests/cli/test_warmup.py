@@ -46,7 +46,7 @@ CODE = f"""
 import importlib
 import numpy as np
 import viscoroll as vr
-from viscoroll.cli import main
+from viscoroll.app.cli import main
 from viscoroll.kernels.compile.cache import HERE
 assert main(["warmup"]) == 0
 modules = [

@@ -19,7 +19,7 @@ from places import ROOT
 
 import viscoroll as vr
 
-LOADING, HEADERS = ROOT / "docs/loading", ROOT / "src/viscoroll/tables/c"
+LOADING, HEADERS = ROOT / "docs/loading", ROOT / "src/viscoroll/io/tables/c"
 RUBBER = vr.Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5])
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), RUBBER, 0.3)
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M", "M_half_space", "M_cylinder", "N")

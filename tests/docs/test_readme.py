@@ -12,8 +12,8 @@ from places import ROOT
 from processes import made
 
 import viscoroll as vr
-from viscoroll import cli
-from viscoroll.runs import read_run
+from viscoroll.app import cli
+from viscoroll.io.runs import read_run
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -52,14 +52,16 @@ def test_offline_and_runtime(tmp_path, monkeypatch, capsys):
     assert way == vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, 40.0).x[-1]
 
 
-def test_howto_blocks_run(tmp_path, monkeypatch):
+@pytest.mark.parametrize("page", sorted(path.stem for path in (ROOT / "docs/howto").glob("*.md")))
+def test_howto_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     session: dict = {}
-    for n, code in enumerate(blocks(ROOT / "docs/howto.md", "python")):
-        exec(compile(code, f"howto.md, block {n + 1}", "exec"), session)
-    assert (tmp_path / "motion.nc").exists()
-    # the controller with a state holds what it was told to
-    assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
+    for n, code in enumerate(blocks(ROOT / f"docs/howto/{page}.md", "python")):
+        exec(compile(code, f"{page}.md, block {n + 1}", "exec"), session)
+    if page == "files":
+        assert (tmp_path / "motion.nc").exists()
+    if page == "motion":  # the controller with a state holds what it was told to
+        assert close(session["controlled_V"], session["wanted"], rel=tol.EXAMPLE_RADAU)
 
 
 def test_the_page_of_measurements_runs(monkeypatch, capsys):
@@ -74,9 +76,9 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys):
 
 
 def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.config import read_body
+    from viscoroll.io.config import read_body
 
-    for text in blocks(ROOT / "docs/howto.md", "toml"):
+    for text in (text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         assert read_body(tmp_path / "scene.toml").scene()
 

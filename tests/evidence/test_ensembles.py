@@ -12,7 +12,7 @@ import pytest
 from places import DOCS, PIPELINE, RESULTS
 from processes import made
 
-from viscoroll.runs import read_run, run_ensemble
+from viscoroll.io.runs import read_run, run_ensemble
 
 
 def test_a_cluster_gives_the_same_files(tmp_path):

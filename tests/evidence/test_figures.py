@@ -18,7 +18,7 @@ from processes import made, printed, stage_refused
 import viscoroll as vr
 from pipeline.figures import FIGURES, GALLERY
 from pipeline.figures.captions import SECTIONS
-from viscoroll.plots.style import save
+from viscoroll.core.plots.style import save
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -49,7 +49,7 @@ def test_titled_and_labelled(drawn):
 
 
 def test_the_separatrix_parts_what_settles_from_what_runs_away():
-    page = runpy.run_path(str(GALLERY / "drive/d_slope.py"))
+    page = runpy.run_path(str(GALLERY / "core/drive/d_slope.py"))
     scene, slope, V, omega = (page[name] for name in ("scene", "slope", "separatrix", "across"))
     for side in (-1e-4, 1e-4):
         end = vr.ensemble(scene, V + side, omega, 1000.0 / scene.gamma, slope=slope).V[:, 0]

@@ -12,7 +12,7 @@ from closeness import close
 from places import DOCS, RESULTS
 
 from pipeline.evidence.prove import layer
-from viscoroll.assumptions import THICK_LIMIT
+from viscoroll.contact_law.assumptions import THICK_LIMIT
 
 
 @pytest.mark.parametrize("nu", layer.RATIOS)

@@ -25,7 +25,7 @@ from filelock import FileLock
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.config import read_bodies
+from viscoroll.io.config import read_bodies
 
 SITE = ROOT / "docs/_build/html"
 NEEDED = (
@@ -113,7 +113,7 @@ def test_every_public_name_has_its_entry(site):
     home = {name: f"viscoroll.{module}.{name}" for name, module in vr._HOME.items()}
     public = set(vr.__all__) - {"__version__", "tables", "sampling"}
     assert {name for name in public if not {f"viscoroll.{name}", home.get(name)} & names} == set()
-    assert {name for name in vr.tables.__all__ if f"viscoroll.tables.{name}" not in names} == set()
+    assert {name for name in vr.tables.__all__ if f"viscoroll.io.tables.{name}" not in names} == set()
 
 
 def test_every_gallery_page_shows_a_picture(site):

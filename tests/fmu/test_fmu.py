@@ -12,8 +12,8 @@ from closeness import close
 
 import viscoroll as vr
 from viscoroll import fmu
-from viscoroll.cli import main
-from viscoroll.errors import MissingDependencyError
+from viscoroll.app.cli import main
+from viscoroll.core.errors import MissingDependencyError
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
 fmpy = pytest.importorskip("fmpy", reason="not installed (make interop): fmpy")

@@ -9,8 +9,8 @@ from experiments import FILE, measurements
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll import cli
-from viscoroll.identification.file import read_measurements
+from viscoroll.app import cli
+from viscoroll.app.identification.file import read_measurements
 
 EXAMPLE = ROOT / "docs/examples/measured.toml"
 

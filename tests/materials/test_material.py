@@ -13,7 +13,7 @@ from closeness import close
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.files import write_dataset
+from viscoroll.core.files import write_dataset
 from viscoroll.materials.file import as_toml, read_materials
 from viscoroll.materials.store import as_dataset
 

@@ -9,7 +9,7 @@ from closeness import close
 from memory import forget
 
 import viscoroll as vr
-from viscoroll.errors import MotionStatus
+from viscoroll.core.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
 from viscoroll.motion.batch import FIELDS, FLOW_PAYS, LOSSES
 

@@ -9,7 +9,7 @@ import pytest
 import tolerances as tol
 
 import viscoroll as vr
-from viscoroll.errors import MotionStatus
+from viscoroll.core.errors import MotionStatus
 from viscoroll.motion.batch import FIELDS
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED

@@ -15,13 +15,13 @@ from refusals import refused
 from run_files import CERTAIN, FILES, PAPER
 
 import viscoroll as vr
+from viscoroll.io.runs import estimate, export_netcdf, open_summaries, read_run, roll_inputs, run_ensemble, verify
+from viscoroll.io.runs.evaluate import block_inputs, roll_block
+from viscoroll.io.runs.quantities import attributes
+from viscoroll.io.runs.rollers import roller_of
+from viscoroll.io.runs.sensitivity import sobol_indices
+from viscoroll.io.runs.store import columns_of
 from viscoroll.motion.batch import FLOW_PAYS
-from viscoroll.runs import estimate, export_netcdf, open_summaries, read_run, roll_inputs, run_ensemble, verify
-from viscoroll.runs.evaluate import block_inputs, roll_block
-from viscoroll.runs.quantities import attributes
-from viscoroll.runs.rollers import roller_of
-from viscoroll.runs.sensitivity import sobol_indices
-from viscoroll.runs.store import columns_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

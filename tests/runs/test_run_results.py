@@ -7,7 +7,7 @@ import pytest
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.runs import open_run, open_summaries, read_run, run_ensemble
+from viscoroll.io.runs import open_run, open_summaries, read_run, run_ensemble
 
 RUN = """
 [cylinder]

@@ -14,10 +14,10 @@ import pytest
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll import files
-from viscoroll.cli import main
-from viscoroll.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
-from viscoroll.runs.store import Store, locked
+from viscoroll.app.cli import main
+from viscoroll.core import files
+from viscoroll.io.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
+from viscoroll.io.runs.store import Store, locked
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

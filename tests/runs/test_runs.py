@@ -14,11 +14,11 @@ from scipy import stats
 from scipy.stats import qmc
 
 from viscoroll import sampling
-from viscoroll.runs import estimate, read_run, store
-from viscoroll.runs.evaluate import roll_block
-from viscoroll.runs.inputs import Distribution, Inputs
-from viscoroll.runs.quantities import QUANTITIES
-from viscoroll.runs.summaries import histogram, merged, quantiles, summarise
+from viscoroll.io.runs import estimate, read_run, store
+from viscoroll.io.runs.evaluate import roll_block
+from viscoroll.io.runs.inputs import Distribution, Inputs
+from viscoroll.io.runs.quantities import QUANTITIES
+from viscoroll.io.runs.summaries import histogram, merged, quantiles, summarise
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -148,7 +148,7 @@ def test_an_estimate_does_not_scale_up_what_happens_once(run, monkeypatch):
         clock[0] += 100.0 if clock[0] == 0.0 else 1.0
         return summarise(*given)
 
-    module = import_module("viscoroll.runs.estimate")  # whose name is the function's
+    module = import_module("viscoroll.io.runs.estimate")  # whose name is the function's
     monkeypatch.setattr(store, "summarise", summarised)
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
     assert run.blocks == 5

@@ -15,10 +15,10 @@ from refusals import refused
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll.cli import main
-from viscoroll.plots.sensitivity import sobol_bars
-from viscoroll.runs import read_run
-from viscoroll.runs.sensitivity import sobol_indices
+from viscoroll.app.cli import main
+from viscoroll.core.plots.sensitivity import sobol_bars
+from viscoroll.io.runs import read_run
+from viscoroll.io.runs.sensitivity import sobol_indices
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

@@ -12,9 +12,9 @@ import xarray as xr
 from closeness import close
 
 import viscoroll as vr
-from viscoroll import known
-from viscoroll.plots import draw
-from viscoroll.runs import estimate, read_run
+from viscoroll.contact_law import known
+from viscoroll.core.plots import draw
+from viscoroll.io.runs import estimate, read_run
 
 DATA = vr.Measured(0.06, 628.0, 0.01, "dma.csv")
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)

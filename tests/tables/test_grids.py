@@ -19,9 +19,9 @@ from refusals import refused
 from scipy import io
 
 import viscoroll as vr
-from viscoroll import files
+from viscoroll.core import files
+from viscoroll.io.tables import schema
 from viscoroll.materials.law_table import law_table
-from viscoroll.tables import schema
 
 V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)

@@ -12,8 +12,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from viscoroll.files import replacing
-from viscoroll.plots.style import log_ticks
+from viscoroll.core.files import replacing
+from viscoroll.core.plots.style import log_ticks
 
 from ...stage import ROOT
 from ..document.blocks import finished, paper_rows, random_rows

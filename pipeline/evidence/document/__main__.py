@@ -16,18 +16,19 @@ import sys
 from pathlib import Path
 
 from viscoroll import ViscorollError
-from viscoroll.files import write_text
+from viscoroll.core.files import write_text
 
 from ...stage import ROOT, told
 from ..results import RESULTS, Results
 from ..stamps import SHORT, kernels_digest, stamps
-from . import identification
+from . import house, identification
 from .blocks import BLOCKS
 
 BLOCKS |= {
     f"identify_{made.__name__}": ("measure.identification", made)
     for made in (getattr(identification, name) for name in ("learn", "bearing", "said", "times", "coverage", "reach"))
 }
+BLOCKS |= {made.__name__: ("document", made) for made in (house.rooms, house.commands, house.sections)}
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")

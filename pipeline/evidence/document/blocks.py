@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.scale import DIMENSIONS, si_unit
-from viscoroll.symbols import SYMBOLS, meaning
+from viscoroll.core.scale import DIMENSIONS, si_unit
+from viscoroll.core.symbols import SYMBOLS, meaning
 
 from ..results import Results, rows_of, table
 from .cells import cell, listed, two

@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.blocks import run_blocks, thread_count
-from viscoroll.runs import read_run, run_ensemble, verify
-from viscoroll.runs.store import Store
+from viscoroll.core.blocks import run_blocks, thread_count
+from viscoroll.io.runs import read_run, run_ensemble, verify
+from viscoroll.io.runs.store import Store
 
 from ..results import run
 from ..timing import forked, peak_mb, processor_time

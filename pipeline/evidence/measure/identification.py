@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.identification import Identification
-from viscoroll.identification.profile import Walk
+from viscoroll.app.identification import Identification
+from viscoroll.app.identification.profile import Walk
 
 from ..results import run_parts
 

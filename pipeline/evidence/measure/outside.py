@@ -24,9 +24,9 @@ from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 from viscoroll import fmu, tables
-from viscoroll.config import read_bodies
-from viscoroll.errors import MissingDependencyError
-from viscoroll.extras import imported
+from viscoroll.core.errors import MissingDependencyError
+from viscoroll.core.extras import imported
+from viscoroll.io.config import read_bodies
 
 from ...stage import ROOT
 from ..results import run

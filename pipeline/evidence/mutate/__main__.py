@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.files import write_text
+from viscoroll.core.files import write_text
 
 from ...stage import ROOT
 from ..stamps import kernels_digest

@@ -20,9 +20,9 @@ import numpy as np
 import xarray as xr
 from tqdm import tqdm
 
-from viscoroll.files import write_dataset
-from viscoroll.plots.style import new_figure, save
-from viscoroll.symbols import SYMBOLS, label, meaning
+from viscoroll.core.files import write_dataset
+from viscoroll.core.plots.style import new_figure, save
+from viscoroll.core.symbols import SYMBOLS, label, meaning
 
 from ...stage import ROOT, make_folder, told
 from ..results import RESULTS, parser, read_sizes

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.plots.style import LINES, THIN, new_figure, save
+from viscoroll.core.plots.style import LINES, THIN, new_figure, save
 
 from ...stage import ROOT, told
 from ..results import RESULTS, Results, parser

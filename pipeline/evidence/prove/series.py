@@ -13,7 +13,7 @@ import mpmath
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.contact_fields import OF_BODIES
+from viscoroll.contact_law.contact_fields import OF_BODIES
 from viscoroll.kernels.rows.modes import modes_loop
 from viscoroll.kernels.rows.series import FUNCTIONS, room_of
 from viscoroll.materials.law_modes import series_of

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 import viscoroll as vr
-from viscoroll.plots.style import LINES, THIN, new_figure, save
+from viscoroll.core.plots.style import LINES, THIN, new_figure, save
 
 from ...stage import ROOT, told
 from ..results import RESULTS, machine, parser, write_results

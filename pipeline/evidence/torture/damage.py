@@ -17,7 +17,7 @@ import numpy as np
 from tqdm import tqdm
 
 from viscoroll import tables
-from viscoroll.errors import FileError
+from viscoroll.core.errors import FileError
 
 from ..timing import forked, peak_mb, processor_time
 

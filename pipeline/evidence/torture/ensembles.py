@@ -26,8 +26,8 @@ import xarray as xr
 from tqdm import tqdm
 
 from viscoroll import ViscorollError
-from viscoroll.errors import FileError
-from viscoroll.runs import Run, export_netcdf, read_run, run_ensemble, verify
+from viscoroll.core.errors import FileError
+from viscoroll.io.runs import Run, export_netcdf, read_run, run_ensemble, verify
 
 from .damage import enlarge, flip, row, small_disk, truncate
 

@@ -1,4 +1,4 @@
-"""Coverage-guided fuzzing of the loaders: TOML scenes and materials (config.py), and table files (tables/store.py).
+"""Coverage-guided fuzzing of the loaders: TOML scenes and materials (io/config.py), and tables (io/tables/store.py).
 
     python -m pipeline.evidence.torture.fuzz_loaders toml|table [--seconds N] [--corpus FOLDER]
 
@@ -28,11 +28,11 @@ LONGEST = 1 << 17
 
 def readers(what: str) -> tuple[Callable[[Path], Any], ...]:
     if what == "toml":
-        from viscoroll.config import read_bodies, read_body
+        from viscoroll.io.config import read_bodies, read_body
 
         return read_body, read_bodies
     from viscoroll import load_law
-    from viscoroll.tables import load
+    from viscoroll.io.tables import load
 
     return load, load_law
 
@@ -43,8 +43,8 @@ def seeds(what: str, folder: Path) -> None:
         for n, content in enumerate(SCENES):
             (folder / f"{n}.toml").write_bytes(content)
     else:
+        from viscoroll.io.tables import build, law, save
         from viscoroll.presets import RUBBER_CYLINDER
-        from viscoroll.tables import build, law, save
 
         save(build(RUBBER_CYLINDER, [0.1, 0.2], [0.0, 0.01]), folder / "grid")
         save(law(11.0), folder / "law")

@@ -22,8 +22,8 @@ import numpy as np
 from tqdm import tqdm
 
 from viscoroll import ViscorollError, tables
-from viscoroll.errors import FileError
-from viscoroll.files import seal_holds
+from viscoroll.core.errors import FileError
+from viscoroll.core.files import seal_holds
 from viscoroll.presets import RUBBER_CYLINDER
 
 from ...stage import ROOT

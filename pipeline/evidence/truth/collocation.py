@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.extras import imported
+from viscoroll.core.extras import imported
 
 #: a zero is found to this share of a step on its polynomial
 _LOCATED, _MOST_BISECTIONS = 1e-25, 200

@@ -14,8 +14,8 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from viscoroll.errors import ConvergenceError
-from viscoroll.extras import imported
+from viscoroll.core.errors import ConvergenceError
+from viscoroll.core.extras import imported
 
 from .precise import single_numbers
 

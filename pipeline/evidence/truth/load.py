@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from viscoroll.drive import Feedback, Schedule
-from viscoroll.errors import one_of
+from viscoroll.core.drive import Feedback, Schedule
+from viscoroll.core.errors import one_of
 
 Course = list[tuple[Any, Any]]
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from viscoroll.errors import ConvergenceError, ParameterError
-from viscoroll.extras import imported
+from viscoroll.core.errors import ConvergenceError, ParameterError
+from viscoroll.core.extras import imported
 from viscoroll.scene import Scene
 
 from .collocation import Radau, radau

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from viscoroll.errors import ConvergenceError
+from viscoroll.core.errors import ConvergenceError
 
 from .load import Piece
 from .solid import Solid, Zone

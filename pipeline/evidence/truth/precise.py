@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.checks import checked
-from viscoroll.errors import ConvergenceError, ParameterError
-from viscoroll.extras import imported
+from viscoroll.core.checks import checked
+from viscoroll.core.errors import ConvergenceError, ParameterError
+from viscoroll.core.extras import imported
 from viscoroll.scene import Scene
 
 #: Digits that the printed forms may lose: lam^-2 - 1 as V -> 0, lam^2 - 1/alpha as V grows

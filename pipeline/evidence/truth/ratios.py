@@ -16,7 +16,7 @@ import mpmath as mp
 import numpy as np
 from tqdm import tqdm
 
-from viscoroll.files import replacing
+from viscoroll.core.files import replacing
 from viscoroll.kernels.bessel import layout as layout
 
 TARGET = Path(__file__).parents[3] / "src/viscoroll/kernels/bessel/ratios.npy"

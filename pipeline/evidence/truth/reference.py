@@ -27,7 +27,7 @@ from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.files import write_dataset, write_text
+from viscoroll.core.files import write_dataset, write_text
 
 from ... import stage
 from .enclosures import INPUTS, condition_numbers, contact_enclosure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from viscoroll.errors import ConvergenceError
+from viscoroll.core.errors import ConvergenceError
 
 from .load import Piece
 from .phases import Contact, Law, Phase, Slipping, Sticking, root, sign

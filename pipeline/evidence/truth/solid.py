@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from viscoroll.errors import ParameterError
-from viscoroll.extras import imported
+from viscoroll.core.errors import ParameterError
+from viscoroll.core.extras import imported
 from viscoroll.materials.bodies import Bodies
 from viscoroll.materials.prony import Prony
 from viscoroll.scene import Scene

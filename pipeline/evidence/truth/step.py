@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.extras import imported
+from viscoroll.core.extras import imported
 
 from .collocation import Radau, zero_between
 from .phases import Phase

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import broadcast_shape, checked, frozen
-from ..errors import ParameterError
+from ..core.checks import broadcast_shape, checked, frozen
+from ..core.errors import ParameterError
 from .prony import Block, OneOrMany, Prony, descending
 from .prony_forms import MOST_MODES
 

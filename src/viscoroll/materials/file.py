@@ -14,8 +14,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ..errors import FileError, ParameterError
-from ..sections import as_struct, fault, read
+from ..core.errors import FileError, ParameterError
+from ..core.sections import as_struct, fault, read
 from .law_store import is_law, read_law
 from .material import Material
 from .measured import Measured
@@ -52,7 +52,13 @@ class FileSection(msgspec.Struct, kw_only=True):
 
 
 class MaterialSection(FileSection, kw_only=True):
-    """[material] or [base]: the parameters of :class:`Material`, or of :meth:`Material.sls`, and a temperature."""
+    """[material] or [base]: the parameters of :class:`Material`, or of :meth:`Material.sls`, and a temperature.
+
+    T_epsilon, T_sigma : retardation and relaxation time of one mode, s, in place of a series.
+    creep : in place of ``prony``: compliances over that at once, and times; perhaps alpha.
+    wlf, arrhenius : how times shift with temperature.
+    temperature : which they are wanted at, degrees Celsius.
+    """
 
     file: None = None  # type: ignore[assignment]
     E: float

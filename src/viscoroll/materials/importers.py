@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import checked, number
-from ..errors import ParameterError, one_of
+from ..core.checks import checked, number
+from ..core.errors import ParameterError, one_of
 from .bodies import Bodies
 from .prony import Prony
 

@@ -8,8 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..checks import number
-from ..errors import ParameterError
+from ..core.checks import number
+from ..core.errors import ParameterError
 from .law_table import Floats, LawTable, law_table, made
 from .prony_forms import HIGHEST_ALPHA
 

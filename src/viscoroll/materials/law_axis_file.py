@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..checks import number
-from ..errors import FileError, ParameterError
+from ..core.checks import number
+from ..core.errors import FileError, ParameterError
 from .law_axis import FUNCTIONS, LawAxis
 from .law_store import AXIS, MEANING_OF_AXIS, OTHERS_OF_AXIS, REMEDY, Content, sealed
 from .law_table import LawTable

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..checks import checked
-from ..errors import FileError, ParameterError
+from ..core.checks import checked
+from ..core.errors import FileError, ParameterError
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis_file import alpha_of
@@ -87,7 +87,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
 
     Parameters
     ----------
-    path : file of :func:`viscoroll.tables.save` or of ``viscoroll tables law``.
+    path : file of :func:`viscoroll.io.tables.save` or of ``viscoroll tables law``.
     alpha : of a file of every alpha of one relaxation time: that which is wanted, with T_epsilon for the unit of time.
 
     Returns

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ParameterError
+from ..core.errors import ParameterError
 from .bodies import Bodies
 from .prony import Prony
 from .prony_forms import Modes

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import __version__
-from ..errors import FileError
-from ..files import sealed_content
-from ..symbols import PAPER
+from ..core.errors import FileError
+from ..core.files import sealed_content
+from ..core.symbols import PAPER
 
 if TYPE_CHECKING:
     import xarray as xr

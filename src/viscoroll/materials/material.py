@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import checked, number
-from ..errors import ParameterError
-from ..results import Row, Shown
+from ..core.checks import checked, number
+from ..core.errors import ParameterError
+from ..core.results import Row, Shown
 from .importers import FromPrograms, poisson
 from .measured import Measured
 from .prony import Prony
@@ -221,8 +221,8 @@ class Material(FromPrograms):
         FileError
             If it cannot be written there.
         """
-        from ..plots.material import master_curve
-        from ..plots.style import saved
+        from ..core.plots.material import master_curve
+        from ..core.plots.style import saved
 
         return saved(master_curve(self), path)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..checks import number
-from ..errors import ParameterError
+from ..core.checks import number
+from ..core.errors import ParameterError
 
 
 @dataclass(frozen=True)

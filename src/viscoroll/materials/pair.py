@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..core.errors import ParameterError
 from .bodies import Bodies
 from .material import Material
 from .prony import Prony

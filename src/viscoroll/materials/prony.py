@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import broadcast_shape, checked
-from ..errors import ParameterError
+from ..core.checks import broadcast_shape, checked
+from ..core.errors import ParameterError
 from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
-from ..checks import number
-from ..errors import ParameterError
+from ..core.checks import number
+from ..core.errors import ParameterError
 
 #: J/(mol K), exact since 2019
 GAS_CONSTANT = 8.31446261815324

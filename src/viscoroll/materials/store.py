@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from .. import __version__
-from ..errors import FileError, ParameterError
-from ..files import seal_holds, write_dataset
+from ..core.errors import FileError, ParameterError
+from ..core.files import seal_holds, write_dataset
 from .measured import Measured
 from .prony import Prony
 

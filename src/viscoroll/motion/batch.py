@@ -8,16 +8,16 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import flattened, run_blocks, thread_count
-from ..checks import broadcast_shape, extent, number
-from ..drive import Feedback, Schedule, over
-from ..errors import MotionStatus, ParameterError, unknown
+from ..contact_law.parameters import PARAMETERS, Parameters, Rolls, framed
+from ..core.blocks import flattened, run_blocks, thread_count
+from ..core.checks import broadcast_shape, extent, number
+from ..core.drive import Feedback, Schedule, over
+from ..core.errors import MotionStatus, ParameterError, unknown
+from ..core.scale import OF_TIME
+from ..core.typed import Numbers
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
-from ..parameters import PARAMETERS, Parameters, Rolls, framed
-from ..scale import OF_TIME
-from ..typed import Numbers
 from .checks import SPEED_RANGE, controls, in_words, output_times, start_speeds
 from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
 from .flow import Answer, FlowMap, ask, flow_map

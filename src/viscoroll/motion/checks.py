@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import broadcast_shape, checked, extent, number
-from ..errors import ParameterError
-from ..scale import Scale
+from ..core.checks import broadcast_shape, checked, extent, number
+from ..core.errors import ParameterError
+from ..core.scale import Scale
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import broadcast_shape, checked
-from ..drive import Feedback, Schedule, over, slope_factor
-from ..errors import ParameterError, one_of
-from ..labels import Labels, unlabelled
-from ..scale import Scale
+from ..core.checks import broadcast_shape, checked
+from ..core.drive import Feedback, Schedule, over, slope_factor
+from ..core.errors import ParameterError, one_of
+from ..core.labels import Labels, unlabelled
+from ..core.scale import Scale
 from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")

@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..errors import MotionStatus, ParameterError
+from ..contact_law.parameters import PARAMETERS, Rolls
+from ..core.errors import MotionStatus, ParameterError
+from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
-from ..parameters import PARAMETERS, Rolls
-from ..symbols import attributes
 from .driven import ACTING
 from .export_drive import drive_variables
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..drive import Feedback, Schedule
-from ..results import short
+from ..core.drive import Feedback, Schedule
+from ..core.results import short
 from .driven import Drive
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"

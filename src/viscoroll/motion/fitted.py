@@ -20,8 +20,8 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from ..checks import checked
-from ..errors import ParameterError
+from ..core.checks import checked
+from ..core.errors import ParameterError
 from ..kernels.numerics.nodes import powers_of_chebyshev
 
 #: terms of a polynomial, looks at a callable, values taken of it at most

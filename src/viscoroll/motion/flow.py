@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import flattened, run_blocks
-from ..parameters import Parameters
+from ..contact_law.parameters import Parameters
+from ..core.blocks import flattened, run_blocks
 from .flow_motions import motions
 from .flow_store import FlowMap, load, path_of, save
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blocks import flattened, run_blocks
+from ..core.blocks import flattened, run_blocks
 from ..materials.law_table import law_table
 from .driven import LOSSES, ROWS, STATES, undriven
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import stored
+from ..core import stored
 from ..materials.prony import Prony
 
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..assumptions import Validity
-from ..errors import MotionStatus
-from ..judged import validity
-from ..labels import Labels
-from ..parameters import Parameters, Rolls
-from ..results import Row, Shown, unit_of
-from ..scale import Scale
-from ..steadiness import Steadiness
-from ..symbols import attributes
+from ..contact_law.assumptions import Validity
+from ..contact_law.judged import validity
+from ..contact_law.parameters import Parameters, Rolls
+from ..contact_law.steadiness import Steadiness
+from ..core.errors import MotionStatus
+from ..core.labels import Labels
+from ..core.results import Row, Shown, unit_of
+from ..core.scale import Scale
+from ..core.symbols import attributes
 from .driven import Drive
 
 if TYPE_CHECKING:

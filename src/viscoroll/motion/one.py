@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..assumptions import Validity
-from ..errors import MotionStatus, ParameterError
-from ..judged import validity
-from ..parameters import Parameters, Rolls
-from ..results import Row, Shown, Values, unit_of
-from ..rolling_contact import contact
-from ..scale import Scale
-from ..steadiness import Steadiness
-from ..symbols import attributes
+from ..contact_law.assumptions import Validity
+from ..contact_law.contact import contact
+from ..contact_law.judged import validity
+from ..contact_law.parameters import Parameters, Rolls
+from ..contact_law.steadiness import Steadiness
+from ..core.errors import MotionStatus, ParameterError
+from ..core.results import Row, Shown, Values, unit_of
+from ..core.scale import Scale
+from ..core.symbols import attributes
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS, Drive
 from .rolling import Inputs, rolled

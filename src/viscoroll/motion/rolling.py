@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import MotionStatus, ParameterError
-from ..parameters import Parameters
+from ..contact_law.parameters import Parameters
+from ..core.errors import MotionStatus, ParameterError
 from .driven import ROWS, Drive, prepared, refuse_rest
 from .unsteady import climbed
 

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import checked
-from ..drive import Feedback, Schedule, refuse_more_than_t
-from ..errors import ParameterError
+from ..core.checks import checked
+from ..core.drive import Feedback, Schedule, refuse_more_than_t
+from ..core.errors import ParameterError
 from .fitted import fitted
 
 #: of the values of a piece, its first one where that is rounding

@@ -6,11 +6,11 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import number
-from ..drive import Feedback, Schedule, over
-from ..errors import ParameterError
-from ..parameters import Rolls, framed
-from ..typed import Numbers
+from ..contact_law.parameters import Rolls, framed
+from ..core.checks import number
+from ..core.drive import Feedback, Schedule, over
+from ..core.errors import ParameterError
+from ..core.typed import Numbers
 from .checks import controls, in_words, output_times, refuse_many, start_speeds
 from .driven import Drive
 from .one import Motion, integrated

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import checked
-from ..errors import ParameterError
-from ..parameters import Parameters
-from ..rolling_contact import contact
-from ..steadiness import CAUGHT
+from ..contact_law.contact import contact
+from ..contact_law.parameters import Parameters
+from ..contact_law.steadiness import CAUGHT
+from ..core.checks import checked
+from ..core.errors import ParameterError
 from .driven import Prepared
 
 

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import ModelWarning, outside
-from ..free_rolling import curve
+from ..contact_law.free_rolling import curve
+from ..contact_law.parameters import PARAMETERS, Parameters
+from ..contact_law.steadiness import STEADY_LIMIT
+from ..core.errors import ModelWarning, outside
 from ..kernels.compile.notice import is_worker
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
-from ..parameters import PARAMETERS, Parameters
-from ..steadiness import STEADY_LIMIT
 
 #: kappa at which the contact at rest reaches half a radius from the axis
 _LEAST_KAPPA = 1.0

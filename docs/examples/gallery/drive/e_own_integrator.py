@@ -56,4 +56,4 @@ print(f"{found.nfev} calls of the law, {found.njev} of its slopes")
 
 # %%
 # Grey: rolling resistance at the speed of the tractor.  The same law serves numba
-# (``law.jitted``) and C (``law.address``): :doc:`/howto`.
+# (``law.jitted``) and C (``law.address``): :doc:`/howto/contact`.

@@ -8,9 +8,9 @@ Sobol indices share out the variance of a result over the uncertain inputs.  A r
 
 from pathlib import Path
 
-from viscoroll.plots.sensitivity import sobol_bars
-from viscoroll.runs import read_run
-from viscoroll.runs.sensitivity import sobol_indices
+from viscoroll.core.plots.sensitivity import sobol_bars
+from viscoroll.io.runs import read_run
+from viscoroll.io.runs.sensitivity import sobol_indices
 
 Path("throw.toml").write_text(
     """

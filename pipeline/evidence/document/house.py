@@ -1,0 +1,130 @@
+"""What the code says of itself: rooms and what each stands on, commands, keys of files; nothing is measured."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import inspect
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import msgspec
+
+import viscoroll as vr
+from viscoroll.app.cli.program import parser
+from viscoroll.io.config import CylinderSection, SceneSection
+from viscoroll.io.runs.runfile import DriveSection, RunSection, StartSection
+from viscoroll.materials.file import MaterialSection
+
+from ...stage import ROOT
+from ..results import Results, table
+
+_PACKAGE = ROOT / "src/viscoroll"
+#: sections of a TOML file: what reads them, and whose parameters they hold
+_SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
+    "[scene]": (SceneSection, (vr.Scene,)), "[cylinder]": (CylinderSection, (vr.Cylinder,)),
+    "[material], [base]": (MaterialSection, (vr.Material,)), "[start]": (StartSection, (vr.roll,)),
+    "[drive]": (DriveSection, (vr.roll,)), "[run]": (RunSection, ()),
+}  # fmt: skip
+_KINDS = {float: "number", int: "whole number", bool: "true or false", str: "text"}
+
+
+def rooms(results: Results) -> str:
+    """The picture: a box a room, by the layers of the import contract, with the rooms that its files import."""
+    contract = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
+    layers = [name.removeprefix("viscoroll.") for name in contract["contracts"][0]["layers"]]
+    lines = []
+    for name in layers:
+        place = _PACKAGE / name
+        files = sorted(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
+        about = ast.get_docstring(ast.parse((place / "__init__.py" if place.is_dir() else files[0]).read_text("utf-8")))
+        stands_on = {room for file in files for room in _imported(file)} - {name}
+        size = f"{len(files)} files" if place.is_dir() else ""
+        below = ", ".join(room for room in layers if room in stands_on)
+        lines += [f"{name + ('/' if place.is_dir() else ''):<14}{size:>10}   {about.splitlines()[0]}"]
+        lines += [f"{'':27}-> {below}"] if below else []
+    return "```text\n" + "\n".join(lines) + "\n```\n"
+
+
+def _imported(file: Path) -> Iterator[str]:
+    """The rooms that a file imports from, by their names below the package."""
+    package = file.relative_to(_PACKAGE).parts[:-1]
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            path = [*package[: len(package) - node.level + 1], *(node.module or "").split(".")]
+            yield from (path[0],) if path[0] else (name.name for name in node.names)
+
+
+def commands(results: Results) -> str:
+    """A heading and a table of arguments for every command."""
+    return "\n".join(_commands(parser()))
+
+
+def _commands(program: argparse.ArgumentParser) -> Iterator[str]:
+    below = [action for action in program._actions if isinstance(action, argparse._SubParsersAction)]
+    if not below:
+        yield f"## {program.prog}\n\n```text\n{program.description}\n```\n"
+        rows = [
+            (f"`{_called(action)}`".replace("|", "\\|"), (action.help or "").replace("|", "\\|"))
+            for action in program._actions if not isinstance(action, argparse._HelpAction)
+        ]  # fmt: skip
+        yield table(("argument", "what"), rows) if rows else ""
+    for action in below:
+        for command in action.choices.values():
+            yield from _commands(command)
+
+
+def _called(action: argparse.Action) -> str:
+    """An option with what follows it, or what stands for an argument."""
+    value = action.metavar or ("|".join(map(str, action.choices)) if action.choices else action.dest)
+    return f"{', '.join(action.option_strings)} {'' if action.nargs == 0 else value}".strip()
+
+
+def sections(results: Results) -> str:
+    """A heading and a table of keys for every section of a TOML file."""
+    lines = []
+    for names, (schema, meant) in _SECTIONS.items():
+        meanings = _parameters(schema)
+        for each in meant:
+            meanings |= _parameters(each)
+        kinds = {key: hint for key, hint in get_type_hints(schema, include_extras=True).items() if hint is not NoneType}
+        rows = [(f"`{key}`", _kind(kind), _default(schema, key), meanings.get(key, "")) for key, kind in kinds.items()]
+        lines += [f"## {names}\n", table(("key", "what", "default", "meaning"), rows)]
+    return "\n".join(lines)
+
+
+def _parameters(thing: Any) -> dict[str, str]:
+    """What a docstring says of each of its parameters, without the paragraphs that follow."""
+    text = inspect.getdoc(thing) or ""
+    found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n    .*)*)", text)
+    return {
+        name: " ".join(words.split("\n\n")[0].split()).replace("|", "\\|")
+        for names, words in found for name in names.split(", ")
+    }  # fmt: skip
+
+
+def _kind(hint: Any) -> str:
+    """A type in words."""
+    if get_origin(hint) is Annotated:
+        return _kind(get_args(hint)[0])
+    if get_origin(hint) in (Union, UnionType):
+        return " or ".join(_kind(each) for each in get_args(hint) if each is not type(None))
+    if get_origin(hint) is Literal:
+        return ", ".join(f'"{each}"' for each in get_args(hint))
+    if get_origin(hint) in (list, tuple):
+        return "list of " + {"number": "numbers", "text": "names"}.get(_kind(get_args(hint)[0]), "numbers")
+    if hint in _KINDS:
+        return _KINDS[hint]
+    return "{ " + ", ".join(get_type_hints(hint)) + " }"
+
+
+def _default(schema: Any, key: str) -> str:
+    """The default of a key as a file would say it; empty where there is none."""
+    (given,) = (each for each in msgspec.structs.fields(schema) if each.name == key)
+    if given.required or given.default is None:
+        return "" if given.required else "-"
+    return f"`{msgspec.json.encode(given.default).decode()}`"

@@ -1,0 +1,133 @@
+"""Parser and exit codes of the program: 0 done, 1 a validation failed, 2 an error in one line."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import re
+import sys
+import warnings
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from ... import __version__
+from ...core.errors import Interrupted, ViscorollError
+from . import (
+    contact,
+    doctor,
+    ensemble,
+    fmu,
+    identify,
+    material,
+    motion,
+    plot,
+    sensitivity,
+    steady,
+    tables,
+    validity,
+    warmup,
+)
+
+#: What a shell reports for a program ended by SIGINT or SIGPIPE.
+_INTERRUPTED, _BROKEN_PIPE = 130, 141
+_NEGATIVE = re.compile(r"-\.?(\d|inf|nan)")
+
+
+class UsageError(ViscorollError):
+    """The command line does not parse."""
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that raises instead of exiting, and shows epilogs as they are written."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message} (see {self.prog} --help)")
+
+
+def parser() -> Parser:
+    """The whole command line."""
+    program = Parser(
+        prog="viscoroll",
+        description="Contact and motion of a viscoelastic cylinder rolling with partial slip on a half-space of its\n"
+        "material or of another.\n\n"
+        "If the scene or run file has a [cylinder] section, all inputs and outputs are in SI units.\n"
+        "Otherwise all are dimensionless.",
+        epilog="example:\n  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 3e-3",
+    )
+    program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
+    commands = program.add_subparsers(metavar="COMMAND", required=True)
+    for group in (
+        contact,
+        motion,
+        steady,
+        validity,
+        ensemble,
+        sensitivity,
+        identify,
+        tables,
+        fmu,
+        material,
+        plot,
+        warmup,
+        doctor,
+    ):
+        group.add_commands(commands)
+    return program
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the program on ``argv`` (default: that of the process); returns its exit code."""
+    if sys.stdout is None:  # closed by the shell
+        sys.stdout = io.StringIO()
+    try:
+        with warnings.catch_warnings():
+            warnings.showwarning = _told
+            return _run(sys.argv[1:] if argv is None else argv)
+    except ViscorollError as error:
+        return _failed(error)
+    except MemoryError as error:
+        return _failed(f"not enough memory ({error})")
+    except KeyboardInterrupt as end:
+        if isinstance(end, Interrupted) and sys.stderr is not None:
+            print("viscoroll:", end, file=sys.stderr, flush=True)
+        return _INTERRUPTED
+    except OSError as error:  # files raise FileError and the like: this is standard output
+        # whatever is still buffered goes nowhere, or the interpreter would complain at its end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _BROKEN_PIPE if isinstance(error, BrokenPipeError) else _failed(f"standard output: {error.strerror}")
+
+
+def _run(argv: Sequence[str]) -> int:
+    try:
+        arguments = parser().parse_args(_joined(argv))
+        code: int = arguments.run(arguments)
+    except SystemExit as finished:  # argparse's own way to end after --help and --version
+        code = int(finished.code or 0)
+    sys.stdout.flush()
+    return code
+
+
+def _told(message: Warning | str, *_: Any, **__: Any) -> None:
+    """A warning in one line."""
+    if sys.stderr is not None:
+        print("viscoroll: warning:", " ".join(str(message).split()), file=sys.stderr)
+
+
+def _failed(error: object) -> int:
+    print("viscoroll: error:", " ".join(str(error).split()), file=sys.stderr)
+    return 2
+
+
+def _joined(argv: Sequence[str]) -> list[str]:
+    """``--V -1:1:5`` as ``--V=-1:1:5``: argparse takes a value like -1:1:5 or -1e-3 for an option."""
+    joined: list[str] = []
+    for text in argv:
+        if joined and joined[-1].startswith("--") and "=" not in joined[-1] and _NEGATIVE.match(text):
+            joined[-1] += f"={text}"
+        else:
+            joined.append(text)
+    return joined

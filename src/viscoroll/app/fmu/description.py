@@ -1,0 +1,98 @@
+"""modelDescription.xml of FMI 2.0 and 3.0, and what a source FMU of 3.0 adds to it."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+from ... import __version__
+from .variables import MODELS, UNITS, Model, Variable
+
+#: what a model can do: attributes of ModelExchange and CoSimulation of both, and of either version
+_DERIVATIVES = {
+    2: {"providesDirectionalDerivative": "true"},
+    3: {"providesDirectionalDerivatives": "true", "providesAdjointDerivatives": "true"},
+}
+
+
+def described(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
+    """modelDescription.xml of a model; ``starts``: values of what may be set."""
+    model = MODELS[name]
+    root = ElementTree.Element(
+        "fmiModelDescription",
+        {
+            "fmiVersion": f"{version}.0", "modelName": f"viscoroll.{name}", "description": f"{model.text}: {title}",
+            "generationTool": f"viscoroll {__version__}", "license": "BSD-3-Clause",
+            **({"guid": token, "numberOfEventIndicators": "0"} if version == 2 else {"instantiationToken": token}),
+        },
+    )  # fmt: skip
+    _add_kinds(root, version, name, model)
+    units = ElementTree.SubElement(root, "UnitDefinitions")
+    for unit, exponents in UNITS.items():
+        one = ElementTree.SubElement(units, "Unit", name=unit)
+        ElementTree.SubElement(one, "BaseUnit", {base: str(power) for base, power in exponents.items()})
+    ElementTree.SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", stepSize="0.01")
+    variables = ElementTree.SubElement(root, "ModelVariables")
+    references = {each.name: str(n) for n, each in enumerate(model.variables, start=1)}
+    if version == 3:
+        time = {"causality": "independent", "variability": "continuous", "unit": "s"}
+        ElementTree.SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
+    for each in model.variables:
+        _add_variable(variables, version, each, references, starts)
+    _add_structure(ElementTree.SubElement(root, "ModelStructure"), version, model, references)
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _add_kinds(root: ElementTree.Element, version: int, name: str, model: Model) -> None:
+    steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
+    kinds = {"ModelExchange": steps[version]}
+    if model.states:
+        kinds["CoSimulation"] = {"canHandleVariableCommunicationStepSize": "true"}
+    for kind, can in kinds.items():
+        one = ElementTree.SubElement(root, kind, {"modelIdentifier": name} | _DERIVATIVES[version] | can)
+        if version == 2:
+            ElementTree.SubElement(ElementTree.SubElement(one, "SourceFiles"), "File", name="fmu.c")
+
+
+def _add_variable(
+    parent: ElementTree.Element, version: int, each: Variable, references: dict[str, str], starts: dict[str, float]
+) -> None:
+    varies = "continuous" if each.causality != "parameter" else "tunable" if each.above_0 else "fixed"
+    about = {
+        "name": each.name, "valueReference": references[each.name], "causality": each.causality, "variability": varies,
+        "description": each.text,
+    }  # fmt: skip
+    value = {"unit": each.unit}
+    if each.name in starts:
+        value["start"] = repr(starts[each.name])
+    if each.name.startswith("der_"):
+        value["derivative"] = references[each.name.removeprefix("der_")]
+    if version == 3:
+        ElementTree.SubElement(parent, "Float64", about | value)
+    else:
+        ElementTree.SubElement(ElementTree.SubElement(parent, "ScalarVariable", about), "Real", value)
+
+
+def _add_structure(parent: ElementTree.Element, version: int, model: Model, references: dict[str, str]) -> None:
+    outputs = [references[each.name] for each in model.variables if each.causality == "output"]
+    rates = [references[f"der_{state}"] for state in model.states]
+    unknowns = sorted((*outputs, *rates), key=int)
+    if version == 3:
+        kinds = {"Output": outputs, "ContinuousStateDerivative": rates, "InitialUnknown": unknowns}
+        for kind, found in kinds.items():
+            for reference in found:
+                ElementTree.SubElement(parent, kind, valueReference=reference)
+        return
+    for kind, found in {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}.items():
+        group = ElementTree.SubElement(parent, kind) if found else parent
+        for reference in found:
+            ElementTree.SubElement(group, "Unknown", index=reference)
+
+
+def sources_described(name: str) -> str:
+    """sources/buildDescription.xml of FMI 3.0."""
+    root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
+    how = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)
+    ElementTree.SubElement(ElementTree.SubElement(how, "SourceFileSet", language="C99"), "SourceFile", name="fmu.c")
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"

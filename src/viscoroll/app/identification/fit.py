@@ -1,0 +1,274 @@
+"""What was found: :class:`Identification`, and :class:`Prediction`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import cached_property
+from os import PathLike
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...core.checks import number, whole
+from ...core.errors import ParameterError, unknown
+from ...core.results import Row, Shown, Values
+from .problem import Found, Noise, Problem, Vector, slopes
+from .products import Product, products, undetermined
+from .profile import Profile, profile
+from .records import OF_RECORDS, Record
+from .unknowns import cylinder_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_LEVEL = 0.95
+#: of coordinates, what is one place
+_SAME = 1e-6
+#: most draws of a band, and of them that are thrown away, at most, for one that lies within the ranges
+_DRAWS, _TRIES = 100_000, 50
+
+
+class Band(NamedTuple):
+    """A quantity at the best values, and the ends of its band."""
+
+    value: Any
+    low: Any
+    high: Any
+
+
+class Prediction(Values):
+    """Quantities of a record by name, each with ``.value``, ``.low`` and ``.high``, of the shape of its places."""
+
+    def __getattr__(self, name: str) -> Band:
+        return Band(*(super(Prediction, self).__getattr__(name + end) for end in ("", "_low", "_high")))
+
+
+class Identification(Shown):
+    """Values that fit measurements best, how well they are known, and what the data do not say.
+
+    ``print`` shows a report; its intervals are profiles, which take about as long as the fit for each unknown.
+
+    Attributes
+    ----------
+    cylinder : the :class:`Cylinder` of the best values.
+    values : of the unknowns by name, SI.
+    stderr : their standard deviations by the slopes at the best fit, and as far as ranges go; infinite where one does
+        not act.
+    correlations : (n, n), in the order of ``values``.
+    chi2, dof : sum of the squared residuals over sigma, and what it should be; of robust fits outliers count less.
+    sigma : standard deviation of each record's quantity, as given or as estimated.
+    minima : (chi2, values) of all minima near the best, the best first.
+    does_not_act : names of unknowns that do not change what was measured.
+    undetermined : names of those whose interval tells little, wider than a factor of e^2 or than half their range, and
+        of what is correlated with these beyond 0.95; :meth:`products` says what of them is determined.
+    noise : of each record's quantity ``.rms`` of the residuals over sigma and ``.lag``, their lag-1 correlation.
+    misfit : names of those whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1.  Intervals
+        mean nothing then.
+    records : the data by name.
+    planned : whether the records hold no values: standard deviations and intervals are what to expect.
+    """
+
+    def __init__(self, problem: Problem, found: list[Found], planned: bool) -> None:
+        self._problem, self._best = problem, found[0]
+        u, self.chi2 = self._best
+        begun = [problem.start] * bool(np.abs(problem.start - u).max() > _SAME)
+        self._others = [*(one.u for one in found[1:]), *begun]
+        self.values = problem.values(u)
+        self.minima = [(one.chi2, problem.values(one.u)) for one in found]
+        self.dof = problem.points - u.size
+        self.records, self.planned = problem.records, planned
+        self.sigma = {str(one): problem.sigma[one.at].copy() for one in problem.columns}
+        self.noise: dict[str, Noise] = {} if planned else problem.noise(u)
+        self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
+        self.cylinder = cylinder_of(problem.cylinder, self.values)
+        self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.live)
+        # by slopes, and as far as the ranges let them
+        J = problem.weighed(u)[1]
+        self._cov: Any = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
+        sd = np.sqrt(np.diag(self._cov))
+        self.correlations = self._cov / np.outer(sd, sd)
+        self.stderr = {
+            one.name: math.inf if one.name in self.does_not_act else float(one.spread(self.values[one.name]) * size)
+            for one, size in zip(problem.unknowns, sd, strict=True)
+        }
+        self._profiles: dict[tuple[float, ...], Profile] = {}
+        self._ends: list[Vector] = []
+
+    @cached_property
+    def predicted(self) -> dict[str, Prediction]:
+        """The best fit to each record, with its bands."""
+        return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
+
+    def _axis(self, which: Any) -> Vector:
+        """Of one coordinate, or of some."""
+        return np.eye(len(self.values))[which]
+
+    def _profile(self, powers: Vector, level: float = _LEVEL) -> Profile:
+        """Of a combination of coordinates."""
+        key = (level, *powers.tolist())
+        if key not in self._profiles:
+            self._profiles[key] = profile(self, powers, self._rise(level))
+        return self._profiles[key]
+
+    def _axes(self, level: float = _LEVEL) -> dict[int, Profile]:
+        """Of each unknown that acts; where a side is open, as seen from the ends of what fits of the others too."""
+        found = {i: self._profile(self._axis(i), level) for i in self._problem.live}
+        if not self._ends and any(None in one.ends for one in found.values()):
+            places = ((one.within, one.within[:, i]) for i, one in found.items())
+            self._ends = [within[n] for within, way in places for n in (np.argmin(way), np.argmax(way))]
+            self._profiles.clear()
+            return self._axes(level)
+        return found
+
+    def _rise(self, level: float) -> float:
+        """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
+        from scipy import stats
+
+        level = number("level", level, low=0.0, strict=True, high=0.9999)
+        estimated = any(one.estimated for one in self._problem.columns)
+        return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
+
+    def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
+        """Where each unknown lies, by its profile: (low, high), None on a side that is open.
+
+        All other unknowns follow while one is moved, until chi2 has risen by what ``level`` asks: 3.84 at 0.95 where
+        sigma was given, by F where it was estimated.  A side is open where it does not rise up to the end of the
+        range.  If another piece is found beyond an end, the interval reaches over it.
+
+        Parameters
+        ----------
+        level : in (0, 0.9999].
+
+        Raises
+        ------
+        ParameterError
+            Another level.
+        """
+        found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
+        for i, sides in self._axes(level).items():
+            one = self._problem.unknowns[i]
+            low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
+            found[one.name] = (low, high)
+        return found
+
+    @cached_property
+    def undetermined(self) -> tuple[str, ...]:
+        """See above."""
+        return tuple(self._problem.names[i] for i in undetermined(self))
+
+    def products(self, level: float = _LEVEL) -> list[Product]:
+        """What is determined of the :attr:`undetermined` unknowns: products of powers, with profiles as intervals.
+
+        Exponents are those in which all that fits lies nearest to each other; the interval is of just these.  Where no
+        exponents do, those by slopes at the best fit.
+        """
+        return products(self, level)
+
+    def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
+        """What a record would show, with bands.
+
+        Parameters
+        ----------
+        record : places, load and temperature; for a motion with V0, which may be another than those fitted.
+        draws : random values of the unknowns to take the bands from; 0: from slopes, which takes two computations an
+            unknown.  Either by the normal law within the ranges: of what is undetermined a band is a guess.
+        level : of the bands, in (0, 0.9999].
+        seed : of the draws, >= 0.
+
+        Returns
+        -------
+        Prediction
+            ``.M``, ``.F``, ``.Q``, ``.V``, ``.omega``, ``.x``, as of the record, each with ``.value``, ``.low`` and
+            ``.high``.
+
+        Raises
+        ------
+        ParameterError
+            A record without a start, draws, level or seed out of range.
+        """
+        if not isinstance(record, Record):
+            raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
+        for name in OF_RECORDS:
+            if isinstance(getattr(record, name, 0.0), tuple | None):
+                sentence = f"{name} of the record is not given: a prediction needs it"
+                raise ParameterError(name, None, "a number", sentence)
+        return self._predicted(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
+
+    def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
+        problem, u = self._problem, self._best.u
+
+        def seen(u: Vector) -> Vector:
+            values = problem.predicted(record, u, called)
+            return np.array([values[name] for name in record.KINDS])
+
+        value, half = seen(u), math.sqrt(self._rise(level))
+        if draws:
+            many = np.random.default_rng(seed).multivariate_normal(u, self._cov, draws * _TRIES, method="eigh")
+            inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
+            share = 0.5 * (1.0 - level)
+            drawn = [seen(at) for at in (inside if len(inside) else [u])]
+            low, high = np.nanquantile(drawn, (share, 1.0 - share), axis=0)
+        else:
+            J = slopes(seen, u, problem.low, problem.high, range(u.size)).T
+            spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, self._cov, J), 0.0))
+            low, high = value - spread, value + spread
+        ends = {"": value, "_low": low, "_high": high}
+        found = {name + end: rows[n] for end, rows in ends.items() for n, name in enumerate(record.KINDS)}
+        places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
+        units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
+        return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
+
+    def residuals(self, values: Mapping[str, float]) -> Vector:
+        """Residuals over sigma of all records, in their order, and of the prior, at values by name.
+
+        What is not named is at its start.  For optimisers and samplers of one's own; a motion that fails is 1e6 off.
+        """
+        return self._problem.residuals(self._coordinates(values))
+
+    def jacobian(self, values: Mapping[str, float]) -> Vector:
+        """Slopes of :meth:`residuals` over the values, (residuals, unknowns), by central differences."""
+        J = self._problem.jacobian(self._coordinates(values))
+        return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
+
+    def _coordinates(self, values: Mapping[str, float]) -> Vector:
+        for name in values:
+            if name not in self.values:
+                raise unknown("values", name, self.values, "an unknown")
+            one = self._problem.unknowns[self._problem.names.index(name)]
+            number(name, values[name], low=one.least, strict=True)
+        return self._problem.coordinates(values)
+
+    def _card(self) -> tuple[str, list[Row]]:
+        title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
+        rows = [Row(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
+        return title, [*rows, Row("chi2", f"{self.chi2:.1f} of {self.dof}")]
+
+    def __str__(self) -> str:
+        from .report import report
+
+        return report(self)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+        """Data, best fit and its band, and below them residuals over sigma, a column for each quantity of a record.
+
+        Parameters
+        ----------
+        path : also write it there, in the format of the suffix.
+
+        Raises
+        ------
+        FileError
+            If it cannot be written there.
+        """
+        from ...core.plots.identification import compared
+        from ...core.plots.style import saved
+
+        return saved(compared(self), path)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Values, standard deviations, intervals and correlations over ``unknown``, data and fit over their places."""
+        from .report import as_dataset
+
+        return as_dataset(self)

@@ -1,0 +1,216 @@
+"""Least squares: residuals of all records over the coordinates of the unknowns, their slopes, and the least of chi2."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import ViscorollError
+from ...cylinder import Cylinder
+from .records import Record
+from .unknowns import Shift, Unknown, cylinder_of
+
+#: of numbers, of coordinates mostly, or of residuals
+Vector = NDArray[np.float64]
+#: of central differences in a coordinate: their error is 1e-8 of the largest slope (1e-7 where motions are driven)
+_STEP = 3e-4
+#: of those to one side, which a search takes: 1e-5; at less the last digits of a motion show, and it stops early
+_SIDE = 1e-5
+#: a residual where there is no motion: as far off as it gets
+FAR = 1e6
+#: weight of a combination that is held, over what the data know of any
+_STIFF = 1e6
+#: a standard deviation that was not given, over that of the values, to begin with
+_GUESS = 1e-3
+#: norm of a column of slopes that counts as none: a factor of e moves all residuals by so small a part of sigma
+_NONE = 1e-2
+#: places beside the start at which slopes are looked at
+_PLACES = 4
+#: of a range, how near to an end counts as at it
+_AT_END = 1e-6
+#: predictions that are kept
+_KEPT = 16
+
+
+class Column(NamedTuple):
+    """Where the residuals of one quantity of a record lie; ``estimated``: its sigma is."""
+
+    record: str
+    quantity: str
+    at: slice
+    estimated: bool
+
+    def __str__(self) -> str:
+        return f"{self.quantity} of {self.record}"
+
+
+class Noise(NamedTuple):
+    """Residuals of a column: rms over sigma, lag-1 correlation in the order of its places, what noise allows of it.
+
+    is_noise : both within three standard deviations of what noise does; what is far below sigma may go together.
+    """
+
+    rms: float
+    lag: float
+    allowed: float
+    is_noise: bool
+
+
+class Found(NamedTuple):
+    """A minimum: coordinates and chi2."""
+
+    u: Vector
+    chi2: float
+
+
+def slopes(
+    of: Callable[[Vector], Vector], u: Vector, low: Vector, high: Vector, which: Sequence[int], sided: bool = False
+) -> Vector:
+    """Of a vector over some coordinates within a box: central differences, or to one side."""
+    step, columns = _SIDE if sided else _STEP, []
+    for i in which:
+        up, down = u.copy(), u.copy()
+        up[i] = min(u[i] + step, high[i])
+        if not sided or up[i] < u[i] + step:
+            down[i] = max(u[i] - step, low[i])
+        columns.append((of(up) - of(down)) / (up[i] - down[i]))
+    return np.array(columns).T
+
+
+class Problem:
+    """What is minimised.
+
+    cylinder, unknowns, records, shifts : what is known; y, sigma : all data, one after the other, by ``columns``;
+    points : how many, and priors; live : which unknowns are searched, the others stay at their start.
+    """
+
+    def __init__(
+        self, cylinder: Cylinder, unknowns: list[Unknown], records: dict[str, Record], robust: bool,
+        shifts: Mapping[str, Shift],
+    ) -> None:  # fmt: skip
+        self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
+        self.robust, self.names = robust, [one.name for one in unknowns]
+        self.start, self.low, self.high = np.array([one.to_u(np.array(one[1:4])) for one in unknowns]).T
+        self.live = list(range(len(unknowns)))
+        mean, sd = np.array([(one.mean, one.sd) for one in unknowns]).T
+        self._known, self._mean, self._sd = np.isfinite(sd), mean, sd
+        self._model = lru_cache(_KEPT)(self._modelled)
+        self.columns: list[Column] = []
+        y, sigma, size = [], [], 0
+        for called, record in records.items():
+            values = vars(record) if record.measured else self.predicted(record, self.start, called)
+            for quantity, given in record.sigma.items():
+                own = np.ravel(values[quantity])
+                spread = max(_GUESS * float(np.std(own)), 1e-300) if given is None else np.ravel(given)
+                y.append(own)
+                sigma.append(np.broadcast_to(spread, own.shape))
+                self.columns.append(Column(called, quantity, slice(size, size + own.size), given is None))
+                size += own.size
+        self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._known.sum())
+
+    def values(self, u: Vector) -> dict[str, float]:
+        """By name, at coordinates."""
+        return {one.name: float(one.to_value(x)) for one, x in zip(self.unknowns, u, strict=True)}
+
+    def coordinates(self, values: Mapping[str, float]) -> Vector:
+        """The other way; what is not given is at its start."""
+        return np.array([one.to_u(values.get(one.name, one.start)) for one in self.unknowns], float)
+
+    def predicted(self, record: Record, u: Vector, called: str = "") -> dict[str, NDArray]:
+        """What would be seen of a record."""
+        values = self.values(u)
+        own = {name.removesuffix(f":{called}"): value for name, value in values.items()}
+        return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
+
+    def _modelled(self, u: bytes) -> Vector:
+        """All data as predicted; of values that make no cylinder or no motion NaN."""
+        # warnings: of what the search passes through
+        with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
+            warnings.simplefilter("ignore")
+            at = np.frombuffer(u)
+            seen = {called: self.predicted(record, at, called) for called, record in self.records.items()}
+            return np.concatenate([np.ravel(seen[one.record][one.quantity]) for one in self.columns])
+        return np.full(self.y.size, np.nan)
+
+    def residuals(self, u: Vector) -> Vector:
+        """Of data and what is known beforehand, over their sigma; where there is no motion as far off as it gets."""
+        r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
+        return np.append(r, ((u - self._mean) / self._sd)[self._known])
+
+    def jacobian(self, u: Vector) -> Vector:
+        """Slopes of the residuals over the coordinates."""
+        return slopes(self.residuals, u, self.low, self.high, range(u.size))
+
+    def cost(self, u: Vector) -> float:
+        """chi2: squares of the residuals, or what outliers count less in."""
+        z = self.residuals(u) ** 2
+        return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
+
+    def weighed(self, u: Vector) -> tuple[Vector, Vector]:
+        """Residuals and slopes by the weight that each has in chi2."""
+        r, J = self.residuals(u), self.jacobian(u)
+        weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
+        return r * weight, J * weight[:, np.newaxis]
+
+    def least(self, u: Vector, held: Vector | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
+        """The least chi2 near ``u``, perhaps with a combination of coordinates, of powers ``held``, as it is there."""
+        from scipy.optimize import least_squares
+
+        powers = np.zeros_like(u) if held is None else held
+        fixed = np.count_nonzero(powers) == 1
+        free = [i for i in self.live if not (fixed and powers[i])]
+        rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
+        whole = np.clip(u, self.low, self.high)
+
+        def at(v: Vector) -> Vector:
+            inside = whole.copy()
+            inside[free] = v
+            return inside
+
+        def residuals(v: Vector) -> Vector:
+            return np.append(self.residuals(at(v)), rule @ (v - u[free]))
+
+        def jacobian(v: Vector) -> Vector:
+            return np.vstack([slopes(self.residuals, at(v), self.low, self.high, free, sided=True), rule])
+
+        if free:
+            found = least_squares(
+                residuals, whole[free], jacobian, (self.low[free], self.high[free]), x_scale="jac", ftol=tolerance,
+                xtol=tolerance, gtol=tolerance, loss="soft_l1" if self.robust else "linear", max_nfev=steps,
+            )  # fmt: skip
+            whole = at(found.x)
+        return Found(whole, self.cost(whole))
+
+    def noise(self, u: Vector) -> dict[str, Noise]:
+        """Of each column, by record and quantity; lag by the order of its places."""
+        found, r = {}, self.residuals(u)
+        for one in self.columns:
+            record = self.records[one.record]
+            part = r[one.at][np.lexsort([np.ravel(getattr(record, name)) for name in reversed(record.PLACES)])]
+            rms, allowed = math.sqrt(np.mean(part**2)), 3.0 / math.sqrt(part.size)
+            lag = float(part[1:] @ part[:-1]) / max(float(part @ part), 1e-300)
+            large = not one.estimated and rms > 1.0 + allowed / math.sqrt(2.0)
+            found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
+        return found
+
+    def idle(self) -> list[int]:
+        """Unknowns that act nowhere: at the start one may have ceased to, so that other places are asked too."""
+        rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
+        others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (_PLACES, middle.size))
+        found = self.live
+        for u in (self.start, *others):
+            J = slopes(self.residuals, u, self.low, self.high, found)
+            found = [i for i, column in zip(found, J.T, strict=True) if np.linalg.norm(column) < _NONE]
+        return found
+
+    def at_end(self, u: Vector) -> list[int]:
+        """Unknowns that lie at an end of their range."""
+        width = self.high - self.low
+        return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_END * width).tolist()

@@ -1,0 +1,159 @@
+"""An identification in words: what the residuals say first, then values, then what the data do not tell.
+
+The same as a dataset, and as what JSON holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ... import __version__
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: points of a motion's phase below which it is told
+_FEW = 5
+#: correlation that is worth a word, and chi2 by which a profile's way must undercut the fit
+_CLOSE, _BETTER = 0.9, 0.1
+
+
+def report(fit: Any) -> str:
+    """The report that ``print(fit)`` shows, of a :class:`viscoroll.app.identification.Identification`."""
+    width = max(map(len, fit.values))
+    rows = []
+    for name, ends in fit.intervals().items():
+        low, high = ("open" if end is None else f"{end:.6g}" for end in ends)
+        rows.append(f"  {name:<{width}}  {fit.values[name]:<12.6g} +- {fit.stderr[name]:<9.2g} 95%: {low} to {high}")
+    noise, limits = ([f"  ! {line}" for line in lines] for lines in (_noise(fit), _limits(fit)))
+    return "\n".join([_heading(fit), *noise, *rows, *limits])
+
+
+def _heading(fit: Any) -> str:
+    from scipy import stats
+
+    problem = fit._problem
+    head = f"{len(fit.values)} unknowns, {problem.y.size} points"
+    if fit.planned:
+        return f"{head}, planned: what to expect if the cylinder is the truth"
+    if estimated := [f"{one} {fit.sigma[str(one)][0]:.3g}" for one in problem.columns if one.estimated]:
+        return f"{head}; standard deviation estimated: {', '.join(estimated)}"
+    chance = "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
+    return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
+
+
+def _noise(fit: Any) -> Iterator[str]:
+    """Residuals that are no noise."""
+    for name in fit.misfit:
+        rms, lag, allowed, _ = fit.noise[name]
+        yield (
+            f"residuals of {name} are no noise (lag-1 correlation {lag:.2f}, noise allows {allowed:.2f}; rms {rms:.2f} "
+            "sigma): the model misses something, and intervals mean nothing"
+        )
+
+
+def _limits(fit: Any) -> Iterator[str]:
+    yield from (f"{name} does not act on these data" for name in fit.does_not_act)
+    *names, last = fit.undetermined or ("",)
+    if names:
+        yield f"{', '.join(names)} and {last} cannot be told apart by these data: {_products(fit.products())}"
+    elif last:
+        yield f"{last} is not determined by these data"
+    yield from _sides(fit)
+    for chi2, values in fit.minima[1:]:
+        yield f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} above: {_listed(values)}"
+    yield from _phases(fit)
+    loose, names = {*fit.does_not_act, *fit.undetermined}, list(fit.values)
+    for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
+        if not {names[i], names[k]} <= loose:
+            yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
+
+
+def _products(found: list[Any]) -> str:
+    texts = []
+    for one in found:
+        powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
+        text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
+        low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
+        texts.append(f"{text} = {one.value:.4g} (95%: {low} to {high})")
+    if not texts:
+        return "no product of their powers is determined"
+    near = ", near these values" * found[0].near
+    return f"only {' and '.join(texts)} {'is' if len(texts) == 1 else 'are'} determined{near}"
+
+
+def _sides(fit: Any) -> Iterator[str]:
+    """What ends of intervals are not of the data."""
+    made: dict[str, list[str]] = {}
+    problem = fit._problem
+    for i, found in fit._axes().items():
+        name = problem.names[i]
+        for side, end, bounds in zip(("lower", "upper"), found.ends, found.made_by, strict=True):
+            if end is None:
+                yield f"{name} is open on its {side} side: chi2 has not risen enough at the end of its range"
+            for bound in bounds:
+                made.setdefault(bound, []).append(f"the {side} end of {name}")
+        if found.pieces:
+            yield f"the interval of {name} joins branches of the fit: one value within it may fit worse than its ends"
+        if found.best.chi2 < fit.chi2 - _BETTER:
+            listed = _listed(problem.values(found.best.u))
+            yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
+    yield from (f"the best fit has {problem.names[i]} at the end of its range" for i in problem.at_end(fit._best.u))
+    yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in made.items())
+
+
+def _listed(values: dict[str, float]) -> str:
+    return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
+
+
+def _phases(fit: Any) -> Iterator[str]:
+    """Motions with too few points in a phase."""
+    for called, record in fit.records.items() if "mu" in fit.values else ():
+        slips = int(np.sum(fit._problem.predicted(record, fit._best.u, called).get("slips", 0)))
+        if 0 < slips < _FEW:
+            yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
+
+
+def as_dataset(fit: Any) -> xr.Dataset:
+    """Values over ``unknown``, each record's places, data, fit and sigma over an axis of its own."""
+    import xarray as xr
+
+    names, ends = np.array(list(fit.values), object), np.array(list(fit.intervals().values()), float)
+    data: dict[str, Any] = {
+        "value": ("unknown", list(fit.values.values())), "stderr": ("unknown", list(fit.stderr.values())),
+        "low": ("unknown", ends[:, 0], {"long_name": "lower end of the 95 % interval, NaN where open"}),
+        "high": ("unknown", ends[:, 1], {"long_name": "upper end of the 95 % interval, NaN where open"}),
+        "correlation": (("unknown", "other"), fit.correlations),
+    }  # fmt: skip
+    for called, record in fit.records.items():
+        columns = {name: getattr(record, name) for name in (*record.PLACES, *record.measured)}
+        for name in record.sigma:
+            fitted = getattr(fit.predicted[called], name).value
+            columns |= {f"{name} fit": fitted, f"{name} sigma": fit.sigma[f"{name} of {called}"]}
+        for name, values in columns.items():
+            data[f"{called} {name}"] = (f"{called} point", np.ravel(values), {"units": record.unit(name.split()[0])})
+    about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
+    return xr.Dataset(data, {"unknown": names, "other": names}, about | {"chi2": fit.chi2, "dof": fit.dof})
+
+
+def as_json(fit: Any) -> dict[str, Any]:
+    """What the report says, by name; null where a side is open or nothing acts."""
+    told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
+    unknowns = {
+        name: {
+            "value": fit.values[name],
+            "stderr": fit.stderr[name] if name not in fit.does_not_act else None,
+            "interval": ends,
+        }
+        for name, ends in fit.intervals().items()
+    }
+    return {
+        "source": f"viscoroll {__version__}", "unknowns": unknowns, **{name: getattr(fit, name) for name in told},
+        "products": [one._asdict() for one in fit.products()], "correlations": fit.correlations.tolist(),
+        "noise": {name: noise._asdict() for name, noise in fit.noise.items()},
+        "sigma": {name: float(values[0]) for name, values in fit.sigma.items()},
+        "says": [*_noise(fit), *_limits(fit)],
+    }  # fmt: skip

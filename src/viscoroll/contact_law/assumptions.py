@@ -1,0 +1,214 @@
+"""Which assumptions of the model a state strains: the result of ``Scene.validity`` and ``Cylinder.validity``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.results import Row, as_html, as_text
+from ..materials.law_modes import by_modes
+from ..materials.measured import Measured
+from ..materials.prony import Prony
+from .free_rolling import Strained
+
+#: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
+REACH_LIMIT = 0.2
+#: the paper's ref. [31], Table 1: below this share of the wave speeds the load is within 10 % of the static one
+WAVE_LIMIT = 0.2
+#: the normal slope of the surface takes beta_D times the shear in beside the pressure's own, and shear is mu p at most
+DUNDURS_LIMIT = 0.05
+#: in full slip cylinder and half-space pass the contact at speeds that differ by this share; M takes one speed for both
+CREEP_LIMIT = 0.3
+#: contact length over the thickness of a layer, up to which the length is within 5 % of that on a half-space of any
+#: Poisson's ratio (pipeline/evidence/prove/layer.py)
+THICK_LIMIT = 2.0 / 3.0
+#: root mean square of relative errors up to which a fit counts as the material that was measured
+MISFIT_LIMIT = 0.05
+
+
+class Assumption(NamedTuple):
+    """One assumption: whether it holds, the number that decides, and a sentence.
+
+    ``holds`` is None where no number here can tell; it and ``value`` have the shape of V.
+    """
+
+    holds: Any
+    value: Any
+    sentence: str
+
+    @property
+    def word(self) -> str:
+        """Whether it holds, everywhere: yes, no, or "?" where nothing tells."""
+        return "?" if self.holds is None else "yes" if np.all(self.holds) else "no"
+
+    def __repr__(self) -> str:
+        return f"{self.word}: {self.sentence}"
+
+
+class Validity(NamedTuple):
+    """What the model assumes, and how far a state is from it.
+
+    Attributes
+    ----------
+    small_contact : value: distance from the axis to the far end of the contact over R,
+        lam (1 + epsilon)/(2 kappa).
+    under_axis : value: epsilon; where it exceeds 1 the contact lies wholly ahead of the
+        axis, which is no fault of the model but worth knowing.
+    quasistatic : value: speed over that of shear waves; needs a density.
+    steady : a :class:`.steadiness.Steadiness`; value: the unsteadiness gamma |N(V)|/(1 + j), where M = M(V) + N V' for
+        slow changes.  It rules whether the law of steady rolling may drive a motion, and down to which speed; contact
+        states and rolling at constant speed are not concerned.
+    creep : value: |delta|; where the contact slips fully the two bodies pass it at different speeds, and the rolling
+        moment is that of the axis' speed for both.  Needs omega.
+    bodies : value: Dundurs' constant of the pair, of long times or at once, whichever is larger; needs the materials.
+    measured : value: 1/s at which the contact is passed, :func:`passage`, against the frequencies that the data of each
+        body hold; needs a material's ``measured``.
+    thick : value: contact length over the thickness of the thinnest layer; needs a material's ``thickness``.
+    plane : not to be seen from V.
+
+    Examples
+    --------
+    Printed, each line says yes, no or, where no number can tell, "?".
+
+    >>> import viscoroll as vr
+    >>> vr.presets.RUBBER_CYLINDER.validity(2.0).failed
+    ()
+    """
+
+    small_contact: Assumption
+    under_axis: Assumption
+    quasistatic: Assumption
+    steady: Assumption
+    creep: Assumption
+    bodies: Assumption
+    measured: Assumption
+    thick: Assumption
+    plane: Assumption
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the assumptions that do not hold, of arrays somewhere; empty where none is known to fail."""
+        return tuple(name for name, each in self._asdict().items() if each.word == "no")
+
+    def _card(self) -> tuple[str, list[Row]]:
+        rows = [Row(name, f"{each.word:<4} {each.sentence}") for name, each in self._asdict().items()]
+        return "What the model assumes, and whether it holds", rows
+
+    def __repr__(self) -> str:
+        return as_text(*self._card())
+
+    def _repr_html_(self) -> str:
+        return as_html(*self._card())
+
+
+def passage(V: Any, length: Any) -> Any:
+    """What a contact asks of its material: the rate at which a point passes it, 1/s, of a speed and a length.
+
+    The law holds where the material is known at angular frequencies of this size.  At its front edge every contact has
+    a layer that is passed in less: modes faster than the passage act there as far as they go.
+    """
+    return np.abs(V) / length
+
+
+def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
+    """kappa V at which the contact is passed at two rates; all over T_ref."""
+    rates = np.array([low, high])
+    rise = by_modes(series, 0.5 / rates).values[1]
+    low, high = (rates / np.sqrt(1.0 + 2.0 * rise)).tolist()  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
+    return low, high
+
+
+def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:
+    """Whether both bodies pass the contact at about one speed; None where the creep is not known."""
+    if delta is None:
+        return Assumption(None, None, "both bodies pass the contact at about one speed; give omega to see whether")
+    size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
+    most = float(np.max(size, initial=0.0, where=full_slip))
+    return Assumption(
+        ~full_slip | (size <= CREEP_LIMIT), size,
+        f"the speeds of the two bodies in the contact differ by {100.0 * most:.2g} % in full slip, where the rolling "
+        f"moment takes that of the axis for both; up to {100.0 * CREEP_LIMIT:g} % counts as small"
+        if most > 0.0
+        else "both bodies pass the contact at about one speed: it does not slip fully",
+    )  # fmt: skip
+
+
+def inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
+    """Speed over that of shear waves, None where it is not known; ``unknown``: bodies without a density."""
+    if wave_ratio is None:
+        return Assumption(
+            None, None, "inertia of the deformed bodies is neglected; give a density to see whether it may"
+        )
+    return Assumption(
+        wave_ratio <= WAVE_LIMIT, wave_ratio,
+        f"the speed is {100.0 * float(np.max(wave_ratio, initial=0.0)):.2g} % of that of shear waves; up to "
+        f"{100.0 * WAVE_LIMIT:g} % the load is within 10 % of the static one"
+        + "".join(f"; the density of {body} is not known" for body in unknown),
+    )  # fmt: skip
+
+
+def coupling(long: float | None = None, instant: float | None = None, *, like: bool = False) -> Assumption:
+    """Dundurs' constant of long times and at once, None where it is not known; ``like``: it is 0 at all times."""
+    if long is None or instant is None:
+        return Assumption(None, None, "of the bodies' elastic constants Dundurs' constant must be 0, as of like bodies")
+    if like:
+        return Assumption(True, 0.0, "cylinder and half-space are alike: Dundurs' constant is 0")
+    worst = max(long, instant, key=abs)
+    sizes = f"{long:.2g} for long times, {instant:.2g} at once"
+    if worst == 0.0:
+        return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not move the pressure")
+    within = abs(worst) <= DUNDURS_LIMIT
+    return Assumption(
+        within, worst,
+        f"Dundurs' constant is {sizes}, where the theory asks for 0: shear bends the surface by up to mu times as much "
+        f"as the pressure does; up to {DUNDURS_LIMIT} counts as small",
+    )  # fmt: skip
+
+
+def measurement(seen: Any, records: Mapping[str, Measured]) -> Assumption:
+    """Whether the data of each body hold the rate at which its contact is passed; None where there are none."""
+    if not records:
+        return Assumption(None, None, "nothing is known of the frequencies that the material was measured at")
+    ends = dict.fromkeys(f"{end:.2g}" for end in (np.min(seen, initial=np.inf), np.max(seen, initial=0.0)))
+    sentence = f"the contact is passed at {' to '.join(ends)} 1/s, the layer at its front edge faster"
+    holds = np.full(np.shape(seen), True)[()]
+    for body, data in records.items():
+        holds = holds & (data.low <= seen) & (seen <= data.high) & (data.misfit <= MISFIT_LIMIT)
+        sentence += f"; {body} was measured from {data}"
+    return Assumption(holds, seen, sentence)
+
+
+def thickness(length: Any, layers: Mapping[str, float | None]) -> Assumption:
+    """Contact length over the thickness of the thinnest of the layers; None where none is known."""
+    thin = min((given for given in layers.values() if given is not None), default=None)
+    if thin is None:
+        return Assumption(None, None, "thickness not known: the law is that of a half-space")
+    unknown = [f"the thickness of {body} is not known" for body, given in layers.items() if given is None]
+    ratio = length / thin
+    return Assumption(
+        ratio <= THICK_LIMIT, ratio,
+        f"the contact is {np.max(ratio, initial=0.0):.2g} times as long as the layer is thick; up to {THICK_LIMIT:.2g} "
+        "its length is within 5 % of that on a half-space" + "".join(f"; {text}" for text in unknown),
+    )  # fmt: skip
+
+
+def judge(found: Strained, steady: Assumption, creep: Assumption) -> Validity:
+    """Numbers put into words; what only a cylinder in SI units knows is not known."""
+    reach, epsilon = found.reach, found.epsilon
+    far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
+    small = Assumption(
+        reach <= REACH_LIMIT, reach,
+        f"the contact reaches {far:.2g} R from the axis, where the parabola that stands for the circle is off by "
+        f"{25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) counts as small",
+    )  # fmt: skip
+    under = Assumption(
+        epsilon <= 1.0, epsilon,
+        f"epsilon = {ahead:.2g}: the contact "
+        + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
+    )  # fmt: skip
+    plane = Assumption(None, None, "the cylinder is long or held between walls (plane strain), or a thin disc")
+    return Validity(
+        small, under, inertia(None), steady, creep, coupling(), measurement(None, {}), thickness(None, {}), plane
+    )

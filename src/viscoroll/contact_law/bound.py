@@ -1,0 +1,157 @@
+"""The contact law of one scene, for integrators: :func:`law`."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Literal, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import checked
+from ..core.errors import ParameterError
+from ..core.typed import Numbers
+from ..kernels.rows.loads import Loads, LoadsAndSlopes
+from .contact import contact
+from .contact_table import refuse_overflow
+from .parameters import Rolls, framed
+
+Array: TypeAlias = NDArray[np.float64]
+#: what the law takes as it is; all else goes through :func:`contact`
+_NUMBERS = frozenset({float, int, np.float64})
+_loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__, LoadsAndSlopes)
+
+
+class Law:
+    """The law of a scene or a cylinder, bound: what :func:`law` returns.
+
+    Attributes
+    ----------
+    roller, scene : that it is the law of, and the dimensionless scene of that.
+    """
+
+    def __init__(self, roller: Rolls) -> None:
+        from ..kernels.rows.jitted import SWITCHED_OFF, Jitted, Room
+
+        if SWITCHED_OFF:
+            raise ParameterError("NUMBA_DISABLE_JIT", 1, "0: a bound law is machine code")
+        _, scene, scale = framed(roller, "law")
+        table = scene.table
+        assert table is not None
+        self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
+        self._jitted = jitted = Jitted(table.record, table.unlike, scene.kappa, scene.mu, scale)
+        self._function, self._plain, self._sloped, self._room = jitted.function, jitted.plain, jitted.address, Room
+
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[False] = False
+    ) -> Loads[float]: ...
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[True]
+    ) -> LoadsAndSlopes[float]: ...
+    @overload
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False) -> Loads[Array]: ...
+    @overload
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Array]: ...
+    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
+        """Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
+
+        Parameters
+        ----------
+        V, omega : numbers, or arrays that broadcast.
+        slopes : also the derivatives.
+
+        Returns
+        -------
+        Loads or LoadsAndSlopes
+            Q, M, M_half_space, M_cylinder, and with slopes dQ_dV at fixed omega, dQ_domega, dM_half_space_dV,
+            dM_cylinder_dV; in the units of what rolls.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite input, kappa |V| above 1e300, shapes that do not broadcast.
+        """
+        if type(V) in _NUMBERS and type(omega) in _NUMBERS:
+            out = self._room()
+            try:
+                status = self._function(V, omega, out, self._sloped if slopes else self._plain)
+            except ctypes.ArgumentError:  # an integer beyond the doubles
+                status = 1
+            if status:
+                refuse_overflow(self._fastest, checked("V", V))
+                checked("omega", omega)
+            return _loads_and_slopes(out) if slopes else _loads(out[:4])
+        kind = LoadsAndSlopes if slopes else Loads
+        found = contact(self.roller, V, omega=omega, fields=kind._fields)
+        return kind(**found.as_dict())
+
+    @property
+    def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
+        """(V, omega) -> :class:`LoadsAndSlopes` for numba's jitted functions, which take it as an argument or from
+        around them.  NaN, and no error, where the law would raise one.
+        """
+        return self._jitted
+
+    @property
+    def address(self) -> tuple[int, int]:
+        """Address of a C function ``int law(double V, double omega, double out[8], void *user_data)``, and of its user
+        data.
+
+        It fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` and returns 0; where the law would raise an
+        error, with NaN, and returns another number.  Any number of threads may call it, as long as this law is
+        there.  All laws share the function.
+        """
+        return self._jitted.function_address, self._jitted.address
+
+    @property
+    def ctypes(self) -> tuple[Any, Any]:
+        """Both for ctypes, as ``scipy.LowLevelCallable(*law.ctypes)`` takes them; either keeps what it needs."""
+        return self._jitted.ctypes
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return law, (self.roller,)
+
+    def __repr__(self) -> str:
+        return f"law of {self.roller!r}"
+
+
+def law(roller: Rolls) -> Law:
+    """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
+
+    ``law(V, omega)`` is :func:`contact` at a given omega with nothing left to check but V and omega, and
+    ``law.jitted`` and ``law.address`` are the same for numba and C.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, or a :class:`Cylinder`, whose law
+        takes and gives SI units: one number each, one material or two bodies.
+
+    Returns
+    -------
+    Law
+        A function of V and omega.  Creep is delta = (omega - V)/V, and at V = 0 < abs(omega) the contact slips as a
+        whole.  Threads may share it; pickled, it binds its scene anew.
+
+    Raises
+    ------
+    ParameterError
+        What is no scene and no cylinder; arrays for alpha, kappa or mu; a material each; numba that is switched off.
+
+    Notes
+    -----
+    For numbers the digits are those of :func:`contact` to the bit, and for arrays it is :func:`contact` that is called
+    (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
+    a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
+    """
+    _, scene, _ = framed(roller, "law")
+    if scene.each is not None:
+        raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
+    for name in ("alpha", "kappa", "mu"):
+        value = np.asarray(getattr(scene, name))
+        if value.ndim:
+            raise ParameterError(name, f"an array of shape {value.shape}", "one number: a law is of one scene")
+    return Law(roller)

@@ -1,0 +1,48 @@
+"""What a contact state holds, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ..core.errors import ParameterError, unknown
+
+FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
+OF_BODIES = ("M_half_space", "M_cylinder")
+SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
+#: on request alone, and not by the printed equations
+UNSTEADY, GRIP = "N", "grip"
+#: of which field each of these is made by units alone: the length is over l0, C_rr = M/(P R)
+SAME = {"length": "lam", "C_rr": "M"}
+KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, *SAME)
+#: what is given without a word, of like bodies and of others, and of a cylinder in SI units
+DEFAULT = {
+    (True, False): FIELDS,
+    (False, False): (*FIELDS, *OF_BODIES),
+    **dict.fromkeys(((True, True), (False, True)), ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)),
+}
+
+
+def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool, method: str) -> tuple[str, ...]:
+    """The fields and slopes of a call by name; of bodies that are ``like``, in units of SI.
+
+    Raises
+    ------
+    ParameterError
+        A name or a method that there is not, or one that the other does not give.
+    """
+    if method not in ("table", "direct"):
+        raise ParameterError("method", repr(method), "'table' or 'direct'")
+    names = DEFAULT[like, si] if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+    if fields is not None:
+        for name in names:
+            if name not in KNOWN:
+                raise unknown("fields", name, KNOWN, "a field")
+    if slopes:
+        names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
+    if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):
+        raise ParameterError("slopes", True, "False with method='direct': the printed equations give none")
+    for name in (UNSTEADY, GRIP):
+        if method == "direct" and name in names:
+            raise ParameterError("fields", repr(name), "computed by method='table' alone: it is not in the paper")
+    return names

@@ -1,0 +1,107 @@
+"""What acts in steady rolling, checked and flattened: :class:`Loads`."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.checks import broadcast_shape, checked
+from ...core.drive import Feedback, slope_factor
+from ...core.errors import ParameterError
+from ..contact_table import refuse_overflow
+from ..parameters import Parameters
+
+#: kappa |V| of a given speed
+FASTEST = 1e100
+
+
+class Gains(NamedTuple):
+    """Of force and torque on V and omega."""
+
+    force_V: float = 0.0
+    force_omega: float = 0.0
+    torque_V: float = 0.0
+    torque_omega: float = 0.0
+
+    @property
+    def V(self) -> float:
+        """Of both on V: that of force + torque."""
+        return self.force_V + self.torque_V
+
+    @property
+    def omega(self) -> bool:
+        """Whether there is any on omega."""
+        return self.force_omega != 0.0 or self.torque_omega != 0.0
+
+
+class Loads(NamedTuple):
+    """Loads of one material as vectors of one length.
+
+    shape : that of the call.  force, torque : at rest, 0 where it is to be found; ``given`` names the one that is
+    given where V is, else None.  kappa : in use, that of a slope.  V : given speeds, or None.
+    """
+
+    shape: tuple[int, ...]
+    gains: Gains
+    given: str | None
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    kappa: NDArray[np.float64]
+    mu: NDArray[np.float64]
+    j: NDArray[np.float64]
+    V: NDArray[np.float64] | None = None
+
+
+def loads_of(
+    scene: Parameters,
+    force: ArrayLike | Feedback | None,
+    torque: ArrayLike | Feedback | None,
+    slope: ArrayLike | None,
+    V: ArrayLike | None,
+) -> Loads:
+    """The loads of a call of ``steady`` on the scene of a slope; errors as there."""
+    if type(scene.alpha) is not float:
+        raise ParameterError("alpha", f"an array of shape {np.shape(scene.alpha)}", "a single number")
+    given = None if V is None else _given(force, torque, slope)
+    tangent = slope_factor(slope)[0]
+    push, *of_force = _parts("force", force)
+    turn, *of_torque = _parts("torque", torque)
+    arrays = {"force": push, "torque": turn, "kappa": scene.kappa, "mu": scene.mu, "j": scene.j, "slope": tangent}
+    if V is not None:
+        arrays["V"] = checked("V", V)
+        refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
+    shape = broadcast_shape(**{name: np.asarray(each) for name, each in arrays.items()})
+    arrays["force"] = push + arrays.pop("slope")
+    rows = np.empty((len(arrays), *(shape or (1,))))
+    for row, array in zip(rows, arrays.values(), strict=True):
+        row[...] = array
+    return Loads(shape, Gains(*of_force, *of_torque), given, *rows.reshape(len(arrays), math.prod(shape)))
+
+
+def _parts(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
+    """(What acts at rest, its gains on V and omega)."""
+    if not isinstance(value, Feedback):
+        return checked(name, 0.0 if value is None else value), 0.0, 0.0
+    if not isinstance(value.value, float | np.ndarray):
+        raise ParameterError(name, "a feedback on a schedule", "constant in time")
+    if value.shape:
+        raise ParameterError(name, f"a feedback with gains of shape {value.shape}", "one with numbers for gains")
+    return value.value, value.V, value.omega
+
+
+def _given(force: ArrayLike | Feedback | None, torque: ArrayLike | Feedback | None, slope: ArrayLike | None) -> str:
+    """Which of force and torque is given beside V."""
+    for name, value in (("force", force), ("torque", torque)):
+        if isinstance(value, Feedback):
+            raise ParameterError(name, "a feedback", "a number or an array where V is given")
+    names = [name for name, value in (("force", force), ("torque", torque)) if value is not None]
+    if len(names) == 2:
+        sentence = "V, force and torque are all given: give two of them, the third is found"
+        raise ParameterError("V, force, torque", "all", "two of them", sentence)
+    if not names and slope is None:
+        sentence = "V is given alone: give one of force, torque and slope with it"
+        raise ParameterError("V", "alone", "with one of force, torque, slope", sentence)
+    return names[0] if names else "force"

@@ -1,0 +1,166 @@
+"""Rolling resistance over speed: the humps of M(V), and between them the branches on which it can be inverted.
+
+kappa M is one function of u = kappa V for a material.  A gain G on the speed turns M(V) = load into M(V) - G V = load,
+which is the same with another curve.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import ParameterError
+from ...materials.law_table import LawTable
+from ..contact_table import states_of
+from ..parameters import Rolls, framed
+from .zeros import zeros
+
+#: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
+#: extremum at most
+_MARGIN, _WIDE = 15, 446
+#: nodes an octave, close and far; an extremum keeps others away by this part of u
+_CLOSE, _FAR, _APART = 16, 2, 1e-6
+#: kappa times a load, and a gain over the longest time, that the nodes reach
+LEAST_LOAD, MOST_LOAD = 1e-120, 1e80
+_GAINS = (1e-40, 1e8)
+
+
+class Humps(NamedTuple):
+    """Every local maximum and minimum of M(V), V > 0, by rising V: a maximum comes first and last.
+
+    V : speeds.  M : moments there.  top : whether it is a maximum.
+    """
+
+    V: NDArray[np.float64]
+    M: NDArray[np.float64]
+    top: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Branches:
+    """kappa (M - G V) over the speed: nodes by rising speed, and those between which it is monotone."""
+
+    u: NDArray[np.float64]
+    rise: NDArray[np.float64]
+    flat: NDArray[np.bool_]
+    gain: float
+    first: NDArray[np.int64]
+    last: NDArray[np.int64]
+
+    @cached_property
+    def curve(self) -> Any:
+        """The nodes as kernels take them."""
+        from ...kernels.rows.steady import Curve
+
+        return Curve(self.u, self.rise, self.flat, self.gain)
+
+    @cached_property
+    def top(self) -> tuple[float, float]:
+        """The largest value, and kappa V there."""
+        n = int(np.argmax(self.rise))
+        return float(self.rise[n]), float(self.u[n])
+
+    def met(self, load: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """(Which loads meet a branch, the node behind which they do).
+
+        An extremum, and loads next to it, belong to the branch that ends in it.
+        """
+        from ...kernels.rows.steady import SNAP
+
+        which, nodes, near = [], [], SNAP * np.abs(load)
+        for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
+            rise = self.rise[first : last + 1]
+            rises = rise[-1] > rise[0]
+            low, high = (rise[0], rise[-1]) if rises else (rise[-1], rise[0])
+            inside = (load > low) & (load < high)
+            if self.flat[first]:
+                inside &= np.abs(load - rise[0]) > near
+            if self.flat[last]:
+                inside |= np.abs(load - rise[-1]) <= near
+            which.append(of := inside.nonzero()[0])
+            at = rise.searchsorted(load[of], "right") if rises else (-rise).searchsorted(-load[of])
+            nodes.append(first + np.minimum(np.maximum(at - 1, 0), last - first - 1))
+        return np.concatenate(which), np.concatenate(nodes)
+
+
+def humps(roller: Rolls) -> Humps:
+    """Every local maximum and minimum of the rolling resistance M over the speed.
+
+    A rubber of widely spread relaxation times has several, one of one relaxation time a single maximum.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, of which alpha or material, and kappa are used, or a :class:`Cylinder`; numbers.
+
+    Returns
+    -------
+    Humps
+        ``V``, ``M`` and ``top`` as arrays of one length, of a Cylinder in m/s and N m/m; empty for an elastic
+        material.
+
+    Raises
+    ------
+    ParameterError
+        Arrays in what rolls.
+
+    Notes
+    -----
+    M is good to 1e-14, V to 1e-11 (``tests/test_steady.py``).
+    """
+    _, scene, scale = framed(roller, "humps")
+    for name in ("alpha", "kappa"):
+        if np.ndim(getattr(scene, name)):
+            raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")
+    law = scene.table
+    assert law is not None
+    if law.alpha == 1.0:
+        return Humps(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
+    found = branches(law, 0.0)
+    V, M = found.u[found.flat] / scene.kappa, found.rise[found.flat] / scene.kappa
+    return Humps(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
+
+
+@lru_cache(maxsize=16)
+def branches(law: LawTable, gain: float) -> Branches:
+    """The curve of a material and a gain.
+
+    Raises
+    ------
+    ParameterError
+        A gain that the nodes do not reach.
+    """
+    longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
+    if gain and not _GAINS[0] <= abs(gain) / longest <= _GAINS[1]:
+        low, high = (bound * longest for bound in _GAINS)
+        raise ParameterError("gain on V", f"{gain:g}", f"0, or of a size in [{low:g}, {high:g}]")
+    nodes = grid(law)
+    flat = np.exp2(zeros(lambda x: _curve(law, gain, np.exp2(x))[1], nodes))
+    u = np.exp2(nodes)
+    for at in flat:
+        u = u[np.abs(u - at) > _APART * at]
+    whole = np.concatenate([u, flat])
+    order = np.argsort(whole)
+    is_flat, u = order >= u.size, whole[order]
+    ends = np.concatenate([[0], np.flatnonzero(is_flat), [u.size - 1]])
+    return Branches(u, _curve(law, gain, u)[0], is_flat, gain, ends[:-1].copy(), ends[1:].copy())
+
+
+def grid(law: LawTable) -> NDArray[np.float64]:
+    """Nodes of log2(u), ascending: close where the material relaxes."""
+    times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
+    low, high = math.floor(-math.log2(times.max())) - _MARGIN, math.ceil(-math.log2(times.min())) + _MARGIN
+    parts = (low - _WIDE, low, _FAR), (low, high, _CLOSE), (high, high + _WIDE, _FAR)
+    steps = [np.linspace(start, stop, (stop - start) * per, endpoint=False) for start, stop, per in parts]
+    return np.concatenate([*steps, [high + _WIDE]])
+
+
+def _curve(law: LawTable, gain: float, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """kappa (M - gain V) and its slope over kappa V."""
+    one = np.ones(1)
+    rows = states_of(law, [one, one, one, u, np.zeros(1)], u.shape, False, ("M", "dM_dV"))
+    return rows - gain * np.stack([u, np.ones(u.size)])

@@ -1,0 +1,135 @@
+"""Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
+
+Sum and difference of V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0 (over gamma t) give
+M(V) = force + torque, from which V, and Q = torque - M_cylinder, from which the creep.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.drive import Feedback, over
+from ...core.errors import ParameterError
+from ...core.labels import unlabelled
+from ...core.typed import Numbers
+from ...materials.law_table import LawTable
+from ..parameters import Rolls, framed
+from . import row
+from .loads import Loads, loads_of
+from .reason import Reasons
+from .resistance import LEAST_LOAD, MOST_LOAD, branches
+from .result import States, Steady, packed
+from .scan import scanned
+from .solve import crossings, states_at
+
+
+def steady(
+    roller: Rolls,
+    *,
+    force: Numbers | Feedback | None = None,
+    torque: Numbers | Feedback | None = None,
+    slope: Numbers | None = None,
+    V: Numbers | None = None,
+) -> Steady:
+    """Steady rolling: every pair of V and omega that force and torque hold, and whether it is stable.
+
+    Arguments and what rolls broadcast against each other.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, of which alpha or material, kappa, mu and j are used; or a :class:`Cylinder`, in SI units
+        per m of its length: V in m/s, omega in rad/s, force and Q in N/m, torque and M in N m/m, ``eigenvalues`` in
+        1/s, powers of ``loss`` in W/m.
+    force : over P, along V; torque : over P R, along omega; default 0.  Either may be a :class:`Feedback`.
+    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta): P sin(theta) adds to
+        ``force``; of a scene kappa becomes kappa/sqrt(cos(theta)), and forces and torques are over P cos(theta).
+    V : the speed, in place of one of force and torque, which is found (a slope alone counts as the force given).
+
+    Returns
+    -------
+    Steady
+        Of one load exactly its equilibria by rising |V|, none to many.  Of arrays of loads a last axis in
+        addition, padded with NaN, and their ``count``; arrays of xarray and series of pandas give their labels
+        (series: data frames, a column an equilibrium).  ``reason`` says why there is none.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite input, a slope out of range, V together with both or neither of force and torque or
+        with a feedback, an array of alphas, shapes that do not broadcast, kappa |force + torque| in (0, 1e-120) or
+        above 1e80.
+    ConvergenceError
+        If a solve hits its iteration cap.
+
+    Notes
+    -----
+    For |force + torque| below the largest M(V) there are two equilibria a hump, on its rising and its falling
+    branch; they need |Q| < mu.  force + torque = 0: V = 0 alone, where ``delta`` and ``eigenvalues`` are those
+    of V -> 0 (that of slip is -inf).  Where equilibria are a continuum (elastic bodies without a drive; Q = mu
+    exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan of V, some 0.02 s a load.
+
+    Stability is that of (V, omega) under force and torque as named, also where V was given.  Without feedback
+    det = (dQ/domega) M'(V)/j, so the falling branch of a hump is a saddle.
+
+    Speeds are good to 1e-12/sqrt(1 - |force + torque|/M_top), M_top the extremum of M nearby, and what follows from Q
+    to that over ``grip`` (``tests/test_steady.py``).
+    """
+    plain, labels = unlabelled({"force": force, "torque": torque, "slope": slope, "V": V})
+    slope = plain["slope"]
+    roller, scene, scale = framed(roller, "steady", slope=slope)
+    force, torque, V = (over(name, plain[name], scale) for name in ("force", "torque", "V"))
+    loads = loads_of(scene, force, torque, slope, V)
+    law = scene.table
+    assert law is not None  # loads_of refuses many
+    elastic = law.alpha == 1.0
+    gained = bool(loads.gains.V or loads.gains.omega)
+    if loads.given is not None:
+        rolling = _at_speed(law, loads)
+    elif loads.gains.omega:
+        rolling = scanned(law, loads)
+    else:
+        rolling = _under_load(law, loads)
+    neutral = elastic and loads.given is None and not gained
+    resting = _resting(loads, neutral)
+    if resting.size:
+        rolling = States.joined(rolling, States.at_rest(loads, resting, law.T_mean))
+    held = rolling.held()
+    count = np.bincount(held.load, minlength=loads.mu.size)
+    top = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).top
+    states = rolling.load, rolling.rows[row.V], rolling.rows[row.Q]
+    found = packed(loads, held, Reasons(loads, states, count, top, neutral, scale), scale)
+    roller.look(found.V)
+    return found.labelled(labels)
+
+
+def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:
+    """Loads that leave the cylinder at rest, if friction does; where ``neutral`` it need not be at rest under them."""
+    if loads.V is not None:
+        return (loads.V == 0.0).nonzero()[0]
+    rests = loads.force + loads.torque == 0.0
+    return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
+
+
+def _under_load(law: LawTable, loads: Loads) -> States:
+    """All states of rolling under loads without a gain on omega."""
+    gain, total = loads.gains.V, loads.kappa * (loads.force + loads.torque)
+    size = np.abs(total)
+    wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
+    if wrong.any():
+        allowed = f"0, or of a size in [{LEAST_LOAD:g}, {MOST_LOAD:g}]"
+        raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
+    if not gain and law.alpha == 1.0:
+        return States.none()
+    load, sign, u = crossings(law, gain, total)
+    return states_at(law, loads, load, sign, u / loads.kappa[load])
+
+
+def _at_speed(law: LawTable, loads: Loads) -> States:
+    """The states at given speeds but 0, where one of force and torque is found."""
+    assert loads.V is not None
+    load = np.flatnonzero(loads.V)
+    speed = loads.V[load]
+    return states_at(law, loads, load, np.sign(speed), np.abs(speed))

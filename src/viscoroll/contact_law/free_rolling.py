@@ -1,0 +1,262 @@
+"""How far a free motion goes by the law of steady rolling: from the term that follows it, M = M(V) + N(V) V'.
+
+N acts as an added mass.  Its share, the unsteadiness g |N(V)| with g = gamma/(1 + j), is about the error of V over V
+in a motion where it was no larger before (docs/may_i.md).  Free rolling depends on u = kappa V, on g and the material:
+u' = -g kappa M(u), over a way of the integral of u du/(g kappa M), in l0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.scale import Scale
+from ..materials.law_table import law_table
+from ..materials.prony import Prony
+from .contact_table import states_of
+
+Array = NDArray[np.float64]
+
+#: ln u in steps of a sixteenth of an octave, to 20 octaves beyond the times of a material, where it is in its limits
+#: to 1e-6
+_PER_OCTAVE, _MARGIN = 16, 20
+#: of the work of leaving the imprint of a rest, measured with a transient solver: of the length of a mode's memory, and
+#: of the way of a motion that is shorter, at least as far as the contact climbs; half lengths at rest (docs/may_i.md)
+_MEMORY, _SHORT, _CLIMB = 0.681, 4.84, 20.0
+#: kappa |V|, where every contact is at its limits
+_FASTEST = 1e300
+#: share of the energy below which what it costs is proportional to it
+_LITTLE = 1e-7
+
+
+def rolling(material: float | Prony, u: Array, names: tuple[str, ...]) -> Array:
+    """Rows of the law in pure rolling at kappa |V| = u, of one material in its own time; kappa = 1."""
+    one, none = np.ones(1), np.zeros(1)
+    return states_of(law_table(material), [one, one, one, u, none], u.shape, False, names)
+
+
+class Curve:
+    """Free rolling of one material over ln u, g = 1: N, time and way."""
+
+    def __init__(self, material: float | Prony) -> None:
+        from scipy.interpolate import CubicSpline
+
+        self.modes = (
+            (material.J, material.T) if isinstance(material, Prony) else (np.array([1.0 - 1.0 / material]), np.ones(1))
+        )
+        self.alpha = material.alpha if isinstance(material, Prony) else material
+        shortest, longest = (material.tau[-1], material.T[0]) if isinstance(material, Prony) else (1.0 / material, 1.0)
+        octaves = math.ceil(math.log2(longest / shortest)) + 2 * _MARGIN
+        self.s = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
+        self.s -= _MARGIN * math.log(2.0)
+        u = np.exp(self.s)
+        M, self.nodes = rolling(material, u, ("M", "N"))
+        self.low, self.high, self.M_high = float(u[0]), float(u[-1]), float(M[-1])
+        self._N, self._rate = CubicSpline(self.s, self.nodes), CubicSpline(self.s, u * u / M)
+        self._time, self._way = CubicSpline(self.s, u / M).antiderivative(), self._rate.antiderivative()
+        self._rise = self._N(self.s[0], 1)
+        self._first = u[0] ** 2 / M[0]  # the way from u[0] on, where M is proportional to u
+
+    def _place(self, u: Array) -> tuple[Array, Array]:
+        """(ln u within the curve, u over the end that it is beyond)."""
+        inside = np.clip(u, self.low, self.high)
+        return np.log(inside), u / inside
+
+    def N(self, u: Array) -> Array:
+        """Linear in u below the curve, as u^-2 above."""
+        s, beyond = self._place(u)
+        return (self._N(s) + self._rise * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(beyond, 1.0) ** 2
+
+    def M(self, u: Array) -> Array:
+        """kappa M."""
+        s, beyond = self._place(u)
+        return np.exp(2.0 * s) / self._rate(s) * np.where(beyond < 1.0, beyond, 1.0 / beyond)
+
+    def time(self, u: Array) -> Array:
+        """From u to some u below the curve."""
+        s, beyond = self._place(u)
+        return self._time(s) + 0.5 * self.high / self.M_high * (np.maximum(beyond, 1.0) ** 2 - 1.0)
+
+    def way(self, u: Array) -> Array:
+        """From u to rest, in l0."""
+        s, beyond = self._place(u)
+        above = self.high**2 / (3.0 * self.M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
+        return (self._first + self._way(s)) * np.minimum(beyond, 1.0) + above
+
+    def bound(self, u: Array, least: float) -> tuple[Array, NDArray[np.bool_]]:
+        """(u down to which |N| stays below ``least`` on the way from u, or 0; whether it is below at u).
+
+        Where it is not, the next u above from which on it is.
+        """
+        size = np.abs(self.nodes)
+        falls = np.flatnonzero((size[:-1] >= least) & (size[1:] < least))
+        roots = self.s[falls] + (size[falls] - least) / (size[falls] - size[falls + 1]) * (self.s[1] - self.s[0])
+        for _ in range(3):
+            N = self._N(roots)
+            roots = roots - (np.abs(N) - least) / (np.sign(N) * self._N(roots, 1))
+            roots = np.clip(roots, self.s[falls], self.s[falls + 1])
+        ends = np.concatenate([[0.0], np.exp(roots), [np.inf]])
+        below = np.abs(self.N(u)) < least
+        if size[-1] >= least:  # where N falls as u^-2
+            ends[-1] = self.high * math.sqrt(size[-1] / least)
+            ends = np.append(ends, np.inf)
+        at = np.searchsorted(ends, u, side="right")
+        return ends[np.where(below, at - 1, np.minimum(at, ends.size - 1))], below
+
+    def work(self, u: Array, way: Array, rested: Array) -> Array:
+        """W of leaving the imprint of a rest: an energy of P l0^2 W/(4 R) in SI units; ``way`` in l0."""
+        longest, W = _SHORT * np.maximum(2.0 * way, _CLIMB), np.zeros(u.shape)
+        for J, T in zip(*self.modes, strict=True):
+            L, fresh = np.minimum(2.0 * u * T, longest), np.exp(-rested / T)
+            W += 0.5 * J * ((1.0 - fresh) * np.log(np.hypot(1.0, _MEMORY * L)) - fresh / (1.0 + 2.0 / L))
+        old = -np.expm1(-rested / self.modes[1][0])
+        return np.maximum(W - old * math.log(self.alpha) / (8.0 * self.alpha), 0.0)
+
+
+@lru_cache(maxsize=256)  # those that an ensemble's validity looks at; 0.1 MB each
+def curve(material: float | Prony) -> Curve | None:
+    """The curve of a material in its own time; None of an elastic one, which rolls for ever."""
+    alpha = material.alpha if isinstance(material, Prony) else material
+    return Curve(material) if alpha > 1.0 else None
+
+
+class Strained(NamedTuple):
+    """Of the contact at a speed: lam (1 + epsilon)/(2 kappa), epsilon, and lam."""
+
+    reach: Any
+    epsilon: Any
+    lam: Any
+
+
+class Reach(NamedTuple):
+    """Down to where V of a free motion is right to a share of V.
+
+    Attributes
+    ----------
+    speed : down to this one; 0: to rest.  Where it is not right even at V, the next higher speed from which on it is.
+    time, way : until there, from V on; infinite time: to rest.  0 where it is not right at V.
+    left : the way from there to rest.
+    """
+
+    speed: Any
+    time: Any
+    way: Any
+    left: Any
+
+
+class Start(NamedTuple):
+    """What a start at V from a contact that rested long loses first, against one from steady contact.
+
+    Attributes
+    ----------
+    speed, way : lost; all of V where the cylinder is caught in its own imprint.
+    """
+
+    speed: Any
+    way: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Free:
+    """States that roll freely, each of one of the materials, in their own times.
+
+    ``speed``, ``time`` and ``length`` are what 1 of u, of time and of l0 are to the caller, ``words`` their units.
+    """
+
+    materials: Sequence[float | Prony]
+    which: NDArray[np.int64]
+    u: Array
+    g: Array
+    speed: Any
+    time: Any
+    length: Any
+    words: tuple[str, str, str] = ("", "", "")
+
+    def scaled(self, scale: Scale) -> Free:
+        """The same in other units."""
+        if not scale.si:
+            return self
+        speed, time, length = self.speed * scale["V"], self.time * scale["t"], self.length * scale["x"]
+        return replace(self, speed=speed, time=time, length=length, words=("m/s", "s", "m"))
+
+    def at(self, place: tuple[Any, ...]) -> Free:
+        """One of the states."""
+        arrays = ("which", "u", "g", "speed", "time", "length")
+        return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[place] for name in arrays})
+
+    def _groups(self) -> Iterator[tuple[float | Prony, Any]]:
+        """Materials that are there, and where."""
+        if len(self.materials) == 1:
+            yield self.materials[0], slice(None)
+            return
+        order = np.argsort(self.which, axis=None, kind="stable")
+        ordered = self.which.ravel()[order]
+        for part in np.split(order, np.flatnonzero(np.diff(ordered)) + 1):
+            if part.size:
+                yield self.materials[self.which.flat[part[0]]], part
+
+    def strained(self, kappa: Any) -> Strained:
+        """Lengths of the contact."""
+        out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
+        for material, part in self._groups():
+            out[:, part] = rolling(material, u[part], ("lam", "epsilon"))
+        lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
+        return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
+
+    def each(self, of: Callable[..., Sequence[Array]], elastic: Sequence[float], *more: Any) -> list[Array]:
+        """Numbers of every state, by u, g and ``more``; ``elastic``: of those that no law brakes."""
+        out = np.empty((len(elastic), self.u.size))
+        given = [np.broadcast_to(each, self.u.shape).ravel() for each in (self.u, self.g, *more)]
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            for material, part in self._groups():
+                known = curve(material)
+                values: Any = elastic if known is None else of(known, *(each[part] for each in given))
+                for row, value in zip(out, values, strict=True):
+                    row[part] = value
+        return [row.reshape(self.u.shape)[()] for row in out]
+
+    @cached_property
+    def unsteadiness(self) -> Any:
+        """g |N|; 0 at rest."""
+        return self.each(lambda curve, u, g: [np.where(u > 0.0, g * np.abs(curve.N(u)), 0.0)], [0.0])[0]
+
+    def whole(self) -> Any:
+        """The way to rest by the law."""
+        return self.each(lambda curve, u, g: [curve.way(u) / g], [np.inf])[0] * self.length
+
+    def reach(self, level: float) -> Reach:
+        """Until the unsteadiness was ``level``."""
+
+        def of(curve: Curve, u: Array, g: Array) -> list[Array]:
+            end, below = np.empty(u.size), np.empty(u.size, bool)
+            several, own = np.unique(g, return_inverse=True)
+            for n, one in enumerate(several):
+                some = own == n if several.size > 1 else slice(None)
+                end[some], below[some] = curve.bound(u[some], level / one)
+            start, left = np.where(below, end, u), curve.way(np.where(below, end, u))
+            time = np.where(start > 0.0, curve.time(u) - curve.time(start), np.inf)
+            way = np.where(below, curve.way(u) - left, 0.0)
+            return [end, np.where(below, time, 0.0) / g, way / g, left / g]
+
+        end, time, way, left = self.each(of, [0.0, np.inf, np.inf, 0.0])
+        return Reach(end * self.speed, time * self.time, way * self.length, left * self.length)
+
+    def start(self, rested: float = math.inf) -> Start:
+        """What a start from a rest of this time, as the caller counts it, costs."""
+
+        def of(curve: Curve, u: Array, g: Array, rested: Array) -> list[Array]:
+            way = curve.way(u)
+            W = curve.work(u, way / g, rested)
+            share = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)
+            kept = np.sqrt(1.0 - share)
+            lost = np.where(share > _LITTLE, (way - curve.way(u * kept)) / g, 0.25 * W / curve.M(u))
+            return [u * share / (1.0 + kept), np.where(u > 0.0, lost, 0.0)]
+
+        speed, way = self.each(of, [0.0, 0.0], rested / self.time)
+        return Start(speed * self.speed, way * self.length)

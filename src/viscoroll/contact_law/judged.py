@@ -1,0 +1,54 @@
+"""Which assumptions of the model a state strains: :func:`validity`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..core.checks import broadcast_shape, checked
+from ..core.typed import Numbers
+from .assumptions import Assumption, Validity, judge, unlike_speeds
+from .parameters import Rolls, framed
+from .steadiness import Steadiness
+
+
+def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density: float | None = None) -> Validity:
+    """Which assumptions of the model the contact at speed V strains.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, or a :class:`Cylinder` with V in m/s and omega in rad/s.
+    V : speed of the axis, any sign.
+    omega : angular velocity; without it the creep is not known.
+    density : of a Cylinder, and of the base where they are alike, kg/m^3; default: as the materials have it; without it
+        the speed of shear waves is not known.
+
+    Returns
+    -------
+    Validity
+        For each assumption a number, whether it holds, and a sentence; ``print`` shows them.  Of a Cylinder
+        ``quasistatic`` compares the speed of the axis, and that of the circumference where omega is given, with the
+        slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of the bodies whose density is known;
+        ``bodies`` holds Dundurs' constant, ``measured`` 1/s at which the contact is passed, and ``thick`` its length
+        over the thickness of the layer.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite speeds, a density that is not one positive number, shapes that do not broadcast.
+    """
+    _, scene, scale = framed(roller, "validity")
+    given = {"V": checked("V", V)} | ({} if omega is None else {"omega": checked("omega", omega)})
+    speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
+    broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
+    free = scene.freely(speed)
+    found = free.strained(scene.kappa)
+    steady = Assumption(None, None, "whether the law of steady rolling may drive a motion needs gamma")
+    if scene.gamma is not None:
+        steady = Steadiness.of(free.scaled(scale))
+    delta, full_slip = None, None
+    if spin is not None:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
+        full_slip = np.abs(delta) >= scene.mu * np.asarray(found.reach)
+    judged = judge(found, steady, unlike_speeds(delta, full_slip))
+    return roller.known(judged, found.lam, given["V"], given.get("omega"), density)

@@ -1,0 +1,262 @@
+"""What rolls, as the functions of the package see it: :class:`Rolls`, and its dimensionless :class:`Parameters`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import broadcast_shape, checked, checked_extent, frozen
+from ..core.drive import slope_factor
+from ..core.errors import ParameterError, one_of
+from ..core.results import short
+from ..core.scale import DIMENSIONLESS, Scale
+from ..materials.bodies import Bodies
+from ..materials.law_table import LawTable, law_table
+from ..materials.prony import Prony
+from ..materials.prony_forms import HIGHEST_ALPHA
+from .assumptions import Validity
+from .free_rolling import Free
+
+PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two parameters are equal, arrays or not."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other)
+    return bool(one == other)
+
+
+#: of mu/kappa, in which delta_star is measured
+RATIO_RANGE = (1e-290, 1e290)
+
+
+def _in_own_time(series: Prony) -> tuple[float | Prony, float]:
+    return series.in_own_time() if series.E.size else (1.0, 1.0)
+
+
+class Rolls:
+    """What rolls: a scene, or a cylinder.  Functions take its parameters, and answer in the units of its scale."""
+
+    scale: Scale
+    material: Any
+    #: attributes of datasets
+    about: ClassVar[dict[str, Any]] = {}
+
+    def scene(self) -> Parameters:
+        """The dimensionless parameters."""
+        raise NotImplementedError
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Its parameters that are numbers or arrays, by name."""
+        raise NotImplementedError
+
+    def tilted(self, slope: Any) -> Self:
+        """The same on a slope, under the load P cos(slope).
+
+        Raises
+        ------
+        ParameterError
+            A slope that is not within (-pi/2, pi/2).
+        """
+        raise NotImplementedError
+
+    def some(self, which: NDArray[np.int64], count: int) -> Self:
+        """Some of ``count``, by their numbers."""
+        raise NotImplementedError
+
+    def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
+        """What it adds of itself to the validity of a state, of which ``lam`` is."""
+        if density is not None:
+            raise ParameterError(
+                "density", density, "None", "density needs a Cylinder: a Scene knows no speed of waves"
+            )
+        return found
+
+    def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
+        """Warn where a contact at V asks more of a material than was measured; ``extent`` of V, where it is known."""
+
+    def look_at_starts(self, V0: Any, omega0: Any) -> None:
+        """Warn of starts that are beyond the speed of waves."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Parameters(Rolls):
+    """Dimensionless parameters: what a :class:`viscoroll.Scene` is given."""
+
+    alpha: Any = None
+    kappa: Any = None
+    mu: Any = None
+    gamma: Any = None
+    j: Any = 0.5
+    material: Prony | Bodies | LawTable | None = None
+    _law: ClassVar[LawTable | None] = None
+    #: that the parameters broadcast to; () for one scene
+    shape: ClassVar[tuple[int, ...]] = ()
+    scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
+
+    def __post_init__(self) -> None:
+        if self.material is not None:
+            if self.alpha is not None:
+                raise one_of("alpha", "material", both=True)
+            if isinstance(self.material, LawTable):
+                object.__setattr__(self, "_law", self.material)
+                material = self.material.material
+                of_alpha = not isinstance(material, Prony | Bodies)
+                object.__setattr__(self, "alpha", material if of_alpha else None)
+                object.__setattr__(self, "material", None if of_alpha else material)
+        if self.material is not None:
+            if not isinstance(self.material, Prony | Bodies):
+                raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
+            object.__setattr__(self, "alpha", self.material.alpha)
+        if self.alpha is None:
+            raise one_of("alpha", "material", both=False)
+        arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
+        extents = {}
+        for name in ("kappa", "mu", "gamma", "j") if self.gamma is not None else ("kappa", "mu", "j"):
+            arrays[name], extents[name] = checked_extent(name, getattr(self, name), low=0.0, strict=True)
+        object.__setattr__(self, "shape", broadcast_shape(**arrays))
+        if arrays["mu"].size and arrays["kappa"].size:
+            low, high = RATIO_RANGE
+            (least_mu, most_mu), (least_kappa, most_kappa) = extents["mu"], extents["kappa"]
+            if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
+                _refuse_ratio(arrays["mu"], arrays["kappa"])
+        for name, array in arrays.items():
+            object.__setattr__(self, name, frozen(array))
+
+    @property
+    def table(self) -> LawTable | None:
+        """The law of its one material: the one that was given, or made; None of an alpha or a material each."""
+        if self._law is not None:
+            return self._law
+        if self.material is None:
+            if type(self.alpha) is float:
+                return law_table(self.alpha)
+            return law_table(self.alpha.item()) if self.alpha.size == 1 else None
+        return law_table(self.material) if self.each is None else None
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """alpha, kappa, mu, gamma and j by name, those that are given."""
+        values = {name: getattr(self, name) for name in PARAMETERS}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def scene(self) -> Self:
+        return self
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
+        if self._law is not None and not changes.keys() & {"alpha", "material"}:
+            changes["material"] = self._law
+        if "material" in changes and "alpha" not in changes:
+            changes["alpha"] = None
+        elif "alpha" in changes and "material" not in changes:
+            changes["material"] = None
+        elif self.material is not None and "alpha" not in changes:
+            changes["alpha"] = None
+        return replace(self, **changes)
+
+    @property
+    def series(self) -> Prony | None:
+        """The series of the material, or of both bodies together; None of an alpha and of a material each."""
+        given: Any = None if self.each is not None else self.material
+        return given.total if isinstance(given, Bodies) else given
+
+    @property
+    def each(self) -> Prony | Bodies | None:
+        """Many materials, of pairs that are alike their series."""
+        given: Any = self.material
+        if given is None or not given.shape:
+            return None
+        return given.cylinder if isinstance(given, Bodies) and given.like else given
+
+    def in_own_time(self) -> tuple[Any, float]:
+        """(alpha, or the series with its slow time near 1; the time that this is counted in over T_ref)."""
+        return (self.alpha, 1.0) if self.series is None else _in_own_time(self.series)
+
+    @property
+    def like_bodies(self) -> bool:
+        """Whether cylinder and half-space deform alike, each taking half of M."""
+        return not isinstance(self.material, Bodies) or self.material.like
+
+    def tilted(self, slope: Any) -> Self:
+        cosine = slope_factor(slope)[1]
+        return self.replace(
+            kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine
+        )
+
+    def some(self, which: NDArray[np.int64], count: int) -> Self:
+        parts = {name: value[which] for name, value in self.numbers.items() if np.shape(value) == (count,)}
+        if self.each is not None:
+            del parts["alpha"]
+            parts["material"] = self.each[which]
+        return self.replace(**parts) if parts else self
+
+    def freely(self, V: Any) -> Free:
+        """What rolls at V, let go."""
+        materials: Any
+        unit: Any
+        if self.each is not None:
+            each = [_in_own_time(one.total if isinstance(one, Bodies) else one) for one in self.each]
+            materials, unit = [one for one, _ in each], np.array([unit for _, unit in each], np.float64)
+            which = np.arange(unit.size)
+        else:
+            given, unit = self.in_own_time()
+            materials, which = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))
+            which = which.reshape(np.shape(given))
+        gamma = np.nan if self.gamma is None else self.gamma
+        with np.errstate(over="ignore"):
+            u = np.asarray(self.kappa * np.abs(V) * unit + 0.0 * which)
+            g = gamma * unit * unit / (1.0 + np.asarray(self.j))
+        shape = np.broadcast_shapes(u.shape, np.shape(g))
+        u, which = np.broadcast_to(u, shape), np.broadcast_to(which, shape)
+        return Free(materials, which, u, g, 1.0 / (self.kappa * unit), unit, 1.0 / self.kappa)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Parameters):
+            return NotImplemented
+        return all(same(getattr(self, name), getattr(other, name)) for name in (*PARAMETERS, "material"))
+
+    def __hash__(self) -> int:
+        parts = [np.asarray(value, np.float64) for value in self.numbers.values()]
+        # + 0.0: -0 and 0 are equal
+        return hash((*((part.shape, (part + 0.0).tobytes()) for part in parts), self.material))
+
+    def __repr__(self) -> str:
+        given = self.numbers if self.material is None else {"material": self.material} | self.numbers
+        if self.material is not None:
+            del given["alpha"]
+        return f"Scene({', '.join(f'{name}={short(value)}' for name, value in given.items())})"
+
+
+def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:
+    """What rolls, on its slope, its parameters and its scale; ``moves``: with a gamma.
+
+    Raises
+    ------
+    ParameterError
+        What is no scene and no cylinder, a slope out of range.
+    """
+    if not isinstance(given, Rolls):
+        sentence = f"{call} takes a Scene or a Cylinder, not {given!r:.60}"
+        raise ParameterError("roller", type(given).__name__, "a Scene or a Cylinder", sentence)
+    roller = given if slope is None else given.tilted(slope)
+    scene = roller.scene()
+    if moves and scene.gamma is None:
+        sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
+        raise ParameterError("gamma", None, "a number > 0", sentence)
+    return roller, scene, roller.scale
+
+
+def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
+    """Raise ParameterError where mu/kappa, and with it delta_star, leaves the range of doubles, or nearly."""
+    low, high = RATIO_RANGE
+    with np.errstate(over="ignore", under="ignore"):
+        ratio = np.asarray(mu / kappa)
+    wrong = ratio[~((low <= ratio) & (ratio <= high))]
+    if wrong.size:
+        raise ParameterError("mu/kappa", f"{wrong.flat[0]:g}", f"in [{low:g}, {high:g}]")

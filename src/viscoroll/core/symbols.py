@@ -1,0 +1,169 @@
+"""Every symbol once: code name, meaning, unit, range, equation; feeds files and figures."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .scale import DIMENSIONS, KINDS, si_unit
+
+PAPER = (
+    "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic half-space, "
+    "Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
+)
+
+#: attribute of a dataset over V: between which speeds its material was measured
+MEASURED = "measured_V"
+
+
+class Symbol(NamedTuple):
+    """A quantity: LaTeX symbol, long name, range, equation of the paper, and where the package computes it.
+
+    ``computed`` is a file, or empty for a quantity that is given.
+    """
+
+    latex: str
+    long_name: str
+    range: str = ""
+    equation: str = ""
+    computed: str = ""
+
+
+SYMBOLS = {
+    "alpha": Symbol(
+        r"\alpha", "ratio of retardation to relaxation time T_epsilon/T_sigma", ">= 1", "Sect. 3.1", "scene.py"
+    ),
+    "kappa": Symbol(
+        r"\kappa", "ratio of cylinder radius to contact length at rest R/l0", "> 0", "Sect. 3.1", "scene.py"
+    ),
+    "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
+    "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)", "scene.py"),
+    "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)", "scene.py"),
+    "V": Symbol("V", "velocity of the axis", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "omega": Symbol(r"\omega", "angular velocity", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "t": Symbol("t", "time", ">= 0", "Sect. 4"),
+    "x": Symbol("x", "distance travelled", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
+    "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
+    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/rows/contact.py"),
+    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/rows/contact.py"),
+    "lam": Symbol(
+        r"\lambda",
+        "contact length over contact length at rest",
+        "[alpha^(-1/2), 1]",
+        "Eq. (6)",
+        "kernels/rows/law.py",
+    ),
+    "epsilon": Symbol(
+        r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)", "kernels/rows/contact.py"
+    ),
+    "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)", "kernels/rows/law.py"),
+    "beta": Symbol(
+        r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/rows/contact.py"
+    ),
+    "Q": Symbol("Q", "traction", "[-mu, mu]", "Eqs. (15), (17)", "kernels/rows/contact.py"),
+    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)", "kernels/rows/series.py"),
+    "C_rr": Symbol(
+        r"C_\mathrm{rr}",
+        "coefficient of rolling resistance M/(P R); M of a scene is this",
+        "finite",
+        "Eq. (16)",
+        "contact_law/contact.py",
+    ),
+    "force": Symbol("f", "force along V", "finite", "", "kernels/motion/load.py"),
+    "torque": Symbol("q", "torque along omega", "finite", "", "kernels/motion/load.py"),
+    "drag": Symbol("c", "torque of the bearing against omega, for each unit of it", ">= 0", "", "motion/driven.py"),
+    "brake": Symbol("B", "most torque that a brake takes", ">= 0", "", "kernels/motion/load.py"),
+    "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)", "", "contact_law/equilibria/loads.py"),
+    "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),
+    "rate_fast": Symbol(
+        r"\lambda_1", "rate of the faster small disturbance", "finite", "Eq. (22)", "contact_law/equilibria/result.py"
+    ),
+    "rate_slow": Symbol(
+        r"\lambda_2", "rate of the slower small disturbance", "finite", "Eq. (22)", "contact_law/equilibria/result.py"
+    ),
+    "M_half_space": Symbol("M_h", "part of M in the half-space", "finite", "", "kernels/rows/series.py"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder", "finite", "", "kernels/rows/series.py"),
+    "N": Symbol(
+        "N",
+        "moment for each unit of V', M = M(V) + N V' in slow changes",
+        "finite",
+        "",
+        "kernels/rows/modes.py",
+    ),
+    "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
+    "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
+    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),
+    "kappa_M": Symbol(
+        r"\kappa M",
+        "kappa times rolling resistance moment over P R",
+        ">= 0",
+        "Eq. (16)",
+        "kernels/rows/series.py",
+    ),
+    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)", "kernels/rows/stress.py"),
+    "tau": Symbol(
+        r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/rows/stress.py"
+    ),
+    "slip_loss": Symbol(
+        r"E_\mathrm{slip}",
+        "energy lost in slip since t = 0",
+        ">= 0",
+        "Eq. (22)",
+        "kernels/motion/nodes.py",
+    ),
+    "rolling_loss": Symbol(
+        r"E_\mathrm{roll}",
+        "energy lost in rolling since t = 0",
+        "finite",
+        "Eq. (22)",
+        "kernels/motion/nodes.py",
+    ),
+    "work_force": Symbol(r"W_f", "work of the force since t = 0", "finite", "Eq. (22)", "kernels/motion/rates.py"),
+    "work_torque": Symbol(r"W_q", "work of the torque since t = 0", "finite", "Eq. (22)", "kernels/motion/rates.py"),
+    "brake_loss": Symbol(
+        r"E_\mathrm{brake}",
+        "energy lost in the brake since t = 0",
+        ">= 0",
+        "Eq. (22)",
+        "kernels/motion/rates.py",
+    ),
+    "onset_time": Symbol(
+        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/motion/phase.py"
+    ),
+}
+
+
+#: of what has no symbol
+_MEANINGS = {
+    "full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die",
+    "rest_time": "time at which the rest threshold was crossed", "loss_slip": "power lost: slip",
+    "loss_half_space": "power lost: half space", "loss_cylinder": "power lost: cylinder", "length": "contact length",
+    "V0": "initial velocity of the axis", "omega0": "initial angular velocity",
+}  # fmt: skip
+
+
+def attributes(name: str, si: bool = False) -> dict[str, str]:
+    """long_name, units, symbol and equation of a quantity, without dimension or in SI units."""
+    found = {"long_name": meaning(name, si), "units": si_unit(name) if si else "1"}
+    if name in SYMBOLS and not (si and name in DIMENSIONS):
+        found |= {"symbol": SYMBOLS[name].latex, "equation": SYMBOLS[name].equation}
+    return found
+
+
+def meaning(name: str, si: bool = False) -> str:
+    """What a quantity is, in words."""
+    if name in SYMBOLS:
+        text = SYMBOLS[name].long_name
+    elif name.startswith("d") and "_d" in name:
+        upper, _, lower = name[1:].partition("_d")
+        text = f"partial derivative of {upper} with respect to {lower}"
+    else:
+        text = _MEANINGS.get(name, "")
+    if not text or name not in DIMENSIONS:
+        return text
+    unit, over = KINDS[DIMENSIONS[name]]
+    return text + (", per length of the cylinder" * unit.endswith(" m-1") if si else over)
+
+
+def label(name: str) -> str:
+    """Axis label of a quantity: its symbol; everything here is dimensionless."""
+    return f"${SYMBOLS[name].latex}$"

@@ -1,0 +1,1 @@
+"""Files: tables of the law, run files and their stores."""

@@ -1,0 +1,234 @@
+"""Sobol indices of a run: which uncertain input the spread of its motions comes from.
+
+Estimators are those of A. Saltelli et al., Computer Physics Communications 181 (2010) 259-270, on a scrambled Sobol
+sequence; scipy.stats.sobol_indices, which has them too, fails at one input (SciPy 1.17).  A base point costs a motion
+for every uncertain input and two more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import __version__
+from ...core.blocks import run_blocks
+from ...core.errors import MotionStatus, ParameterError
+from ...core.results import column, unit_of
+from ..sampling import points
+from .evaluate import look_at_materials, roll_inputs
+from .inputs import Inputs, inputs_in
+from .quantities import QUANTITIES, attributes
+from .runfile import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+CONFIDENCE = 0.95
+_RESAMPLES = 100
+#: base points
+_LEAST, _MOST = 16, 1 << 16
+#: bytes that the outcomes of all motions may take
+_BYTES = 1 << 29
+#: motions a block: about a second where they are integrated
+_BLOCK = 1 << 14
+_INDICES = {
+    "S1": "first-order Sobol index",
+    "S1_conf": f"half-width of the {CONFIDENCE:.0%} confidence interval of the first-order Sobol index",
+    "ST": "total Sobol index",
+    "ST_conf": f"half-width of the {CONFIDENCE:.0%} confidence interval of the total Sobol index",
+}
+
+
+def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progress: bool = False) -> xr.Dataset:
+    """First-order and total Sobol indices of the summarised quantities over all uncertain inputs.
+
+    Parameters
+    ----------
+    run : see :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
+    n : base points in [16, 65536], rounded up to a power of two.
+    threads : default ``$VISCOROLL_THREADS`` or the cores available; the bits do not depend on it.
+    progress : draw a progress bar if it takes longer than a second.
+
+    Returns
+    -------
+    xarray.Dataset
+        For every quantity ``NAME_S1``, ``NAME_S1_conf``, ``NAME_ST``, ``NAME_ST_conf`` over (t, input), or over
+        input where it is one number a motion: the indices, dimensionless, and the half-widths of
+        their bootstrap intervals of 95 %.  A quantity that some motions do not have, or that
+        varies by no more than rtol of its largest value at any t, has no indices: the attribute
+        ``refused`` says which, at which t and why.  There its entries are NaN, and where it has
+        none at any t it is left out.
+
+    Raises
+    ------
+    ParameterError
+        Correlated inputs or a joint sample, which Sobol indices are not defined for; no uncertain
+        input; n out of range, or so many output times that their values would take more than 0.5 GB; no
+        quantity left.
+
+    Notes
+    -----
+    Variance shares known in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
+    The bootstrap takes the points for random ones, which are less even: intervals err on the wide side.
+    """
+    names = _independent(run.inputs)
+    base = _power_of_two(n)
+    rows = base * (len(names) + 2)
+    summaries = tuple(dict.fromkeys(run.settings.summaries))
+    settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
+    whole = replace(run, settings=settings)
+    look_at_materials(whole)
+    outcomes, status = _outcomes(whole, _points(len(names), base, run.settings.seed), threads, progress)
+    refused: list[str] = []
+    found = {
+        name: _indices(whole, name, values.reshape(-1, len(names) + 2, base), refused)
+        for name, values in outcomes.items()
+    }
+    kept = {name: indices for name, indices in found.items() if np.isfinite(indices).any()}
+    if not kept:
+        raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
+    return _dataset(whole, names, kept).assign_attrs(
+        asked_base_points=n, base_points=base, resamples=_RESAMPLES, confidence=CONFIDENCE,
+        refused="\n".join(refused), **_ended(status),
+    )  # fmt: skip
+
+
+def _independent(inputs: Inputs) -> tuple[str, ...]:
+    """Names of the uncertain inputs, each a dimension of its own; raises ParameterError if they are not."""
+    if not inputs.uncertain:
+        raise ParameterError("run file", "no uncertain input", "one with a distribution")
+    if inputs.correlated:
+        allowed = "left out: Sobol indices are defined for independent inputs only"
+        raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
+    places = {at.name: f"[{at.section}] {at.name}" for at in inputs_in(inputs.content)}
+    for file, sample in inputs.joint.items():
+        if len(sample.columns) > 1:
+            allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
+            raise ParameterError(", ".join(map(places.__getitem__, sample.columns)), f"rows of {file}", allowed)
+    return inputs.uncertain
+
+
+def _power_of_two(n: int) -> int:
+    """``n`` rounded up: a Sobol sequence is even only over so many points."""
+    if not _LEAST <= n <= _MOST:
+        raise ParameterError("n", n, f"a whole number in [{_LEAST}, {_MOST}]")
+    return 1 << (n - 1).bit_length()
+
+
+def _points(count: int, base: int, seed: int) -> NDArray[np.float64]:
+    """Points (input, motion) of the unit cube: base points, as many others, and the first with each of the second."""
+    one, other = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
+    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, other, one) for n in range(count)]
+    return np.hstack([one, other, *mixed])
+
+
+def _outcomes(
+    run: Run, places: NDArray[np.float64], threads: int | None, progress: bool
+) -> tuple[dict[str, NDArray[np.float64]], NDArray[np.int8]]:
+    """(values of each quantity over (t, motion), how the motions ended): block by block, no motion is kept."""
+    rows = places.shape[1]
+    times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
+    size = 8 * rows * sum(times.values())
+    if size > _BYTES:
+        allowed = f"less, or t shorter: {sum(times.values())} quantities and times would take {size / 1e9:.1f} GB"
+        raise ParameterError("n", rows // (len(places) + 2), allowed)
+    outcomes = {name: np.empty((count, rows)) for name, count in times.items()}
+    status = np.empty(rows, np.int8)
+
+    def work(start: int, stop: int) -> None:
+        motions = roll_inputs(run, run.inputs.values(places[:, start:stop]), stop - start, threads)
+        status[start:stop] = motions.status
+        for name, values in outcomes.items():
+            for k, row in enumerate(values):
+                row[start:stop] = QUANTITIES[name].values(motions, k)
+
+    # one block at a time, its motions on all threads: a flow map is then made once
+    run_blocks(work, rows, min(_BLOCK, run.block), threads=1, progress="sensitivity" if progress else None)
+    return outcomes, status
+
+
+def _indices(run: Run, name: str, outcomes: NDArray[np.float64], refused: list[str]) -> NDArray[np.float64]:
+    """The rows of ``_INDICES`` over (t, input) from outcomes (t, point, base); NaN where there are none, and why goes
+    into ``refused``."""
+    from scipy.special import ndtri
+
+    base = outcomes.shape[2]
+    found = np.full((len(_INDICES), len(outcomes), outcomes.shape[1] - 2), np.nan)
+    noise = run.settings.rtol * np.abs(outcomes, where=np.isfinite(outcomes), out=np.zeros_like(outcomes)).max()
+    for k, values in enumerate(outcomes):
+        reason = _reason_against(values, noise)
+        if reason:
+            refused.append(
+                f"{name} at t = {run.t[k]:g}: {reason}" if QUANTITIES[name].over_time else f"{name}: {reason}"
+            )
+            continue
+        random = np.random.default_rng(run.settings.seed)
+        again = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
+        found[0::2, k] = _estimated(values)
+        found[1::2, k] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(again, axis=0, ddof=1)
+    return found
+
+
+def _estimated(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """First-order and total indices of outcomes (point, base)."""
+    one, other, *others = values - values[:2].mean()
+    mixed = np.array(others)
+    return np.array([(other * (mixed - one)).mean(axis=1), 0.5 * ((mixed - one) ** 2).mean(axis=1)]) / values[:2].var()
+
+
+def _reason_against(values: NDArray[np.float64], noise: float) -> str:
+    """Why these values have no indices, or ""; ``noise`` is what rtol leaves open of the largest at any t."""
+    missing = np.count_nonzero(~np.isfinite(values))
+    if missing:
+        return f"{missing} of {values.size} motions have no value"
+    return "" if values.std() > noise else "it varies by no more than rtol of its largest value"
+
+
+def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float64]]) -> xr.Dataset:
+    import xarray as xr
+
+    from .store import about
+
+    data: dict[str, xr.Variable] = {}
+    for name, indices in found.items():
+        dims = ("t", "input") if QUANTITIES[name].over_time else ("input",)
+        for (key, text), values in zip(_INDICES.items(), indices, strict=True):
+            long_name = f"{text} of: {QUANTITIES[name].about(run.si)['long_name']}"
+            shaped = values if len(dims) == 2 else values[0]
+            data[f"{name}_{key}"] = xr.Variable(dims, shaped, {"long_name": long_name, "units": "1"})
+    coordinates = {
+        "t": xr.Variable("t", run.t, attributes("t", run.si)),
+        "input": xr.Variable("input", np.array(names, object), {"long_name": "uncertain input"}),
+    }
+    provenance = about(run) | {
+        "title": "Sobol indices of motions of a viscoelastic cylinder",
+        "source": f"viscoroll {__version__}",
+        "design": "Saltelli's, on a scrambled Sobol sequence",
+    }
+    cut = ("motions_a_block", "blocks")
+    return xr.Dataset(data, coordinates, {key: value for key, value in provenance.items() if key not in cut})
+
+
+def table(indices: xr.Dataset) -> pd.DataFrame:
+    """A row for each quantity, time and input that has indices, the largest total index first at each t."""
+    import pandas as pd
+
+    tables = []
+    for name in (str(each).removesuffix("_S1") for each in indices if str(each).endswith("_S1")):
+        own = indices[[f"{name}_{key}" for key in _INDICES]].rename({f"{name}_{key}": key for key in _INDICES})
+        over = [dim for dim in ("t",) if dim in own.dims]
+        frame = own.to_dataframe().reset_index().dropna()
+        frame.insert(0, "quantity", name)
+        tables.append(frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable"))
+    return pd.concat(tables).rename(columns={"t": column("t", unit_of(indices["t"].attrs))})
+
+
+def _ended(status: NDArray[np.int8]) -> dict[str, int]:
+    """How many motions ended in which way."""
+    codes, counts = np.unique(status, return_counts=True)
+    return {f"ended: {MotionStatus(code).message}": int(n) for code, n in zip(codes, counts, strict=True)}

@@ -1,0 +1,217 @@
+"""A results store: a zarr hierarchy that any number of processes fill block by block.
+
+    results.zarr/
+      V_mean, V_quantiles, V_histogram, ...             the summaries: xarray.open_zarr(path)
+      motions/V, omega, x, onset_time, status, ...      every motion (keep = "all"): one block = one chunk
+      records/start, 000000000, 000000001, ..., end     what is done (see :mod:`records`)
+
+Every file is written whole or not at all, its record after it, and nothing in it depends on when,
+where or in which order the blocks were worked on: two stores of one run are the same files.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import __version__
+from ...core.errors import FileError
+from ...motion.many import Ensemble
+from . import zarr_files
+from .evaluate import roll_block, roll_inputs
+from .quantities import attributes
+from .records import Record, damaged, make_folder, put, read_record, write_record
+from .runfile import Run
+from .summaries import Summary, merged, summarise, summary_dataset
+
+RECORDS, MOTIONS = "records", "motions"
+_LOCK = ".lock"
+_EACH = ("onset_time", "rest_time", "status", "flow")
+_ADVICE = "give another folder with -o, or delete this one"
+
+
+@dataclass(frozen=True)
+class Store:
+    """Results of ``run`` in the folder ``root``."""
+
+    root: Path
+    run: Run
+
+    def begin(self) -> None:
+        """Make the folder and the metadata of all motions, or check that it is this run's.
+
+        Raises
+        ------
+        FileError
+            A folder that holds anything else, or cannot be written.
+        """
+        self.refuse_other()
+        make_folder(self.root / RECORDS)
+        self._sweep()
+        made = Record(identity(self.run), put(self.root, self._metadata()), about(self.run))
+        write_record(_path(self.root, "start"), made)
+
+    def refuse_other(self) -> None:
+        """Raise FileError unless the folder is new, or begun by the same run."""
+        root = self.root
+        if not root.exists():
+            return
+        if not root.is_dir():
+            raise FileError(root, f"is a file: {_ADVICE}")
+        record = read_record(_path(root, "start"))
+        if record is None:
+            whole = map(read_record, sorted((root / RECORDS).glob("[0-9e]*")))
+            record = next((found for found in whole if found is not None), None)
+        if record is None:
+            others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
+            if others:
+                raise FileError(root, f"is no results store, it holds {', '.join(others[:3])}: {_ADVICE}")
+        elif record.run != identity(self.run):
+            versions = record.about.get("versions", json.dumps(_software()))
+            if versions != json.dumps(_software()):
+                raise FileError(root, f"was begun with other versions, {versions}: finish it with those, or {_ADVICE}")
+            raise FileError(root, f"holds the results of another run file: {_ADVICE}")
+
+    def missing(self) -> Iterator[int]:
+        """Blocks that are not there, or not whole: their records and all their files are read."""
+        made = identity(self.run)
+        for block in range(self.run.blocks):
+            if problems(self.root, block, made):
+                yield block
+
+    def work(self, block: int) -> int:
+        """Roll a block and store it; returns its number of motions.  Raises FileError."""
+        files, summary, count = made(self.run, block)
+        write_record(_path(self.root, block), Record(identity(self.run), put(self.root, files), summary=summary))
+        return count
+
+    def end(self) -> None:
+        """Merge the summaries of all blocks and write them; raises FileError."""
+        dataset = summary_dataset(merged(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si)
+        files = zarr_files.dataset_files(dataset.assign_attrs(about(self.run)))
+        files[".zmetadata"] = zarr_files.consolidated(files | self._metadata())
+        write_record(_path(self.root, "end"), Record(identity(self.run), put(self.root, files)))
+        self._sweep()
+
+    def _sweep(self) -> None:
+        """Remove what processes that were killed in a write left behind, before this start or, workers, since."""
+        for left_over in self.root.rglob(".*.tmp-*"):
+            with suppress(OSError):
+                left_over.unlink()
+
+    def _summaries(self) -> Iterator[Summary]:
+        for block in range(self.run.blocks):
+            record = read_record(_path(self.root, block))
+            if record is None or record.summary is None:
+                raise FileError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
+            yield record.summary
+
+    def _metadata(self) -> dict[str, bytes]:
+        """Metadata of the group of all motions, if they are kept; a single motion tells names and types."""
+        if self.run.settings.keep == "summaries":
+            return {}
+        values = {name: np.atleast_1d(value) for name, value in self.run.inputs.medians.items()}
+        columns = columns_of(self.run, values, roll_inputs(self.run, values))
+        described = {name: attributes(name, self.run.si) for name in (*columns, "t")}
+        found = zarr_files.metadata(
+            columns, self.run.settings.n, self.run.block, self.run.t, described, about(self.run)
+        )
+        return {f"{MOTIONS}/{name}": content for name, content in found.items()}
+
+
+def made(run: Run, block: int) -> tuple[dict[str, bytes], Summary, int]:
+    """What there is to store of a block: files, summary, number of motions."""
+    values, motions = roll_block(run, block)
+    files: dict[str, bytes] = {}
+    if run.settings.keep == "all":
+        found = zarr_files.chunks(columns_of(run, values, motions), block, run.settings.n, run.block)
+        files = {f"{MOTIONS}/{name}": content for name, content in found.items()}
+    return files, summarise(motions, run.settings.summaries), len(motions)
+
+
+def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
+    """What is kept of every motion."""
+    columns = {name: values[name] for name in run.inputs.uncertain}
+    columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_EACH)}
+    return columns | {"flow": columns["flow"].astype(np.int8)}
+
+
+def about(run: Run) -> dict[str, str | int]:
+    """What a store says of itself: run file, seed, versions."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": "Ensemble of motions of a viscoelastic cylinder",
+        "source": f"viscoroll {__version__}",
+        "versions": json.dumps(_software()),
+        "motions": run.settings.n,
+        "motions_a_block": run.block,
+        "blocks": run.blocks,
+        "seed": run.settings.seed,
+        "design": run.settings.design,
+        "method": run.method,
+        "quantities": "in SI units" if run.si else "dimensionless",
+        "run_file": run.text,
+    }
+
+
+def _software() -> dict[str, str]:
+    """What decides about the bits, beside the run and the processor."""
+    import numba
+    import scipy
+
+    from ...kernels.compile.cache import sources_digest
+
+    return {
+        "viscoroll": __version__, "kernels": sources_digest(), "numpy": np.__version__, "scipy": scipy.__version__,
+        "numba": numba.__version__,
+    }  # fmt: skip
+
+
+def identity(run: Run) -> str:
+    """SHA-256 of the run, its blocks and the software."""
+    return hashlib.sha256(f"{run.digest} {run.block} {json.dumps(_software())}".encode()).hexdigest()
+
+
+def problems(root: Path, name: str | int, made: str) -> list[str]:
+    """What is damaged or missing of a record "start", "end" or a block: its own path, or those of its files."""
+    record = read_record(_path(root, name))
+    if record is None or record.run != made:
+        return [str(_path(root, name).relative_to(root))]
+    return damaged(root, record)
+
+
+def _path(root: Path, name: str | int) -> Path:
+    return root / RECORDS / (name if isinstance(name, str) else f"{name:09d}")
+
+
+@contextmanager
+def locked(root: Path) -> Iterator[None]:
+    """Keep other processes from starting to work on the store.
+
+    Raises
+    ------
+    FileError
+        If another process has it.
+    """
+    from filelock import FileLock, Timeout
+
+    make_folder(root / RECORDS)
+    lock = FileLock(root / RECORDS / _LOCK, timeout=0)
+    try:
+        lock.acquire()
+    except Timeout:
+        raise FileError(root, "another process is writing to it") from None
+    except (OSError, NotImplementedError) as error:  # some network disks
+        raise FileError(root, f"cannot be locked ({getattr(error, 'strerror', None) or error})") from error
+    try:
+        yield
+    finally:
+        lock.release()

@@ -1,0 +1,96 @@
+"""Look through a results store: is everything there, and as it was meant?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.errors import FileError
+from ...core.extras import imported
+from .records import read_record
+from .store import RECORDS, problems
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """``damaged`` files, and the ``missing`` blocks out of ``blocks``; ``finished``: the summaries are there."""
+
+    blocks: int
+    missing: tuple[int, ...]
+    damaged: tuple[str, ...]
+    finished: bool
+
+    @property
+    def ok(self) -> bool:
+        """Whether the store is complete and whole."""
+        return self.finished and not self.missing and not self.damaged
+
+    def __str__(self) -> str:
+        if self.ok:
+            return f"complete: {self.blocks} blocks and the summaries have the SHA-256 that they were written with"
+        lines = [f"damaged or missing: {name}" for name in self.damaged]
+        lines += [f"{len(self.missing)} of {self.blocks} blocks are not there or not whole"] * bool(self.missing)
+        lines += ["the summaries are not there or not whole"] * (not self.finished)
+        return "\n".join([*lines, "the same `viscoroll ensemble` command puts it right"])
+
+
+def verify(path: str | PathLike[str]) -> Verdict:
+    """Read every file of a store and compare it with its SHA-256.
+
+    Parameters
+    ----------
+    path : folder of the results.
+
+    Returns
+    -------
+    Verdict
+        Which files are damaged and which blocks missing; ``ok`` where none is, a text by ``str``.
+
+    Raises
+    ------
+    FileError
+        If there is no results store, or the record of its start is damaged.
+
+    Notes
+    -----
+    One flipped bit in any file is found (``tests/runs/test_run_store.py``).
+    """
+    root = Path(path)
+    start = read_record(root / RECORDS / "start")
+    if start is None:
+        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
+    damaged, missing = [*problems(root, "start", start.run)], []
+    blocks = int(start.about["blocks"])
+    for block in range(blocks):
+        found = problems(root, block, start.run)
+        if found:
+            missing.append(block)
+            damaged += [name for name in found if (root / name).exists()]
+    end = problems(root, "end", start.run)
+    damaged += [name for name in end if (root / name).exists()]
+    return Verdict(blocks, tuple(missing), tuple(damaged), not end)
+
+
+def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
+    """The summaries of a finished store.
+
+    Raises
+    ------
+    FileError
+        If there are none, or they are damaged.
+    """
+    import xarray as xr
+
+    imported("zarr", "zarr", "runs")
+    root = Path(path)
+    start = read_record(root / RECORDS / "start")
+    if start is None:
+        raise FileError(path, "is no results store, or its record `start` is damaged")
+    if found := problems(root, "end", start.run):
+        raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
+    return xr.open_zarr(root, chunks=None)

@@ -1,0 +1,190 @@
+"""Random inputs, from scipy.stats distributions and a recorded seed: :func:`sample`, and blocks of points for runs.
+
+Each block of points is a function of (seed, block) alone.  Whichever process draws a block, in whatever order, gets
+the same bits, and nothing outside the block is held in memory.
+
+- random: numpy's Philox, a counter-based generator (J. Salmon et al., SC11, 2011), keyed by
+  (seed, block).
+- latin: stratum i of n holds motion p(i), p a permutation that is computed point by point: a
+  Feistel network over the next power of 4, walked until it falls inside n (J. Black and
+  P. Rogaway, CT-RSA 2002), a key a dimension.  Within the stratum as random.
+- sobol: one scrambled sequence of scipy.stats.qmc by the seed; a block starts at the point that
+  the Gray code of its index gives (I. A. Antonov and V. M. Saleev, 1979), without drawing those before.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import checked, number
+from ..core.errors import ParameterError, one_of, unknown
+
+Design = Literal["random", "latin", "sobol"]
+#: no design draws a point closer to 0 or 1 than this
+SMALLEST, LARGEST = 2.0**-54, 1.0 - 2.0**-53
+_ROUNDS = 6
+#: bits of a Sobol coordinate: as many as a double holds
+_BITS = 52
+
+
+@dataclass(frozen=True)
+class Sample(Mapping[str, NDArray]):
+    """Named columns of n draws, with what is needed to draw them again."""
+
+    columns: dict[str, NDArray[np.float64]]
+    seed: int
+    design: str
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        return self.columns[name]
+
+    def __iter__(self) -> Any:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+
+def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: Any = None, **quantities: Any) -> Sample:
+    """Draw n values of each named quantity, independent of each other.
+
+    Parameters
+    ----------
+    n : number of draws, >= 1; powers of two suit "sobol".
+    seed : whole number >= 0, below 2^63, kept in the result.
+    rng : in place of a seed, which is drawn from it: a numpy.random.Generator, or what makes one.
+    design : "random", "latin" (hypercube) or "sobol" (scrambled); the draws are those of a run file of one block.
+    **quantities : a number, or a frozen scipy.stats distribution, e.g.
+        ``V0=scipy.stats.uniform(-1, 2)``; drawn through its inverse CDF.
+
+    Returns
+    -------
+    Sample
+        A mapping from name to array (n,).
+
+    Raises
+    ------
+    ParameterError
+        Bad n, seed or design, both or neither of seed and rng, a quantity that is neither a number nor a distribution,
+        a distribution without a median, a draw that overflows.
+
+    Notes
+    -----
+    The same n, seed and design give the same bits; "latin" and "sobol" have one draw in each of n
+    strata of every quantity, for "sobol" where n is a power of two (``tests/test_sampling.py``).
+    """
+    if (seed is None) == (rng is None):
+        raise one_of("seed", "rng", both=rng is not None)
+    if seed is None:
+        seed = int(np.random.default_rng(rng).integers(2**63))
+    for name, value, low, high in (("n", n, 1, 10**12), ("seed", seed, 0, 2**63 - 1)):
+        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+            raise ParameterError(name, value, f"a whole number in [{low}, {high}]")
+    if design not in get_args(Design):
+        raise unknown("design", design, get_args(Design), "a design")
+    random = [name for name, value in quantities.items() if _is_distribution(name, value)]
+    rows = points(design, int(seed), int(n), len(random), 0, int(n), 0)
+    with np.errstate(all="ignore"):  # what overflows is infinite, and refused
+        drawn = {name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)}
+    columns = {name: drawn[name] if name in drawn else np.full(n, float(value)) for name, value in quantities.items()}
+    return Sample(columns, int(seed), design)
+
+
+@np.errstate(all="ignore")  # scipy may overflow on what is refused here
+def _is_distribution(name: str, value: Any) -> bool:
+    """Whether it is a distribution, else a number; raises ParameterError where it is neither."""
+    random = hasattr(value, "ppf")
+    try:
+        number(name, value.ppf(0.5) if random else value)
+    except (TypeError, ValueError):
+        allowed = "a finite number or a frozen scipy.stats distribution"
+        raise ParameterError(name, f"{value!s:.60}", allowed) from None
+    return random
+
+
+def points(
+    design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int
+) -> NDArray[np.float64]:
+    """Points start..stop of n, which are block number ``block``: (dimensions, stop - start), inside (0, 1)."""
+    if dimensions == 0:
+        return np.empty((0, stop - start))
+    if design == "sobol":
+        drawn = _sobol(seed, dimensions, start, stop)
+    else:
+        drawn = _stream(seed, block).random((dimensions, stop - start))
+        if design == "latin":
+            index = np.arange(start, stop, dtype=np.uint64)
+            strata = [permuted(index, n, key) for key in _keys(seed, dimensions)]
+            drawn = (np.array(strata) + drawn) / n
+    return np.clip(drawn, SMALLEST, LARGEST)
+
+
+def _stream(seed: int, number: int) -> np.random.Generator:
+    return np.random.Generator(np.random.Philox(key=np.array([seed, number], np.uint64)))
+
+
+def _keys(seed: int, dimensions: int) -> NDArray[np.uint64]:
+    """A key for each round of each dimension; of a stream that no block has."""
+    return _stream(seed, 2**64 - 1).integers(0, 2**64, (dimensions, _ROUNDS), dtype=np.uint64)
+
+
+def permuted(index: NDArray[np.uint64], n: int, key: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Where a permutation of 0 ... n - 1 takes each of ``index``."""
+    half = max((int(n - 1).bit_length() + 1) // 2, 1)
+    result = _feistel(index, half, key)
+    outside = np.flatnonzero(result >= n)
+    while outside.size:
+        result[outside] = _feistel(result[outside], half, key)
+        outside = outside[result[outside] >= n]
+    return result
+
+
+def _feistel(index: NDArray[np.uint64], half: int, key: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """A permutation of the numbers of 2 half bits."""
+    width, mask = np.uint64(half), np.uint64(2**half - 1)
+    left, right = index >> width, index & mask
+    for round_key in key:
+        left, right = right, left ^ (_scrambled(right + round_key) & mask)
+    return (left << width) | right
+
+
+def _scrambled(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """The finaliser of splitmix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014)."""
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return x ^ (x >> np.uint64(31))
+
+
+@lru_cache(maxsize=2)
+def _sequence(seed: int, dimensions: int) -> Any:
+    from scipy.stats import qmc
+
+    return qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))
+
+
+def _sobol(seed: int, dimensions: int, start: int, stop: int) -> NDArray[np.float64]:
+    """Points start..stop of the sequence.
+
+    ``fast_forward`` of scipy passes over all points before, which at 10^11 would take minutes a
+    block (and refuses more than 32 bits); its state is set instead, and tested against all points.
+    """
+    sequence = copy.copy(_sequence(seed, dimensions))
+    drawn = np.empty((stop - start, dimensions))
+    state, begun = sequence._shift.copy(), max(start - 1, 0)
+    gray = begun ^ (begun >> 1)
+    for bit in range(gray.bit_length()):
+        if gray >> bit & 1:
+            state ^= sequence._sv[:, bit]
+    sequence._quasi, sequence.num_generated = state, start
+    first = start == 0
+    if first:  # alone: the first call would warn about a number of points that is no power of 2
+        drawn[:1] = sequence.random(1)
+    drawn[first:] = sequence.random(stop - start - first)
+    return np.ascontiguousarray(drawn.T)

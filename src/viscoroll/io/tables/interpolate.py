@@ -1,0 +1,152 @@
+"""Values between the nodes of a grid: tensor cubic splines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.blocks import flattened
+from ...core.checks import broadcast_shape, checked
+from ...core.errors import OutOfTableError, ParameterError, unknown
+from ...core.results import Values
+from . import schema
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Interpolant:
+    """A table ready for repeated interpolation; what :func:`interpolate` builds on each call.
+
+    Called with fields and points, it returns and raises what :func:`interpolate` does, with the same errors.
+
+    Parameters
+    ----------
+    table : a Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
+        Splines are made once a field, at its first use, from the values of that time.
+
+    Raises
+    ------
+    FileError
+        If it is not a table.
+    """
+
+    def __init__(self, table: xr.Dataset) -> None:
+        schema.check(table, "interpolate")
+        self._table, self._axes = table, schema.axes_of(table)
+        # files before 1.2 state the errors of linear interpolation in V, delta and alpha
+        self._linear = table.attrs[schema.KIND] in ("literal", "material")
+        self._evaluators: dict[str, Any] = {}
+
+    def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
+        """Interpolated ``fields`` at ``points``; see :func:`interpolate`."""
+        names = self._field_names(fields)
+        flat, shape = self._checked_points(points, names)
+        results = {}
+        for name in names:
+            dims, evaluator = self._evaluator(name)
+            if dims:
+                columns = [np.broadcast_to(flat[dim], (int(np.prod(shape)),)) for dim in dims]
+                values = evaluator(np.column_stack(columns)).reshape(shape)
+            else:
+                values = np.full(shape, evaluator)
+            results[name] = values if shape else values.item()
+        return Values(results, title="Interpolated")
+
+    def _field_names(self, fields: Iterable[str] | None) -> tuple[str, ...]:
+        known = schema.fields_of(self._table)
+        names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
+        for name in names:
+            if name not in known:
+                raise unknown("fields", name, known, "a field of this table")
+        return names
+
+    def _checked_points(
+        self, points: dict[str, ArrayLike], names: tuple[str, ...]
+    ) -> tuple[dict[str, NDArray], tuple[int, ...]]:
+        """Flattened coordinates in which the interpolation runs, and the shape of the answer."""
+        needed = {str(dim) for name in names for dim in self._table[name].dims}
+        if not needed <= points.keys() or not points.keys() <= set(self._axes):
+            wanted = ", ".join(axis for axis in self._axes if axis in needed)
+            allowed = f"{', '.join(self._axes)} (needed for these fields: {wanted})"
+            raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
+        arrays = {name: checked(name, value) for name, value in points.items()}
+        shape = broadcast_shape(**arrays)
+        for name, array in arrays.items():
+            low, high = self._table[name].values[[0, -1]]
+            outside = (array < low) | (array > high)
+            if outside.any():
+                raise OutOfTableError(name, array[outside].flat[0] if array.ndim else float(array), low, high)
+        return {name: self._mapped(name, flattened(array, shape)) for name, array in arrays.items()}, shape
+
+    def _mapped(self, name: str, values: NDArray) -> NDArray[np.float64]:
+        """The coordinate of an axis in which the law is smooth."""
+        if self._linear or name == "delta":
+            return values
+        return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
+
+    def _evaluator(self, name: str) -> tuple[tuple[str, ...], Any]:
+        if name not in self._evaluators:
+            field = self._table[name].squeeze()  # an axis of one node has one value
+            dims = tuple(map(str, field.dims))
+            axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
+            self._evaluators[name] = dims, self._new_evaluator(field.values, axes)
+        return self._evaluators[name]
+
+    def _new_evaluator(self, values: NDArray, axes: list[NDArray]) -> Any:
+        from scipy.interpolate import RegularGridInterpolator
+
+        if not axes:
+            return values.item()
+        return RegularGridInterpolator(tuple(axes), values) if self._linear else spline(values, axes)
+
+
+def spline(values: NDArray, axes: list[NDArray]) -> Any:
+    """The tensor spline through values on a grid: cubic, not-a-knot, along two or three nodes of lower degree."""
+    from scipy.interpolate import NdBSpline, make_interp_spline
+
+    knots, degrees = [], tuple(min(3, axis.size - 1) for axis in axes)
+    for n, axis in enumerate(axes):
+        one = make_interp_spline(axis, values, k=degrees[n], axis=n)
+        knots.append(one.t)
+        values = np.moveaxis(one.c, 0, n)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees)
+
+
+def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
+    """Fields of a grid between its nodes; nothing is extrapolated.
+
+    Parameters
+    ----------
+    table : Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
+    fields : names out of the table's fields; default all.
+    **points : ``V``, ``delta`` and, where the table has it, ``alpha``, in the table's units; they broadcast.
+        ``delta`` only where beta or Q is asked for.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
+
+    Returns
+    -------
+    Values
+        The fields as attributes; scalars if all coordinates are.
+
+    Raises
+    ------
+    OutOfTableError
+        A coordinate outside the axis of the table, naming the range.
+    ParameterError
+        An unknown field, a coordinate that is missing, unknown, NaN or infinite, shapes that
+        do not broadcast.
+    FileError
+        If ``table`` is not a table.
+
+    Notes
+    -----
+    Tensor not-a-knot cubic spline in ln V, delta and ln alpha; the error at random points is stated in
+    ``spline_error`` of each field, which another point may exceed (``tests/tables/test_grids.py``).  Tables over
+    (V, delta) of earlier versions are interpolated linearly, as their files state.  Each call builds the splines anew,
+    which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
+    (:func:`viscoroll.io.tables.law`, :func:`viscoroll.contact`) has none of these errors.
+    """
+    return Interpolant(table)(fields, **points)
