@@ -48,7 +48,7 @@ def by_axis(states: list[tuple[float, ...]]) -> Any:
     """States with an alpha each."""
     alpha, kappa, mu, V, delta = np.array([*states, states[0]]).T  # of one alone its rows would be made
     state = vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
-    return vr.rolling_contact.Values({name: value[:-1] for name, value in state.as_dict().items()})
+    return vr.Values({name: value[:-1] for name, value in state.as_dict().items()})
 
 
 def by_rows(states: list[tuple[float, ...]]) -> Any:

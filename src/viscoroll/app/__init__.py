@@ -1,1 +1,1 @@
-"""What stands on all the rest: the command line, validation, functional mock-up units, parameters from measurements."""
+"""Commands, functional mock-up units, materials and parameters from measurements."""
