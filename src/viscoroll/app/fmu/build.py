@@ -61,14 +61,14 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise ParameterError("model", repr(model), f"out of {', '.join(MODELS)}")
     if version not in VERSIONS:
         raise ParameterError("version", version, "2 or 3, of FMI")
-    fmpy = imported("fmpy", "fmpy", "fmu")
-    compiler = shutil.which("cc")
-    if compiler is None:
-        raise MissingDependencyError("cc, a compiler of C,", None)
     table = table_of(given.pair if isinstance(given, Cylinder) else given)
     known = {"T_ref": table.T_ref} | ({} if table.pair is None else {"E_prime": table.pair.E_prime})
     if isinstance(given, Cylinder):
         known |= _of_cylinder(given)
+    fmpy = imported("fmpy", "fmpy", "fmu")
+    compiler = shutil.which("cc")
+    if compiler is None:
+        raise MissingDependencyError("cc, a compiler of C,", None)
     variables = MODELS[model].variables
     starts = {v.name: float(known.get(v.name, v.start)) for v in variables if v.start is not None}
     law = tables.law(table)
