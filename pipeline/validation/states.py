@@ -21,7 +21,7 @@ ALLOWED = {
     "lam": (1.5e-14, "relative"),
     "epsilon": (3e-14, "over max(1, epsilon)"),
     "delta_star": (2e-15, "relative"),
-    # stated as lam is: its error in the octave of alpha from 20 to 35 enters beta as it is (1.005e-14 against 50 digits)
+    # stated as lam is, whose error in the octave of alpha from 20 to 35 enters it: 1.005e-14 against 50 digits
     "beta": (1.5e-14, "absolute"),
     # K1/K0, up to 1e3 at kappa V = 1e3, magnifies the rounding of the bracket of Eq. (15)
     "Q": (4e-13, "over mu"),
