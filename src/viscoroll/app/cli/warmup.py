@@ -41,7 +41,7 @@ def _warm_up(arguments: Namespace) -> int:
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     """A small call of each kind that has kernels of its own.
 
-    Not of ``unsteady=True``: the engine of motions once more, 12 s of processor beside 16, for what few call.
+    ``unsteady=True`` needs nothing more: it is the same engine.
     """
 
     from ... import Prony, Scene, contact, ensemble, law, roll, steady, stress
