@@ -57,10 +57,13 @@ def by_law(scene: vr.Scene) -> tuple[Rates, Rates]:
 
 
 def by_radau(rates: Rates, jacobian: Rates | None, t: NDArray, rtol: float) -> Way:
-    """SciPy's Radau; NaN where it gives up."""
+    """SciPy's Radau; NaN where it gives up.
+
+    V falls by eight decades: its absolute tolerance lies below its end, else its sign, and M with it, flips for ever.
+    """
 
     def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
-        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, jac=jacobian, rtol=rtol, atol=1e-3 * rtol)
+        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, jac=jacobian, rtol=rtol, atol=1e-6 * rtol)
         return (found.y[0], found.y[1]) if found.success else (np.full(t.size, np.nan), np.full(t.size, np.nan))
 
     return way
