@@ -15,7 +15,7 @@ if sys.version_info < (3, 11):  # noqa: UP036 (a copy that pip did not install)
     raise ImportError("viscoroll needs Python 3.11 or newer, this is " + sys.version.split()[0])
 
 #: the one place of it: the metadata of the package are made from this line
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
     "Scene": "scene",
