@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from viscoroll.core.errors import FileError
-from viscoroll.core.plots.runs import run_distributions
+from viscoroll.core.plots import draw
 from viscoroll.core.plots.style import save
 from viscoroll.io.runs import open_summaries, read_run, run_ensemble
 
@@ -28,7 +28,7 @@ def test_a_run_without_values(tmp_path):
         text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
         (tmp_path / "run.toml").write_text(text, encoding="utf-8")
         run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / f"{n}.zarr", threads=1)
-        figure = run_distributions(open_summaries(tmp_path / f"{n}.zarr"))
+        figure = draw(open_summaries(tmp_path / f"{n}.zarr"))
         titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
         assert {name for name, title in titles.items() if title == "no values"} == empty
         save(figure, tmp_path / "run.png")

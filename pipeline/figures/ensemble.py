@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from viscoroll.core.plots.style import new_figure, number, quantile_bands, scaled
-from viscoroll.core.symbols import label
+from viscoroll.core.plots.style import labelled, new_figure, quantile_bands
+
+from .title import number, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,12 +27,12 @@ def distribution(summary: xr.Dataset, sample: xr.Dataset) -> Figure:
     """
     count = int(summary.attrs["motions"])
     common = [name for name in ("alpha", "kappa", "mu", "gamma") if sample[name].ndim == 0]
-    scene = ", ".join(f"{label(name)} = ${number(sample[name].item())}$" for name in common)
+    scene = ", ".join(f"{labelled(name)} = ${number(sample[name].item())}$" for name in common)
     title = f"{count} motions from random starts" + (f" for {scene}" if scene else "")
     figure, (left, right) = new_figure(title, 1, 2, (9.6, 4.2))
     t, quantile, V = _UNIT * summary["t"].values, summary["quantile"].values, summary["V_quantiles"].values
     quantile_bands(left, t, quantile, V, "median")
-    left.set(xlabel=scaled("t", _EXPONENT), ylabel=label("V"), xlim=(t[0], t[-1]))
+    left.set(xlabel=scaled("t", _EXPONENT), ylabel=labelled("V"), xlim=(t[0], t[-1]))
     onset = sample["onset_time"].values
     stuck = np.isfinite(onset)
     right.hist(_UNIT * onset[stuck], bins=60, color="0.6", edgecolor="black", linewidth=0.3)

@@ -8,8 +8,7 @@ import numpy as np
 
 from viscoroll.contact_law.contact import contact
 from viscoroll.contact_law.stress import stress
-from viscoroll.core.plots.style import LINES, THIN, new_figure
-from viscoroll.core.symbols import label
+from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
 from viscoroll.scene import Scene
 
 if TYPE_CHECKING:
@@ -52,13 +51,13 @@ def _body(axes: Any) -> None:
     axes.plot([-half, half], [0.0, 0.0], color=LINES[2]["color"], linewidth=3.5, zorder=4, solid_capstyle="butt")
     axes.annotate("contact", (0.0, 0.0), (0, -16), textcoords="offset points", ha="center", zorder=5)
     axes.plot(0.0, _HEIGHT, "o", color="black", markersize=4)
-    _arrow(axes, (0.0, _HEIGHT), (1.45, _HEIGHT), f"${label('V').strip('$')}$")
+    _arrow(axes, (0.0, _HEIGHT), (1.45, _HEIGHT), f"${labelled('V').strip('$')}$")
     _arrow(axes, (0.0, 2.45), (0.0, 2.0), "")
     axes.annotate("load $P$", (0.0, 2.3), (6, 0), **_TEXT)
     turn = np.radians(np.linspace(150.0, 60.0, 60))
     x, y = 0.62 * np.cos(turn), _HEIGHT + 0.62 * np.sin(turn)
     axes.plot(x[:-3], y[:-3], color="black", linewidth=1.3)
-    _arrow(axes, (x[-4], y[-4]), (x[-1], y[-1]), label("omega"))
+    _arrow(axes, (x[-4], y[-4]), (x[-1], y[-1]), labelled("omega"))
     down = np.radians(215.0)
     rim = np.cos(down), _HEIGHT + np.sin(down)
     axes.plot([0.0, rim[0]], [_HEIGHT, rim[1]], color="0.5", linewidth=0.8)
@@ -78,14 +77,14 @@ def _contact(axes: Any, scene: Scene, V: float, delta: float) -> None:
     top, edge, middle = float(s.p.max()), front - c.beta * c.lam, 0.5 * (rear + front)
     axes.axvspan(edge, front, color="0.92", linewidth=0.0)
     axes.plot(x, s.p / top, label="pressure $p$", **LINES[0])
-    axes.plot(x, scene.mu * s.p / top, label=rf"{label('mu')} $p$", **LINES[1])
+    axes.plot(x, scene.mu * s.p / top, label=rf"{labelled('mu')} $p$", **LINES[1])
     axes.plot(x, s.tau / top, label=r"shear $\tau$", **LINES[2])
     axes.axvline(0.0, **THIN | {"linestyle": "--"})
     axes.annotate("below the axis", (0.0, 1.3), (-4, 0), textcoords="offset points", ha="right", fontsize="small")
     for n, (low, high, text) in enumerate((
-        (rear, front, f"{label('lam')} $l_0$: contact"),
-        (edge, front, f"{label('beta')} {label('lam')} $l_0$: stick"),
-        (0.0, middle, f"{label('epsilon')} {label('lam')} $l_0/2$: shift"),
+        (rear, front, f"{labelled('lam')} $l_0$: contact"),
+        (edge, front, f"{labelled('beta')} {labelled('lam')} $l_0$: stick"),
+        (0.0, middle, f"{labelled('epsilon')} {labelled('lam')} $l_0/2$: shift"),
     )):  # fmt: skip
         height = -0.12 - 0.2 * n
         axes.annotate("", (high, height), (low, height), arrowprops=_SPAN)

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viscoroll.contact_law.stress import stress
-from viscoroll.core.plots.style import LINES, THIN, new_figure, number
-from viscoroll.core.symbols import label
+from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
 from viscoroll.motion import Motion, roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
-from .title import caveat, describe
+from .title import caveat, describe, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +31,7 @@ _FRONT, _NEAR = 30, 0.02
 def figure_7() -> Figure:
     """Shear stress and mu p along the contact at four times of the paper's first motion."""
     scene, start = PAPER_SECTION_5, PAPER_STARTS["IC1"]
-    thrown = f"$V(0) = {start[0]:g}$, {label('omega')}$(0) = {start[1]:g}$"
+    thrown = f"$V(0) = {start[0]:g}$, {labelled('omega')}$(0) = {start[1]:g}$"
     title = f"Stresses, Eqs. (11)-(13), during deceleration from {thrown}\nfor {describe(scene, *_SCENE)}"
     title += caveat(scene, start[0])
     figure, panels = new_figure(title, 2, 2, (8.4, 6.0), sharex=True, sharey=True)
@@ -46,8 +45,8 @@ def figure_7() -> Figure:
         axes.plot(x, 1e3 * scene.mu * found.p, label=r"$\mu p/E'$", **LINES[1])
         axes.axvline(front - state.lam[n] * state.beta[n], **THIN, label="slip | stick")
         axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
-        text = f"{label('delta')} = ${number(motion.delta[n], 2)}$, {label('beta')} = {state.beta[n]:.3f}"
-        axes.set_title(rf"{label('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
+        text = f"{labelled('delta')} = ${number(motion.delta[n], 2)}$, {labelled('beta')} = {state.beta[n]:.3f}"
+        axes.set_title(rf"{labelled('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
         if found.p[-_FRONT:].max() > found.p[-2 * _FRONT]:  # pressure rises towards the front edge
             _front_edge(axes, x, found, scene.mu)
     for axes in panels[1]:
@@ -65,9 +64,9 @@ def _printed(motion: Motion) -> str:
     beta = near.contact("beta").beta
     passed, rise = np.interp(PAPER_BETA, beta, near.t), (beta[-1] - beta[-2]) / (near.t[-1] - near.t[-2])
     return (
-        f"the paper prints {label('beta')} = {PAPER_BETA},\n"
-        rf"passed at {label('t')} = ${_UNIT * passed:.4g}\times 10^{{-4}}$:"
-        f"\n{label('beta')} climbs here by\n{1e-6 * rise:.1g} in $10^{{-6}}$ of {label('t')}"
+        f"the paper prints {labelled('beta')} = {PAPER_BETA},\n"
+        rf"passed at {labelled('t')} = ${_UNIT * passed:.4g}\times 10^{{-4}}$:"
+        f"\n{labelled('beta')} climbs here by\n{1e-6 * rise:.1g} in $10^{{-6}}$ of {labelled('t')}"
     )
 
 

@@ -49,7 +49,7 @@ def test_titled_and_labelled(drawn):
 
 
 def test_the_separatrix_parts_what_settles_from_what_runs_away():
-    page = runpy.run_path(str(GALLERY / "core/drive/d_slope.py"))
+    page = runpy.run_path(str(GALLERY / "drive/d_slope.py"))
     scene, slope, V, omega = (page[name] for name in ("scene", "slope", "separatrix", "across"))
     for side in (-1e-4, 1e-4):
         end = vr.ensemble(scene, V + side, omega, 1000.0 / scene.gamma, slope=slope).V[:, 0]

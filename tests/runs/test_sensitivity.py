@@ -16,7 +16,7 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll.app.cli import main
-from viscoroll.core.plots.sensitivity import sobol_bars
+from viscoroll.core.plots import draw
 from viscoroll.io.runs import read_run
 from viscoroll.io.runs.sensitivity import sobol_indices
 
@@ -211,7 +211,7 @@ def test_refused():
 
 
 def test_bars_are_the_indices(sliding):
-    figure = sobol_bars(sliding)
+    figure = draw(sliding)
     assert len(figure.axes) == 2
     axes = figure.axes[0]
     first, total = ([bar.get_height() for bar in axes.containers[k]] for k in (1, 3))

@@ -21,8 +21,8 @@ import xarray as xr
 from tqdm import tqdm
 
 from viscoroll.core.files import write_dataset
-from viscoroll.core.plots.style import new_figure, save
-from viscoroll.core.symbols import SYMBOLS, label, meaning
+from viscoroll.core.plots.style import labelled, new_figure, save
+from viscoroll.core.symbols import SYMBOLS, meaning
 
 from ...stage import ROOT, make_folder, told
 from ..results import RESULTS, parser, read_sizes
@@ -88,9 +88,10 @@ def drawn(maps: xr.Dataset) -> Any:
         "cmap": colormaps["YlGnBu"].resampled(len(LEVELS)),
     }
     below = [
-        (variable(*each), f"{label(each[0])}{' times $1 - s$' * (each[0] == 'beta')}, {each[1]}") for each in BY_CREEP
+        (variable(*each), f"{labelled(each[0])}{' times $1 - s$' * (each[0] == 'beta')}, {each[1]}")
+        for each in BY_CREEP
     ]
-    rows = [(name, label(name)) for name, _ in BY_ALPHA], below
+    rows = [(name, labelled(name)) for name, _ in BY_ALPHA], below
     for axes, (name, text) in zip(panels.ravel(), [*rows[0], *rows[1]], strict=True):
         errors, edges = maps[name] / ROUNDING, [maps[dim.replace("cell", "edge")].values for dim in maps[name].dims]
         pooled = errors.coarsen(dict.fromkeys(errors.dims, POOLED), boundary="trim").max().values
@@ -99,7 +100,7 @@ def drawn(maps: xr.Dataset) -> Any:
         axes.set(xscale="log", yscale="log")
         axes.set_title(f"{text}: up to {float(errors.max()):.2g}", fontsize="medium")
     for axes in panels[1]:
-        axes.set_xlabel(label("kappa_V"))
+        axes.set_xlabel(labelled("kappa_V"))
     panels[0, 0].set_ylabel(rf"${SYMBOLS['alpha'].latex} - 1$")
     panels[1, 0].set_ylabel(r"$s/(1 - s)$")
     figure.colorbar(mesh, ax=panels, ticks=LEVELS).set_label("roundings")

@@ -55,7 +55,7 @@ class Shown:
         names = {name: column(str(name), unit_of(data[name].attrs)) for name in data.variables}
         return data.to_dataframe().rename(columns=names).rename_axis(index=names)
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+    def plot(self: Any, path: str | PathLike[str] | None = None) -> Figure:
         """Draw it; a figure of matplotlib.
 
         Parameters
@@ -69,10 +69,18 @@ class Shown:
         FileError
             If the file cannot be written, or its suffix names no format.
         """
-        from .plots import draw
-        from .plots.style import saved
+        from .plots.style import save
 
-        return saved(draw(self.to_xarray()), path)
+        figure = self._figure()
+        if path is not None:
+            save(figure, path)
+        return figure
+
+    def _figure(self) -> Figure:
+        """Its figure, of most that of their dataset."""
+        from .plots import draw
+
+        return draw(self.to_xarray())
 
     def keys(self) -> Iterable[str]:
         """Names of what it holds."""

@@ -162,8 +162,3 @@ def meaning(name: str, si: bool = False) -> str:
         return text
     unit, over = KINDS[DIMENSIONS[name]]
     return text + (", per length of the cylinder" * unit.endswith(" m-1") if si else over)
-
-
-def label(name: str) -> str:
-    """Axis label of a quantity: its symbol; everything here is dimensionless."""
-    return f"${SYMBOLS[name].latex}$"

@@ -209,22 +209,13 @@ class Material(FromPrograms):
 
     _repr_html_ = Shown._repr_html_
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """E', E'' and tan delta over frequency, and E(t), in a figure of matplotlib.
+    plot = Shown.plot
 
-        Parameters
-        ----------
-        path : also write it there, in the format of the suffix.
-
-        Raises
-        ------
-        FileError
-            If it cannot be written there.
-        """
+    def _figure(self) -> Figure:
+        """E', E'' and tan delta over frequency, and E(t)."""
         from ..core.plots.material import master_curve
-        from ..core.plots.style import saved
 
-        return saved(master_curve(self), path)
+        return master_curve(self)
 
     def to_netcdf(self, path: str | PathLike[str]) -> None:
         """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed by a SHA-256.

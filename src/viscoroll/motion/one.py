@@ -24,8 +24,6 @@ from .driven import ROWS, Drive
 from .rolling import Inputs, rolled
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     import xarray as xr
     from matplotlib.figure import Figure
 
@@ -240,19 +238,9 @@ class Motion(Shown):
             rolled(self._inputs, np.array([end]), (np.empty((0, 2)), ends))
         return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """Draw it, all of it where it was asked for at one time; a figure of matplotlib.
-
-        Parameters
-        ----------
-        path : a file to save it in, of a suffix that matplotlib knows; default: none is written.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written, or its suffix names no format.
-        """
-        return Shown.plot(self if self.t.size > 1 else self.course, path)
+    def _figure(self) -> Figure:
+        """All of it where it was asked for at one time."""
+        return Shown._figure(self if self.t.size > 1 else self.course)
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""

@@ -8,7 +8,7 @@ Sobol indices share out the variance of a result over the uncertain inputs.  A r
 
 from pathlib import Path
 
-from viscoroll.core.plots.sensitivity import sobol_bars
+from viscoroll.core.plots import draw
 from viscoroll.io.runs import read_run
 from viscoroll.io.runs.sensitivity import sobol_indices
 
@@ -29,5 +29,5 @@ summaries = ["V", "onset_time"]
 """
 )
 indices = sobol_indices(read_run("throw.toml"), n=512)
-figure = sobol_bars(indices)
+figure = draw(indices)
 Path("throw.toml").unlink()

@@ -41,10 +41,10 @@ def _plot(arguments: Namespace) -> int:
 
 
 def _of_store(path: str) -> Any:
-    from ...core.plots.runs import run_distributions
+    from ...core.plots import draw
     from ...io.runs import open_summaries
 
-    return run_distributions(open_summaries(path))
+    return draw(open_summaries(path))
 
 
 def _of_file(path: str) -> Any:

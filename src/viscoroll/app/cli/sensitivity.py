@@ -47,8 +47,8 @@ def _sensitivity(arguments: Namespace) -> int:
     if arguments.output is not None:
         print(as_text(frame, heading), end="")
     if arguments.plot is not None:
-        from ...core.plots.sensitivity import sobol_bars
+        from ...core.plots import draw
         from ...core.plots.style import save
 
-        save(sobol_bars(indices), arguments.plot)
+        save(draw(indices), arguments.plot)
     return 0

@@ -6,7 +6,6 @@ import html
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
 from ...core.checks import checked, number
 from ...core.errors import ParameterError
+from ...core.results import Shown
 from ...core.typed import Numbers
 from ...materials.measured import Measured
 from ...materials.prony import Prony
@@ -167,22 +167,13 @@ class Fit:
         seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return measurement(seen, {"the material": self.measured})
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """Storage and loss modulus of the data with those of the fit, in a figure of matplotlib.
+    plot = Shown.plot
 
-        Parameters
-        ----------
-        path : also write it there, in the format of the suffix.
-
-        Raises
-        ------
-        FileError
-            If it cannot be written there.
-        """
+    def _figure(self) -> Figure:
+        """Storage and loss modulus of the data with those of the fit."""
         from ...core.plots.material import fitted
-        from ...core.plots.style import saved
 
-        return saved(fitted(self), path)
+        return fitted(self)
 
     def to_xarray(self) -> xr.Dataset:
         """Data and fit over omega, the series over ``mode``, and the constants as attributes."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -250,22 +249,11 @@ class Identification(Shown):
 
         return report(self)
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """Data, best fit and its band, and below them residuals over sigma, a column for each quantity of a record.
-
-        Parameters
-        ----------
-        path : also write it there, in the format of the suffix.
-
-        Raises
-        ------
-        FileError
-            If it cannot be written there.
-        """
+    def _figure(self) -> Figure:
+        """Data, best fit and its band, and below them residuals over sigma, a column for each quantity of a record."""
         from ...core.plots.identification import compared
-        from ...core.plots.style import saved
 
-        return saved(compared(self), path)
+        return compared(self)
 
     def to_xarray(self) -> xr.Dataset:
         """Values, standard deviations, intervals and correlations over ``unknown``, data and fit over their places."""

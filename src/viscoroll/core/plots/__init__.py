@@ -12,20 +12,21 @@ if TYPE_CHECKING:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """The figure of a result: a motion, an ensemble or its summary, equilibria, stresses, contact states, a table.
+    """The figure of a result: a motion, an ensemble or its summary, a run or its Sobol indices, equilibria, stresses,
+    contact states, a table.
 
     Raises
     ------
     ParameterError
         A dataset that is none of these, or holds a single state.
     """
-    from . import motion, states
+    from . import many, motion, sensitivity, states
 
     has = set(data.dims)
-    if "quantile" in has and any(str(name).endswith("_quantiles") for name in data):
-        return motion.bands(data)
-    if {"motion", "t"} <= has:
-        return motion.ensemble(data)
+    if "quantile" in has or {"motion", "t"} <= has:
+        return many.distributions(data)
+    if "input" in has:
+        return sensitivity.sobol_bars(data)
     if "t" in has and "regime" in data:
         return motion.one(data)
     if "equilibrium" in has:

@@ -1,4 +1,4 @@
-"""Figures of motions: one, many, and quantiles of many."""
+"""The figure of one motion."""
 
 from __future__ import annotations
 
@@ -7,18 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import LINES, SHADES, THIN, axis, new_figure, quantile_bands
+from .style import LINES, THIN, axis, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_FULL_SLIP = 0
-#: a histogram needs some
-_FEWEST = 8
+_FULL_SLIP, _SHADE = 0, "0.87"
 #: an output this near to a jump, as a share of the last time, holds one of its sides
 _AT_A_JUMP = 1e-9
-_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
 def one(data: xr.Dataset) -> Figure:
@@ -39,48 +36,6 @@ def one(data: xr.Dataset) -> Figure:
             box.legend(frameon=False, fontsize="small")
     axes[-1, 0].set(xlabel=axis(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0))
     return figure
-
-
-def ensemble(data: xr.Dataset) -> Figure:
-    """A row a quantity: quantile bands over time, and a histogram at the end."""
-    names = [name for name in ("V", "omega", "x", "angle") if name in data and data[name].ndim == 2]
-    figure, rows = new_figure(
-        f"{data.sizes['motion']} motions", max(len(names), 1), 2, (9.6, 2.8 * max(len(names), 1)), squeeze=False
-    )
-    t = data["t"].values
-    for name, (left, right) in zip(names, rows, strict=False):
-        values = data[name].values
-        reached = np.isfinite(values).any(axis=0)
-        levels = np.full((len(_LEVELS), t.size), np.nan)
-        levels[:, reached] = np.nanquantile(values[:, reached], _LEVELS, axis=0)
-        quantile_bands(left, t, np.array(_LEVELS), levels)
-        left.set(xlabel=axis(data["t"]), ylabel=axis(data[name]))
-        last = values[:, -1][np.isfinite(values[:, -1])]
-        _bars(right, last, f"{axis(data[name])} at the end", values.shape[0])
-    return figure
-
-
-def bands(data: xr.Dataset) -> Figure:
-    """A row a quantity of a summary: quantile bands over time."""
-    names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
-    names = [name for name in names if data[f"{name}_quantiles"].ndim == 2]
-    figure, axes = new_figure(
-        f"{data.attrs.get('motions', '')} motions".strip(), len(names), 1, (6.4, 1.0 + 2.4 * len(names)), squeeze=False
-    )
-    for name, box in zip(names, axes.ravel(), strict=True):
-        found = data[f"{name}_quantiles"]
-        quantile_bands(box, data["t"].values, data["quantile"].values, found.values)
-        box.set(xlabel=axis(data["t"]), ylabel=axis(found))
-    return figure
-
-
-def _bars(axes: Any, values: NDArray, label: str, count: int) -> None:
-    axes.set(xlabel=label, ylabel=f"motions, of {count}")
-    if values.size >= _FEWEST and np.ptp(values) > 1e-12 * np.abs(values).max():
-        axes.hist(values, bins=40, color="0.6")
-    else:
-        axes.plot(values, np.arange(1, values.size + 1), "o", color="black")
-    axes.locator_params(axis="x", nbins=6)
 
 
 def _with_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
@@ -108,7 +63,7 @@ def _shade(axes: Any, t: NDArray, full_slip: NDArray[np.bool_]) -> None:
     """Grey where the motion slips fully."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], full_slip.astype(np.int8), [0]))))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
-        axes.axvspan(t[first], t[min(last, t.size - 1)], color=SHADES["full slip"], linewidth=0.0, zorder=0)
+        axes.axvspan(t[first], t[min(last, t.size - 1)], color=_SHADE, linewidth=0.0, zorder=0)
 
 
 def _units(data: xr.Dataset, name: str) -> bool:

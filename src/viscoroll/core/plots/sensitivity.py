@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..symbols import label
 from .style import THIN, labelled, new_figure, with_unit
 
 if TYPE_CHECKING:
@@ -57,7 +56,7 @@ def _at_last_time(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArra
         return labelled(name), values
     last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
     t = indices["t"]
-    time = with_unit(f"{label('t')} = {t.values[last]:g}", t.attrs["units"])
+    time = with_unit(f"{labelled('t')} = {t.values[last]:g}", t.attrs["units"])
     return f"{labelled(name)} at {time}", {key: v[last] for key, v in values.items()}
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import FileError
 from ..files import replacing
-from ..symbols import SYMBOLS, label
+from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,8 +24,6 @@ LINES: tuple[dict[str, Any], ...] = (
     {"color": "#c8642a", "linestyle": "-."},
     {"color": "#6aa84f", "linestyle": (0, (1, 1.2))},
 )
-#: Greys of the regimes in a phase portrait.
-SHADES = {"full slip": "0.87", "partial slip": "1.0"}
 #: Of quantile bands, from the widest.
 _GREYS = ("0.85", "0.65", "0.45")
 THIN = {"color": "0.7", "linewidth": 0.6}
@@ -78,44 +76,22 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray, midd
         axes.legend(frameon=False, fontsize="small")
 
 
-def number(value: float, digits: int = 4) -> str:
-    """A number as mathematics, to stand between dollar signs."""
-    mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
-    if not exponent:
-        return mantissa
-    power = f"10^{{{int(exponent)}}}"
-    return power if mantissa == "1" else rf"{mantissa}\times {power}"
-
-
-def labelled(name: str, units: str = "1") -> str:
-    """Axis label of a quantity of a run: its symbol, or its name in words, and its unit if it has one."""
-    return with_unit(label(name) if name in SYMBOLS else name.replace("_", " "), units, ", ")
+def labelled(name: str, units: str = "1", symbol: str = "") -> str:
+    """Axis label of a quantity: its symbol, or its name in words, and its unit if it has one."""
+    symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
+    # an SI quantity is not the ratio that its symbol may spell out
+    symbol = symbol.partition("/")[0] if units != "1" else symbol
+    return with_unit(f"${symbol}$" if symbol else name.replace("_", " "), units, ", ")
 
 
 def axis(values: Any) -> str:
-    """Axis label of a variable of a dataset: its symbol or its name, and its unit."""
-    about, name = values.attrs, str(values.name)
-    symbol = SYMBOLS[name].latex if name in SYMBOLS else about.get("symbol", "")
-    # an SI quantity is not the ratio that its symbol may spell out
-    symbol = symbol.partition("/")[0] if about.get("units", "1") != "1" else symbol
-    return with_unit(f"${symbol}$" if symbol else name.replace("_", " "), about.get("units", "1"), ", ")
+    """Axis label of a variable of a dataset."""
+    return labelled(str(values.name), values.attrs.get("units", "1"), values.attrs.get("symbol", ""))
 
 
 def with_unit(text: str, units: str, between: str = " ") -> str:
     """Text, and behind it a unit like "m s-1", but for numbers ("1")."""
     return text if units == "1" else text + between + re.sub(r"(-\d)", r"$^{\1}$", units)
-
-
-def scaled(name: str, exponent: int) -> str:
-    """Axis label of a quantity whose values are shown times 10^exponent."""
-    return rf"${SYMBOLS[name].latex}\times 10^{{{exponent}}}$"
-
-
-def saved(figure: Figure, path: str | PathLike[str] | None) -> Figure:
-    """The figure, written to ``path`` by :func:`save` where one is given."""
-    if path is not None:
-        save(figure, path)
-    return figure
 
 
 def save(figure: Figure, path: str | PathLike[str]) -> None:

@@ -16,7 +16,6 @@ from .verify import open_summaries
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.figure import Figure
 
 _PARTS = ("mean", "std", "min", "max")
 
@@ -82,23 +81,6 @@ class RunResults(Shown):
             named = column(name, unit_of(data[f"{name}_mean"].attrs))
             tables.append(pd.DataFrame(columns, pd.MultiIndex.from_product([[named], t], names=["quantity", time])))
         return pd.concat(tables)
-
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """Quantiles over time and a histogram at the last, a row each quantity, as ``viscoroll plot`` draws them.
-
-        Parameters
-        ----------
-        path : also write it there, in the format of the suffix.
-
-        Raises
-        ------
-        FileError
-            If it cannot be written there.
-        """
-        from ...core.plots.runs import run_distributions
-        from ...core.plots.style import saved
-
-        return saved(run_distributions(self.summaries), path)
 
     def _card(self) -> tuple[str, list[Row]]:
         data = self.summaries

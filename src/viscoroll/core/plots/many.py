@@ -1,0 +1,109 @@
+"""The figure of many motions: quantiles of each quantity, and how it lies at the end."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .style import axis, labelled, new_figure, quantile_bands
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_DRAWN, _LEVELS = ("V", "omega", "x", "angle"), (0.05, 0.25, 0.5, 0.75, 0.95)
+#: bars of a run; a histogram of motions needs some of these
+_BARS, _FEWEST = 80, 8
+#: what a plot can tell apart, and how far it reaches
+_FINEST, _FARTHEST = 1e-280, 1e300
+
+
+def distributions(data: xr.Dataset) -> Figure:
+    """A row a quantity: quantiles over t if there are several times, and the histogram at the last.
+
+    ``data`` : an ensemble, its summary, which has no histograms, or the summaries of a run.
+    """
+    each, about = "motion" in data.dims, data.attrs
+    if each:
+        names = [name for name in _DRAWN if name in data and data[name].ndim == 2]
+    else:
+        names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
+    drawn_by = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
+    columns = 2 if each or any(f"{name}_histogram" in data for name in names) else 1
+    figure, rows = new_figure(
+        f"{data.sizes['motion'] if each else about['motions']} motions{drawn_by}",
+        max(len(names), 1), columns, (3.2 + 3.2 * columns, 2.8 * max(len(names), 1)), squeeze=False,
+    )  # fmt: skip
+    for name, (left, *right) in zip(names, rows, strict=False):
+        found = data[name if each else f"{name}_quantiles"]
+        text, over_t = labelled(name, found.attrs["units"], found.attrs.get("symbol", "")), "t" in found.dims
+        levels = np.array(_LEVELS) if each else data["quantile"].values
+        values = _quantiles(found.values) if each else found.values
+        if over_t and data.sizes["t"] > 1:
+            quantile_bands(left, t := data["t"].values, levels, values)
+            left.set(xlabel=axis(data["t"]), ylabel=text, xlim=(t[0], t[-1]))
+        else:
+            left.plot(values.ravel(), levels, "o-", color="black")
+            left.set(xlabel=text, ylabel="share of motions below", ylim=(0.0, 1.0))
+        for box in right:
+            box.set_xlabel(f"{text} at the end" if over_t else text)
+            if each:
+                _bars_of_each(box, found.values[:, -1])
+            else:
+                _bars(box, data, name)
+        for box in (left, *right):
+            box.locator_params(nbins=6)
+            box.ticklabel_format(style="sci", scilimits=(-2, 5))
+    return figure
+
+
+def _quantiles(values: NDArray) -> NDArray:
+    """Of those that reached each time."""
+    reached, found = np.isfinite(values).any(axis=0), np.full((len(_LEVELS), values.shape[1]), np.nan)
+    found[:, reached] = np.nanquantile(values[:, reached], _LEVELS, axis=0)
+    return found
+
+
+def _bars_of_each(box: Any, values: NDArray) -> None:
+    """Of motions; of few, or where all lie together, a dot each."""
+    found = values[np.isfinite(values)]
+    box.set_ylabel(f"motions, of {values.size}")
+    if found.size >= _FEWEST and np.ptp(found) > 1e-12 * np.abs(found).max():
+        box.hist(found, bins=40, color="0.6")
+    else:
+        box.plot(found, np.arange(1, found.size + 1), "o", color="black")
+
+
+def _bars(box: Any, data: xr.Dataset, name: str) -> None:
+    """The counts at the last time, gathered into even bars over all but a thousandth at each end."""
+    counts = data[f"{name}_histogram"].values
+    counts = counts[:, -1] if counts.ndim == 2 else counts
+    box.set_ylabel(f"motions, of {counts.sum()}")
+    if not counts.any():
+        box.set_title("no values", fontsize="small")
+        return
+    edges, bars = _even_bars(data[f"{name}_bin_low"].values, data[f"{name}_bin_high"].values, counts)
+    box.stairs(bars, edges, fill=True, color="0.6")
+    if outside := int(counts.sum() - round(bars.sum())):
+        box.set_title(f"{outside} more beyond the ends", fontsize="small")
+
+
+def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
+    """(edges, counts) of even bars: a bin that lies in several is shared out by its width.
+
+    One bar where all lie too close together for a plot, as at rest.
+    """
+    reached = np.cumsum(counts) / max(counts.sum(), 1)
+    first, last = np.searchsorted(reached, [1e-3, 1.0 - 1e-3])
+    last = min(last, counts.size - 1)
+    start, end = np.clip([low[first], high[last]], -_FARTHEST, _FARTHEST)
+    if end - start < _FINEST:
+        return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(keepdims=True)
+    edges = np.linspace(start, end, _BARS + 1)
+    ends = np.unique(np.concatenate([low, high]))
+    below = np.zeros(ends.size)
+    below[np.searchsorted(ends, high)] = np.cumsum(counts)
+    below = np.maximum.accumulate(below)
+    return edges, np.diff(np.interp(edges, ends, below))
