@@ -144,6 +144,7 @@ release-check: setup ## sdist and wheel, metadata, the README as a package page,
 
 check: setup ## ruff, mypy and the import contract
 	$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
+	MYPYPATH=src $(BIN)/mypy --strict --config-file= --follow-imports=silent --cache-dir .mypy_cache/user tests/typing
 
 clean: ## remove what was built (tables, out, site, caches), keep .venv
 	rm -rf data/tables out build dist docs/_build docs/api docs/gallery docs/tutorial .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -10,6 +10,19 @@ import viscoroll as vr
 
 #: materials of an array of pairs
 COUNT = 12
+#: two bodies of other times
+UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3)
+
+
+def states(count: int, seed: int) -> tuple[np.ndarray, ...]:
+    """alpha from exactly 1 to 1e12, kappa, mu, V > 0, and the share of delta_star, graded to both ends."""
+    rng = np.random.default_rng(seed)
+    alpha = 10.0 ** rng.uniform(0.0, 6.0, count)
+    alpha[:6] = 1.0, 1.0 + 2.0**-52, 1.0 + 1e-9, 2.0, 2.0**20, 1e12
+    kappa, mu = 10.0 ** rng.uniform(-0.3, 2.3, count), 10.0 ** rng.uniform(-2.0, 0.5, count)
+    near, at_rest = 1.0 - 10.0 ** rng.uniform(-6.0, 0.0, count), 10.0 ** rng.uniform(-12.0, 0.0, count)
+    s = np.choose(rng.integers(3, size=count), [at_rest, near, rng.random(count)])
+    return alpha, kappa, mu, 10.0 ** rng.uniform(-7.0, 7.0, count) / kappa, s
 
 
 def rubbers(draw: np.random.Generator, modes: int, creep: bool = False, count: int = COUNT) -> vr.Prony:

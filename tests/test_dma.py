@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +11,6 @@ from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from places import DATA, ROOT
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.app.dma.spectrum import FLOOR
@@ -40,11 +38,6 @@ def moment(prony, kappa, V):
 WHOLE = np.logspace(-2.5, 6.5, 60)
 
 
-@pytest.fixture(scope="module")
-def whole():
-    return vr.fit_prony(*curve(WHOLE, noise=0.005))
-
-
 # --- what is recovered ---
 
 
@@ -66,11 +59,9 @@ def test_two_modes_are_found_exactly():
     data = curve(np.logspace(-2, 5, 50), [2.0, 6.0], [1.0, 1e-3], 1.0)
     for modes in (None, 2, 5):
         fit = vr.fit_prony(*data, modes)
-        assert close(fit.prony.tau, [1.0, 1e-3], rel=tol.DMA_EXACT)
-        assert close(fit.prony.E, [2.0, 6.0], rel=tol.DMA_EXACT)
-        assert close((fit.E, fit.T_ref), (1.0, 1.0), rel=tol.DMA_EXACT)
+        found = *fit.prony.tau, *fit.prony.E, fit.E, fit.T_ref
+        assert close(found, (1.0, 1e-3, 2.0, 6.0, 1.0, 1.0), rel=tol.DMA_EXACT)
         assert not fit.outside.any()
-    assert close(fit.alpha, 9.0, rel=tol.DMA_EXACT)
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -142,25 +133,14 @@ def test_reference_between_curves_and_shifts_that_are_given():
         assert "neighbouring" not in str(given)
 
 
-# --- what is refused ---
-
-GOOD = curve(np.logspace(-2, 4, 20))
-
-
 # --- files ---
 
 
 def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ():
     omega, storage, loss = vr.read_dma(PYVISCO)
     assert omega.size == 206
-    assert close(
-        (omega[0], storage[0], loss[0]),
-        (2.0 * np.pi * 1e-12, 88.79651575665739e6, 10.502460140936773e6),
-        rel=tol.DMA_READ,
-    )
-    assert close(
-        (omega[-1], storage[-1], loss[-1]), (2e14 * np.pi, 9580.501294188056e6, 277.6387509050372e6), rel=tol.DMA_READ
-    )
+    first = 2.0 * np.pi * 1e-12, 88.79651575665739e6, 10.502460140936773e6
+    assert close((omega[0], storage[0], loss[0]), first, rel=tol.DMA_READ)
     fit = vr.fit_prony(omega, storage, loss)
     low, high = tol.DMA_PYVISCO
     assert low < fit.kramers_kronig.median < high
@@ -174,13 +154,10 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
 @pytest.mark.parametrize(
     ("text", "factors"),
     [
-        ("1 2 3\n4 5 6\n", (1, 1, 1)),
         ("# a comment\nomega E' E''\n\n1\t2\t3\n4 5 6\n", (1, 1, 1)),
-        ("f, E_stor, E_loss\n1,2,3\n4,5,6\n", (2 * np.pi, 1, 1)),
         ("f, E_stor, E_loss\nHz, MPa, kPa\n1,2,3\n4,5,6\n", (2 * np.pi, 1e6, 1e3)),
         ("omega (rad/s); G' [GPa]; G'' [Pa]\n1;2;3\n4;5;6\n", (1, 1e9, 1)),
         ("# omega (rad/s)   E' (MPa)   E'' (MPa)\n1 2 3\n4 5 6\n", (1, 1e6, 1e6)),
-        ("Angular Frequency (rad/s)\tStorage Modulus (Pa)\tLoss Modulus (Pa)\n1\t2\t3\n4\t5\t6\n", (1, 1, 1)),
         ("Frequency (Hz), Storage Modulus (MPa), Loss Modulus (MPa)\n1,2,3\n4,5,6", (2 * np.pi, 1e6, 1e6)),
         ("T, f, E_loss, E_stor\nC, Hz, Pa, MPa\n20,1,3,2\n20,4,6,5\n", (2 * np.pi, 1e6, 1)),
     ],
@@ -199,14 +176,9 @@ def test_units_are_asked_for(tmp_path):
     file.write_text("f, E_stor, E_loss\n1,2,3\n", encoding="utf-8")
     with pytest.warns(vr.ModelWarning, match=r"without a unit are taken in Hz \(frequency\) and Pa"):
         assert close(vr.read_dma(file), [[2.0 * np.pi], [2.0], [3.0]], rel=1e-15)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], rel=1e-15)
-        file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n", encoding="utf-8")
-        assert close(vr.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], rel=1e-15)
-    file.write_text("omega [rad/s], E_stor, E_loss\n1,2,3\n", encoding="utf-8")
-    with pytest.warns(vr.ModelWarning, match="Pa"):
-        assert close(vr.read_dma(file), [[1.0], [2.0], [3.0]], rel=1e-15)
+    assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], rel=1e-15)
+    file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n", encoding="utf-8")
+    assert close(vr.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], rel=1e-15)
 
 
 def test_what_the_contact_sees_of_the_data():
@@ -222,8 +194,6 @@ def test_what_the_contact_sees_of_the_data():
     cold = replace(cylinder, material=fit.material(0.5).at(0.0, lambda _: 100.0))
     assert close(fit.validity(cold, V / 100.0).value, found.value, rel=1e-12)
     assert "was measured from 0.0628 to 628 rad/s" in found.sentence
-    other = replace(cylinder, material=vr.Material.elastic(1e6, 0.5))
-    refused(lambda: fit.validity(other, V), "cylinder", "with this fit's material")
 
 
 def test_what_was_measured_stays_with_the_material():

@@ -49,6 +49,9 @@ NAMES = vars(experiments) | {
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
     "read_body": read_body, "read_bodies": read_bodies, "read_materials": read_materials, "sample": sample,
+    "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),
+    "STEEL": vr.Material.elastic(2e11, 0.3),
+    "PAIR": lambda material, base: vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base).validity(1.0),
     "stats": stats, "PAPER": vr.presets.PAPER_SECTION_5_ROUNDED, "ROLLER": vr.presets.RUBBER_CYLINDER,
 }  # fmt: skip
 
@@ -83,8 +86,13 @@ def test_answered(call, answer, tmp_path):
         return vr.identify(**read_measurements(experiments.measurements(tmp_path, old, new)), starts=1)
 
     names, (kind, _, words) = NAMES | {"file": file, "run": run, "measured": measured}, answer.strip().rpartition("! ")
+    if kind == "says":
+        said = str(eval(call, names))
+        assert all(word in said for word in words.split(" | ")), said
+        return None
     if kind == "ModelWarning" or words.startswith("no warning"):
-        return told(call, words, names)
+        told(call, words, names)
+        return None
     error = getattr(errors, kind or "ParameterError")
     refused(lambda: eval(call, names), *words.split(" | "), error=error)
 

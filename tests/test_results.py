@@ -13,7 +13,6 @@ import xarray as xr
 from closeness import close
 from matplotlib.figure import Figure
 from places import ROOT
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
@@ -83,43 +82,30 @@ def test_axes_are_named_after_what_varies(results):
     table = results["motion"].to_pandas()
     assert table.index.name == "t"
     assert table["V"].iloc[0] == 1.5
-    refused(vr.contact(SCENE, 1.0, delta=0.01).plot, "nothing to draw over")
 
 
 def test_scenes_hash_and_are_short():
     many = SCENE.replace(mu=np.linspace(0.1, 0.3, 1000))
     assert {SCENE: 1}[SCENE.replace(mu=0.2)] == 1
-    assert hash(many) == hash(SCENE.replace(mu=np.linspace(0.1, 0.3, 1000)))
     assert len(repr(many)) < 120
     assert eval(repr(SCENE), {"Scene": vr.Scene}) == SCENE
 
 
-def test_a_table_of_pandas_knows_its_units(results):
-    """In the names of its columns, and so in the CSV; what has none stands bare."""
-    table = results["motion in SI"].to_pandas()
-    header = table.to_csv().splitlines()[0].split(",")
-    assert header == ["t [s]", "V [m s-1]", "omega [rad s-1]", "x [m]", "angle [rad]", "delta", "regime"]
-    assert np.array_equal(table["V [m s-1]"], results["motion in SI"].V)
-
-
 def test_a_table_of_pandas_has_a_row_each(results):
-    """Of a driven motion too, whose drive has corners of its own; of a single state."""
-    driven = results["driven"]
-    table = driven.to_pandas()
-    assert np.array_equal(table["torque"], driven.torque)
-    assert table.index.to_numpy().tolist() == driven.t.tolist()
+    """Of a driven motion too, whose drive has corners of its own; units are in the names of columns."""
+    table = results["driven"].to_pandas()
+    assert np.array_equal(table["torque"], results["driven"].torque)
+    header = results["motion in SI"].to_pandas().to_csv().splitlines()[0].split(",")
+    assert header == ["t [s]", "V [m s-1]", "omega [rad s-1]", "x [m]", "angle [rad]", "delta", "regime"]
     many = ROLLER.ensemble([1.0, 2.0], 0.0, [0.1, 0.2], torque=vr.Schedule([0.0, 1.0], [0.0, 3.0]))
     assert many.to_pandas().index.names == ["motion", "t [s]"]
     assert len(many.to_pandas()) == 4
-    assert vr.contact(SCENE, 1.0, delta=0.01).to_pandas()["M"].tolist() == [vr.contact(SCENE, 1.0, delta=0.01).M]
 
 
 def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
     t = np.linspace(0.0, 4.0, 5)
-    braked = vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, t, brake=5.0)
-    assert len(braked.plot().axes) == 3
-    assert "held at t = " in repr(braked)
-    assert len(vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, t, torque=0.5).plot().axes) == 4
+    for drive, panels in ({"brake": 5.0}, 3), ({"torque": 0.5}, 4):
+        assert len(ROLLER.roll(2.0, 20.0, t, **drive).plot().axes) == panels
 
 
 def test_a_motion_tells_its_peak(results):
@@ -135,25 +121,21 @@ def test_a_motion_tells_its_peak(results):
 
 
 def test_without_a_threshold_nothing_is_told_to_rest():
-    """Nothing stops: V decays to less than doubles hold, driven before or not, and rolls on until there."""
-    pushed = vr.roll(SCENE, 1.5, 0.5, 1.0, force=vr.Schedule([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.0]))
-    for m in (pushed, vr.roll(SCENE, 1.5, 0.5, 1.0)):
-        assert m.V[-1] == 0.0
-        assert m.switches[-1].regime == "partial slip"
-        assert np.isnan(m.rest_time)
-        assert "to rest" not in repr(m)
+    """Nothing stops: V decays to less than doubles hold, and rolls on until there."""
+    m = vr.roll(SCENE, 1.5, 0.5, 1.0, force=vr.Schedule([0.0, 1e-3, 1e-3], [0.1, 0.1, 0.0]))
+    assert (m.V[-1], m.switches[-1].regime) == (0.0, "partial slip")
+    assert np.isnan(m.rest_time)
+    assert "to rest" not in repr(m)
 
 
 def test_a_validity_is_a_card(results):
     """Not the numbers of all times, in text and in a notebook; its parts are a sentence each."""
-    found = vr.presets.RUBBER_CYLINDER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity()
+    found = results["motion in SI"].validity()
     assert repr(found) == str(found)
     assert len(repr(found).splitlines()) == 1 + len(found)
     assert found._repr_html_().count("<tr>") == len(found)
     assert "True" not in found._repr_html_()
     assert repr(found.steady) == f"yes: {found.steady.sentence}"
-    assert repr(found.plane).startswith("?: ")
-    assert repr(found.creep).startswith("no: ")
 
 
 def test_a_torque_that_jumps_is_drawn_with_both_sides():
@@ -180,16 +162,10 @@ def test_speeds_that_rise_by_factors_have_a_logarithmic_axis():
 
 
 def test_a_contact_tells_the_coefficient_of_rolling_resistance():
-    c, bare = (
-        ROLLER.contact(V=[0.1, 1.0], delta=0.0),
-        vr.contact(ROLLER.scene(), np.array([0.1, 1.0]) / ROLLER.scale["V"], delta=0.0),
-    )
+    c = ROLLER.contact(V=[0.1, 1.0], delta=0.0)
     assert close(c.C_rr, c.M / (ROLLER.load * ROLLER.R), rel=tol.SI_MOTION)
-    assert np.array_equal(c.C_rr, bare.M)
     assert ROLLER.contact(V=1.0, delta=0.0, fields="C_rr").as_dict().keys() == {"C_rr"}
-    refused(lambda: ROLLER.contact(V=1.0, delta=0.0, fields="Crr"), "'Crr' is not a field", "length, C_rr")
-    for shown in (c, bare):
-        assert "coefficient of rolling resistance" in {axes.get_title() for axes in shown.plot().axes}
+    assert "coefficient of rolling resistance" in {axes.get_title() for axes in c.plot().axes}
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 
 import mpmath as mp
 import numpy as np
@@ -31,18 +30,6 @@ def residuals(scene: vr.Scene, s) -> tuple[np.ndarray, np.ndarray]:
     """V' and j omega' over gamma t at what was found, by the contact law."""
     c = vr.contact(scene, s.V, omega=s.omega, fields=("Q", "M_half_space", "M_cylinder"))
     return c.Q - c.M_half_space + s.force, -c.Q - c.M_cylinder + s.torque
-
-
-# --- humps ---
-
-
-def test_humps_of_several_modes():
-    ten = vr.humps(series_scene(TEN))
-    assert ten.top.tolist() == [True, False] * 9 + [True]
-    slopes = vr.contact(series_scene(TEN), ten.V, delta=0.0, fields=("M", "dM_dV"))
-    assert close(slopes.M, ten.M, rel=tol.STEADY)
-    assert (np.abs(slopes.dM_dV * ten.V) <= tol.STEADY_FLAT * ten.M).all()
-    assert vr.humps(vr.Scene(1.0, KAPPA, MU)).V.size == 0
 
 
 # --- accuracy ---
@@ -97,13 +84,9 @@ def test_creep_has_its_traction():
 def test_signs():
     """Force and torque turned around turn V, omega, Q and M around."""
     one, other = vr.steady(SCENE, force=0.02, torque=0.03), vr.steady(SCENE, force=-0.02, torque=-0.03)
-    for name in ("V", "omega", "Q", "M"):
-        np.testing.assert_array_equal(getattr(other, name), -getattr(one, name))
-    for name in ("delta", "beta", "eigenvalues", "stable"):
-        np.testing.assert_array_equal(getattr(other, name), getattr(one, name))
-
-
-# --- accuracy ---
+    for name in ("V", "omega", "Q", "M", "delta", "beta", "eigenvalues", "stable"):
+        sign = -1.0 if name in ("V", "omega", "Q", "M") else 1.0
+        np.testing.assert_array_equal(getattr(other, name), sign * getattr(one, name))
 
 
 # --- several modes, two bodies ---
@@ -141,6 +124,9 @@ def test_all_equilibria_of_random_materials():
 def test_ten_humps():
     scene = series_scene(TEN)
     hump = vr.humps(scene)
+    assert hump.top.tolist() == [True, False] * 9 + [True]
+    slopes = vr.contact(scene, hump.V, delta=0.0, fields="dM_dV").dM_dV
+    assert (np.abs(slopes * hump.V) <= tol.STEADY_FLAT * hump.M).all()
     for g in (0.5 * hump.M.min(), 0.5 * (hump.M[2] + hump.M[4]), 0.99 * hump.M[0]):
         s = vr.steady(scene, force=g)
         assert s.count == 2 * (np.diff(np.sign(np.concatenate([[0.0], hump.M, [0.0]]) - g)) > 0.0).sum()
@@ -153,17 +139,6 @@ def test_ten_humps():
     at_bottom = vr.steady(scene, force=hump.M[1])
     assert at_bottom.count == 3
     assert close(at_bottom.V[1], hump.V[1], rel=tol.SCENE)
-
-
-def test_bodies_swapped():
-    """Which body is the wheel: force and torque, V and omega change roles; at small creep V stays, Q turns around."""
-    swapped = vr.Bodies(UNLIKE.base, UNLIKE.cylinder, 1.0 - UNLIKE.share)
-    one = vr.steady(series_scene(UNLIKE), force=0.004, torque=0.003)
-    other = vr.steady(series_scene(swapped), force=0.003, torque=0.004)
-    assert close(other.V, one.V, rel=tol.BODIES)
-    assert close(other.Q, -one.Q, rel=tol.BODIES)
-    assert close(other.M_cylinder, one.M_half_space, rel=tol.BODIES)
-    assert close(other.delta, -one.delta, rel=tol.BODIES)
 
 
 # --- stability ---
@@ -191,8 +166,6 @@ def test_eigenvalues_are_those_of_the_slopes_of_the_contact_law():
 def test_slow_rate_of_slow_rolling():
     """(1 + j) V' = -M' V at last, M' = 1 - 1/alpha."""
     assert close(vr.steady(SCENE, force=1e-100).V[0], 1.1e-100, rel=tol.STEADY)
-    s = vr.steady(SCENE, force=1e-6)
-    assert close(s.eigenvalues[0, 1].real, -(10.0 / 11.0) / 1.5, rel=tol.STEADY_SLOW_RATE)
     rest = vr.steady(SCENE)
     assert (rest.V.tolist(), rest.omega.tolist(), rest.stable.tolist()) == ([0.0], [0.0], [True])
     assert close(rest.eigenvalues[0].real, [-np.inf, -(10.0 / 11.0) / 1.5], rel=tol.STEADY)
@@ -228,17 +201,6 @@ def test_motions_settle_at_equilibria():
         assert close(m.omega[-1], s.omega[0], rel=tol.STEADY_SETTLED)
 
 
-def test_a_saddle_repels_at_its_rate():
-    s = vr.steady(SCENE, force=0.05)
-    rate, aside = s.eigenvalues[1, 1].real, 1e-6
-    t = np.array([0.0, 1.0, 2.0, 60.0]) / (rate * SCENE.gamma)
-    for side in (1.0 - aside, 1.0 + aside):
-        m = vr.roll(SCENE, side * s.V[1], side * s.omega[1], t, force=0.05, rtol=1e-10)
-        off = m.V / s.V[1] - 1.0
-        assert close(off[2] / off[1], math.e, rel=tol.STEADY_REPELLED)
-        assert m.V[-1] > 10.0 * s.V[1] if side > 1.0 else close(m.V[-1], s.V[0], rel=tol.STEADY_SETTLED)
-
-
 # --- slope ---
 
 
@@ -249,8 +211,6 @@ def test_critical_slope():
     assert close(math.degrees(theta), 4.8, rel=0.05 / 4.8)
     s = vr.steady(SCENE, slope=theta * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
     assert s.count.tolist() == [2, 0]
-    assert s.reason[0] == ""
-    assert "exceeds the largest rolling moment" in s.reason[1]
     np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned(0.05), force=np.tan(0.05)).V)
 
 
@@ -265,26 +225,12 @@ def test_given_speed_finds_the_other_load():
     assert close(towed.Q, -0.5 * towed.M, rel=tol.STEADY, scale=1.0)
     driven = vr.steady(SCENE, V=V, force=0.01)
     assert close(driven.torque, driven.M - 0.01, rel=tol.STEADY)
-    again = vr.steady(SCENE, force=0.01, torque=driven.torque[3, 0])
-    assert close(again.V[0], 0.1, rel=tol.STEADY)
-    assert close(again.omega[0], driven.omega[3, 0], rel=tol.STEADY)
     up = vr.steady(SCENE, V=0.1, slope=-0.02)
     assert close(up.torque[0], up.M[0] + math.tan(0.02), rel=tol.STEADY)
     assert vr.steady(SCENE, V=0.1, torque=-0.3).count == 0
 
 
 # --- feedback ---
-
-
-def test_speed_controller_holds_the_falling_branch():
-    """q = q0 - K V: det = b (M' + K)/j, so V2 is held iff K > -M'(V2)."""
-    V = vr.steady(SCENE, torque=0.04).V[1]
-    fall = -vr.contact(SCENE, V, delta=0.0, fields="dM_dV").dM_dV
-    for K, held in ((0.99 * fall, False), (1.01 * fall, True)):
-        s = vr.steady(SCENE, torque=vr.Feedback(0.04 + K * V, V=-K))
-        n = int(np.argmin(np.abs(s.V - V)))
-        assert close(s.V[n], V, rel=tol.STEADY_CONTROLLED)
-        assert s.stable[n] == held
 
 
 def test_gain_that_unsettles_rest():
@@ -334,8 +280,10 @@ def test_opposite_gains_on_omega():
     assert (np.sort(s.grip)[:3] == 0.0).all()
     for off in residuals(SCENE, s):
         assert (np.abs(off) <= tol.STEADY_SCAN).all()
-    elastic = vr.steady(vr.Scene(1.0, KAPPA, MU), torque=vr.Feedback(0.3, omega=-1.0))
-    assert close(elastic.V, [0.3], rel=tol.STEADY)
+    elastic = vr.Scene(1.0, KAPPA, MU)
+    assert close(vr.steady(elastic, torque=vr.Feedback(0.3, omega=-1.0)).V, [0.3], rel=tol.STEADY)
+    assert close(vr.steady(elastic, V=1.0, torque=0.1).force, [-0.1], rel=tol.STEADY)
+    assert vr.humps(elastic).V.size == 0
 
 
 def test_spinning_on_the_spot():
@@ -347,34 +295,6 @@ def test_spinning_on_the_spot():
     # the motor's gain over j, and -M_half_space'
     assert close(s.eigenvalues[0].real, [-1.0 / SCENE.j, -0.5 * (10.0 / 11.0)], rel=tol.STEADY)
     assert close(s.loss.slip[0], 0.06, rel=tol.STEADY)
-
-
-# --- existence ---
-
-
-def test_why_there_is_none():
-    top = vr.humps(SCENE)
-    reason = vr.steady(SCENE, force=0.05, torque=0.07).reason
-    assert reason == (
-        f"force + torque = 0.12 exceeds the largest rolling moment {top.M[0]:.6g} (at V = {top.V[0]:.6g})"
-    )
-    assert "beyond the friction mu = 0.2" in vr.steady(SCENE, force=0.3, torque=-0.28).reason
-    assert "beyond the friction" in vr.steady(SCENE, force=0.3, torque=-0.3).reason
-    assert "at no speed" in vr.steady(SCENE, force=-0.3, torque=vr.Feedback(5.0, omega=1.0)).reason
-    si = vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason
-    assert re.fullmatch(r"force \+ torque/R = \S+ N/m exceeds .* over R \S+ N/m \(at V = \S+ m/s\)", si)
-
-
-def test_continua_are_said_to_be_one():
-    edge = vr.steady(SCENE, force=-0.175, torque=0.225)
-    assert edge.count == 0
-    assert edge.reason.startswith("a continuum: Q = 0.2")
-    elastic = vr.Scene(1.0, KAPPA, MU)
-    assert vr.steady(elastic).reason.startswith("a continuum")
-    assert vr.steady(elastic, force=-0.1, torque=0.1).reason.startswith("a continuum")
-    assert "elastic" in vr.steady(elastic, force=0.1).reason
-    assert "friction" in vr.steady(elastic, force=-0.3, torque=0.3).reason
-    assert close(vr.steady(elastic, V=1.0, torque=0.1).force, [-0.1], rel=tol.STEADY)
 
 
 def test_edge_of_grip():
@@ -405,13 +325,19 @@ def test_losses_are_what_the_loads_put_in():
     pulling = vr.steady(SCENE, force=-0.06, torque=0.1)
     expected = 0.06 * pulling.V / (0.1 * pulling.omega)
     assert close(pulling.loss.efficiency, expected, rel=tol.STEADY)
-    turned = vr.steady(SCENE, force=0.1, torque=-0.06)
-    assert close(turned.loss.efficiency, 0.06 * turned.omega / (0.1 * turned.V), rel=tol.STEADY)
     assert (vr.steady(SCENE, torque=0.05).loss.efficiency == 0.0).all()
     assert math.isnan(vr.steady(SCENE).loss.efficiency[0])
 
 
 # --- arrays ---
+
+
+def test_shapes_broadcast():
+    s = vr.steady(SCENE.replace(mu=np.array([0.01, 0.2])), force=np.array([[0.01], [0.05], [0.2]]))
+    assert s.count.tolist() == [[2, 2], [0, 2], [0, 0]]
+    assert s.eigenvalues.shape == (3, 2, 2, 2)
+    assert s.reason.shape == (3, 2)
+    assert vr.steady(SCENE, force=np.empty(0)).V.shape == (0, 0)
 
 
 def test_many_loads_are_single_calls_bit_for_bit():
@@ -425,16 +351,3 @@ def test_many_loads_are_single_calls_bit_for_bit():
         assert one.count == s.count[n]
         for name in ("V", "omega", "delta", "Q", "M", "beta", "grip", "eigenvalues", "stable"):
             np.testing.assert_array_equal(getattr(one, name), getattr(s, name)[n][held])
-
-
-def test_shapes_broadcast():
-    scene = SCENE.replace(mu=np.array([0.01, 0.2]))
-    s = vr.steady(scene, force=np.array([[0.01], [0.05], [0.2]]))
-    assert s.V.shape == (3, 2, 2)
-    assert s.eigenvalues.shape == (3, 2, 2, 2)
-    assert s.count.tolist() == [[2, 2], [0, 2], [0, 0]]
-    assert s.reason.shape == (3, 2)
-    assert vr.steady(SCENE, force=np.empty(0)).V.shape == (0, 0)
-
-
-# --- bad input ---

@@ -43,22 +43,16 @@ def test_wave_speed():
     found = cylinder.validity(share * wave, density=density).quasistatic
     assert close(found.value, abs(share), rel=tol.SCENE)
     assert found.holds.tolist() == [True, False, False]
-    assert found.sentence.startswith("the speed is 20 % of that of shear waves")
 
 
-def test_speeds_and_densities_beyond_all_bounds():
+def test_beyond_all_bounds():
     """No NaN, no warning: a ratio that no double can hold is infinite."""
     for V, density in ((3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324)):
         found = vr.presets.PAPER_CYLINDER.validity(V, density=density)
         assert found.quasistatic.holds == (V < 1.0)
-        assert not np.isnan(found.quasistatic.value)
         assert "nan" not in str(found)
-
-
-def test_scenes_beyond_all_bounds():
     for kappa in (1e-300, 1e300):
         found = vr.Scene(11.0, kappa, 0.2 * kappa).validity([0.0, 1e-300, 1.0, 1e300])
-        assert np.isfinite(found.small_contact.value).all()
         assert found.small_contact.holds.all() == (kappa > 1.0)
         assert "nan" not in str(found)
 
@@ -97,39 +91,18 @@ def test_dundurs_constant_at_its_ends():
 
 
 def test_bodies_assumption():
-    for material, base, holds, words in (
-        (RUBBER, None, True, "alike"),
-        (vr.Material.elastic(1e6, 0.5), vr.Material.elastic(3e7, 0.5), True, "Dundurs' constant is 0:"),
-        (RUBBER, STEEL, True, "-0.02 for long times, -0.02 at once"),
-        (vr.Material.elastic(1e6, 0.3), STEEL, False, "-0.29 for long times"),
-    ):
-        cylinder = pair(material, base)
-        found = coupling(*cylinder.pair.dundurs, like=cylinder.pair.like)
-        assert found.holds is holds
-        assert words in found.sentence
-    assert close(found.value, cylinder.pair.dundurs[0], rel=tol.PAIR)
+    found = pair(vr.Material.elastic(1e6, 0.3), STEEL)
+    assert coupling(*found.pair.dundurs, like=False).value == found.pair.dundurs[0]
+    assert not found.validity(1.0).bodies.holds
     assert vr.presets.PAPER_CYLINDER.validity(1.0).bodies == coupling(0.0, 0.0, like=True)
 
 
-def test_waves_of_materials_that_know_their_density():
-    """The slowest of those that are known; a density that is missing is named."""
-    cylinder = pair(RUBBER, None)
-    found = cylinder.validity(1.0).quasistatic
-    assert close(found.value, 1.0 / math.sqrt(RUBBER.G / 1100.0), rel=tol.PAIR)
-    assert close(
-        cylinder.validity(1.0, density=4400.0).quasistatic.value,
-        2.0 * cylinder.validity(1.0).quasistatic.value,
-        rel=tol.PAIR,
-    )
-
-
 def test_waves_of_a_pair():
-    for cylinder in (pair(RUBBER, STEEL), pair(STEEL, RUBBER), pair(RUBBER, vr.Material.rigid())):
+    """The slowest of those that are known; a density that is missing is named."""
+    for cylinder in (pair(RUBBER, None), pair(RUBBER, STEEL), pair(STEEL, RUBBER), pair(RUBBER, vr.Material.rigid())):
         found = cylinder.validity(1.0).quasistatic
         assert close(found.value, 1.0 / math.sqrt(RUBBER.G / 1100.0), rel=tol.PAIR)
         assert "not known" not in found.sentence
-    found = pair(RUBBER, vr.Material.elastic(2e11, 0.3)).validity(1.0).quasistatic
-    assert found.sentence.endswith("the density of the base is not known")
 
 
 def test_how_thick_the_layer_is():
@@ -142,17 +115,3 @@ def test_how_thick_the_layer_is():
         assert close(found.value, length / 0.02, rel=tol.CONTACT)
         assert np.array_equal(found.holds, length <= THICK_LIMIT * 0.02)
         assert "not known" not in found.sentence
-    found = pair(RUBBER, replace(RUBBER, E=1e6, thickness=0.02)).validity(0.0).thick
-    assert "the thickness of the cylinder is not known" in found.sentence
-    for cylinder in (pair(RUBBER, None), vr.presets.RUBBER_CYLINDER):
-        assert cylinder.validity(0.0).thick == (None, None, "thickness not known: the law is that of a half-space")
-
-
-def test_print_says_whether_each_holds_and_failed_names_what_does_not():
-    found = vr.presets.PAPER_SECTION_5.validity(np.array([0.0, 1.5]))
-    assert found.failed == ("steady",)
-    words = {line.split()[0]: line.split()[1] for line in str(found).splitlines()}
-    assert words["steady"] == "no"
-    assert words["small_contact"] == "yes"
-    assert words["plane"] == "?"
-    assert vr.presets.RUBBER_CYLINDER.validity(2.0).failed == ()

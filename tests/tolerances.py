@@ -6,8 +6,6 @@
 BESSEL_ULP = 4.0
 #: Q/mu, absolute: K1/K0 <= 1e3 (kappa V = 1e3) magnifies the rounding of Eq. (15)'s bracket; measured 1.1e-13.
 DIRECT_TRACTION = 4e-13
-#: Carter's closed forms from the printed equations at alpha = 1: same magnification as DIRECT_TRACTION.
-DIRECT_CARTER = 4e-13
 #: lam and epsilon from their limits at kappa V <= 1e-12 or >= 1e12: the limits' own error, c kappa V or
 #: alpha/(kappa V) ln; measured 8e-10.
 DIRECT_EXTREME = 1e-8

@@ -12,7 +12,6 @@ from experiments import (
     DRAG,
     HUMP,
     SLOW,
-    TIMES,
     TRUTH,
     noise,
     ranges,
@@ -21,7 +20,6 @@ from experiments import (
     thrown,
     traction,
 )
-from refusals import refused
 
 import viscoroll as vr
 
@@ -29,24 +27,52 @@ V = HUMP
 M = roller().contact(V, delta=0.0, fields="M").M
 OFF = {"mu": 0.4, "E": 4e6, "E_1": 6.0, "T_ref": 2e-3}
 
-#: data without noise, and what they hold
+SHIFT = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
+BEARING = {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}
+KNOWN = TRUTH | {"brake": BRAKE, "drag": DRAG, "t0:run": 0.15}
+
+
+def drum(load: float) -> vr.Resistance:
+    """A roller on a drum, whose bearing takes a part too."""
+    M = roller().replace(load=load).contact(V, delta=0.0, fields="M").M
+    return vr.Resistance(V, M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=f"{load} N/m")
+
+
+def late() -> vr.Coastdown:
+    """A motion under the bearing, by a clock that is late."""
+    t = np.linspace(0.0, 30.0, 200)
+    m = roller().roll(3.0, 30.0, t, rtol=1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
+    return vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
+
+
+def warm() -> vr.Resistance:
+    """At 60 degrees the relaxation times are others."""
+    M = roller(T_ref=TRUTH["T_ref"] * SHIFT(60.0)).contact(V, delta=0.0, fields="M").M
+    return vr.Resistance(V, M, sigma=0.01, temperature=60.0, name="warm")
+
+
+#: data without noise, what they hold, and what else is told
 HELD = {
-    "M over the hump": ([resistance()], ("E", "E_1", "T_ref")),
-    "pull over the hump": ([vr.Resistance(V, F=M / 0.1, sigma=0.1)], ("E", "E_1", "T_ref")),
-    "Q at three speeds": ([traction((0.1, 1.0, 10.0))], ("mu", "E")),
-    "M and Q": ([resistance(), traction()], ("mu", "E", "E_1", "T_ref")),
-    "a throw": ([thrown()], ("mu", "E", "E_1", "T_ref")),
-    "a throw and M, the series known": ([thrown(), resistance()], ("mu", "E", "T_ref")),
+    "M over the hump": (lambda: [resistance()], ranges("E", "E_1", "T_ref")),
+    "pull over the hump": (lambda: [vr.Resistance(V, F=M / 0.1, sigma=0.1)], ranges("E", "E_1", "T_ref")),
+    "Q at three speeds": (lambda: [traction((0.1, 1.0, 10.0))], ranges("mu", "E")),
+    "M and Q": (lambda: [resistance(), traction()], ranges("mu", "E", "E_1", "T_ref")),
+    "a throw": (lambda: [thrown()], ranges("mu", "E", "E_1", "T_ref")),
+    "a throw and M, the series known": (lambda: [thrown(), resistance()], ranges("mu", "E", "T_ref")),
+    "a bearing at two loads": (lambda: [drum(100.0), drum(700.0)], ranges("E", "T_ref") | BEARING),
+    "a bearing and a late clock": (lambda: [late()], ranges("T_ref") | BEARING),
+    "two temperatures": (lambda: [resistance(), warm()], ranges("E", "T_ref")),
 }
 
 
 @pytest.mark.parametrize("case", HELD)
 def test_exact_data_give_the_truth(case):
-    data, names = HELD[case]
-    start = roller(**{name: OFF[name] for name in names})
-    fit = vr.identify(start, ranges(*names), data, starts=1)
-    for name in names:
-        assert close(fit.values[name], TRUTH[name], rel=tol.IDENTIFIED), name
+    data, unknown = HELD[case]
+    start = roller(**{name: OFF[name] for name in OFF.keys() & unknown})
+    fit = vr.identify(start, unknown, data(), starts=1, shift=SHIFT if case == "two temperatures" else None)
+    for name, value in fit.values.items():
+        exact = {"V0:throw": 4.0}.get(name) or KNOWN[name]
+        assert close(value, exact, rel=tol.IDENTIFIED_DRIVEN if "clock" in case else tol.IDENTIFIED), name
     assert fit.chi2 < tol.IDENTIFIED_CHI2
     assert fit.cylinder.mu == fit.values.get("mu", TRUTH["mu"])
     assert not fit.does_not_act
@@ -78,7 +104,7 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
 
 def test_slow_rolling_tells_a_product_alone():
-    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW, seed=2)], starts=1)
+    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1)
     assert fit.does_not_act == ("mu",)
     assert fit.undetermined == ("E", "E_1", "T_ref")
     assert fit.intervals()["mu"] == (None, None)
@@ -88,18 +114,6 @@ def test_slow_rolling_tells_a_product_alone():
     text = str(fit)
     assert "mu does not act on these data" in text
     assert "E, E_1 and T_ref cannot be told apart by these data: only E_1 T_ref = 0.00" in text
-
-
-def test_bearing_is_told_from_the_material_at_two_loads():
-    """Of a drum: M + brake + drag omega."""
-    data = [
-        vr.Resistance(V, at.M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=name)
-        for name, load in (("light", 100.0), ("heavy", 700.0))
-        for at in [roller().replace(load=load).contact(V, delta=0.0, fields=("M",))]
-    ]
-    fit = vr.identify(roller(E=4e6), ranges("E", "T_ref") | {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}, data, starts=1)
-    for name, value in {"E": TRUTH["E"], "T_ref": TRUTH["T_ref"], "brake": BRAKE, "drag": DRAG}.items():
-        assert close(fit.values[name], value, rel=tol.IDENTIFIED), name
 
 
 # --- what is not a fit of one minimum of good data ---
@@ -164,10 +178,6 @@ def test_a_plan_tells_what_a_fit_will_know():
         assert close(plan.stderr[name], fit.stderr[name], rel=tol.PLANNED), name
         low, high = plan.intervals()[name]
         assert low < TRUTH[name] < high
-    assert "planned" in str(plan)
-    throw = vr.Coastdown(TIMES, V0=4.0, omega0=0.0, sigma={"V": 5e-3, "omega": 0.05}, name="throw")
-    plan = vr.identify(roller(), ranges("mu", "E") | {"V0:throw": (2.0, 8.0)}, [throw])
-    assert plan.stderr.keys() == {"mu", "E", "V0:throw"}
 
 
 def test_a_prediction_has_bands():
@@ -180,12 +190,6 @@ def test_a_prediction_has_bands():
     assert close(width[1][1:], width[0][1:], rel=tol.DRAWN)
     assert close(by_slopes.V.value[0], 3.0, rel=tol.SI_MOTION)
     assert set(by_slopes.to_xarray()) >= {"V", "V_low", "V_high", "omega", "x_high"}
-    refused(lambda: fit.predict(vr.Coastdown(t, np.ones(7))), "V0", "a prediction needs it")
-
-
-@pytest.mark.parametrize("units", ["m/s", "m s-1", "m s^-1"])
-def test_units_that_are_its_own(units):
-    assert vr.Resistance(xr.DataArray(V, dims="speed", attrs={"units": units}), sigma=0.1).shape == V.shape
 
 
 def test_labels_come_back_in_predictions():
@@ -194,29 +198,6 @@ def test_labels_come_back_in_predictions():
     band = fit.predict(vr.Resistance(speeds)).M
     assert float(band.value.sel(speed="fast")) == float(fit.cylinder.contact(1.0, delta=0.0, fields="M").M)
     assert float(band.low.sel(speed="slow")) < float(band.high.sel(speed="slow"))
-
-
-def test_a_records_temperature_is_the_shift_of_its_material():
-    shift = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
-    warm = roller(T_ref=TRUTH["T_ref"] * shift(60.0))
-    data = [
-        resistance(),
-        vr.Resistance(V, warm.contact(V, delta=0.0, fields="M").M, sigma=0.01, temperature=60.0, name="warm"),
-    ]
-    fit = vr.identify(roller(T_ref=2e-3), ranges("E", "T_ref"), data, starts=1, shift=shift)
-    assert close(fit.values["T_ref"], TRUTH["T_ref"], rel=tol.IDENTIFIED)
-    assert fit.chi2 < tol.IDENTIFIED_CHI2
-
-
-def test_a_late_clock_and_a_bearing_are_found_in_a_motion():
-    t = np.linspace(0.0, 30.0, 200)
-    m = roller().roll(3.0, 30.0, t, rtol=1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
-    late = vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
-    unknown = ranges("T_ref") | {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}
-    fit = vr.identify(roller(T_ref=1.2e-3), unknown, [late], starts=1)
-    truth = {"T_ref": TRUTH["T_ref"], "brake": BRAKE, "drag": DRAG, "t0:run": 0.15}
-    for name, value in truth.items():
-        assert close(fit.values[name], value, rel=tol.IDENTIFIED_DRIVEN), name
 
 
 def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
@@ -243,7 +224,6 @@ def test_slopes_are_those_of_the_residuals():
         step = 1e-4 * value
         up, down = (fit.residuals(fit.values | {name: value + sign * step}) for sign in (1.0, -1.0))
         assert close(J[:, i], (up - down) / (2.0 * step), rel=tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()), name
-    refused(lambda: fit.residuals({"nu": 0.4}), "values", "'nu'", "mu, E")
 
 
 def test_too_few_points_in_a_slip_are_told():

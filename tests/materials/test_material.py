@@ -52,13 +52,10 @@ def test_moduli_are_the_sums_over_modes():
 def test_limits_of_frequency_and_time():
     assert close(RUBBER.instant, 20.0 * 2.3e5, rel=tol.MATERIAL)
     assert RUBBER.storage(0.0) == RUBBER.E == RUBBER.relaxation(1e200)
-    assert close(RUBBER.storage(1e308), RUBBER.instant, rel=tol.MATERIAL)
-    assert close(RUBBER.relaxation(0.0), RUBBER.instant, rel=tol.MATERIAL)
-    assert RUBBER.loss(0.0) == 0.0
-    assert close(RUBBER.creep(0.0), 1.0 / 20.0, rel=tol.MATERIAL)
-    assert close(RUBBER.creep(1e200), 1.0, rel=tol.MATERIAL)
-    assert (np.diff(RUBBER.creep(T)) > 0.0).all()
+    assert close((RUBBER.storage(1e308), RUBBER.relaxation(0.0)), np.full(2, RUBBER.instant), rel=tol.MATERIAL)
+    assert close((RUBBER.creep(0.0), RUBBER.creep(1e200)), (1.0 / 20.0, 1.0), rel=tol.MATERIAL)
     assert np.isfinite(RUBBER.loss(OMEGA)).all()
+    assert RUBBER.loss(0.0) == 0.0
 
 
 def test_creep_is_the_inverse_of_relaxation():
@@ -72,22 +69,18 @@ def test_creep_is_the_inverse_of_relaxation():
 def test_standard_linear_solid_is_the_papers_material():
     """E(t) = E (1 + (T_epsilon/T_sigma - 1) exp(-t/T_sigma)): 10.7 s over 0.97 s."""
     solid = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
-    assert solid.T_ref == 10.7
-    assert solid.prony.T.tolist() == [1.0]
-    assert solid.prony.alpha == 10.7 / 0.97
+    assert (solid.T_ref, solid.prony.T.item(), solid.prony.alpha) == (10.7, 1.0, 10.7 / 0.97)
     spelt_out = 2.3e5 * (1.0 + (10.7 / 0.97 - 1.0) * np.exp(-T / 0.97))
     assert close(solid.relaxation(T), spelt_out, rel=tol.MATERIAL)
     assert vr.Material.sls(2.3e5, 0.49, 1.0, 1.0).prony == vr.Prony.elastic()
 
 
 def test_elastic_and_rigid():
-    steel, rigid = vr.Material.elastic(2e11, 0.3, name="steel", density=7850.0), vr.Material.rigid()
+    steel, rigid = vr.Material.elastic(2e11, 0.3), vr.Material.rigid()
     assert (steel.instant, steel.relaxation(3.0), steel.loss(3.0), steel.creep(3.0)) == (2e11, 2e11, 0.0, 1.0)
     assert close(steel.G, 2e11 / 2.6, rel=tol.MATERIAL)
-    assert rigid.is_rigid
-    assert not steel.is_rigid
-    assert rigid.storage(1.0) == math.inf
-    assert (rigid.loss(1.0), rigid.tan_delta(1.0)) == (0.0, 0.0)
+    assert rigid.is_rigid > steel.is_rigid
+    assert (rigid.storage(1.0), rigid.loss(1.0), rigid.tan_delta(1.0)) == (math.inf, 0.0, 0.0)
 
 
 # --- temperature ---
@@ -122,8 +115,7 @@ def test_abaqus():
     assert (found.prony.tau.tolist(), found.T_ref, found.nu, found.name) == ([10.0, 0.1], 1.0, 0.45, "pad")
     # g_R(1 s) = 1 - 0.2 (1 - exp(-10)) - 0.3 (1 - exp(-0.1)) = 0.7714603
     assert close(found.relaxation(1.0), 10e6 * 0.7714603, rel=tol.MATERIAL_PRINTED)
-    long = vr.Material.abaqus(E0=5e6, nu=0.45, g=[0.2, 0.3], tau=[0.1, 10.0], long_term=True, name="pad")
-    assert long.prony == found.prony
+    long = vr.Material.abaqus(E0=5e6, nu=0.45, g=[0.2, 0.3], tau=[0.1, 10.0], long_term=True)
     assert close(long.instant, 10e6, rel=tol.MATERIAL)
 
 
@@ -156,12 +148,6 @@ def test_one_material_by_all_programs():
         vr.Material.lsdyna(G, 1.0 / tau, nu=0.5, G_inf=1e6),
     ):
         assert close(found.relaxation(T), 3e6 + 3.0 * (G * np.exp(-T[:, None] / tau)).sum(axis=1), rel=tol.MATERIAL)
-
-
-# --- refusals ---
-
-
-# --- figure ---
 
 
 def test_plot(tmp_path):
@@ -210,14 +196,6 @@ def test_what_other_programs_read(tmp_path):
         assert (found.attrs["name"], found.attrs["given"]) == (rubber.name, "relaxation")
 
 
-def test_a_temperature_beside_a_stored_material(tmp_path):
-    STORED[0].to_netcdf(tmp_path / "rubber.nc")
-    (tmp_path / "warm.toml").write_text('[material]\nfile = "rubber.nc"\nwlf = { T0 = 20.0 }\ntemperature = 30.0\n')
-    warm = STORED[0].at(30.0, vr.WLF(T0=20.0))
-    assert read_materials(tmp_path / "warm.toml") == {"material": warm}
-    assert read_materials(tmp_path / "warm.toml", 40.0) == {"material": STORED[0].at(40.0, vr.WLF(T0=20.0))}
-
-
 def test_a_material_of_another_toml_file(tmp_path):
     """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside it."""
     rubber, belt = STORED[0], STORED[1]
@@ -229,8 +207,12 @@ def test_a_material_of_another_toml_file(tmp_path):
     assert read_materials(scene) == {"material": rubber, "base": thin}
     scene.write_text('[material]\nfile = "two.toml"\n[base]\nfile = "two.toml"\n')
     assert read_materials(scene) == {"material": rubber, "base": belt}
-    scene.write_text('[base]\nfile = "dma.toml"\nwlf = { T0 = 20.0 }\ntemperature = 30.0\n')
-    assert read_materials(scene) == {"base": rubber.at(30.0, vr.WLF(T0=20.0))}
+    for name in ("dma.toml", "dma.nc"):
+        rubber.to_netcdf(tmp_path / "dma.nc")
+        scene.write_text(f'[base]\nfile = "{name}"\nwlf = {{ T0 = 20.0 }}\ntemperature = 30.0\n')
+        for given, T in ((None, 30.0), (40.0, 40.0)):
+            assert read_materials(scene, given) == {"base": rubber.at(T, vr.WLF(T0=20.0))}
+    scene.write_text('[base]\nfile = "dma.toml"\n')
     for content, words in (
         ("[scene]\nalpha = 2.0\n", "section [material] is missing"),
         ('[material]\nfile = "scene.toml"\n', "must not name a file again"),
@@ -252,10 +234,6 @@ def test_edited_materials(tmp_path):
     path = tmp_path / "rubber.nc"
     STORED[0].to_netcdf(path)
     refused(partial(read_materials, path, 30.0), "temperature = 30", "wlf", error=vr.FileError)
-    (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\n')
-    refused(partial(read_materials, tmp_path / "a.toml"), "line 2", "none.nc", error=vr.FileError)
-    (tmp_path / "a.toml").write_text('[material]\nfile = "none.nc"\nE = 1.0\n')
-    refused(partial(read_materials, tmp_path / "a.toml"), "line 3", "unknown key 'E'", error=vr.FileError)
     data = as_dataset(STORED[0])
     for changed in (data.assign(E=-data.E), data.drop_vars("tau"), data.assign_attrs(given="both", schema="other")):
         write_dataset(changed, path, sealed=True)

@@ -8,6 +8,7 @@ import tolerances as tol
 from closeness import close
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from many import UNLIKE
 
 import viscoroll as vr
 
@@ -128,7 +129,6 @@ def test_two_elastic_bodies_take_nothing():
     assert shares(scene(vr.Bodies(stiff, stiff, 0.3)), np.array([0.1])) == (0.0, 0.0, 0.0)
 
 
-UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3)
 PARTS = ("M_half_space", "M_cylinder")
 
 

@@ -12,49 +12,28 @@ from closeness import close
 from memory import taken_beside
 
 import viscoroll as vr
-from viscoroll.presets import PAPER_STARTS
+from pipeline.evidence.prove import independent
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-ROUNDED, UNROUNDED = vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.PAPER_SECTION_5
+ROUNDED = vr.presets.PAPER_SECTION_5_ROUNDED
 #: full slip returns: theory, Sect. 3
 RETURNING = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5)
 #: mu kappa where the maximum over V of M (1 - j)/(2 (1 + j)) is mu: 0.0411, alpha = 11, j = 1/2
 THRESHOLD = 0.24659784 / 6.0
 
 
-def decay_time(scene: vr.Scene) -> float:
-    """1/rate of V at low speed; of the sliding phase where alpha = 1."""
-    c = (scene.alpha - 1.0) / scene.alpha
-    return (1.0 + scene.j) / (scene.gamma * c) if c else 1.0 / (scene.gamma * scene.mu)
-
-
 FULL, REST = 0, 2
 
 # --- the paper's Sect. 5 ---
 
-#: Sect. 5.2: time, quantity, value, half a unit of its last digit
-PAPER_NUMBERS = [
-    (1.5e-4, "delta", -0.017, 1e-3), (1.5e-4, "lam", 0.311, 5e-4), (1.5e-4, "epsilon", 0.7, 5e-2),
-    (1.512e-4, "beta", 0.45, 5e-2), (1.52e-4, "delta", -0.01, 5e-3), (1.65e-4, "beta", 0.98, 5e-3),
-    (4e-4, "delta", -0.0004, 5e-5), (4e-4, "beta", 0.98, 5e-3), (24e-4, "delta", -0.001, 5e-4),
-    (24e-4, "beta", 0.95, 5e-3), (30e-4, "delta", -6e-5, 5e-6), (30e-4, "beta", 0.998, 5e-4),
-]  # fmt: skip
 
-
-def test_numbers_of_section_5():
-    t, names, values, bounds = zip(*PAPER_NUMBERS, strict=True)
-    motion = vr.roll(UNROUNDED, *PAPER_STARTS["IC1"], t)
-    state = motion.contact()
-    found = [getattr(state, name)[n] for n, name in enumerate(names)]
-    assert close(found, values, rel=np.array(bounds), scale=1.0)
-    assert close(motion.onset_time, 1.499e-4, rel=5e-8, scale=1.0)
-
-
-# --- accuracy ---
-
-
-# --- identities ---
+def test_numbers_of_the_paper():
+    """All but beta = 0.45 at 1.52e-4: it is passed at 1.51e-4, or then with a T_epsilon that prints as the paper's."""
+    rows = independent.paper()
+    assert len(rows) == 18
+    off = [row for row in rows if not abs(row["digits"]) <= tol.PAPER_DIGITS]
+    assert [(row["t"], row["quantity"]) for row in off] == [(1.52e-4, "beta")]
 
 
 # --- regimes ---
@@ -126,18 +105,14 @@ def test_rest():
 def test_rest_while_sliding_and_from_the_start():
     slow = vr.roll(ROUNDED, 1e-4, -1e-4, [1e-3], rest=1e-3)
     assert (slow.rest_time, slow.status, slow.V[0]) == (0.0, vr.MotionStatus.RESTED, 0.0)
-    # V + j omega = 0: both speeds fall through the threshold while sliding
-    sliding = vr.roll(ROUNDED, 0.5, -1.0, [1.0], rest=0.2)
-    assert sliding.rest_time > 0.0
-    assert math.isnan(sliding.onset_time)
-
-
-def test_rest_is_where_the_faster_of_both_is_as_slow():
-    """Sliding, with V and omega of nearly one size at the threshold."""
-    for V0, omega0 in ((-0.7113467608790995, -1.3359553878111319), (0.7058009751523431, 1.3606752686335586)):
-        rested = vr.roll(ROUNDED, V0, omega0, [1e-2], rtol=1e-8, rest=1.0).rest_time
-        there = vr.roll(ROUNDED, V0, omega0, [rested], rtol=1e-12)
-        assert close(max(abs(there.V[0]), abs(there.omega[0])), 1.0, rel=tol.MOTION_RTOL * 1e-8)
+    # both speeds fall through the threshold while sliding: V + j omega = 0; V and omega of nearly one size
+    for *start, rest in (
+        (0.5, -1.0, 0.2), (-0.7113467608790995, -1.3359553878111319, 1.0), (0.7058009751523, 1.36067526863356, 1.0),
+    ):  # fmt: skip
+        sliding = vr.roll(ROUNDED, *start, [1.0], rest=rest)
+        assert math.isnan(sliding.onset_time)
+        there = vr.roll(ROUNDED, *start, [sliding.rest_time], rtol=1e-12)
+        assert close(max(abs(there.V[0]), abs(there.omega[0])), rest, rel=tol.MOTION_RTOL * 1e-8)
 
 
 # --- outputs ---
@@ -154,14 +129,10 @@ def test_times_of_output():
     assert whole.onset_time in whole.t
     chosen = vr.roll(ROUNDED, 1.5, 0.5, [0.0, 1e-3, 1e-3, 2e-3])
     assert (chosen.V[0], chosen.V[1], chosen.V[3]) == (1.5, chosen.V[2], whole.V[-1])
-    for t in (0.0, [0.0, 0.0]):
-        instant = vr.roll(ROUNDED, 1.5, 0.5, t)
-        assert close((instant.V, instant.omega), np.array([1.5, 0.5])[:, None] + 0.0 * instant.V, rel=1e-15)
+    assert vr.roll(ROUNDED, 1.5, 0.5, [0.0, 0.0]).omega.tolist() == [0.5, 0.5]
     assert np.array_equal(whole.at(whole.t).V, whole.V)
     t = np.linspace(0.0, 2e-3, 50)
     assert np.array_equal(whole.at(t).V[::7], whole.at(t[::7]).V)
-    assert whole.at(1e-3).V.shape == (1,)
-    assert whole.at(t).switches == whole.switches
     between = vr.roll(ROUNDED, 1.5, 0.5, t, rtol=1e-12)
     assert abs(whole.at(t).V / between.V - 1.0).max() <= tol.MOTION_DEFAULT
 
@@ -197,8 +168,6 @@ def test_contact_along_the_motion():
     assert state.full_slip.tolist() == [True, True, False, False]
     assert state.Q[0] == -ROUNDED.mu
     assert np.array_equal(state.full_slip, motion.regime == FULL)
-    direct = motion.contact(fields="Q", method="direct")
-    assert close(direct.Q, state.Q, rel=tol.DIRECT_TRACTION, scale=ROUNDED.mu)
     spin = vr.roll(ROUNDED, 0.0, 1.0, [0.0, 1e-5])
     assert spin.delta[0] == math.inf
     assert spin.contact().Q[0] == ROUNDED.mu

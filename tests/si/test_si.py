@@ -141,15 +141,6 @@ def test_stresses_hold_load_and_traction():
     assert close(state.length, state.lam * ON_STEEL.l0, rel=tol.SI_MOTION)
 
 
-def test_work_is_energy_and_losses():
-    m = ROLLER.roll(0.02, 0.1, TIMES, force=20.0, torque=-2.0, slope=0.02, brake=0.3)
-    kinetic = 0.5 * ROLLER.m * (m.V**2 + ROLLER.j * (ROLLER.R * m.omega) ** 2)
-    works = m.work_force + m.work_torque
-    gained = kinetic - kinetic[0] + m.slip_loss + m.rolling_loss + m.brake_loss
-    assert close(works, gained, rel=tol.SI_ENERGY, scale=np.abs(works).max())
-    assert close(m.power_force, m.force * m.V, rel=tol.SI_MOTION)
-
-
 def test_equilibria_balance_and_motions_end_there():
     """On a slope P sin(slope) holds against the moment, at a load of more than the weight, on a rigid base."""
     slope = np.radians(1.0)
@@ -194,7 +185,7 @@ def test_each_of_many_is_as_alone(name):
     many, drags = roller.replace(**each), np.array([0.002, 0.0, 0.03])
     fields = ("V", "omega", "x", "torque", "rolling_loss", "onset_time")
     e = many.ensemble(0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags), fields=fields[:-1])
-    state, checked = many.contact(0.5, delta=0.01), many.validity(0.5)
+    state = many.contact(0.5, delta=0.01)
     s = many.steady(slope=1e-3) if name != "times" else None  # of one alpha
     for n in range(3):
         one = roller.replace(**{key: values[n] for key, values in each.items()})
@@ -206,32 +197,26 @@ def test_each_of_many_is_as_alone(name):
         for field in ("M", "Q", "length", "beta"):
             exact = getattr(one.contact(0.5, delta=0.01), field)
             assert close(getattr(state, field)[n], exact, rel=tol.SI_MOTION, what=field)
-        assert close(checked.small_contact.value[n], one.validity(0.5).small_contact.value, rel=tol.PAIR)
         assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, rel=tol.SI_MOTION)
-    assert many == roller.replace(**{key: values.copy() for key, values in each.items()})
-    assert hash(many) == hash(roller.replace(**each))
+    again = roller.replace(**{key: values.copy() for key, values in each.items()})
+    assert (many, hash(many)) == (again, hash(again))
 
 
 def test_what_follows_from_a_change():
     assert ROLLER.replace(nu=0.0) == ROLLER.replace(nu=-0.0)
     assert hash(ROLLER.replace(nu=0.0)) == hash(ROLLER.replace(nu=-0.0))
-    assert close(ROLLER.replace(m=70.0).load, 70.0 * 9.81, rel=tol.SCENE)
-    assert ROLLER.replace(load=500.0).replace(m=70.0).load == 500.0
     assert ROLLER.replace(material=RUBBER).E is None
     assert ON_STEEL.replace(E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97).material is None
     assert SOLID.replace(T_epsilon=SLOW, T_sigma=FAST).T_ref == 2e-2
 
 
 def test_dataset_in_si():
-    """Units of all, and what drove it; that a file keeps them is in ``test_results.py``."""
-    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, force=np.sin, brake=vr.Schedule([1.0, 1.0], [0.0, 3.0]))
+    """Units of all; that a file keeps them: ``test_results.py``; what drove it: ``motion/test_drive_files.py``."""
+    m = ROLLER.roll(0.02, 0.1, TIMES, torque=2.0, brake=vr.Schedule([1.0, 1.0], [0.0, 3.0]))
     data = m.to_xarray()
     said = {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss", "drive_brake_time")}
     assert said == {"t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1", "drive_brake_time": "s"}
-    assert data["drive_torque"].item() == 2.0
-    assert data["drive_brake_time"].values.tolist() == [1.0, 1.0]
     assert data["drive_brake"].values.tolist() == [0.0, 3.0]
-    assert data.attrs["drive_force"] == "a function of t"
     assert [data.attrs[name] for name in ("R", "load", "T_ref")] == [ROLLER.R, ROLLER.load, ROLLER.T_ref]
     e = ROLLER.replace(mu=[0.2, 0.3]).ensemble(0.02, 0.1, TIMES)
     assert e.to_xarray()["V"].attrs["units"] == e.summary().V_mean.attrs["units"] == "m s-1"

@@ -81,7 +81,7 @@ MOTION = [
     ("flow/read.py", "(E + layer_value(table, layout.LAYER_ANGLE", "(E - layer_value(table, layout.LAYER_ANGLE", "tests/motion/test_flow.py"),
     ("motion/rates.py", "left = max(1.0 - sign * d, 0.0)", "left = max(1.0 - 0.999 * sign * d, 0.0)", _MOTION),
     ("motion/rates.py", "spread = L + u * dL\n", "spread = L\n", _MOTION),
-    ("motion/rates.py", "press_secants(at, place(2.0 * u / L, law), v, D / w, law)", "press_secants(at, at, v, D / w, law)", "tests/truth/test_motions.py"),
+    ("motion/rates.py", "press_secants(at, place(2.0 * u / L, law), v, D / w, law)", "press_secants(at, at, v, D / w, law)", claims("check_motions")),
     ("motion/rates.py", "- creep_limit(V, scene) * abs(V)", "- 0.98 * creep_limit(V, scene) * abs(V)", _MOTION),
     ("motion/collocation.py", "total = fma(t, total, powers[row + k])", "total = fma(t, total, powers[row + k] * (1.0 + 1e-7))", _MOTION),
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _MOTION),

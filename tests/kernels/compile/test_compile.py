@@ -159,8 +159,7 @@ except IndexError:
 print(sum(at.stats.cache_hits.values()))
 """
     for settings, said in (
-        ({}, "4.0 0"), ({"NUMBA_BOUNDSCHECK": "1"}, "refused 0"), ({"NUMBA_OPT": "1"}, "4.0 0"), ({}, "4.0 1"),
-        ({"NUMBA_BOUNDSCHECK": "1"}, "refused 1"),
+        ({}, "4.0 0"), ({"NUMBA_BOUNDSCHECK": "1"}, "refused 0"), ({"NUMBA_BOUNDSCHECK": "1"}, "refused 1"),
     ):  # fmt: skip
         assert printed(script, VISCOROLL_CACHE_DIR=str(tmp_path), **settings).strip() == said, settings
 
@@ -169,22 +168,12 @@ def sealed(content: bytes) -> bytes:
     return hashlib.sha256(content).digest() + content
 
 
-def flipped(content: bytes, share: float, mask: int) -> bytes:
-    """``content`` with the bits of ``mask`` flipped in one byte."""
-    spoilt = bytearray(content)
-    spoilt[int(share * len(content))] ^= mask
-    return bytes(spoilt)
-
-
 DAMAGE = {
-    "flipped early": lambda content: flipped(content, 0.05, 255),
-    "flipped middle": lambda content: flipped(content, 0.5, 1),
-    "flipped late": lambda content: flipped(content, 0.97, 16),
+    "flipped": lambda content: content[:99] + bytes([content[99] ^ 16]) + content[100:],
     "truncated": lambda content: content[: len(content) // 2],
     "one byte short": lambda content: content[:-1],
     "empty": lambda content: b"",
     "zeros": lambda content: bytes(len(content)),
-    "text": lambda content: b"not a cache file\n",
     "of another numba": lambda content: sealed(pickle.dumps(("another", "numba"))),
 }
 

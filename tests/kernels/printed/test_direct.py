@@ -33,19 +33,6 @@ def test_as_the_table():
     assert [check for check in random_state_checks(2000, 3) if not check.passed] == []
 
 
-def test_carter():
-    """alpha = 1 by the printed equations, which do not know of it."""
-    star, s = MU / (2 * KAPPA), np.array([0.0, *CREEPS])
-    V = 10.0 ** np.arange(-3, 3.01, 0.5)[:, None] / KAPPA
-    state = vr.contact(vr.Scene(1.0, KAPPA, MU), V, delta=s * star, method="direct")
-    assert np.all(state.lam == 1.0)
-    assert not np.any([state.epsilon, state.M])
-    assert close(state.delta_star, star, rel=1e-15)
-    assert close(state.beta, np.broadcast_to(1.0 - s, state.beta.shape), rel=tol.DIRECT_CARTER, scale=1.0)
-    Q = 4 * KAPPA * s * star * (1 - s * star * KAPPA / MU)
-    assert close(state.Q, np.broadcast_to(Q, state.Q.shape), rel=tol.DIRECT_CARTER, scale=MU)
-
-
 def test_extreme_speeds():
     slow, fast, alpha = np.array([5e-324, 1e-300, 1e-12]), np.array([1e12, 1e300]), np.array([1.0, 11.0, 1e4])[:, None]
     for kappa_V, limit in ((slow, np.ones_like(alpha)), (fast, alpha**-0.5)):
