@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.scale import Scale
+from ..materials.bodies import one_series
 from ..materials.law_table import law_table
 from ..materials.prony import Prony
 from .contact_table import states_of
@@ -47,11 +48,9 @@ class Curve:
     def __init__(self, material: float | Prony) -> None:
         from scipy.interpolate import CubicSpline
 
-        self.modes = (
-            (material.J, material.T) if isinstance(material, Prony) else (np.array([1.0 - 1.0 / material]), np.ones(1))
-        )
-        self.alpha = material.alpha if isinstance(material, Prony) else material
-        shortest, longest = (material.tau[-1], material.T[0]) if isinstance(material, Prony) else (1.0 / material, 1.0)
+        series = one_series(material)
+        self.modes, self.alpha = (series.J, series.T), series.alpha
+        shortest, longest = series.tau[-1], series.T[0]
         octaves = math.ceil(math.log2(longest / shortest)) + 2 * _MARGIN
         self.s = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
         self.s -= _MARGIN * math.log(2.0)
@@ -122,8 +121,7 @@ class Curve:
 @lru_cache(maxsize=256)  # those that an ensemble's validity looks at; 0.1 MB each
 def curve(material: float | Prony) -> Curve | None:
     """The curve of a material in its own time; None of an elastic one, which rolls for ever."""
-    alpha = material.alpha if isinstance(material, Prony) else material
-    return Curve(material) if alpha > 1.0 else None
+    return Curve(material) if one_series(material).alpha > 1.0 else None
 
 
 class Strained(NamedTuple):

@@ -139,3 +139,10 @@ class Bodies(OneOrMany):
             modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
             return f"<{len(self)} pairs of {' and '.join(map(str, modes))} modes>"
         return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r})"
+
+
+def one_series(given: float | Prony | Bodies) -> Prony:
+    """The series of a material by its alpha, of a series, or of both bodies together."""
+    if isinstance(given, Bodies):
+        return given.total
+    return given if isinstance(given, Prony) else Prony.sls(given)

@@ -14,7 +14,7 @@ from .bodies import Bodies
 from .law_axis import OCTAVES, tables_of, to_chebyshev
 from .law_modes import refuse_far, series_of
 from .law_table import Floats
-from .prony import Block, Prony
+from .prony import Block, Prony, read_only
 
 _lock = threading.Lock()
 #: the axis: what was met of each octave of alpha in this process (:mod:`..kernels.rows.axis`), never dropped again, and
@@ -68,7 +68,7 @@ def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
     # the marks keep alive all that the kernels have the addresses of
     held = SimpleNamespace(__array_interface__=known["marks"].__array_interface__, arrays=(source, known))
     addresses = address_of(hold, kind), address_of(make, kind), int(source.ctypes.data)
-    rows, marks, added = map(_read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
+    rows, marks, added = map(read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
     return Law(rows, marks, added, *addresses)
 
 
@@ -91,7 +91,7 @@ def _octave(octave: int) -> tuple[Floats, int]:
     pairs[..., 1, :] /= c[:, None, None, None]  # M/V and epsilon
     values = np.concatenate([values[..., :BODIES], values[..., PRESS:]], axis=-1)
     found = to_chebyshev(values.reshape(len(tables), rows, PIECES, PART))
-    return _read_only(np.ascontiguousarray(np.moveaxis(found, 0, 2))), rows
+    return read_only(np.moveaxis(found, 0, 2)), rows
 
 
 def law_of_materials(materials: Prony | Bodies, which: NDArray[np.int64]) -> Any:
@@ -140,8 +140,3 @@ def _numbers(block: Block) -> Floats:
     *vectors, Q = series_of(modes, weights)
     front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, first, rows, N]
     return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)
-
-
-def _read_only(values: Any) -> Any:
-    values.flags.writeable = False
-    return values

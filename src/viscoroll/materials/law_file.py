@@ -1,9 +1,10 @@
-"""The law of one material or pair as a dataset and a file: of a :class:`LawTable`, and back bit for bit."""
+"""Laws as datasets and files: of a :class:`LawTable` or a :class:`LawAxis`, and back bit for bit."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from numbers import Real
 from os import PathLike
@@ -11,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.checks import checked
+from ..core.checks import checked, number
 from ..core.errors import FileError, ParameterError
 from .bodies import Bodies
 from .file import as_toml, materials_of, series_as_toml, series_of
-from .law_axis_file import alpha_of
-from .law_store import KIND, LAW, MEANING, OTHERS, REMEDY, Content, read_law, sealed
-from .law_table import FUNCTIONS, LawTable, law_table
+from .law_axis import LawAxis
+from .law_store import AXIS, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
+from .law_table import Floats, LawTable, law_table
 from .material import Material
 from .pair import Pair
 from .prony import Prony
@@ -25,18 +26,6 @@ from .prony_forms import HIGHEST_ALPHA
 
 if TYPE_CHECKING:
     import xarray as xr
-
-COMMENT = (
-    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
-    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. u = kappa |V|; "
-    "L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; D >= L: full slip, |Q| = mu, beta = 0."
-    " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < L/8: "
-    "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
-    "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of omega - V. Fast limit: "
-    "z = 1/(2 u sqrt(alpha)), W and C of fast_limit: lam = alpha^-1/2, epsilon = (alpha z/2)(C - W ln z), "
-    "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = 1/v: "
-    "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u a_T, N times a_T^2."
-)
 
 
 def table_of(material: Any, base: Any = None) -> LawTable:
@@ -56,22 +45,12 @@ def table_of(material: Any, base: Any = None) -> LawTable:
     return law_table(float(checked("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
 
 
-def as_dataset(table: LawTable, errors: Mapping[str, float]) -> xr.Dataset:
+def as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
     """All that a file holds; ``errors``: largest relative error by function."""
-    import xarray as xr
-
-    data = {}
-    for n, (name, meaning) in enumerate(MEANING.items()):
-        about: dict[str, Any] = {"long_name": f"coefficients of powers of t: {meaning}"}
-        about["largest_relative_error"] = errors[name]
-        data[name] = xr.Variable(("octave", "power"), table.coefficients[:, :, n], about)
-    for name, (dims, meaning) in OTHERS.items():
-        value = np.int32(table.e0) if name == "e0" else getattr(table, name)
-        data[name] = xr.Variable(dims, value, {"long_name": meaning})
-    data["T_ref"].attrs["units"] = "s"  # the others have none
-    bodies = "unlike" if table.unlike else "alike"
-    material = described(table.pair or table.material)
-    return sealed(data, LAW, name_of(table), COMMENT, bodies=bodies, material=material)
+    if isinstance(law, LawAxis):
+        return dataset_of(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
+    bodies, material = "unlike" if law.unlike else "alike", described(law.pair or law.material)
+    return dataset_of(law, LAW, name_of(law), errors, bodies=bodies, material=material)
 
 
 def name_of(table: LawTable) -> str:
@@ -108,34 +87,51 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> LawTable:
         if alpha is not None:
             raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} is the law of one material")
         return law_of(content, path)
-    return alpha_of(content, alpha, path)
+    axis = axis_of(content, path)
+    low, high = axis.alpha
+    if alpha is None or not low <= number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
+        wider = "`viscoroll tables law --alpha LOW:HIGH` writes others"
+        raise ParameterError("alpha", alpha, f"one of {low:g} to {high:g}, which {path} holds ({wider})")
+    return axis.at(alpha)
 
 
 def law_of(content: Content, path: Any) -> LawTable:
     """The law of what was checked; raises FileError where it does not name its material."""
-    found, attributes = content
-    if attributes[KIND] != LAW:
+    if content.attributes[KIND] != LAW:
         raise FileError(path, "is the law of every alpha: of one it is vr.tables.law(vr.load_law(path, alpha=11.0))")
-    try:
-        given = _material_of(attributes["material"], path)
-        numbers: dict[str, Any] = {name: np.asarray(found[name]) for name in OTHERS}
-        for name, value in numbers.items():
-            numbers[name] = int(value) if name == "e0" else float(value) if not value.ndim else _frozen(value)
-        coefficients = _frozen(np.stack([found[name] for name in FUNCTIONS], axis=-1))
+    with _whole(path):
+        given = _material_of(content.attributes["material"], path)
         pair = given if isinstance(given, Pair) else None
-        return LawTable(
-            given_coefficients=coefficients, **numbers, unlike=attributes["bodies"] == "unlike",
-            material=given if pair is None else pair.law, pair=pair,
-        )  # fmt: skip
+        found = law_table(given if pair is None else pair.law, coefficients=_stacked(content, LAW))
+        numbers = content.numbers
+        return replace(found, e0=int(numbers["e0"]), T_ref=float(numbers["T_ref"]), pair=pair)
+
+
+def axis_of(content: Content, path: Any) -> LawAxis:
+    """The law of every alpha, of what was checked; raises FileError."""
+    with _whole(path):
+        whole, numbers = _stacked(content, AXIS), content.numbers
+        rows = tuple(map(int, numbers["rows"]))
+        if whole.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(whole):
+            raise ValueError(f"functions of shape {whole.shape[:-1]}")
+        return LawAxis(whole, rows, int(numbers["first"]), int(numbers["e0"]))
+
+
+def _stacked(content: Content, kind: str) -> Floats:
+    """The coefficients of all functions."""
+    found = np.stack([content.numbers[name] for name in KINDS[kind].functions], axis=-1).astype(np.float64)
+    found.flags.writeable = False
+    return found
+
+
+@contextmanager
+def _whole(path: Any) -> Iterator[None]:
+    """FileError in place of what goes wrong where a file is not as it was written."""
+    try:
+        yield
     except (FileError, ParameterError, KeyError, TypeError, ValueError) as error:
         text = " ".join(str(error).split())
         raise FileError(path, f"is no whole law file ({text:.200}): {REMEDY}") from error
-
-
-def _frozen(values: Any) -> Any:
-    values = np.ascontiguousarray(values, np.float64)
-    values.flags.writeable = False
-    return values
 
 
 def described(given: Any) -> str:

@@ -6,6 +6,7 @@ import hashlib
 import io
 import shlex
 import sys
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,51 +31,87 @@ _MOST_BYTES = 1 << 27
 #: Attribute that names the kind of a file, and its values: one material or pair, or every alpha of one relaxation time.
 KIND, LAW, AXIS = "viscoroll_table", "law", "axis"
 
-#: Functions of the law in the order of their coefficients -> meaning.
-MEANING = {
-    "lam": "contact length over that at rest, over kappa |V|",
-    "epsilon": "shift of the contact over half its length, over kappa |V|",
-    "m_half_space": "M_half_space/V, over kappa |V|",
-    "m_cylinder": "M_cylinder/V, over kappa |V|",
-    "N": "N of M = M(V) + N dV/dt, over kappa |V|",
-    "share": "eta/F(eta), over v = 1/F(eta)",
-    "press": "H(eta)/F(eta)^2, over v = 1/F(eta)",
-}
-#: Other numbers of a file -> dimensions, meaning.
-OTHERS: dict[str, tuple[tuple[str, ...], str]] = {
-    "e0": ((), "row 0 holds [0, 2^e0)"),
-    "alpha": ((), "instantaneous over long-time modulus"),
-    "T_mean": ((), "sum J_j T_j over T_ref"),
-    "T_ref": ((), "unit of time; 1 where none was given"),
-    "fast_limit": (
-        ("body", "term"),
-        "W = sum J_j/T_j and C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all, of the half-space and of the cylinder",
+
+class Kind(NamedTuple):
+    """What the file of a kind holds, and how it is read.
+
+    functions : name of each function in the order of its coefficients -> meaning.  dims, terms : of coefficients, and
+    what they are of.  others : name of each other number -> dimensions, meaning.
+    """
+
+    summary: str
+    functions: dict[str, str]
+    dims: tuple[str, ...]
+    terms: str
+    others: dict[str, tuple[tuple[str, ...], str]]
+    comment: str
+
+
+_E0 = (), "row 0 holds [0, 2^e0)"
+_LAW = Kind(
+    "The contact law of one material or pair as polynomials, one an octave of speed: ",
+    {
+        "lam": "contact length over that at rest, over kappa |V|",
+        "epsilon": "shift of the contact over half its length, over kappa |V|",
+        "m_half_space": "M_half_space/V, over kappa |V|",
+        "m_cylinder": "M_cylinder/V, over kappa |V|",
+        "N": "N of M = M(V) + N dV/dt, over kappa |V|",
+        "share": "eta/F(eta), over v = 1/F(eta)",
+        "press": "H(eta)/F(eta)^2, over v = 1/F(eta)",
+    },
+    ("octave", "power"),
+    "powers of t",
+    {
+        "e0": _E0,
+        "alpha": ((), "instantaneous over long-time modulus"),
+        "T_mean": ((), "sum J_j T_j over T_ref"),
+        "T_ref": ((), "unit of time; 1 where none was given"),
+        "fast_limit": (
+            ("body", "term"),
+            "W = sum J_j/T_j and C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all, of the half-space and of the cylinder",
+        ),
+        "relaxation_strength": (("mode",), "E_i over the long-time modulus"),
+        "relaxation_time": (("mode",), "tau_i over T_ref"),
+        "creep_strength": (("mode",), "J_j over the long-time compliance"),
+        "retardation_time": (("mode",), "T_j over T_ref"),
+        "half_space_weight": (("mode",), "part of J_j that is the half-space's"),
+    },
+    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows: row n at "
+    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. u = kappa |V|; "
+    "L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; D >= L: full slip, |Q| = mu, beta = 0."
+    " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < L/8: "
+    "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
+    "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of omega - V. Fast limit: "
+    "z = 1/(2 u sqrt(alpha)), W and C of fast_limit: lam = alpha^-1/2, epsilon = (alpha z/2)(C - W ln z), "
+    "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = 1/v: "
+    "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u a_T, N times a_T^2.",
+)
+KINDS = {
+    LAW: _LAW,
+    AXIS: Kind(
+        "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
+        {
+            "lam": _LAW.functions["lam"],
+            "epsilon": "shift of the contact over half its length and over c, over kappa |V|",
+            "m": "M/V over c, over kappa |V|",
+            "N": "N of M = M(V) + N dV/dt, over c, over kappa |V|",
+            "share": _LAW.functions["share"],
+            "press": _LAW.functions["press"],
+        },
+        ("octave_of_alpha", "degree", "octave", "power"),
+        "T_j(s) and of powers of t",
+        {
+            "first": ((), "log2 of the lowest alpha"),
+            "rows": (("octave_of_alpha",), "rows of an octave of alpha before the fast limit; what follows is 0"),
+            "e0": _E0,
+        },
+        "alpha = m 2^e with m in [1/2, 1) (frexp); i = e - 1 - first; s = 2 log2(2 m) - 1; c = (alpha - 1)/alpha. The "
+        "table of that alpha is the sum over j of T_j(s) times [i, j], T_j Chebyshev's polynomials; epsilon, m and N "
+        "come over c. It is read as the file of one material (viscoroll tables law MATERIAL.toml): x = m 2^e; row n = "
+        "e - e0; n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows[i]: row n at t = 4 m - 3; beyond: the fast limit "
+        "with W = c, C = c (ln 2 - 0.5772...). T_epsilon is the unit of time; both bodies take half of m.",
     ),
-    "relaxation_strength": (("mode",), "E_i over the long-time modulus"),
-    "relaxation_time": (("mode",), "tau_i over T_ref"),
-    "creep_strength": (("mode",), "J_j over the long-time compliance"),
-    "retardation_time": (("mode",), "T_j over T_ref"),
-    "half_space_weight": (("mode",), "part of J_j that is the half-space's"),
-}  # fmt: skip
-#: The same of an axis of alpha; c = (alpha - 1)/alpha.
-MEANING_OF_AXIS = {
-    "lam": MEANING["lam"],
-    "epsilon": "shift of the contact over half its length and over c, over kappa |V|",
-    "m": "M/V over c, over kappa |V|",
-    "N": "N of M = M(V) + N dV/dt, over c, over kappa |V|",
-    "share": MEANING["share"],
-    "press": MEANING["press"],
 }
-OTHERS_OF_AXIS = {
-    "first": ((), "log2 of the lowest alpha"),
-    "rows": (("octave_of_alpha",), "rows of an octave of alpha before the fast limit; what follows is 0"),
-    "e0": OTHERS["e0"],
-}
-_SUMMARY = {
-    LAW: "The contact law of one material or pair as polynomials, one an octave of speed: ",
-    AXIS: "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
-}
-VARIABLES = {LAW: (*MEANING, *OTHERS), AXIS: (*MEANING_OF_AXIS, *OTHERS_OF_AXIS)}
 
 
 class Content(NamedTuple):
@@ -93,23 +130,33 @@ def content_of(found: Any) -> Content:
 def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
     """SHA-256 over names and numbers of all variables: little-endian doubles, the last dimension fastest."""
     digest = hashlib.sha256()
-    for name in VARIABLES[kind]:
+    for name in (*KINDS[kind].functions, *KINDS[kind].others):
         digest.update(name.encode() + np.ascontiguousarray(numbers[name], "<f8").tobytes())
     return digest.hexdigest()
 
 
-def sealed(data: dict[str, xr.Variable], kind: str, title: str, comment: str, **more: str) -> xr.Dataset:
+def dataset_of(law: Any, kind: str, title: str, errors: Mapping[str, float], **more: str) -> xr.Dataset:
     """The dataset of a file: its numbers, what they are and where they come from, and their checksum.
 
-    title : what the law is of.  comment : how the numbers are read.  more : other attributes.
+    title : what the law is of.  errors : the largest relative one of each function.  more : other attributes.
     """
     import xarray as xr
 
+    held = KINDS[kind]
+    data = {}
+    for n, (name, meaning) in enumerate(held.functions.items()):
+        about = {"long_name": f"coefficients of {held.terms}: {meaning}", "largest_relative_error": errors[name]}
+        data[name] = xr.Variable(held.dims, law.coefficients[..., n], about)
+    for name, (dims, meaning) in held.others.items():
+        value = np.asarray(getattr(law, name))
+        value = value.astype(np.int32) if value.dtype.kind == "i" else value
+        about = {"units": "s"} if name == "T_ref" else {}  # the others have none
+        data[name] = xr.Variable(dims, value, {"long_name": meaning, **about})
     attributes = {
         "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {title}",
-        "summary": _SUMMARY[kind] + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
+        "summary": held.summary + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
         "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: kind, SCHEMA: np.int32(VERSION),
-        **more, "comment": comment, "references": PAPER, "source": f"viscoroll {__version__}",
+        **more, "comment": held.comment, "references": PAPER, "source": f"viscoroll {__version__}",
         "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
     }  # fmt: skip
     found = xr.Dataset(data, attrs=attributes)
@@ -118,14 +165,14 @@ def sealed(data: dict[str, xr.Variable], kind: str, title: str, comment: str, **
 
 def errors_of(found: Any) -> dict[str, float]:
     """The largest relative error of every function that a dataset states."""
-    functions = MEANING if found.attrs[KIND] == LAW else MEANING_OF_AXIS
+    functions = KINDS[found.attrs[KIND]].functions
     return {name: float(found[name].attrs["largest_relative_error"]) for name in functions}
 
 
 def is_law(path: str | PathLike[str]) -> bool:
     """Whether a file names itself the law of a material; raises FileError of one that cannot be read or is damaged."""
     try:
-        return _read(path, "material or law of viscoroll", "write it again").attributes.get(KIND) == LAW
+        return content_at(path, "material or law of viscoroll", "write it again").attributes.get(KIND) == LAW
     except OSError:  # the reader of materials says what it is not
         return False
 
@@ -133,7 +180,7 @@ def is_law(path: str | PathLike[str]) -> bool:
 def read_law(path: str | PathLike[str]) -> Content:
     """What a law file holds, verified; raises FileError."""
     try:
-        found = _read(path, "law file of viscoroll", REMEDY)
+        found = content_at(path, "law file of viscoroll", REMEDY)
     except Exception as error:  # libraries raise many kinds
         if isinstance(error, FileError):
             raise
@@ -142,12 +189,15 @@ def read_law(path: str | PathLike[str]) -> Content:
     return found
 
 
-def _read(path: str | PathLike[str], what: str, remedy: str) -> Content:
-    """By h5py alone, which takes a tenth of the time of xarray."""
+def content_at(path: str | PathLike[str], what: str, remedy: str) -> Content:
+    """The numbers and attributes of a file by h5py alone, which takes a tenth of the time of xarray.
+
+    Raises FileError of one that cannot be read or is not what was sealed, else whatever h5py does.
+    """
     import h5py
 
     with h5py.File(io.BytesIO(sealed_content(path, _MOST_BYTES, what, remedy)), "r") as file:
-        numbers = {name: file[name][()] for names in VARIABLES.values() for name in names if name in file}
+        numbers = {name: each[()] for name, each in file.items() if isinstance(each, h5py.Dataset)}
         return Content(numbers, {key: _single(value) for key, value in file.attrs.items()})
 
 
@@ -162,13 +212,13 @@ def check(content: Content, path: Any) -> None:
     """Refuse what is no law of this schema, or not the numbers that its checksum is of; raises FileError."""
     numbers, attributes = content
     kind = attributes.get(KIND)
-    if kind not in VARIABLES:
+    if kind not in KINDS:
         raise FileError(path, "is no law file of viscoroll: `viscoroll tables law` writes one")
     schema = attributes.get(SCHEMA)
     if not isinstance(schema, int | np.integer) or schema != VERSION:
         problem = f"is a law file of schema {schema!s:.20}, and this viscoroll ({__version__}) reads {VERSION}"
         raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
-    missing = [name for name in VARIABLES[kind] if name not in numbers]
+    missing = [name for name in (*KINDS[kind].functions, *KINDS[kind].others) if name not in numbers]
     if missing:
         raise FileError(path, f"is no whole law file: variable {missing[0]!r} is missing; {REMEDY}")
     if checksum(numbers, kind) != attributes.get(CHECKSUM):

@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 
 from ..core.errors import ParameterError
-from .bodies import Bodies
+from .bodies import Bodies, one_series
 from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
 from .law_modes import by_modes, refuse_far
 from .pair import Pair
-from .prony import Prony
-from .prony_forms import Modes
+from .prony import Prony, read_only
 
 #: tables kept, of some 0.2 MB
 _KEPT = 32
@@ -65,7 +64,7 @@ class LawTable:
         table = self.given_coefficients
         if not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
             return table
-        return _read_only(with_unsteady(table, self.e0, lambda z: by_modes(self.material, z).N))
+        return read_only(with_unsteady(table, self.e0, lambda z: by_modes(self.material, z).N))
 
     @cached_property
     def record(self) -> Any:
@@ -77,22 +76,23 @@ class LawTable:
         rows[:8] = self.alpha, 1.0 / math.sqrt(self.alpha), *self.fast_limit.ravel()
         rows[WIDTH:] = arranged(self.given_coefficients, self.e0, self.alpha, self.fast_limit[0]).ravel()
         marks[[COUNT, E0]] = count, self.e0
-        return Law(_read_only(rows), _read_only(marks), _read_only(np.empty(0)), 0, 0, 0)
+        return Law(read_only(rows), read_only(marks), read_only(np.empty(0)), 0, 0, 0)
 
     @cached_property
     def unsteady_record(self) -> Any:
         """As :attr:`record`, with N."""
         N = self.coefficients[:, :, FUNCTIONS.index("N")]
-        return self.record._replace(added=_read_only(added(N, self.e0, self.alpha)))
+        return self.record._replace(added=read_only(added(N, self.e0, self.alpha)))
 
 
-def law_table(given: float | Prony | Bodies | LawTable) -> LawTable:
+def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | None = None) -> LawTable:
     """The table of a material, made once a process and shared by all its threads.
 
     Parameters
     ----------
     given : alpha >= 1, with T_epsilon for the unit of time; a series; two bodies, of which those that are alike, or
         both elastic, are one material; or a table.
+    coefficients : that are known of it, as of a file.
 
     Raises
     ------
@@ -105,8 +105,11 @@ def law_table(given: float | Prony | Bodies | LawTable) -> LawTable:
         raise ParameterError("material", repr(given), "one material, as material[i]")
     if isinstance(given, Bodies) and (given.like or given.alpha == 1.0):
         given = given.total if given.total.E.size else 1.0
+    given = given if isinstance(given, Prony | Bodies) else float(given)
+    if coefficients is not None:
+        return made(given, coefficients=coefficients)
     with _lock:
-        return _made(given if isinstance(given, Prony | Bodies) else float(given))
+        return _made(given)
 
 
 _lock = threading.Lock()
@@ -119,39 +122,23 @@ def _made(given: float | Prony | Bodies) -> LawTable:
 
 def made(given: float | Prony | Bodies, least: int = 0, coefficients: Floats | None = None) -> LawTable:
     """A table made anew, of no fewer rows than ``least``, or of ``coefficients`` that are known."""
-    alpha, T_mean, modes = _numbers(given)
-    unlike = isinstance(given, Bodies)
+    total, unlike = one_series(given), isinstance(given, Bodies)
+    modes, alpha = total.modes, total.alpha
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
-    W = modes.J * modes.b
-    fast, parts = np.stack([W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)]), (weights, 1.0 - weights)
-    limits = _sums(fast, (np.ones(weights.size), *parts))
+    W, shares = modes.J * modes.b, (1.0, weights, 1.0 - weights)
+    fast = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
+    limits, means = (
+        np.array([[math.fsum(share * row) for row in rows] for share in shares]) for rows in (fast, [modes.J / modes.b])
+    )
     table, e0 = _elastic(), 0
     if modes.a.size:
         refuse_far(modes.b[0], modes.a[-1])
         if coefficients is None:
-            means = _sums((modes.J / modes.b)[None], parts)[:, 0]
-            ends = Limits(alpha, means, limits[1:])
+            ends = Limits(alpha, means[1:, 0], limits[1:])
             coefficients = build(lambda z: by_modes(given, z), modes.b[0], modes.a[-1], ends, least)
         table, e0 = coefficients, first_octave(modes.b[0])
-    table, limits, weights = map(_read_only, (table, limits, weights))
-    E, tau, J, T = map(_read_only, (modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b))
-    return LawTable(given, table, e0, alpha, T_mean, unlike, limits, E, tau, J, T, weights)
-
-
-def _sums(terms: Floats, shares: tuple[Floats, ...]) -> Floats:
-    """[share, row]: sums over the modes, rounded once."""
-    return np.array([[math.fsum(share * row) for row in terms] for share in shares])
-
-
-def _numbers(given: float | Prony | Bodies) -> tuple[float, float, Modes]:
-    """(alpha, T_mean, both forms of the series)."""
-    if isinstance(given, float):
-        c, one = np.array([(given - 1.0) / given]), np.ones(1)
-        c, one = (c, one) if given > 1.0 else (c[:0], one[:0])
-        modes = Modes(given, given * one, one, given * c, c, (given * c)[:, None])
-        return given, (given - 1.0) / given, modes
-    total = given.total if isinstance(given, Bodies) else given
-    return total.alpha, total.T_mean, total.modes
+    arrays = map(read_only, (limits, modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
+    return LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays)
 
 
 def _elastic() -> Floats:
@@ -159,9 +146,3 @@ def _elastic() -> Floats:
     table = np.zeros((1, TERMS, len(FUNCTIONS)))
     table[0, 0] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]
     return table
-
-
-def _read_only(values: Any) -> Any:
-    values = np.ascontiguousarray(values)
-    values.flags.writeable = False
-    return values

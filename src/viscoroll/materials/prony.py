@@ -129,6 +129,16 @@ class Prony(OneOrMany):
         return made
 
     @classmethod
+    def sls(cls, alpha: float) -> Prony:
+        """The paper's material: its times in T_epsilon, exact to the last digit; elastic of alpha = 1."""
+        made, c, one = cls.__new__(cls), np.array([(alpha - 1.0) / alpha]), np.ones(1)
+        if alpha == 1.0:
+            c, one = c[:0], one[:0]
+        made._keep(True, c, one, alpha)
+        made.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
+        return made
+
+    @classmethod
     def elastic(cls) -> Prony:
         """No modes: alpha = 1."""
         return cls([], [])
@@ -157,9 +167,9 @@ class Prony(OneOrMany):
 
     def _keep(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
         self.by_creep, self.alpha, self.shape = by_creep, alpha, strengths.shape[:-1]
-        self._strengths, self._times = (_read_only(np.ascontiguousarray(each)) for each in (strengths, times))
+        self._strengths, self._times = map(read_only, (strengths, times))
         if isinstance(alpha, np.ndarray):
-            self.alpha = _read_only(np.ascontiguousarray(alpha))
+            self.alpha = read_only(alpha)
 
     def __getitem__(self, which: Any) -> Prony:
         strengths, times, alpha = self._strengths[which], self._times[which], self.alpha[which]
@@ -201,12 +211,12 @@ class Prony(OneOrMany):
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
             strengths, rates = (getattr(self.modes, name) for name in names)
-            return _read_only(strengths), _read_only(1.0 / rates)
+            return read_only(strengths), read_only(1.0 / rates)
         strengths, rates = np.zeros(self._strengths.shape), np.ones(self._strengths.shape)
         for block in self.blocks(np.arange(len(self))):
             count = block.modes.a.shape[-1]
             strengths[block.rows, :count], rates[block.rows, :count] = (getattr(block.modes, name) for name in names)
-        return _read_only(strengths), _read_only(1.0 / rates)
+        return read_only(strengths), read_only(1.0 / rates)
 
     @property
     def E(self) -> NDArray[np.float64]:
@@ -302,6 +312,8 @@ def _sums(values: NDArray) -> Any:
     return math.fsum(rows) if values.ndim == 1 else np.array([math.fsum(row) for row in rows])
 
 
-def _read_only(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def read_only(values: Any) -> Any:
+    """The array itself, or a copy that lies in one piece, which nobody can write to."""
+    values = np.ascontiguousarray(values)
     values.flags.writeable = False
     return values

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
-
 from .. import __version__
 from ..core.errors import FileError, ParameterError
 from ..core.files import seal_holds, write_dataset
+from .law_store import content_at
 from .measured import Measured
 from .prony import Prony
 
@@ -23,8 +21,6 @@ _Made = TypeVar("_Made")
 SUFFIX = ".nc"
 #: what a file says of itself; another number where one of this version could not be read any more
 _SCHEMA = "viscoroll material 1"
-#: a material takes some kilobytes
-_MOST_BYTES = 1 << 22
 _FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
 _MEANING = {
     "E": ("strengths of relaxation over E_long", "1"),
@@ -77,42 +73,20 @@ def save(material: Any, path: str | PathLike[str]) -> None:
 
 def load(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
     """What ``make`` gives of the arguments of a material that :func:`save` wrote; raises FileError."""
-    import xarray as xr
-
-    content = _whole(Path(path))
     try:
-        found = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", decode_times=False)
-        if found.attrs.get("schema") != _SCHEMA:
-            raise FileError(path, f"is no material: its schema is {found.attrs.get('schema')!r}, not {_SCHEMA!r}")
-        return make(**_arguments(found))
+        numbers, about = content_at(path, "material of this package", "write it again")
+        if about.get("schema") != _SCHEMA:
+            raise FileError(path, f"is no material: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
+        if seal_holds(Path(path).read_bytes()) is None:
+            raise FileError(path, "is damaged, or no material of this package: there is no SHA-256 at its end")
+        form = tuple(numbers[name] for name in _FORMS[about["given"]])
+        series = Prony(*form) if about["given"] == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])
+        found: dict[str, Any] = {
+            name: numbers[name] for name in ("nu", "T_ref", "density", "thickness") if name in numbers
+        }
+        if "measured_low" in numbers:
+            band = {name: numbers[f"measured_{name}"] for name in _BAND}
+            found["measured"] = Measured(**band, source=about["measured"])
+        return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except (ParameterError, KeyError, ValueError, OSError) as error:
         raise FileError(path, f"is no material ({' '.join(str(error).split()):.200})") from error
-
-
-def _arguments(found: xr.Dataset) -> dict[str, Any]:
-    constants: dict[str, Any] = {name: float(found[name]) for name in ("nu", "T_ref")}
-    constants |= {name: float(found[name]) for name in ("density", "thickness") if name in found}
-    if "measured_low" in found:
-        band = {name: float(found[f"measured_{name}"]) for name in _BAND}
-        constants["measured"] = Measured(**band, source=found.attrs["measured"])
-    strengths, times = (found[name].values.astype(np.float64) for name in _FORMS[found.attrs["given"]])
-    creep = found.attrs["given"] == "creep"
-    series = Prony.creep(strengths, times, alpha=float(found.alpha)) if creep else Prony(strengths, times)
-    return constants | {"E": float(found.E_long), "prony": series, "name": found.attrs["name"]}
-
-
-def _whole(path: Path) -> bytes:
-    """The bytes of a file, compared with the SHA-256 at their end before anything parses them."""
-    try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise FileError(path, f"is no material: larger than {_MOST_BYTES} bytes")
-        content = path.read_bytes()
-    except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})") from error
-    sealed = seal_holds(content)
-    if not sealed:
-        problem = (
-            "its bytes differ from the SHA-256 at their end" if sealed is False else "there is no SHA-256 at its end"
-        )
-        raise FileError(path, f"is damaged, or no material of this package: {problem}")
-    return content

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...materials.law_axis import FUNCTIONS, LawAxis, law_axis
-from ...materials.law_axis_file import as_dataset
+from ...materials.law_file import as_dataset
 from ...materials.law_modes import by_modes
 
 if TYPE_CHECKING:

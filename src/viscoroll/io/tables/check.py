@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ... import __version__
 from ...core.errors import FileError, ParameterError
-from ...materials.law_axis_file import axis_of
-from ...materials.law_file import law_of
+from ...materials.law_file import axis_of, law_of
 from ...materials.law_store import AXIS, KIND, content_of, errors_of
 from . import axis
 from .law import measured_errors

@@ -21,7 +21,7 @@ _MOST_BYTES = 1 << 31
 
 def is_law(table: Any) -> bool:
     """Whether a dataset is the law of a material or of every alpha, and no grid."""
-    return getattr(table, "attrs", {}).get(schema.KIND) in law_store.VARIABLES
+    return getattr(table, "attrs", {}).get(schema.KIND) in law_store.KINDS
 
 
 def check(table: Any, path: Any) -> None:
