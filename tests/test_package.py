@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import pkgutil
+import re
 import sys
 from pathlib import Path
 
@@ -27,6 +29,15 @@ def test_every_public_name_loads():
     with pytest.raises(AttributeError, match="no attribute 'contacts'"):
         _ = vr.contacts
     assert all(status.message for status in vr.MotionStatus)
+
+
+def test_the_reference_names_what_is_there():
+    module = ""
+    for line in (Path(__file__).parents[1] / "docs/api.rst").read_text(encoding="utf-8").splitlines():
+        if line.startswith(".. currentmodule:: "):
+            module = line.removeprefix(".. currentmodule:: ")
+        elif re.fullmatch(r"   [\w.]+", line):
+            assert pkgutil.resolve_name(f"{module}.{line.strip()}") is not None
 
 
 def test_every_error_is_a_viscoroll_error():
