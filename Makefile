@@ -61,7 +61,8 @@ numbers: setup figures ## measure again what README and docs state, and put it t
 	-$(RUN) -m pipeline.evidence.measure.identification
 	$(RUN) -m pipeline.evidence.document
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do cp out/figures/$$name.png docs/figures/; done
-	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml --plot docs/figures/sensitivity.png
+	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml -o out/sensitivity.nc
+	$(BIN)/viscoroll plot out/sensitivity.nc -o docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
 	$(RUN) -m pipeline.evidence.prove

@@ -22,7 +22,7 @@ from places import ROOT
 from processes import printed, python
 
 import viscoroll as vr
-from viscoroll.app.cli import main
+from viscoroll.app.cli import arguments, main
 from viscoroll.materials.file import read_materials
 from viscoroll.materials.law_store import checksum, content_of
 
@@ -32,12 +32,7 @@ PRESET = ["paper-section-5"]
 START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
 GRID = "tables build --V 0.1:1:5:log --delta -0.04:0.04:9"
 SCENE = "[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n"
-TABLE_COMMANDS = ["tables law", "tables build", "tables export", "tables info", "tables validate"]
-MATERIAL_COMMANDS = ["material show", "material plot", "material fit"]
-COMMANDS = [
-    "contact", "stress", "roll", "steady", "validity", "ensemble", "sensitivity", "plot", "doctor",
-    *TABLE_COMMANDS, *MATERIAL_COMMANDS,
-]  # fmt: skip
+COMMANDS = [name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu")]  # these take long
 UNCERTAIN = """
 preset = "paper-section-5"
 scene.mu = { distribution = "uniform", loc = 0.19, scale = 0.02 }
@@ -225,9 +220,8 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
 
 
 def test_output_for_machines_and_for_eyes(run, here):
-    """-o - is standard output; suffixes in any case; a file with a byte order mark; no onset in words."""
+    """Suffixes in any case; a file with a byte order mark."""
     argv = ["contact", *PRESET, "--V", "1,2", "--delta", "-1e-3"]
-    assert run(*argv, "-o", "-") == run(*argv)
     run(*argv, "-o", "A.CSV")
     assert (here / "A.CSV").read_text() == run(*argv, "--format", "csv")
     (here / "bom.toml").write_bytes(b"\xef\xbb\xbf" + b'preset = "paper-section-5"\n')
@@ -238,7 +232,11 @@ def test_result_files_and_scenes_are_drawn(run, refuse, here):
     run("roll", *START, "--t", "0:3e-3:7", "-o", "m.nc")
     run("contact", *PRESET, "--V", "0.1:1:5", "--delta", "-0.01:0.01:3", "-o", "c.nc")
     (here / "a.toml").write_text(ROLLER + RUBBER)
-    for name in ("m.nc", "c.nc", "a.toml"):
+    (here / "m.toml").write_text(RUBBER)
+    (here / "run.toml").write_text(UNCERTAIN)
+    run("sensitivity", "run.toml", "-n", "16", "-o", "s.nc")
+    vr.presets.RUBBER_CYLINDER.material.to_netcdf("rubber.nc")
+    for name in ("m.nc", "c.nc", "s.nc", "rubber.nc", "a.toml", "m.toml"):
         run("plot", name, "-o", f"{name}.png")
         assert (here / f"{name}.png").read_bytes()[1:4] == b"PNG"
     run("contact", *PRESET, "--V", "1", "--delta", "0", "-o", "one.nc")
@@ -271,18 +269,18 @@ def test_a_warning_is_one_line(capsys):
 V, OMEGA = np.array([-1.0, 0.0, 1.0, 2.0]), np.geomspace(1e-3, 1.0, 4)
 X, T = np.linspace(-0.3, 0.6, 9), np.linspace(0.0, 3e-3, 7)
 SAME = {
-    "contact --V -1:1:3,2 --omega 1e-3:1:4:log --slopes": (
+    "contact --V -1:1:3,2 --omega 1e-3:1:4:log": (
         ("V", "omega"),
-        lambda: vr.contact(vr.presets.PAPER_SECTION_5, V[:, None], omega=OMEGA, slopes=True).as_dict(),
+        lambda: vr.contact(vr.presets.PAPER_SECTION_5, V[:, None], omega=OMEGA).as_dict(),
     ),
     "stress --V -0.5 --delta 0.01": (
         ("x",),
         lambda x: vr.stress(vr.presets.PAPER_SECTION_5, x, -0.5, delta=0.01).as_dict(),
     ),
-    "roll --V0 1.5 --omega0 0.5 --t 0:3e-3:7 --rtol 1e-6": (
+    "roll --V0 1.5 --omega0 0.5 --t 0:3e-3:7": (
         ("t",),
         lambda: {
-            name: getattr(vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, T, rtol=1e-6), name)
+            name: getattr(vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, T), name)
             for name in ("V", "omega", "x", "angle", "delta")
         },
     ),
@@ -320,11 +318,6 @@ def test_roll_text(run, here):
     assert len(out.splitlines()) == len(str(motion).splitlines()) + 2 + motion.t.size
     assert run("roll", *START, "--t", "0:3e-3:9", "-o", "m.txt") == f"{motion}\n"
     assert (here / "m.txt").read_text() == out
-    m = vr.roll(vr.presets.RUBBER_ROLLER, 0.3, 0.3, [0.0, 3.0], unsteady=True, rested=60.0)
-    shown = run(
-        "roll", "rubber-roller", *["--V0", "0.3", "--omega0", "0.3", "--t", "0,3", "--unsteady", "--rested", "60"]
-    )
-    assert shown.startswith(str(m))
 
 
 # --- tables ---
@@ -340,7 +333,7 @@ def test_tables_law(run, here):
     law = vr.load_law("pair.nc")
     assert (law.unlike, law.pair.base.E) == (True, 2e11)
     assert "static const vr_law pair = {" in (here / "pair.h").read_text()
-    run("tables", "export", "pair.nc", "-o", "again.h")
+    run("export", "pair.nc", "-o", "again.h")
     assert (here / "again.h").read_text().replace("again", "pair") == (here / "pair.h").read_text()
     run("tables", "law", "--alpha", "8:16", "-o", "law.nc")
     assert vr.load_law("law.nc", alpha=11.0).material == 11.0
@@ -353,6 +346,8 @@ def test_tables_build_and_export(run, here):
     assert table["V"].values.tolist() == np.geomspace(0.1, 1.0, 5).tolist()
     state = vr.contact(vr.Scene(11.0, 2.91, 0.2), 1.0, delta=0.01, method="direct")
     assert close(table["Q"].values[-1, 5, 1], state.Q, rel=tol.DIRECT_TRACTION, scale=1.0)
+    run("export", "t.nc", "-o", "t.cdf")
+    assert (here / "t.cdf").read_bytes().startswith(b"CDF\x02")
     run(*GRID.split(), "s.toml", "-o", "q.txt")
     assert "alpha = 11.0\n# kappa = 2.91\n# mu = 0.2" in (here / "q.txt").read_text()
     (here / "roller.toml").write_text(f"{ONE}[cylinder]\nR = 0.1\nm = 30.0\nmu = 0.3\n")
@@ -361,7 +356,7 @@ def test_tables_build_and_export(run, here):
 
 
 def test_tables_validate(run, capsys, tables):
-    assert "EXCEEDED" not in run("tables", "validate", str(tables / "rubber.nc"), "-n", "500", "--seed", "3")
+    assert "EXCEEDED" not in run("tables", "validate", str(tables / "rubber.nc"), "-n", "500")
     wrong = vr.tables.load(tables / "rubber.nc")
     wrong["press"].values[9] *= 1.0 + tol.CLI_WRONG
     vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(content_of(wrong).numbers)), "wrong.nc")
@@ -380,9 +375,11 @@ def test_answered(run, refuse, here, tables):
     whole = (tables / "rubber.nc").read_bytes()
     (here / "half.nc").write_bytes(whole[: len(whole) // 2])
     (here / "law.nc").write_bytes(whole)
+    (here / "rubber.nc").write_bytes(whole)
     for name, text in (
         ("file", "as it was"), ("s.toml", SCENE), ("bad.toml", "[scene]\nalhpa = 11\n"), ("rubber.toml", ONE),
-        ("tread.toml", RUBBER), ("pair.toml", RUBBER + "[base]\nE = 2e11\nnu = 0.3\n"),
+        ("tread.toml", RUBBER), ("warm.toml", RUBBER + "temperature = 30.0\n"),
+        ("pair.toml", RUBBER + "[base]\nE = 2e11\nnu = 0.3\n"),
     ):  # fmt: skip
         (here / name).write_text(text)
     lines = (Path(__file__).parent / "answers.txt").read_text(encoding="utf-8").splitlines()

@@ -235,8 +235,8 @@ def test_cf_checker_finds_nothing(tmp_path, kind):
 
 def test_netcdf_of_a_law_by_ncdump(folder):
     need("command -v ncdump")
-    vr.tables.export(vr.tables.load(folder / "law.nc"), folder / "three.nc", "netcdf3")
-    for name, kind in (("law.nc", "netCDF-4"), ("three.nc", "64-bit offset")):
+    vr.tables.export(vr.tables.load(folder / "law.nc"), folder / "three.cdf")
+    for name, kind in (("law.nc", "netCDF-4"), ("three.cdf", "64-bit offset")):
         shown = subprocess.run(["ncdump", "-k", folder / name], capture_output=True, text=True, check=True)
         assert shown.stdout == f"{kind}\n"
         shown = subprocess.run(

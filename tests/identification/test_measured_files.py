@@ -46,8 +46,7 @@ def test_the_program_reports(folder, capsys):
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
     assert (folder / "fit.png").exists()
-    assert cli.main([*given, "-o", out[2], "--format", "json"]) == 0
-    assert json.loads(capsys.readouterr().out) == found
+    assert cli.main([*given, "-o", out[2]]) == 0
     assert (folder / "fit.nc").exists()
 
 

@@ -179,7 +179,7 @@ def test_a_killed_run_goes_on(run_file, tmp_path, whole):
 
 def test_command(run_file, tmp_path, whole, capsys):
     store = tmp_path / "store.zarr"
-    assert main(["ensemble", str(run_file), "--dry-run"]) == 0
+    assert main(["ensemble", str(run_file)]) == 0
     assert "1200 motions in 12 blocks of 100" in capsys.readouterr().out
     assert not store.exists()
     assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
@@ -188,14 +188,14 @@ def test_command(run_file, tmp_path, whole, capsys):
     assert shown.err == ""  # no bar where nobody looks
     assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
     assert "12 of 12 blocks were there and whole" in capsys.readouterr().out
-    assert main(["ensemble", "verify", str(store)]) == 0
+    assert main(["verify", str(store)]) == 0
     assert "complete: 12 blocks" in capsys.readouterr().out
-    assert main(["ensemble", "export", str(store), "-o", str(tmp_path / "all.nc")]) == 0
+    assert main(["export", str(store), "-o", str(tmp_path / "all.nc")]) == 0
     assert main(["plot", str(store), "-o", str(tmp_path / "run.png")]) == 0
     assert (tmp_path / "run.png").stat().st_size > 10_000
     assert main(["plot", f"{store}/", "-o", str(tmp_path / "slash.png")]) == 0
     (store / "motions/x/3.0").write_bytes(b"")
-    assert main(["ensemble", "verify", str(store)]) == 1
+    assert main(["verify", str(store)]) == 1
     assert "motions/x/3.0" in capsys.readouterr().out
 
 

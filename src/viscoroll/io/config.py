@@ -137,11 +137,10 @@ def located(path: Any, content: Mapping[str, Any], error: ParameterError) -> Fil
     return fault(path, section, error.name, str(error))
 
 
-def read_bodies(path: str | PathLike[str], temperature: float | None = None) -> Any:
+def read_bodies(path: str | PathLike[str]) -> Any:
     """The pair, the series or bodies, or the alpha of a file: what has a contact law.
 
     ``path`` : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
-    ``temperature`` : as of :func:`read_materials`, of a file with [material].
 
     Raises
     ------
@@ -151,12 +150,10 @@ def read_bodies(path: str | PathLike[str], temperature: float | None = None) -> 
     content = {} if Path(path).suffix == SUFFIX else read(path)
     if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
         body = read_body(path)
-        if temperature is not None:
-            raise FileError(path, f"temperature = {temperature:g}: needs [material] with wlf or arrhenius")
         if isinstance(body, Cylinder):
             return body.pair
         return body.alpha if body.material is None else body.material
-    found = read_materials(path, temperature)
+    found = read_materials(path)
     if "material" not in found:
         raise FileError(path, "section [material] is missing")
     try:

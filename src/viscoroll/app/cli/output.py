@@ -6,8 +6,6 @@ import json
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ...core.files import write_dataset, write_text
 
 if TYPE_CHECKING:
@@ -17,6 +15,8 @@ if TYPE_CHECKING:
 
 def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     """A result by its ``to_xarray`` and ``to_pandas``, below its title or ``heading``; errors of :func:`deliver`."""
+    import numpy as np
+
     data, frame = result.to_xarray(), result.to_pandas().reset_index()
     for name, each in data.items():
         if "flag_meanings" in each.attrs:  # what codes mean, by the conventions of CF
@@ -45,7 +45,7 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
     if kind == "csv":
         text = frame.to_csv(index=False, lineterminator="\n")
     elif kind == "json":
-        finite = frame.replace([np.inf, -np.inf], np.nan).astype(object)
+        finite = frame.replace([float("inf"), -float("inf")], float("nan")).astype(object)
         text = json.dumps(finite.where(finite.notna(), None).to_dict("list"), indent=1, allow_nan=False) + "\n"
     else:
         text = as_text(frame, heading, {str(name): each.attrs.get("long_name", "") for name, each in data.items()})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import io
 import os
 import re
@@ -13,25 +14,19 @@ from typing import Any, NoReturn
 
 from ... import __version__
 from ...core.errors import Interrupted, ViscorollError
-from . import (
-    contact,
-    doctor,
-    ensemble,
-    fmu,
-    identify,
-    material,
-    motion,
-    plot,
-    sensitivity,
-    steady,
-    tables,
-    validity,
-    warmup,
-)
+
+# they fill the table of commands, in this order
+from . import scenes, runs, measured, tables, plot, warmup, doctor  # noqa: F401  # isort: skip
+from .arguments import COMMANDS
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
 _NEGATIVE = re.compile(r"-\.?(\d|inf|nan)")
+#: first words of several commands
+_GROUPS = {
+    "material": "show and fit a material of several relaxation times",
+    "tables": "the law of a material as a file, grids for other programs",
+}
 
 
 class UsageError(ViscorollError):
@@ -39,7 +34,7 @@ class UsageError(ViscorollError):
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that raises instead of exiting, and shows epilogs as they are written."""
+    """A parser that raises instead of exiting, and shows texts as they are written."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -59,23 +54,18 @@ def parser() -> Parser:
         epilog="example:\n  viscoroll roll paper-section-5 --V0 1.5 --omega0 0.5 --t 3e-3",
     )
     program.add_argument("--version", action="version", version=f"viscoroll {__version__}")
-    commands = program.add_subparsers(metavar="COMMAND", required=True)
-    for group in (
-        contact,
-        motion,
-        steady,
-        validity,
-        ensemble,
-        sensitivity,
-        identify,
-        tables,
-        fmu,
-        material,
-        plot,
-        warmup,
-        doctor,
-    ):
-        group.add_commands(commands)
+    groups = {"": program.add_subparsers(metavar="COMMAND", required=True)}
+    for words, (run, options) in COMMANDS.items():
+        group, _, name = words.rpartition(" ")
+        if group not in groups:
+            one = groups[""].add_parser(group, help=_GROUPS[group])
+            groups[group] = one.add_subparsers(metavar="COMMAND", required=True)
+        text, _, example = (inspect.getdoc(run) or "").partition("\n\nexample:")
+        short, epilog = text.partition(".\n")[0].rstrip("."), f"example:{example}" if example else None
+        one = groups[group].add_parser(name, help=short, description=text, epilog=epilog)
+        for names, about in options:
+            one.add_argument(*names, **about)
+        one.set_defaults(run=run)
     return program
 
 
@@ -103,8 +93,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str]) -> int:
     try:
-        arguments = parser().parse_args(_joined(argv))
-        code: int = arguments.run(arguments)
+        given = parser().parse_args(_joined(argv))
+        code = given.run(given) or 0
     except SystemExit as finished:  # argparse's own way to end after --help and --version
         code = int(finished.code or 0)
     sys.stdout.flush()

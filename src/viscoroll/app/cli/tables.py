@@ -1,156 +1,138 @@
-"""``viscoroll tables law|build|export|info|validate``."""
+"""Files of laws and grids, and FMUs: ``viscoroll tables``, ``export`` and ``fmu``."""
 
 from __future__ import annotations
 
 from argparse import Namespace
-from typing import Any
+from pathlib import Path
 
-from .arguments import NUMBERS, add_output_option, add_scene, body_of, count, number, numbers, whole
+import viscoroll as vr
 
-_LAW, _GRID = (".nc", ".h", ".json"), (".nc", ".csv", ".txt", ".mat")
+from .arguments import FILE, SCENE, body_of, command, numbers, option, output
 
-
-def add_commands(commands: Any) -> None:
-    """Add the group to the program."""
-    group = commands.add_parser(
-        "tables",
-        help="the law of a material as a file, grids for other programs",
-        description="The contact law of a material as a file or a header of C, and on grids.",
-        epilog="example:\n  viscoroll tables law docs/examples/rubber.toml -o rubber.nc",
-    ).add_subparsers(metavar="COMMAND", required=True)
-    for add in (_add_law, _add_build, _add_export, _add_info, _add_validate):
-        add(group)
+_LAW, _GRID = (".nc", ".cdf", ".h", ".json"), (".nc", ".cdf", ".csv", ".txt", ".mat")
 
 
-def _add_law(group: Any) -> None:
-    parser = group.add_parser(
-        "law",
-        help="the law of a material or pair, or of every alpha, as a file, exact",
-        description="Write the contact law of a material, or of a pair: for vr.load_law, run files and every program\n"
-        "that reads netCDF (.nc), as table and evaluator in one header of C99 or C++ (.h), or as .json.  Without a\n"
-        "material, of every alpha of one relaxation time (.nc).",
-        epilog="example:\n  viscoroll tables law docs/examples/rubber.toml -o rubber.h",
-    )
-    parser.add_argument(
-        "file", metavar="MATERIAL", nargs="?",
-        help="TOML with [material], perhaps [base], or with [scene] or [cylinder]; or the netCDF of a material",
-    )  # fmt: skip
-    parser.add_argument(
-        "--temperature", type=number, metavar="T", help="degrees Celsius, by the wlf or arrhenius of the file"
-    )
-    parser.add_argument(
-        "--alpha", type=_low_high, metavar="LOW:HIGH", help="in place of MATERIAL: from which alpha to which, as 1:4096"
-    )
-    add_output_option(parser, *_LAW, required=True)
-    parser.set_defaults(run=_law)
+def _low_high(text: str) -> tuple[float, ...]:
+    return tuple(map(float, text.split(":")))
 
 
-def _add_build(group: Any) -> None:
-    parser = group.add_parser(
-        "build",
-        help="a grid over V, delta and perhaps alpha, for programs that look up tables",
-        description="Write the contact of a scene, or of a cylinder in SI units, on a grid: .nc, .csv, .txt (for\n"
-        f"Modelica) or .mat (MATLAB).  An axis is {NUMBERS}.",
-        epilog="example:\n  viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc",
-    )
-    add_scene(parser)
-    parser.add_argument("--V", type=numbers, required=True, help="speeds of the axis, > 0")
-    parser.add_argument("--delta", type=numbers, required=True, help="creep ratios")
-    parser.add_argument("--alpha", type=numbers, help="a third axis, of a scene")
-    add_output_option(parser, *_GRID, required=True)
-    parser.set_defaults(run=_build)
+def _size(path: Path) -> None:
+    print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 
-def _add_export(group: Any) -> None:
-    parser = group.add_parser(
-        "export",
-        help="a table file in the format of another program",
-        description="Write the file of a law (.h, .json) or of a grid (.csv, .txt, .mat) for another program.",
-        epilog="example:\n  viscoroll tables export data/tables/rubber.nc -o rubber.h",
-    )
-    parser.add_argument("file", metavar="FILE")
-    parser.add_argument("--format", help="netcdf3, of an .nc for readers without HDF5")
-    add_output_option(parser, *dict.fromkeys(_LAW + _GRID), required=True)
-    parser.set_defaults(run=_export)
+@command(
+    "tables law",
+    option("file", metavar="MATERIAL", nargs="?",
+           help="TOML with [material], perhaps [base], or with [scene] or [cylinder]; or the netCDF of a material"),
+    option("--alpha", type=_low_high, metavar="LOW:HIGH", help="in place of MATERIAL: from alpha to alpha, as 1:4096"),
+    output(*_LAW),
+)  # fmt: skip
+def law(given: Namespace) -> None:
+    """The law of a material or pair, or of every alpha, as a file, exact.
 
+    For vr.load_law, run files and every program that reads netCDF (.nc; .cdf without HDF5), as table and evaluator in
+    one header of C99 or C++ (.h), or as .json.  Without a material, of every alpha of one relaxation time.
 
-def _add_info(group: Any) -> None:
-    parser = group.add_parser(
-        "info",
-        help="what a table file holds",
-        description="Functions or grid, stated errors, material and provenance of a table file, verified.",
-        epilog="example:\n  viscoroll tables info data/tables/rubber.nc",
-    )
-    parser.add_argument("file", metavar="FILE")
-    parser.set_defaults(run=_info)
-
-
-def _add_validate(group: Any) -> None:
-    parser = group.add_parser(
-        "validate",
-        help="compare the file of a law with the formulas of its modes",
-        description="Compare the file of a law with the formulas of its relaxation modes at random speeds; exit\n"
-        "code 1 where an error exceeds that which the file states.",
-        epilog="example:\n  viscoroll tables validate data/tables/rubber.nc",
-    )
-    parser.add_argument("file", metavar="FILE")
-    parser.add_argument("-n", type=count, default=10_000, help="random places (default 10000)")
-    parser.add_argument("--seed", type=whole, default=0, help="seed of the random places (default 0)")
-    parser.set_defaults(run=_validate)
-
-
-def _law(arguments: Namespace) -> int:
-    from ...core.errors import ParameterError
-    from ...io import tables
+    example:
+      viscoroll tables law docs/examples/rubber.toml -o rubber.h
+    """
     from ...io.config import read_bodies
 
-    if arguments.alpha is not None and arguments.temperature is not None:
-        raise ParameterError("temperature", arguments.temperature, "left out beside --alpha")
-    given = None if arguments.file is None else read_bodies(arguments.file, arguments.temperature)
-    _deliver(tables.law(given, alpha=arguments.alpha), arguments)
-    return 0
+    material = None if given.file is None else read_bodies(given.file)
+    vr.tables.export(vr.tables.law(material, alpha=given.alpha), given.output)
+    _size(given.output)
 
 
-def _low_high(text: str) -> tuple[float, float]:
-    """Two numbers."""
-    low, _, high = text.partition(":")
-    return number(low), number(high)
+@command(
+    "tables build", SCENE,
+    option("--V", type=numbers, required=True, help="speeds of the axis, > 0"),
+    option("--delta", type=numbers, required=True, help="creep ratios"),
+    option("--alpha", type=numbers, help="a third axis, of a scene"),
+    output(*_GRID),
+)  # fmt: skip
+def build(given: Namespace) -> None:
+    """A grid over V, delta and perhaps alpha, for programs that look up tables.
+
+    Of the contact of a scene, or of a cylinder in SI units: .nc, .cdf (without HDF5), .csv, .txt (for Modelica) or
+    .mat (MATLAB).  Axes are numbers, as of `viscoroll contact`.
+
+    example:
+      viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
+    """
+    vr.tables.export(vr.tables.build(body_of(given.scene), given.V, given.delta, given.alpha), given.output)
+    _size(given.output)
 
 
-def _build(arguments: Namespace) -> int:
-    from ...io import tables
+@command("tables info", FILE)
+def info(given: Namespace) -> None:
+    """What a table file holds: functions or grid, stated errors, material and provenance.
 
-    what = body_of(arguments.scene)
-    _deliver(tables.build(what, arguments.V, arguments.delta, arguments.alpha), arguments)
-    return 0
-
-
-def _export(arguments: Namespace) -> int:
-    from ...io import tables
-
-    _deliver(tables.load(arguments.file), arguments, arguments.format)
-    return 0
+    example:
+      viscoroll tables info data/tables/rubber.nc
+    """
+    print(vr.tables.info(given.file))
 
 
-def _deliver(table: Any, arguments: Namespace, format: str | None = None) -> None:
-    from ...io import tables
+@command("tables validate", FILE, option("-n", type=int, default=10_000, help="random speeds (default 10000)"))
+def validate(given: Namespace) -> int:
+    """The file of a law against the formulas of its relaxation modes, at random speeds.
 
-    tables.export(table, arguments.output, format)
-    print(f"{arguments.output}: {arguments.output.stat().st_size / 1e3:.0f} kB")
+    Exit code 1 where an error exceeds that which the file states.
 
-
-def _info(arguments: Namespace) -> int:
-    from ...io import tables
-
-    print(tables.info(arguments.file))
-    return 0
-
-
-def _validate(arguments: Namespace) -> int:
-    from ...io import tables
+    example:
+      viscoroll tables validate data/tables/rubber.nc
+    """
     from ...io.tables.check import Report, check_table
 
-    checks = check_table(tables.load(arguments.file), arguments.n, arguments.seed)
-    report = Report(tuple(checks), {"file": arguments.file, "points": arguments.n, "seed": arguments.seed})
+    report = Report(tuple(check_table(vr.tables.load(given.file), given.n, 0)), {"file": given.file, "points": given.n})
     print(report)
-    return 0 if report.ok else 1
+    return not report.ok
+
+
+@command("export", FILE, output(*dict.fromkeys(_LAW + _GRID)))
+def export(given: Namespace) -> None:
+    """The results of a run or a table in a file for other programs.
+
+    Of STORE.zarr the summaries, and all motions that it keeps, as .nc; of a law .nc, .cdf, .h or .json; of a grid .nc,
+    .cdf, .csv, .txt or .mat.
+
+    example:
+      viscoroll export data/tables/rubber.nc -o rubber.h
+    """
+    if Path(given.file).is_dir():
+        vr.runs.export_netcdf(given.file, given.output)
+    else:
+        vr.tables.export(vr.tables.load(given.file), given.output)
+    _size(given.output)
+
+
+@command(
+    "fmu",
+    option("file", metavar="MATERIAL_OR_LAW",
+           help="TOML with [material], perhaps [base] and a [cylinder], whose numbers are those at the start; the file "
+           "of `viscoroll tables law`; or the netCDF of a material"),
+    option("--model", default="Roller", help="Roller (default) or ContactElement"),
+    option("--fmi", type=int, default=2, help="version of the standard: 2 (default) or 3"),
+    output(".fmu"),
+)  # fmt: skip
+def fmu(given: Namespace) -> None:
+    """A cylinder as an FMU, for Modelica tools and others.
+
+    By the law of a material or pair, with its sources, compiled for this machine by cc.
+    Roller: drive force and torque -> v, omega, x; co-simulation and model exchange.
+    ContactElement: v, omega, load -> force, torque, moments; model exchange.  Both have exact slopes.
+
+    example:
+      viscoroll fmu docs/examples/rubber.toml -o roller.fmu
+    """
+    from ...core.sections import read
+    from ...io.config import read_bodies, read_body
+    from ...materials.law_store import is_law
+
+    path = given.file
+    if Path(path).suffix == ".nc":
+        what = vr.load_law(path) if is_law(path) else read_bodies(path)
+    else:
+        what = read_body(path) if "cylinder" in read(path) else read_bodies(path)
+    vr.fmu.build(what, given.output, given.model, given.fmi)
+    _size(given.output)

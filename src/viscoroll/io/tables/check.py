@@ -1,4 +1,4 @@
-"""The file of a law against the formulas of its modes, or of every alpha against root solves: rows of a report."""
+"""The file of a law against the formulas of its modes: rows of a report."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from ... import __version__
 from ...core.errors import FileError, ParameterError
 from ...materials.law_file import axis_of, law_of
 from ...materials.law_store import AXIS, KIND, content_of, errors_of
-from . import axis
 from .law import measured_errors
 from .store import is_law
 
@@ -60,7 +59,7 @@ class Report:
 
 
 def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
-    """Compare a law with the formulas of its modes, of every alpha with root solves, at ``count`` random places.
+    """Compare a law, or those of random alphas, with the formulas of its modes at ``count`` random places.
 
     Parameters
     ----------
@@ -87,16 +86,14 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     source = table.encoding.get("source", "table")
     if not is_law(table):
         raise FileError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")
-    content, against = content_of(table), "the formulas of the modes"
-    if content.attributes[KIND] == AXIS:
-        found, against = axis.measured_errors(axis_of(content, source), count, seed), "root solves"
-    else:
-        found = measured_errors(law_of(content, source), count, seed)
+    content = content_of(table)
+    read = axis_of if content.attributes[KIND] == AXIS else law_of
+    found = measured_errors(read(content, source), count, seed)
     return [
         Check(
             f"{table.attrs['title']}: {name}", found[name],
             ALLOWANCE * stated + ROUNDING,
-            f"relative; {count} places, against {against}",
+            f"relative; {count} places, against the formulas of the modes",
         )
         for name, stated in errors_of(table).items()
     ]  # fmt: skip

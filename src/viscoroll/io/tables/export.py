@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Callable
+from importlib.resources import files
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import __version__
 from ...core.errors import ParameterError
 from ...core.files import replacing, write_text
 from ...core.symbols import PAPER
+from ...materials.law_file import law_of
+from ...materials.law_store import CHECKSUM, content_of
 from . import schema, store
-from .law import export_law
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,20 +28,20 @@ if TYPE_CHECKING:
 _GIVEN = ("alpha", "kappa", "mu", "R", "m", "load")
 
 
-def export(table: xr.Dataset, path: str | PathLike[str], format: str | None = None) -> None:
+def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     """Write a law or a grid for another program, whole or not at all.
 
     Parameters
     ----------
     table : of :func:`law`, :func:`build` or :func:`load`.
-    path : its suffix is that of the format: of either .nc; of a law .h (C99 and C++: table and evaluator in one header)
-        or .json; of a grid .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat (MATLAB, Simulink).
-    format : "netcdf3" for readers without HDF5.
+    path : its suffix is that of the format: of either .nc, or .cdf for readers without HDF5; of a law .h (C99 and C++:
+        table and evaluator in one header) or .json; of a grid .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or
+        .mat (MATLAB, Simulink).
 
     Raises
     ------
     ParameterError
-        Another suffix or format; for Modelica a grid over alpha, as its tables have two inputs.
+        Another suffix; for Modelica a grid over alpha, as its tables have two inputs.
     FileError
         If it cannot be written there.
 
@@ -45,17 +50,12 @@ def export(table: xr.Dataset, path: str | PathLike[str], format: str | None = No
     All formats hold the same bits as ``table``.
     """
     path = Path(path)
-    if format is not None and (format != "netcdf3" or path.suffix != ".nc"):
-        raise ParameterError("format", repr(format), "left out, or 'netcdf3' of a name that ends in .nc")
     store.check(table, "export")
-    if path.suffix == ".nc":
-        (store.save if format is None else _write_netcdf3)(table, path)
-    elif store.is_law(table):
-        export_law(table, path)
-    elif path.suffix in FORMATS:
-        FORMATS[path.suffix](table, path)
-    else:
-        raise ParameterError("path", path, f"a name that ends in .nc, {', '.join(FORMATS)} for a grid")
+    formats = LAW if store.is_law(table) else GRID
+    if path.suffix not in formats:
+        kind = "law" if store.is_law(table) else "grid"
+        raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
+    formats[path.suffix](table, path)
 
 
 def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
@@ -130,7 +130,51 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
         savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 
-#: Suffix -> who writes a grid.
-FORMATS: dict[str, Callable[[xr.Dataset, Path], None]] = {
-    ".csv": _write_csv, ".txt": _write_modelica, ".mat": _write_matlab,
-}  # fmt: skip
+def _write_header(found: xr.Dataset, path: Path) -> None:
+    """Table and evaluator in one header of C."""
+    name = path.stem
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
+    table = law_of(content_of(found), path)
+    octaves = ",\n".join(
+        "{" + ",\n ".join("{" + _numbers(powers) + "}" for powers in octave) + "}" for octave in table.coefficients
+    )
+    limit = ", ".join("{" + _numbers(body) + "}" for body in table.fast_limit)
+    evaluator = files("viscoroll.io.tables").joinpath("c/vr_law.h").read_text(encoding="utf-8")
+    about = "\n".join(f" * {line}".rstrip() for line in found.attrs["material"].splitlines()).replace("*/", "* /")
+    write_text(
+        path,
+        f"""/* {found.attrs["title"].replace("*/", "* /")}
+ *
+ * Written by {found.attrs["source"]}; T_ref = {table.T_ref!r} s; {CHECKSUM} {found.attrs[CHECKSUM]}
+ *
+{about}
+ */
+{evaluator}
+#ifndef VR_LAW_{name}
+#define VR_LAW_{name}
+static const double {name}_coefficients[{len(table.coefficients)}][VR_TERMS][VR_FUNCTIONS] = {{
+{octaves}}};
+static const vr_law {name} = {{
+  {len(table.coefficients)}, {table.e0}, {table.alpha!r}, {{{limit}}}, {name}_coefficients}};
+#endif
+""",
+    )
+
+
+def _numbers(values: NDArray) -> str:
+    """Digits that read back to the same bits."""
+    return ",".join(map(repr, values.tolist()))
+
+
+def _write_json(found: xr.Dataset, path: Path) -> None:
+    numbers = {str(name): variable.values.tolist() for name, variable in found.variables.items()}
+    about = ("title", "viscoroll_table", "bodies", "material", "comment", "references", "source", "license", CHECKSUM)
+    content = {name: found.attrs[name] for name in about} | {"law_schema": int(found.attrs["law_schema"])} | numbers
+    write_text(path, json.dumps(content, separators=(",", ":")))
+
+
+_EITHER: dict[str, Callable[[xr.Dataset, Path], None]] = {".nc": store.save, ".cdf": _write_netcdf3}
+#: Suffix -> who writes a law, or a grid.
+LAW = _EITHER | {".h": _write_header, ".json": _write_json}
+GRID = _EITHER | {".csv": _write_csv, ".txt": _write_modelica, ".mat": _write_matlab}

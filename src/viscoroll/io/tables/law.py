@@ -1,33 +1,26 @@
-"""The law of one material or pair as a dataset with its measured errors, and as a header of C or JSON."""
+"""The law of one material or pair, or of every alpha, as a dataset with its measured errors."""
 
 from __future__ import annotations
 
-import json
-import re
-from collections.abc import Callable
-from importlib.resources import files
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import ParameterError, one_of
-from ...core.files import write_text
 from ...cylinder import Cylinder
-from ...materials.law_file import as_dataset, law_of, table_of
+from ...materials import law_axis
+from ...materials.law_file import as_dataset, table_of
 from ...materials.law_modes import by_modes
-from ...materials.law_store import CHECKSUM, check, content_of
 from ...materials.law_table import FUNCTIONS, LawTable
-from .axis import axis
 
 if TYPE_CHECKING:
     import xarray as xr
 
 #: Functions of kappa |V|; the others are of v = 1/F(eta).
 _OF_SPEED = 5
-#: Places in every octave at which errors are measured, at random with this seed.
-_PLACES, _SEED = 8, 20250701
+#: Places in every octave at which errors are measured, and alphas in every octave of alpha, at random with this seed.
+_PLACES, _ALPHAS, _SEED = 8, 16, 20250701
 
 
 def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | None = None) -> xr.Dataset:
@@ -49,7 +42,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
         places of every octave (parts of M over M, N over its largest); numbers of the limits; both forms of the series;
         the material as TOML.  ``comment`` has the evaluator in words.  Any speed, creep, kappa, mu, load and radius.
         Of every alpha polynomials of ln alpha too, an octave a piece, of lam, epsilon/c, M/V/c, N/c, share and press
-        with c = (alpha - 1)/alpha, and errors against root solves at random places (:mod:`.axis`).
+        with c = (alpha - 1)/alpha, and errors of the laws of random alphas.
 
     Raises
     ------
@@ -61,22 +54,32 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     if alpha is not None:
         if base is not None or np.shape(alpha) != (2,):
             raise ParameterError("alpha", f"{alpha!r:.60}", "the lowest and the highest alone, as (1, 4096)")
-        return axis(*alpha)
-    table = table_of(material.pair if isinstance(material, Cylinder) else material, base)
-    return as_dataset(table, measured_errors(table))
+        found: LawTable | law_axis.LawAxis = law_axis.law_axis(*alpha)
+    else:
+        found = table_of(material.pair if isinstance(material, Cylinder) else material, base)
+    return as_dataset(found, measured_errors(found))
 
 
-def measured_errors(table: LawTable, count: int | None = None, seed: int = _SEED) -> dict[str, float]:
+def measured_errors(
+    table: LawTable | law_axis.LawAxis, count: int | None = None, seed: int = _SEED
+) -> dict[str, float]:
     """Largest relative error of every function at random places before its fast limit.
 
     No equation is solved: a random zeta gives both a speed and, by the modes' formulas, the functions there.
 
     Parameters
     ----------
-    table : a law.
-    count : of places; default: eight an octave.
+    table : a law, or that of every alpha, which is looked at for random ones.
+    count : of places, of every alpha or so; default: eight an octave.
     seed : of the places.
     """
+    if isinstance(table, law_axis.LawAxis):
+        octaves, random = len(table.rows), np.random.default_rng(seed)
+        alphas = np.exp2(table.first + octaves * random.random(_ALPHAS * octaves)).tolist()
+        each = [measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed) for alpha in alphas]
+        worst = {name: max(one[name] for one in each) for name in FUNCTIONS}
+        worst["m"] = worst["m_half_space"] + worst["m_cylinder"]
+        return {name: worst[name] for name in law_axis.FUNCTIONS}
     rows, e0 = table.coefficients.shape[0], table.e0
     # kappa |V| = 1/(2 sqrt(H)) and v = 1/F lie within [1/(2 zeta sqrt(alpha)), 1/zeta]
     octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
@@ -101,56 +104,3 @@ def _polynomial(table: LawTable, function: int, x: NDArray) -> NDArray[np.float6
     row = np.maximum(e - table.e0, 0)
     t = np.where(row == 0, np.ldexp(x, -table.e0), 4.0 * m - 3.0)
     return np.asarray(np.polynomial.polynomial.polyval(t, table.coefficients[row, :, function].T, tensor=False))
-
-
-def export_law(found: xr.Dataset, path: Path) -> None:
-    """Write a law as a header of C, table and evaluator in one, or as JSON; by the suffix."""
-    check(content_of(found), "export")
-    if path.suffix not in FORMATS:
-        raise ParameterError("path", path, f"a name that ends in {', '.join(FORMATS)} or .nc for a law")
-    write_text(path, FORMATS[path.suffix](found, path))
-
-
-def _header(found: xr.Dataset, path: Path) -> str:
-    name = path.stem
-    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-        raise ParameterError("path", path, "named as a variable of C may be, as rubber.h is")
-    table = law_of(content_of(found), path)
-    octaves = ",\n".join(
-        "{" + ",\n ".join("{" + _numbers(powers) + "}" for powers in octave) + "}" for octave in table.coefficients
-    )
-    limit = ", ".join("{" + _numbers(body) + "}" for body in table.fast_limit)
-    evaluator = files("viscoroll.io.tables").joinpath("c/vr_law.h").read_text(encoding="utf-8")
-    about = "\n".join(f" * {line}".rstrip() for line in found.attrs["material"].splitlines()).replace("*/", "* /")
-    return f"""/* {found.attrs["title"].replace("*/", "* /")}
- *
- * Written by {found.attrs["source"]}; T_ref = {table.T_ref!r} s; {CHECKSUM} {found.attrs[CHECKSUM]}
- *
-{about}
- */
-{evaluator}
-#ifndef VR_LAW_{name}
-#define VR_LAW_{name}
-static const double {name}_coefficients[{len(table.coefficients)}][VR_TERMS][VR_FUNCTIONS] = {{
-{octaves}}};
-static const vr_law {name} = {{
-  {len(table.coefficients)}, {table.e0}, {table.alpha!r}, {{{limit}}}, {name}_coefficients}};
-#endif
-"""
-
-
-def _numbers(values: NDArray) -> str:
-    """Digits that read back to the same bits."""
-    return ",".join(map(repr, values.tolist()))
-
-
-def _json(found: xr.Dataset, path: Path) -> str:
-    del path
-    numbers = {str(name): variable.values.tolist() for name, variable in found.variables.items()}
-    about = ("title", "viscoroll_table", "bodies", "material", "comment", "references", "source", "license", CHECKSUM)
-    content = {name: found.attrs[name] for name in about} | {"law_schema": int(found.attrs["law_schema"])} | numbers
-    return json.dumps(content, separators=(",", ":"))
-
-
-#: Suffix -> what is written.
-FORMATS: dict[str, Callable[[xr.Dataset, Path], str]] = {".h": _header, ".json": _json}
