@@ -87,7 +87,7 @@ def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
     if path.suffix in (".toml", SUFFIX):
         return read_materials(path)["material"]
     try:
-        return vr.dma.fit_prony(*vr.dma.read_dma(path), source=path.name).material(law.nu, name=law.name or path.stem)
+        return vr.fit_prony(*vr.read_dma(path), source=path.name).material(law.nu, name=law.name or path.stem)
     except vr.ViscorollError as error:
         raise FileError(config, str(error)) from error
 

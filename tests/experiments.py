@@ -31,24 +31,24 @@ def noise(seed: int | None, values: np.ndarray, sigma: float) -> np.ndarray:
     return values if seed is None else values + sigma * np.random.default_rng(seed).standard_normal(values.shape)
 
 
-def resistance(V: np.ndarray = HUMP, seed: int | None = None, sigma: float = 0.01, **more) -> vr.records.Resistance:
+def resistance(V: np.ndarray = HUMP, seed: int | None = None, sigma: float = 0.01, **more) -> vr.Resistance:
     body = roller() if "load" not in more else roller().replace(load=more["load"])
-    return vr.records.Resistance(V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more)
+    return vr.Resistance(V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more)
 
 
-def traction(speeds=(0.1,), seed: int | None = None, sigma: float = 1.0, **more) -> vr.records.Traction:
+def traction(speeds=(0.1,), seed: int | None = None, sigma: float = 1.0, **more) -> vr.Traction:
     delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
     V = np.repeat(speeds, 21)
-    return vr.records.Traction(
+    return vr.Traction(
         V, delta, noise(seed, roller().contact(V, delta=delta, fields="Q").Q, sigma), sigma=sigma, **more
     )
 
 
-def thrown(seed: int | None = None, t: np.ndarray = TIMES, omega0: float | None = 0.0, **more) -> vr.records.Coastdown:
+def thrown(seed: int | None = None, t: np.ndarray = TIMES, omega0: float | None = 0.0, **more) -> vr.Coastdown:
     """V of a roller thrown at 4 m/s without spin, or let go rolling."""
     motion = roller().roll(4.0, 40.0 if omega0 is None else omega0, t, rtol=1e-10, **more)
     spin = {} if omega0 is None else {"omega0": omega0}
-    return vr.records.Coastdown(t, noise(seed, motion.V, 5e-3), sigma=5e-3, name="throw", **spin)
+    return vr.Coastdown(t, noise(seed, motion.V, 5e-3), sigma=5e-3, name="throw", **spin)
 
 
 #: of the drum's resistance, in files

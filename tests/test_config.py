@@ -62,15 +62,15 @@ def test_materials(toml):
     for content, material in (
         (RUBBER, rubber),
         (RUBBER + more, replace(rubber, name="tread", density=1100.0)),
-        (RUBBER + warm, rubber.at(30.0, vr.materials.WLF(T0=20.0))),
-        (RUBBER + thermal, rubber.at(30.0, vr.materials.Arrhenius(energy=8e4, T0=20.0))),
+        (RUBBER + warm, rubber.at(30.0, vr.WLF(T0=20.0))),
+        (RUBBER + thermal, rubber.at(30.0, vr.Arrhenius(energy=8e4, T0=20.0))),
         ("[material]\nE = inf\nnu = 0.5", vr.Material.rigid()),
         ("[material]\nE = 2e11\nnu = 0.3", vr.Material.elastic(2e11, 0.3)),
         (f"[material]\nE = 2.3e5\nnu = 0.49\n{solid}", vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)),
         (f"[material]\nE = 1e5\nnu = 0.4\n{creep}", vr.Material(1e5, 0.4, vr.Prony.creep([0.5], [1.0]))),
     ):
         assert read_materials(toml(content)) == {"material": material}
-    assert read_materials(toml(RUBBER + warm), 40.0)["material"] == rubber.at(40.0, vr.materials.WLF(T0=20.0))
+    assert read_materials(toml(RUBBER + warm), 40.0)["material"] == rubber.at(40.0, vr.WLF(T0=20.0))
     both = read_materials(toml(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n[other]\nanything = 1"))
     assert both == {"material": rubber, "base": vr.Material.elastic(2e11, 0.3)}
 

@@ -43,7 +43,7 @@ WHOLE = np.logspace(-2.5, 6.5, 60)
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_rubber_of_ten_modes_with_noise(seed):
-    fit = vr.dma.fit_prony(*curve(WHOLE, noise=0.005, seed=seed))
+    fit = vr.fit_prony(*curve(WHOLE, noise=0.005, seed=seed))
     assert max(fit.misfit) <= tol.DMA_MISFIT
     assert fit.reached
     assert fit.plateau
@@ -58,7 +58,7 @@ def test_a_rubber_of_ten_modes_with_noise(seed):
 def test_two_modes_are_found_exactly():
     data = curve(np.logspace(-2, 5, 50), [2.0, 6.0], [1.0, 1e-3], 1.0)
     for modes in (None, 2, 5):
-        fit = vr.dma.fit_prony(*data, modes)
+        fit = vr.fit_prony(*data, modes)
         found = *fit.prony.tau, *fit.prony.E, fit.E, fit.T_ref
         assert close(found, (1.0, 1e-3, 2.0, 6.0, 1.0, 1.0), rel=tol.DMA_EXACT)
         assert not fit.outside.any()
@@ -68,7 +68,7 @@ def test_two_modes_are_found_exactly():
 def test_a_window_of_two_decades(seed):
     """As good as a trial on 14 measured points of an EPDM rubber; M inside the window needs neither E nor alpha."""
     omega, tau = np.logspace(0, 2, 14), np.logspace(4, -4, 10)
-    fit = vr.dma.fit_prony(*curve(omega, tau=tau, noise=0.005, seed=seed), misfit=0.006)
+    fit = vr.fit_prony(*curve(omega, tau=tau, noise=0.005, seed=seed), misfit=0.006)
     assert fit.misfit.storage <= tol.DMA_WINDOW[0]
     assert fit.misfit.loss <= tol.DMA_WINDOW[1]
     assert fit.prony.E.size <= 6
@@ -82,7 +82,7 @@ def test_a_window_of_two_decades(seed):
 @given(st.integers(0, 2**32 - 1), st.integers(3, 40), st.floats(0.0, 0.3), st.floats(0.5, 9.0))
 def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, decades):
     omega, storage, loss = curve(np.logspace(-2, -2 + decades, points), noise=noise, seed=seed)
-    fit = vr.dma.fit_prony(omega, np.abs(storage), np.abs(loss))
+    fit = vr.fit_prony(omega, np.abs(storage), np.abs(loss))
     assert (fit.prony.E > 0.0).all()
     assert FLOOR * fit.storage.min() * 0.999 <= fit.E
     assert np.isfinite(fit.misfit).all()
@@ -110,23 +110,23 @@ def isotherms(points, noise):
 @pytest.mark.parametrize(("points", "noise", "allowed"), [(21, 0.0, tol.DMA_SHIFT), (11, 0.005, tol.DMA_SHIFT_NOISY)])
 def test_shift_factors_are_found(points, noise, allowed):
     curves = isotherms(points, noise)
-    fit = vr.dma.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0)
+    fit = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0)
     assert close(np.log10(fit.shifts.a_T), np.log10(wlf(TEMPERATURES)), rel=allowed, scale=1.0)
     assert max(fit.misfit) <= tol.DMA_MISFIT
     assert close(fit.alpha, ALPHA, rel=tol.DMA_ALPHA)
     assert "log10 a_T" in str(fit)
     flat = [np.concatenate(column) for column in curves]
-    again = vr.dma.fit_prony(*flat, temperature=np.repeat(TEMPERATURES, points), reference=0.0)
+    again = vr.fit_prony(*flat, temperature=np.repeat(TEMPERATURES, points), reference=0.0)
     assert again.prony == fit.prony
 
 
 def test_reference_between_curves_and_shifts_that_are_given():
     curves = isotherms(21, 0.0)
-    fit = vr.dma.fit_prony(*curves, temperature=TEMPERATURES)
+    fit = vr.fit_prony(*curves, temperature=TEMPERATURES)
     assert fit.shifts.reference == 0.0
-    assert vr.dma.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
-    for shift in (wlf, wlf(TEMPERATURES), vr.materials.WLF(C1=8.86, C2=101.6, T0=0.0)):
-        given = vr.dma.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
+    assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
+    for shift in (wlf, wlf(TEMPERATURES), vr.WLF(C1=8.86, C2=101.6, T0=0.0)):
+        given = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
         assert close(given.shifts.a_T, wlf(TEMPERATURES), rel=tol.DMA_REPEATED)
         assert np.isnan(given.shifts.mismatch).all()
         assert close(given.alpha, ALPHA, rel=tol.DMA_ALPHA)
@@ -137,11 +137,11 @@ def test_reference_between_curves_and_shifts_that_are_given():
 
 
 def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ():
-    omega, storage, loss = vr.dma.read_dma(PYVISCO)
+    omega, storage, loss = vr.read_dma(PYVISCO)
     assert omega.size == 206
     first = 2.0 * np.pi * 1e-12, 88.79651575665739e6, 10.502460140936773e6
     assert close((omega[0], storage[0], loss[0]), first, rel=tol.DMA_READ)
-    fit = vr.dma.fit_prony(omega, storage, loss)
+    fit = vr.fit_prony(omega, storage, loss)
     low, high = tol.DMA_PYVISCO
     assert low < fit.kramers_kronig.median < high
     assert not fit.reached
@@ -164,7 +164,7 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
 )
 def test_forms_of_a_file(tmp_path, text, factors):
     (tmp_path / "dma.txt").write_text(text, encoding="utf-8-sig")
-    found = vr.dma.read_dma(tmp_path / "dma.txt")
+    found = vr.read_dma(tmp_path / "dma.txt")
     assert close(
         np.array(found), np.array(factors)[:, None] * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]), rel=tol.DMA_READ
     )
@@ -175,15 +175,15 @@ def test_units_are_asked_for(tmp_path):
     file = tmp_path / "dma.txt"
     file.write_text("f, E_stor, E_loss\n1,2,3\n", encoding="utf-8")
     with pytest.warns(vr.ModelWarning, match=r"without a unit are taken in Hz \(frequency\) and Pa"):
-        assert close(vr.dma.read_dma(file), [[2.0 * np.pi], [2.0], [3.0]], rel=1e-15)
-    assert close(vr.dma.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], rel=1e-15)
+        assert close(vr.read_dma(file), [[2.0 * np.pi], [2.0], [3.0]], rel=1e-15)
+    assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], rel=1e-15)
     file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n", encoding="utf-8")
-    assert close(vr.dma.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], rel=1e-15)
+    assert close(vr.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], rel=1e-15)
 
 
 def test_what_the_contact_sees_of_the_data():
     """The passage of the contact at rest takes l0/V; a shift of the material shifts the data with it."""
-    fit = vr.dma.fit_prony(*vr.dma.read_dma(ROOT / "docs/examples/dma.csv"))
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
     cylinder = vr.Cylinder(R=0.1, m=30.0, material=fit.material(0.5), mu=0.5)
     V = np.geomspace(1e-6, 1e4, 30)
     found = fit.validity(cylinder, V)
@@ -197,10 +197,10 @@ def test_what_the_contact_sees_of_the_data():
 
 
 def test_what_was_measured_stays_with_the_material():
-    data = vr.dma.read_dma(ROOT / "docs/examples/dma.csv")
-    fit = vr.dma.fit_prony(*data, source="dma.csv")
-    assert fit.material(0.5).measured == vr.materials.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv")
-    poor = vr.dma.fit_prony(*data, 1)
+    data = vr.read_dma(ROOT / "docs/examples/dma.csv")
+    fit = vr.fit_prony(*data, source="dma.csv")
+    assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv")
+    poor = vr.fit_prony(*data, 1)
     assert max(poor.misfit) > 0.05
     cylinder = vr.Cylinder(R=0.1, m=30.0, material=poor.material(0.5), mu=0.5)
     assert not cylinder.validity(0.1).measured.holds

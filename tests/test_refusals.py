@@ -35,9 +35,7 @@ RUBBER = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1
 #: fits of docs/examples/dma.csv on a roller of 0.1 m, of a T_ref of 3 s: V = 30 is 1 m/s
 DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
 SLOW = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
-MEASURED = vr.Material(
-    2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.materials.Measured(0.06, 628.0, 0.01, "dma.csv")
-)
+MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
 NAMES = vars(experiments) | {

@@ -1,8 +1,8 @@
 """viscoroll: a viscoelastic cylinder rolling with partial slip on a half-space of its material.
 
-Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  What rolls, of what, and what it
-does are names here; what goes with it is in modules.  A ``Scene`` is dimensionless, a ``Cylinder`` in SI units.  Names
-load on first use: importing the package imports neither numba nor xarray nor matplotlib.
+Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  Everything
+is dimensionless unless its name says SI.  Names load on first use: importing the package
+imports neither numba nor xarray nor matplotlib.
 """
 
 from __future__ import annotations
@@ -23,7 +23,16 @@ _HOME = {
     "Prony": "materials.prony",
     "Bodies": "materials.bodies",
     "Material": "materials.material",
+    "Measured": "materials.measured",
+    "WLF": "materials.shift",
+    "Arrhenius": "materials.shift",
+    "fit_prony": "app.dma",
+    "Fit": "app.dma",
+    "read_dma": "app.dma",
     "identify": "app.identification",
+    "Resistance": "app.identification",
+    "Traction": "app.identification",
+    "Coastdown": "app.identification",
     "contact": "contact_law.contact",
     "stress": "contact_law.stress",
     "law": "contact_law.bound",
@@ -51,9 +60,6 @@ _HOME = {
 }
 _MODULES = {
     "presets": "presets",
-    "materials": "materials",
-    "dma": "app.dma",
-    "records": "app.identification.records",
     "sampling": "io.sampling",
     "tables": "io.tables",
     "runs": "io.runs",

@@ -1,11 +1,14 @@
 """The public names, for type checkers and editors; ``__init__.py`` loads them on first use."""
 
-from . import materials as materials
 from . import presets as presets
-from .app import dma as dma
 from .app import fmu as fmu
+from .app.dma import Fit as Fit
+from .app.dma import fit_prony as fit_prony
+from .app.dma import read_dma as read_dma
+from .app.identification import Coastdown as Coastdown
+from .app.identification import Resistance as Resistance
+from .app.identification import Traction as Traction
 from .app.identification import identify as identify
-from .app.identification import records as records
 from .contact_law.assumptions import Validity as Validity
 from .contact_law.bound import Law as Law
 from .contact_law.bound import law as law
@@ -32,7 +35,10 @@ from .io import tables as tables
 from .materials.bodies import Bodies as Bodies
 from .materials.law_file import load_law as load_law
 from .materials.material import Material as Material
+from .materials.measured import Measured as Measured
 from .materials.prony import Prony as Prony
+from .materials.shift import WLF as WLF
+from .materials.shift import Arrhenius as Arrhenius
 from .motion import ensemble as ensemble
 from .motion import roll as roll
 from .motion.many import Ensemble as Ensemble

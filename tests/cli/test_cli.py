@@ -184,7 +184,7 @@ def test_material_fit(run, here):
     """The report, and a file that holds the fit to the bit."""
     data = str(ROOT / "docs/examples/dma.csv")
     report = run("material", "fit", data, "--nu", "0.5", "--name", "a rubber", "-o", "a.toml")
-    fit = vr.dma.fit_prony(*vr.dma.read_dma(data), source="dma.csv")
+    fit = vr.fit_prony(*vr.read_dma(data), source="dma.csv")
     assert report == f"{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
     assert "Prony series of 2 modes" in run("material", "fit", data, "--modes", "2")
@@ -193,7 +193,7 @@ def test_material_fit(run, here):
 
 def test_a_belt_of_a_fit_that_was_saved(run, here):
     """From columns without units to the resistance of a steel roller: each step reads what the one before wrote."""
-    fit = vr.dma.fit_prony(*vr.dma.read_dma(ROOT / "docs/examples/dma.csv"))
+    fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
     columns = np.transpose([fit.omega / (2.0 * np.pi), fit.storage / 1e6, fit.loss / 1e6])
     np.savetxt(here / "bare.txt", columns)
     bare = python("-m", "viscoroll", "material", "fit", here / "bare.txt")

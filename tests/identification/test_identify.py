@@ -27,34 +27,34 @@ V = HUMP
 M = roller().contact(V, delta=0.0, fields="M").M
 OFF = {"mu": 0.4, "E": 4e6, "E_1": 6.0, "T_ref": 2e-3}
 
-SHIFT = vr.materials.WLF(T0=20.0, C1=8.86, C2=101.6)
+SHIFT = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
 BEARING = {"brake": (0.0, 0.5), "drag": (0.0, 0.1)}
 KNOWN = TRUTH | {"brake": BRAKE, "drag": DRAG, "t0:run": 0.15}
 
 
-def drum(load: float) -> vr.records.Resistance:
+def drum(load: float) -> vr.Resistance:
     """A roller on a drum, whose bearing takes a part too."""
     M = roller().replace(load=load).contact(V, delta=0.0, fields="M").M
-    return vr.records.Resistance(V, M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=f"{load} N/m")
+    return vr.Resistance(V, M + BRAKE + DRAG * V / 0.1, sigma=0.01, load=load, name=f"{load} N/m")
 
 
-def late() -> vr.records.Coastdown:
+def late() -> vr.Coastdown:
     """A motion under the bearing, by a clock that is late."""
     t = np.linspace(0.0, 30.0, 200)
     m = roller().roll(3.0, 30.0, t, rtol=1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
-    return vr.records.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
+    return vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
 
 
-def warm() -> vr.records.Resistance:
+def warm() -> vr.Resistance:
     """At 60 degrees the relaxation times are others."""
     M = roller(T_ref=TRUTH["T_ref"] * SHIFT(60.0)).contact(V, delta=0.0, fields="M").M
-    return vr.records.Resistance(V, M, sigma=0.01, temperature=60.0, name="warm")
+    return vr.Resistance(V, M, sigma=0.01, temperature=60.0, name="warm")
 
 
 #: data without noise, what they hold, and what else is told
 HELD = {
     "M over the hump": (lambda: [resistance()], ranges("E", "E_1", "T_ref")),
-    "pull over the hump": (lambda: [vr.records.Resistance(V, F=M / 0.1, sigma=0.1)], ranges("E", "E_1", "T_ref")),
+    "pull over the hump": (lambda: [vr.Resistance(V, F=M / 0.1, sigma=0.1)], ranges("E", "E_1", "T_ref")),
     "Q at three speeds": (lambda: [traction((0.1, 1.0, 10.0))], ranges("mu", "E")),
     "M and Q": (lambda: [resistance(), traction()], ranges("mu", "E", "E_1", "T_ref")),
     "a throw": (lambda: [thrown()], ranges("mu", "E", "E_1", "T_ref")),
@@ -122,7 +122,7 @@ def test_slow_rolling_tells_a_product_alone():
 def test_a_wrong_model_is_told_before_any_interval():
     """M of two modes, by one."""
     two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
-    measured = vr.records.Resistance(V, two.contact(V, delta=0.0, fields="M").M, sigma=0.01)
+    measured = vr.Resistance(V, two.contact(V, delta=0.0, fields="M").M, sigma=0.01)
     fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [measured], starts=1)
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
@@ -133,7 +133,7 @@ def test_a_wrong_model_is_told_before_any_interval():
 def test_sigma_that_is_not_given_is_estimated():
     data = [resistance(seed=4), traction(seed=5)]
     given = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), data, starts=1)
-    bare = [vr.records.Resistance(V, data[0].M), vr.records.Traction(data[1].V, data[1].delta, data[1].Q)]
+    bare = [vr.Resistance(V, data[0].M), vr.Traction(data[1].V, data[1].delta, data[1].Q)]
     fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), bare, starts=1)
     for name, sigma in {"M of resistance": 0.01, "Q of traction": 1.0}.items():
         assert close(fit.sigma[name][0], sigma, rel=tol.SIGMA), name
@@ -148,9 +148,7 @@ def test_outliers_count_less_where_asked():
     bad[[5, 25]] += 0.2, -0.2
     names = ("E", "E_1", "T_ref")
     for robust, bound in ((False, 1.0), (True, tol.OUTLIERS)):
-        fit = vr.identify(
-            roller(), ranges(*names), [vr.records.Resistance(V, bad, sigma=0.01)], starts=1, robust=robust
-        )
+        fit = vr.identify(roller(), ranges(*names), [vr.Resistance(V, bad, sigma=0.01)], starts=1, robust=robust)
         off = max(abs(np.log(fit.values[name] / TRUTH[name])) for name in names)
         assert tol.OUTLIERS * (not robust) < off < bound
 
@@ -170,7 +168,7 @@ def test_a_plan_tells_what_a_fit_will_know():
     plan = vr.identify(
         roller(),
         ranges(*names),
-        [vr.records.Resistance(V, sigma=0.01), vr.records.Traction(0.1, np.linspace(-0.06, 0.06, 21), sigma=1.0)],
+        [vr.Resistance(V, sigma=0.01), vr.Traction(0.1, np.linspace(-0.06, 0.06, 21), sigma=1.0)],
     )
     assert plan.planned
     assert plan.chi2 == 0.0
@@ -185,7 +183,7 @@ def test_a_plan_tells_what_a_fit_will_know():
 def test_a_prediction_has_bands():
     fit = vr.identify(roller(), ranges("E", "T_ref"), [resistance(seed=1)], starts=1)
     t = np.linspace(0.0, 30.0, 7)
-    by_slopes, drawn = (fit.predict(vr.records.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
+    by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
     exact = roller().roll(3.0, 30.0, t).V
     assert ((by_slopes.V.low <= exact) & (exact <= by_slopes.V.high)).all()
     width = [found.V.high - found.V.low for found in (by_slopes, drawn)]
@@ -197,7 +195,7 @@ def test_a_prediction_has_bands():
 def test_labels_come_back_in_predictions():
     speeds = xr.DataArray([0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"})
     fit = vr.identify(roller(), ranges("E"), [resistance()], starts=1)
-    band = fit.predict(vr.records.Resistance(speeds)).M
+    band = fit.predict(vr.Resistance(speeds)).M
     assert float(band.value.sel(speed="fast")) == float(fit.cylinder.contact(1.0, delta=0.0, fields="M").M)
     assert float(band.low.sel(speed="slow")) < float(band.high.sel(speed="slow"))
 
@@ -249,7 +247,7 @@ def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
 def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
     """V of a coast-down has a second valley, of a short time and a large strength, in which this start lies."""
     t = np.linspace(0.0, 40.0, 200)
-    run = vr.records.Coastdown(t, noise(0, roller().roll(3.0, 30.0, t).V, 5e-3), sigma=5e-3, V0=3.0)
+    run = vr.Coastdown(t, noise(0, roller().roll(3.0, 30.0, t).V, 5e-3), sigma=5e-3, V0=3.0)
     near, far = (
         vr.identify(roller(**start), ranges("E", "E_1", "T_ref"), [run], starts=1)
         for start in ({}, {"E_1": 72.0, "T_ref": 2e-4})

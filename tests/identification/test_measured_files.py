@@ -55,4 +55,4 @@ def test_a_files_temperature_is_where_its_shift_is_one(folder):
     path.write_text(FILE.replace("temperature = 20.0\nwlf", "temperature = 60.0\nwlf"), encoding="utf-8")
     shift = read_measurements(path)["shift"]["material"]
     assert shift(60.0) == 1.0
-    assert shift(20.0) == 1.0 / vr.materials.WLF(T0=20.0)(60.0)
+    assert shift(20.0) == 1.0 / vr.WLF(T0=20.0)(60.0)

@@ -88,7 +88,7 @@ def test_elastic_and_rigid():
 
 def test_wlf_by_hand():
     """log10 a_T = -17.44 * 10/(51.6 + 10) = -2.8312 ten degrees above T0; T_ref becomes a_T T_ref, nothing else."""
-    shift = vr.materials.WLF(T0=20.0)
+    shift = vr.WLF(T0=20.0)
     warm = RUBBER.at(30.0, shift=shift)
     assert close(math.log10(warm.T_ref / RUBBER.T_ref), -174.4 / 61.6, rel=tol.MATERIAL)
     assert dataclasses.replace(warm, T_ref=RUBBER.T_ref) == RUBBER
@@ -99,7 +99,7 @@ def test_wlf_by_hand():
 
 def test_arrhenius_by_hand():
     """100 kJ/mol between 20 and 30 degrees: ln a_T = 12027.24 (1/303.15 - 1/293.15) = -1.3533756."""
-    shift = vr.materials.Arrhenius(energy=1e5, T0=20.0)
+    shift = vr.Arrhenius(energy=1e5, T0=20.0)
     assert close(math.log(shift(30.0)), -1.3533756, rel=tol.MATERIAL_PRINTED)
     assert shift(20.0) == 1.0
 
@@ -168,11 +168,7 @@ STORED = (
     vr.Material.rigid(name="ideal"),
     vr.Material.elastic(1e6, 0.3, name="tread \U0001f6de, Gummi für µ\tand\x7f\n"),
     vr.Material(
-        2e6,
-        0.5,
-        vr.Prony([2.0], [1e-3]),
-        thickness=0.02 / 3.0,
-        measured=vr.materials.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f"),
+        2e6, 0.5, vr.Prony([2.0], [1e-3]), thickness=0.02 / 3.0, measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f")
     ),
 )
 
@@ -215,7 +211,7 @@ def test_a_material_of_another_toml_file(tmp_path):
         rubber.to_netcdf(tmp_path / "dma.nc")
         scene.write_text(f'[base]\nfile = "{name}"\nwlf = {{ T0 = 20.0 }}\ntemperature = 30.0\n')
         for given, T in ((None, 30.0), (40.0, 40.0)):
-            assert read_materials(scene, given) == {"base": rubber.at(T, vr.materials.WLF(T0=20.0))}
+            assert read_materials(scene, given) == {"base": rubber.at(T, vr.WLF(T0=20.0))}
     scene.write_text('[base]\nfile = "dma.toml"\n')
     for content, words in (
         ("[scene]\nalpha = 2.0\n", "section [material] is missing"),
@@ -228,8 +224,8 @@ def test_a_material_of_another_toml_file(tmp_path):
 
 def test_what_was_measured_goes_with_the_temperature():
     """a_T = 100: the data hold a hundredth of their frequencies."""
-    rubber = dataclasses.replace(STORED[0], measured=vr.materials.Measured(0.1, 300.0, 0.01, "dma.csv"))
-    assert rubber.at(0.0, lambda _: 100.0).measured == vr.materials.Measured(1e-3, 3.0, 0.01, "dma.csv")
+    rubber = dataclasses.replace(STORED[0], measured=vr.Measured(0.1, 300.0, 0.01, "dma.csv"))
+    assert rubber.at(0.0, lambda _: 100.0).measured == vr.Measured(1e-3, 3.0, 0.01, "dma.csv")
     assert STORED[0].at(0.0, lambda _: 100.0).measured is None
     assert "0.1 to 300 rad/s, misfit 1 % (dma.csv)" in repr(rubber._card())
 

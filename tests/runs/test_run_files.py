@@ -306,7 +306,7 @@ def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
 
 def test_each_motion_has_the_temperature_that_was_drawn(read):
     """As of the material at that temperature, also beside modes that are uncertain."""
-    shift = vr.materials.WLF(T0=20.0, C1=8.86, C2=101.6)
+    shift = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
     run = read("""
         cylinder = { R = 0.1, m = 35.5, mu = 0.5 }
         start = { V0 = 2.0, omega0 = 0.0 }

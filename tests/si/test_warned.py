@@ -16,7 +16,7 @@ from viscoroll.contact_law import known
 from viscoroll.core.plots import draw
 from viscoroll.io.runs import estimate, read_run
 
-DATA = vr.materials.Measured(0.06, 628.0, 0.01, "dma.csv")
+DATA = vr.Measured(0.06, 628.0, 0.01, "dma.csv")
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5)
 #: the speed at which that contact is passed at 628 1/s

@@ -17,7 +17,7 @@ print(many.messages(), vr.steady(scene, force=V, torque=0.0).V, vr.humps(scene),
 print(vr.presets.PAPER_CYLINDER.contact(V, omega=V)["C_rr"], scene.roll(1.0, 0.0, 1.0).success, scene.law()(1.0, 1.0).Q)
 law = vr.law(scene)
 print(law(0.3, 0.3).Q + 1.0, law(V, V, slopes=True).dQ_dV.shape, law.jitted(0.3, 0.3).dQ_domega, law.address)
-fit = vr.dma.fit_prony(V, V + 1.0, V, modes=3)
+fit = vr.fit_prony(V, V + 1.0, V, modes=3)
 print(fit.prony.alpha, vr.__version__, vr.tables.load, vr.Scene(material=fit.prony, kappa=20.0, mu=0.3))
 try:
     vr.contact(scene, np.nan, delta=0.1)

@@ -15,12 +15,12 @@ import viscoroll as vr
 
 data = Path("../dma.csv")  # docs/examples/dma.csv of the source tree
 print("\n".join(data.read_text().splitlines()[:5]))
-omega, storage, loss = vr.dma.read_dma(data)  # rad/s, Pa, Pa
+omega, storage, loss = vr.read_dma(data)  # rad/s, Pa, Pa
 
 # %%
 # The contact law wants relaxation times and strengths, a Prony series.  ``fit_prony``
 # takes as few of them as the data need, here to 1 %.
-fit = vr.dma.fit_prony(omega, storage, loss, source="dma.csv")
+fit = vr.fit_prony(omega, storage, loss, source="dma.csv")
 print(fit)
 
 # %%
@@ -55,7 +55,7 @@ print(f"contact length at rest: {1e3 * roller.l0:.1f} mm")
 # contact length and speed make, and the inverse of that has to lie among the measured
 # frequencies.  The material keeps these, ``contact`` warns beyond them, and ``validity``
 # says where: dotted here.
-shift = vr.materials.WLF(C1=8.86, C2=101.6, T0=20.0)
+shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-4, 1e3, 300)  # m/s
 figure_2, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 for temperature in (20.0, 40.0, 60.0):

@@ -12,9 +12,9 @@ from scipy import stats
 
 import viscoroll as vr
 
-shift = vr.materials.WLF(C1=8.86, C2=101.6, T0=20.0)
+shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 rubber = (
-    vr.dma.fit_prony(*vr.dma.read_dma("../dma.csv"))
+    vr.fit_prony(*vr.read_dma("../dma.csv"))
     .material(nu=0.49, name="rubber", density=1100.0)
     .at(60.0, shift=shift)
 )

@@ -18,8 +18,8 @@ examples = Path("..")  # docs/examples of the source tree
 V, M = np.loadtxt(examples / "drum.csv", delimiter=",", skiprows=1).T  # m/s, N m/m
 t, speed = np.loadtxt(examples / "throw.csv", delimiter=",", skiprows=1).T  # s, m/s
 data = [
-    vr.records.Resistance(V, M, sigma=0.01, name="drum"),
-    vr.records.Coastdown(t, speed, omega0=0.0, sigma=5e-3, name="throw"),
+    vr.Resistance(V, M, sigma=0.01, name="drum"),
+    vr.Coastdown(t, speed, omega0=0.0, sigma=5e-3, name="throw"),
 ]
 
 # %%
@@ -55,13 +55,11 @@ fine = np.geomspace(0.01, 30.0, 200)
 figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 axes.semilogx(V, M, "k.", markersize=4, label="measured, with bearing")
 bare = fit.cylinder.contact(fine, delta=0.0, fields="M").M
-with_bearing = fit.predict(vr.records.Resistance(fine)).M
+with_bearing = fit.predict(vr.Resistance(fine)).M
 axes.fill_between(fine, with_bearing.low, with_bearing.high, color="0.8", label="95 % band")
 axes.semilogx(fine, with_bearing.value, "C0", label="fit")
 axes.semilogx(fine, bare, "C0--", label="fit, rubber alone")
-axes.semilogx(
-    fine, wrong.predict(vr.records.Resistance(fine)).M.value, "C1:", label="wrong model"
-)
+axes.semilogx(fine, wrong.predict(vr.Resistance(fine)).M.value, "C1:", label="wrong model")
 axes.set(xlabel="speed, m/s", ylabel="moment, N m/m", ylim=(0.0, 1.3))
 axes.legend(frameon=False)
 
@@ -69,7 +67,7 @@ axes.legend(frameon=False)
 # ``fit.cylinder`` rolls on.  How far does it roll from 2 m/s, and how well is that known?
 # The bearing is part of the prediction.
 later = np.linspace(0.0, 30.0, 61)
-way = fit.predict(vr.records.Coastdown(later, V0=2.0)).x
+way = fit.predict(vr.Coastdown(later, V0=2.0)).x
 print(f"{way.value[-1]:.2f} m, 95 %: {way.low[-1]:.2f} to {way.high[-1]:.2f}")
 
 # %%
@@ -77,7 +75,7 @@ print(f"{way.value[-1]:.2f} m, 95 %: {way.low[-1]:.2f} to {way.high[-1]:.2f}")
 plan = vr.identify(
     fit.cylinder,
     of_rubber,
-    [vr.records.Coastdown(later, V0=2.0, sigma={"V": 5e-3}, name="coast-down")],
+    [vr.Coastdown(later, V0=2.0, sigma={"V": 5e-3}, name="coast-down")],
 )
 print(plan)
 

@@ -52,27 +52,27 @@ def roller(values: dict[str, float] = TRUTH) -> vr.Cylinder:
     return vr.Cylinder(R=0.1, m=35.5, mu=values["mu"], material=rubber)
 
 
-Record = vr.records.Resistance | vr.records.Traction | vr.records.Coastdown
+Record = vr.Resistance | vr.Traction | vr.Coastdown
 
 
-def drum(V: NDArray, **more: Any) -> vr.records.Resistance:
+def drum(V: NDArray, **more: Any) -> vr.Resistance:
     """Planned: M over V."""
-    return vr.records.Resistance(V, sigma=NOISE["M"], **more)
+    return vr.Resistance(V, sigma=NOISE["M"], **more)
 
 
-def traction(*speeds: float) -> vr.records.Traction:
+def traction(*speeds: float) -> vr.Traction:
     """Planned: Q over 21 creeps at each speed."""
     delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
-    return vr.records.Traction(np.repeat(speeds, 21), delta, sigma=NOISE["Q"])
+    return vr.Traction(np.repeat(speeds, 21), delta, sigma=NOISE["Q"])
 
 
-def motion(V0: float, end: float, what: str = "V", **more: Any) -> vr.records.Coastdown:
+def motion(V0: float, end: float, what: str = "V", **more: Any) -> vr.Coastdown:
     """Planned: 200 points of a motion, let go rolling unless told."""
     sigma = {name: NOISE[name] for name in what.split()}
-    return vr.records.Coastdown(np.linspace(0.0, end, 200), sigma=sigma, V0=V0, **{"name": "run"} | more)
+    return vr.Coastdown(np.linspace(0.0, end, 200), sigma=sigma, V0=V0, **{"name": "run"} | more)
 
 
-def thrown(what: str = "V") -> vr.records.Coastdown:
+def thrown(what: str = "V") -> vr.Coastdown:
     """Planned: at 4 m/s without spin."""
     return motion(4.0, 20.0, what, omega0=0.0)
 
@@ -122,7 +122,7 @@ BEARING_SHAPE: dict[str, list[Record]] = {
 
 def starts_of(records: Iterable[Record]) -> dict[str, tuple[float, float]]:
     """Ranges of the first speeds of motions: none is known for sure."""
-    motions = (one for one in records if isinstance(one, vr.records.Coastdown))
+    motions = (one for one in records if isinstance(one, vr.Coastdown))
     return {f"V0:{one.name}": (0.2 * one.V0, 5.0 * one.V0) for one in motions if one.V0 is not None}
 
 
@@ -177,7 +177,7 @@ def _measured(record: Record, rng: np.random.Generator | None, bearing: dict[str
         for name, sigma in record.sigma.items()
     }
     places = {name: getattr(record, name) for name in record.PLACES}
-    more = {"V0": record.V0, "omega0": record.omega0} if isinstance(record, vr.records.Coastdown) else {}
+    more = {"V0": record.V0, "omega0": record.omega0} if isinstance(record, vr.Coastdown) else {}
     own = {"sigma": record.sigma, "load": record.load, "name": record.name}
     return type(record)(**places, **values, **more, **own)
 
@@ -199,7 +199,7 @@ def said(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """Reports of six problems that cannot be solved as they are put."""
     two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
     exact = two.contact(HUMP, delta=0.0, fields="M").M
-    bad = vr.records.Resistance(HUMP, exact + 0.01 * np.random.default_rng(10).standard_normal(HUMP.size), sigma=0.01)
+    bad = vr.Resistance(HUMP, exact + 0.01 * np.random.default_rng(10).standard_normal(HUMP.size), sigma=0.01)
     held = [_measured(motion(3.0, 40.0), np.random.default_rng(11), BEARING)]
     shape = {each: RANGES[each] for each in ("E", "E_1", "T_ref")}
     fits = {

@@ -20,7 +20,7 @@ noise = 1.0 + 0.005 * np.random.default_rng(1).standard_normal((2, omega.size))
 storage = (2e6 + (z**2 / (1.0 + z**2)) @ strength) * noise[0]  # Pa
 loss = (z / (1.0 + z**2)) @ strength * noise[1]
 
-fit = vr.dma.fit_prony(omega, storage, loss)
+fit = vr.fit_prony(omega, storage, loss)
 print(fit)
 
 # %%

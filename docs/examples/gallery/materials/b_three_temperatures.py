@@ -19,7 +19,7 @@ rubber = vr.Material(
     prony=vr.Prony(E=[0.3, 0.5, 0.9, 1.6, 3.0], tau=[1e-1, 1e-2, 1e-3, 1e-4, 1e-5]),
     name="rubber",
 )
-shift = vr.materials.WLF(C1=8.86, C2=101.6, T0=20.0)
+shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-3, 1e3, 300)  # m/s
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 for temperature in (-10.0, 20.0, 60.0):

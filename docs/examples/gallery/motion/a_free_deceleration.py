@@ -12,9 +12,7 @@ import numpy as np
 
 import viscoroll as vr
 
-rubber = vr.dma.fit_prony(*vr.dma.read_dma("../../dma.csv")).material(
-    nu=0.49, density=1100.0
-)
+rubber = vr.fit_prony(*vr.read_dma("../../dma.csv")).material(nu=0.49, density=1100.0)
 roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
 t = np.unique(
     np.concatenate([np.linspace(0.0, 0.5, 201), np.linspace(0.5, 60.0, 201)])

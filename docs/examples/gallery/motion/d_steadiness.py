@@ -14,9 +14,7 @@ from scipy.integrate import cumulative_trapezoid
 
 import viscoroll as vr
 
-rubber = vr.dma.fit_prony(*vr.dma.read_dma("../../dma.csv")).material(
-    nu=0.49, density=1100.0
-)
+rubber = vr.fit_prony(*vr.read_dma("../../dma.csv")).material(nu=0.49, density=1100.0)
 roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
 scene, V = roller.scene(), np.geomspace(1e-4, 10.0, 4000)  # m/s
 c = vr.contact(scene, V / roller.scale["V"], delta=0.0, fields=("M", "N"))

@@ -148,8 +148,9 @@ def _warmed(body: Material, section: str, record: Record, shifts: Mapping[str, S
     if body.prony.alpha == 1.0:
         return body
     if section not in shifts:
-        given = f"{record.of('temperature')} = {record.temperature:g}"
-        sentence = f"{given} needs a shift of the {section}, as vr.materials.WLF(T0=20.0)"
+        sentence = (
+            f"{record.of('temperature')} = {record.temperature:g} needs a shift of the {section}, as vr.WLF(T0=20.0)"
+        )
         raise ParameterError("temperature", record.temperature, "given with shift", sentence)
     return body.at(record.temperature, shifts[section])  # type: ignore[arg-type]
 

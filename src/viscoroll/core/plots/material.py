@@ -49,7 +49,7 @@ def master_curve(material: Any) -> Figure:
 
 
 def fitted(fit: Any) -> Figure:
-    """Storage and loss modulus of a :class:`viscoroll.app.dma.Fit`: the data and the curves of the series."""
+    """Storage and loss modulus of a :class:`viscoroll.Fit`: the data and the curves of the series."""
     omega = np.geomspace(fit.omega[0], fit.omega[-1], _POINTS)
     misfit = f"misfit {fit.misfit.storage:.1%} in E', {fit.misfit.loss:.1%} in E''"
     title = f"Prony series of {fit.prony.E.size} modes: {misfit}"
