@@ -67,7 +67,6 @@ numbers: setup figures ## measure again what README and docs state, and put it t
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
 	$(RUN) -m pipeline.evidence.prove
 	$(RUN) -m pipeline.evidence.prove.figures
-	$(RUN) -m pipeline.evidence.prove.error_maps
 	$(RUN) -m pipeline.evidence.prove.independent
 	$(RUN) -m pipeline.evidence.prove.unsteady
 	$(RUN) -m pipeline.evidence.prove.layer
@@ -124,11 +123,8 @@ site-tools:
 	  || echo "test-site: not installed: chromium"
 
 FUZZ_SECONDS ?= 600
-fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS) and the loaders (a minute each)
+fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECONDS)
 	FUZZ_SECONDS=$(FUZZ_SECONDS) $(BIN)/pytest tests/test_properties.py
-	-$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fuzz]'
-	$(RUN) -m pipeline.evidence.torture.fuzz_loaders toml
-	$(RUN) -m pipeline.evidence.torture.fuzz_loaders table
 
 mutate: setup ## plant defects in the kernels and see which the tests notice (half an hour)
 	$(RUN) -m pipeline.evidence.mutate

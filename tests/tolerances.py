@@ -140,8 +140,6 @@ BENCH_PEER = 0.2
 BENCH_PEER_DRIVEN = 3e-5
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
-#: Q and M against 50 digits (the printed forms: 1e-10 where the slip is slight); measured 5e-16.
-BENCH_LAW = 1e-9
 #: A number in six digits, and what depends on such a one.
 SIX_DIGITS = 1e-5
 #: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.
@@ -170,8 +168,6 @@ ROUNDING_MODE_MOTION = 1e-8
 MEMORY_SLACK = 8_000_000
 
 # --- proofs and check values (test_prove.py) ---
-#: The accuracy asked of every field where its condition number is at most 225; measured 8.8e-15 (Q by a slice).
-PROVEN = 1e-13
 #: What the last subnormals cannot hold: a few of their spacings.
 PROVEN_SUBNORMAL = 4e-323
 
@@ -398,8 +394,6 @@ FMU_QUOTIENTS = 1e-6
 FMU_ROLLER = 1e-9
 #: from next to rest, of V itself: the start counts.
 FMU_FROM_REST = 1e-6
-#: An element in SciPy's Radau at rtol 1e-9.
-FMU_ELEMENT = 1e-8
 #: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
 FMU_TOOL = 1e-4
 # --- callables as polynomials (motion/test_fitted.py) ---

@@ -40,7 +40,7 @@ SAMPLE = (
     "tests/docs/test_readme.py::test_howto_runs",
     "tests/docs/test_readme.py::test_run_file_pages_can_be_followed",
     "tests/test_claims.py::test_claims[contact]",
-    "tests/truth/test_motions.py::test_roll_has_the_check_motions",
+    "tests/test_claims.py::test_claims[check_motions]",
     "tests/motion/test_flow.py::test_as_the_integrator_to_its_stated_error",
 )
 _VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"

@@ -14,8 +14,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 import viscoroll
 
 KERNELS = Path(viscoroll.__file__).parent / "kernels"
@@ -68,9 +66,8 @@ def _stamps(found: Any, name: str) -> Iterator[tuple[str, str]]:
 def outdated(folder: Path) -> dict[str, list[str]]:
     """Results in ``folder`` of other kernels than this tree's -> the digests of those."""
     found = {}
-    for path in sorted((*folder.glob("*.json"), *folder.glob("*.nc"))):
-        with path.open("rb") as file:
-            content = json.load(file) if path.suffix == ".json" else xr.load_dataset(file).attrs
+    for path in sorted(folder.glob("*.json")):
+        content = json.loads(path.read_text(encoding="utf-8"))
         if others := {*stamps(content, path.stem).values()} - {kernels_digest()}:
             found[path.name] = sorted(others)
     return found

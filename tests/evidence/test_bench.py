@@ -12,7 +12,7 @@ from places import PIPELINE, RESULTS, ROOT
 from processes import made, stage, stage_refused
 
 CONFIG = PIPELINE / "evidence/sizes.toml"
-OWN_ERRORS = ("max", "p99", "max_moving", "p99_moving")
+MOVING = ("max_moving", "p99_moving")
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def check_rows(result: dict) -> None:
         assert row["us"] > 0.0
         assert row["failed"] == 0, row
         own = row["method"] in ("table", "flow")
-        for name in OWN_ERRORS:
+        for name in ("max", "p99", *MOVING) if own else MOVING:  # peers in V lose their digits at rest
             assert 0.0 <= row[name] < (tol.BENCH_OWN if own else tol.BENCH_PEER), row
     for group in result["reference"].values():
         assert group["max"] < tol.BENCH_REFERENCE
@@ -64,18 +64,15 @@ def test_driven(folder):
     assert {row["kind"] for row in found["rows"]} == {"constant", "rest", "ramp"}
     if find_spec("numbalsoda") is None:
         pytest.skip("numbalsoda is not installed (make peer-tools)")
-    assert {row["method"] for row in found["rows"]} == {"viscoroll", "LSODA, saturated law"}
+    assert {row["method"] for row in found["rows"]} == {"viscoroll", "LSODA on the law"}
 
 
 def test_law_and_the_rest(folder):
     """Every other part runs at a smoke size, and errors are what they are stated to be."""
-    parts = "law", "skips", "scaling", "cold-start", "fixed-scene", "agreement", "bound-law", "series"
-    law, _, scaling, cold, fixed, agreement, _, series = measured(folder, *parts)
+    parts = "fixed-scene", "agreement", "bound-law", "series"
+    fixed, agreement, _, series = measured(folder, *parts)
     assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED
     assert agreement["within_stated"] == agreement["scenes_with_map"]
-    assert all(max(row["error"].values()) < tol.BENCH_LAW for row in law.values())
-    assert {row["threads"] for row in scaling["rows"]} == {1, 2}
-    assert cold["import"]["over_bare_s"] < cold["first_contact"]["over_bare_s"]
     assert {row["material"] for row in series if row["table_ms"]} >= {"1 modes", "30 modes", "pair of 10 and 3 modes"}
 
 
@@ -121,5 +118,5 @@ def test_refuses_what_it_cannot_do(tmp_path):
     assert "unknown part speed" in stage("evidence.bench", "speed").stderr
     broken = tmp_path / "broken.toml"
     broken.write_text("[bench]\n", encoding="utf-8")
-    assert stage_refused("evidence.bench", "law", "--config", broken, "-o", tmp_path).startswith("benchmark: ")
+    assert stage_refused("evidence.bench", "series", "--config", broken, "-o", tmp_path).startswith("benchmark: ")
     assert not list(tmp_path.glob("*.json"))

@@ -6,7 +6,6 @@ import json
 
 import tolerances as tol
 from places import RESULTS
-from processes import printed
 
 from pipeline.evidence.mutate.mutants import MUTANTS
 
@@ -20,11 +19,3 @@ def test_results_are_of_known_defects():
         assert result["outcome"] in ("killed", "crashed", "timed out", "survived")
         assert result["date"]
         assert result["kernels"]
-
-
-def test_fuzzing_without_atheris_says_so():
-    """An import that fails, as without the extra."""
-    code = "import sys, runpy; sys.modules['atheris'] = None; sys.argv = ['fuzz', 'toml']; "
-    code += "runpy.run_module('pipeline.evidence.torture.fuzz_loaders', run_name='__main__')"
-    shown = printed(code)
-    assert "skipped, atheris is not installed" in shown

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import shutil
 
@@ -12,7 +11,6 @@ from places import RESULTS
 from processes import made, stage_refused
 
 MISSING = [name for name in ("chromium", "node", "cc") if shutil.which(name) is None]
-MISSING += [] if importlib.util.find_spec("fmpy") else ["fmpy"]
 
 
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed (make interop site-tools): {', '.join(MISSING)}")
@@ -21,9 +19,7 @@ def test_stage_finds_the_law_in_every_program(tmp_path):
     found = json.loads((tmp_path / "outside.json").read_text(encoding="utf-8"))
     holds(found)
     committed = json.loads((RESULTS / "outside.json").read_text(encoding="utf-8"))
-    assert {key: found[key].keys() for key in ("page", "states", "fmu")} == {
-        key: committed[key].keys() for key in ("page", "states", "fmu")
-    }
+    assert all(found[key].keys() == committed[key].keys() for key in ("page", "states"))
 
 
 def test_committed_numbers_hold():
@@ -34,9 +30,6 @@ def test_committed_numbers_hold():
 
 def holds(found):
     assert found["page"]["error"] < tol.INTEROP
-    assert found["fmu"]["complaints"] == 0
-    assert found["fmu"]["roller_error"] < tol.FMU_ROLLER
-    assert found["fmu"]["element_error"] < tol.FMU_ELEMENT
 
 
 def test_stage_says_what_is_missing(tmp_path, monkeypatch):

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import json
 import tomllib
-from pathlib import Path
 
-import numpy as np
 import pytest
 from places import PIPELINE, RESULTS
-from processes import made, printed
-
-from pipeline.evidence.torture.cache import gap
+from processes import made
 
 COMMITTED = json.loads((RESULTS / "torture.json").read_text(encoding="utf-8"))
 #: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
@@ -37,20 +33,11 @@ def test_damage_is_done(quick: list[dict]) -> None:
     assert rows["save on a full disk"]["refused"] == rows["save on a full disk"]["tried"]
 
 
-def test_files_of_the_cache_are_removed(tmp_path: Path) -> None:
-    printed("import viscoroll.kernels.bessel.ratios as r; r.ratio_r(1.0)", VISCOROLL_CACHE_DIR=str(tmp_path))
-    before = {path for path in tmp_path.rglob("*") if path.is_file()}
-    gap(tmp_path, np.random.default_rng(0))
-    assert {path for path in tmp_path.rglob("*") if path.is_file()} < before
-    with pytest.raises(FileNotFoundError, match="no compiled kernels"):
-        gap(tmp_path / "empty", np.random.default_rng(0))
-
-
 def test_committed_results_are_of_the_long_run() -> None:
     section = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8"))["torture"]
     del section["quick"]
     parts = COMMITTED["parts"]
-    assert set(parts) == {"tables", "ensembles", "cache"}
+    assert set(parts) == {"tables", "ensembles"}
     for name, part in parts.items():
         assert part["sizes"].items() <= section.items(), name
     for row in (row for part in parts.values() for row in part["rows"]):

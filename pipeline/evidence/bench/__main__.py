@@ -2,8 +2,8 @@
 
     python -m pipeline.evidence.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
-Parts: work-precision, own-parameters, fixed-scene, agreement, law, bound-law, scaling, cold-start, first-calls,
-skips, series, driven, last-release; default: all.  Sizes are in [bench] of the configuration, those of --quick in
+Parts: work-precision, own-parameters, fixed-scene, agreement, bound-law, series, first-calls, driven, last-release;
+default: all.  Sizes are in [bench] of the configuration, those of --quick in
 [bench.PART.quick].
 Times are of this machine at this moment, medians of alternating runs on one core: run it with nothing else running.
 A peer that is not installed is skipped with a printed reason (pipeline/evidence/peers/README.md).
@@ -28,8 +28,8 @@ from ..results import RESULTS, Results, machine, parser, read_sizes, write_resul
 #: module -> its functions, each a part
 MODULES = {
     "motions": ("work_precision", "own_parameters"),
-    "calls": ("fixed_scene", "agreement", "law", "bound_law", "skips", "series"),
-    "processes": ("scaling", "cold_start", "first_calls", "last_release"),
+    "calls": ("fixed_scene", "agreement", "bound_law", "series"),
+    "processes": ("first_calls", "last_release"),
     "driven": ("driven",),
 }
 PARTS = {part.replace("_", "-"): (module, part) for module, parts in MODULES.items() for part in parts}

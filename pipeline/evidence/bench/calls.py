@@ -1,4 +1,4 @@
-"""Calls that are timed in turn on one core: states of the law, motions of materials, what is left out, a map."""
+"""Calls that are timed in turn on one core: states of the law, motions of materials, a map."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from viscoroll.materials.law_table import made
 from viscoroll.motion import flow
 
 from ..timing import seconds_of, timed
-from ..truth import contact_precise
 from .problem import speed_error
 
 PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
@@ -42,31 +41,6 @@ def ensemble(scene: vr.Scene, start: NDArray, t: Any, fields: tuple[str, ...] = 
     """A call on one thread, by the integrator unless told."""
     given = {"method": "integrate", "threads": 1} | how
     return partial(vr.ensemble, scene, *start, t, fields=fields, **given)
-
-
-def law(sizes: dict[str, Any]) -> dict[str, Any]:
-    """ns a state for each way to ask for Q and M, and the largest relative error against 50 digits."""
-    random, n, fields = np.random.default_rng(sizes["seed"]), sizes["states"], ("Q", "M")
-    alpha = np.exp(random.uniform(np.log(1.1), np.log(100.0), n))
-    V, s = speeds_and_creep(random, n)
-    calls, errors = {}, {}
-    for name, given, method in (
-        ("one_alpha", PAPER.alpha, "table"), ("an_alpha_each", alpha, "table"), ("alpha_1", 1.0, "table"),
-        ("direct_one_alpha", PAPER.alpha, "direct"), ("direct_an_alpha_each", alpha, "direct"),
-    ):  # fmt: skip
-        count = max(n // sizes["direct_share"], 1) if method == "direct" else n
-        own = given[:count] if np.ndim(given) else given
-        scene = PAPER.replace(alpha=own)
-        delta = creep(scene, V[:count], s[:count])
-        calls[name] = count, partial(vr.contact, scene, V[:count], delta=delta, fields=fields, method=method)
-        found, worst = calls[name][1]().as_dict(), dict.fromkeys(fields, 0.0)
-        for i in range(min(sizes["exact_states"], count)):
-            exact = contact_precise(own[i] if np.ndim(own) else own, PAPER.kappa, PAPER.mu, V[i], delta[i], 50)
-            for field in fields:
-                off = abs(float(found[field][i]) - exact[field])
-                worst[field] = max(worst[field], float(off / abs(exact[field]) if exact[field] else off))
-        errors[name] = {"error": worst}
-    return {name: row | errors[name] for name, row in timed(calls, sizes["repeats"]).items()}
 
 
 @numba.njit
@@ -160,41 +134,6 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         | {kind: found[name, kind] for kind in ("contact", "motion") if (name, kind) in found}
         for name, material in (materials | many).items()
     ]
-
-
-def skips(sizes: dict[str, Any]) -> dict[str, Any]:
-    """What a scene does not need and what leaving it out saves: pairs of calls that differ in one thing."""
-    random, m = np.random.default_rng(sizes["seed"]), sizes["motions"]
-    V, s = speeds_and_creep(random, sizes["states"])
-    start, elastic = starts(random, m), PAPER.replace(alpha=1.0)
-    t, early, three = np.linspace(0.0, 3e-3, 31)[1:], np.linspace(0.0, 1e-6, 31)[1:], ("V", "omega", "x")
-
-    def contact(scene=PAPER, s=s, fields=("Q", "M")):
-        return partial(vr.contact, scene, V, delta=creep(scene, V, s), fields=fields)
-
-    states, motions, slow = contact(), ensemble(PAPER, start, t), np.full((2, m), 1e-9)
-    pairs = {
-        "alpha = 1: no Bessel ratio (contact)": (states, contact(elastic)),
-        "alpha = 1: no Bessel ratio (motion)": (motions, ensemble(elastic, start, t)),
-        "full slip only: neither beta nor Q (contact)": (states, contact(s=2.0)),
-        "full slip only (motion)": (motions, ensemble(PAPER, start, early)),
-        "only lam asked for (contact)": (contact(fields=None), contact(fields=("lam",))),
-        "only M asked for (contact)": (contact(fields=None), contact(fields=("M",))),
-        "final state only (motion)": (motions, ensemble(PAPER, start, t[-1:])),
-        "rest: outputs filled behind it": (motions, ensemble(PAPER, start, t, rest=1e-1)),
-        "one scene: looked up, not integrated": (motions, ensemble(PAPER, start, t, method="flow")),
-        "distance not asked for (flow map)": (
-            ensemble(PAPER, start, t, three, method="flow"), ensemble(PAPER, start, t, method="flow"),
-        ),
-        "all at rest": (motions, ensemble(PAPER, 0.0 * start, t)),
-        "all below the rest threshold": (ensemble(PAPER, slow, t), ensemble(PAPER, slow, t, rest=1e-6)),
-    }  # fmt: skip
-    calls = {(name, n): (1e9, call) for name, both in pairs.items() for n, call in enumerate(both)}
-    found = {key: row["ns"] for key, row in timed(calls, sizes["repeats"]).items()}
-    return {
-        name: {"all_s": found[name, 0], "skipped_s": found[name, 1], "ratio": found[name, 0] / found[name, 1]}
-        for name in pairs
-    }
 
 
 def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:

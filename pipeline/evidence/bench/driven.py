@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 
-from ..peers import lsoda_driven as peer
+from ..peers import lsoda
 from ..timing import seconds_of
 
 #: this many copies of a motion are rolled at once, and so many times, the least of which counts
@@ -56,10 +56,14 @@ def driven(sizes: dict[str, Any]) -> dict[str, Any]:
         ours = [_least(partial(each.rolled, sizes["rtol"], _COPIES), _COPIES) for each in some]
         rows.append({"kind": kind, "method": "viscoroll", "rtol": sizes["rtol"]} | _summary(ours, exact))
         # from rest the peer takes seconds a motion and more: its steps shrink with V
-        for rtol in sizes["peer_rtol"][: (2 if kind == "constant" else 1) if peer.INSTALLED else 0]:
-            theirs = [_least(partial(peer.roll, each.scene, each.drive, each.start, each.t, rtol)) for each in few]
-            rows.append({"kind": kind, "method": "LSODA, saturated law", "rtol": rtol} | _summary(theirs, exact))
+        for rtol in sizes["peer_rtol"][: (2 if kind == "constant" else 1) if not lsoda.missing() else 0]:
+            theirs = [_least(partial(_by_lsoda, each, rtol)) for each in few]
+            rows.append({"kind": kind, "method": "LSODA on the law", "rtol": rtol} | _summary(theirs, exact))
     return {"rows": rows}
+
+
+def _by_lsoda(motion: Motion, rtol: float) -> NDArray:
+    return lsoda.roll(lsoda.given(motion.scene, motion.drive)[None], motion.start[None], motion.t, rtol)[0]
 
 
 def _least(call: Any, copies: int = 1) -> tuple[float, NDArray]:

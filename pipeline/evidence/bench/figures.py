@@ -16,7 +16,7 @@ from viscoroll.core.files import replacing
 from viscoroll.core.plots.style import log_ticks
 
 from ...stage import ROOT
-from ..document.blocks import finished, paper_rows, random_rows
+from ..document.blocks import finished, moving, paper_rows
 from ..results import RESULTS, Results
 
 #: line and marker by method: told apart without colour
@@ -51,7 +51,7 @@ def _panels(result: dict[str, Any], shown: dict[str, tuple[list[dict[str, Any]],
 def work_precision(result: dict[str, Any]) -> Figure:
     """IC1-IC3 with every peer, and the random starts."""
     rows, count = result["measured"]["results"], result["sizes"]["motions"]
-    random = [row | {"p99": row.get("p99_moving")} for row in random_rows(rows)]
+    random = moving(row for row in rows if row["group"] == "random")
     few = {"IC1-IC3, down to a speed of 1e-3: max error": (paper_rows(rows), "max")}
     many = {f"{count} random starts, down to 1e-3: {text}": (random, key) for key, text in _ERRORS.items()}
     return _panels(result, few | many)
@@ -59,36 +59,16 @@ def work_precision(result: dict[str, Any]) -> Figure:
 
 def own_parameters(result: dict[str, Any]) -> Figure:
     """Max and 99th percentile where every motion has its own scene."""
-    rows = result["measured"]["results"]
-    return _panels(result, {f"every motion its own scene: {text}": (rows, key) for key, text in _ERRORS.items()})
-
-
-def scaling(result: dict[str, Any]) -> Figure:
-    """Time of a motion and peak memory over the number of motions."""
-    figure = Figure((8, 3.4), layout="constrained")
-    panels, rows = figure.subplots(1, 2), result["measured"]["rows"]
-    for axes, (key, text) in zip(panels, {"us": "time of a motion, µs", "peak_mb": "peak memory, MB"}.items()):
-        for name, threads in sorted({(row["method"], row["threads"]) for row in rows}):
-            points = [(r["motions"], r[key]) for r in rows if (r["method"], r["threads"]) == (name, threads)]
-            style = ("-" if name == "flow" else "--") + ("ok" if threads == 1 else "sk")
-            label = f"{name}, {threads} thread{'s' * (threads > 1)}"
-            axes.loglog(*zip(*points), style, mfc="k" if threads == 1 else "w", label=label, ms=5, lw=1)
-        axes.set(xlabel="motions", ylabel=text)
-        axes.grid(True, color="0.9")
-    panels[0].legend(fontsize=8, frameon=False, loc="center right")
-    panels[1].set(yscale="linear", ylim=(0.0, None))
-    return figure
+    rows = moving(result["measured"]["results"])
+    title = "every motion its own scene, down to 1e-3"
+    return _panels(result, {f"{title}: {text}": (rows, key) for key, text in _ERRORS.items()})
 
 
 def draw(results: Path, folder: Path) -> None:
     """The figures of all parts whose results are there."""
     folder.mkdir(parents=True, exist_ok=True)
     found = Results(results)
-    for name, figure_of in {
-        "work-precision": work_precision,
-        "bench-own-parameters": own_parameters,
-        "bench-scaling": scaling,
-    }.items():
+    for name, figure_of in {"work-precision": work_precision, "bench-own-parameters": own_parameters}.items():
         if (result := found.found(f"bench-{name.removeprefix('bench-')}")) is not None:
             with replacing(folder / f"{name}.png") as temporary:
                 figure_of(result).savefig(temporary, dpi=110, metadata={"Software": None})

@@ -42,7 +42,7 @@ def by_roots(alpha: float, kappa: float, mu: float):
         beta, _ = direct_stick(delta, kappa, mu, lam, epsilon, zeta, alpha)
         return direct_traction(beta, delta, kappa, mu, lam, epsilon, zeta), M
 
-    return differenced(law, mu / kappa)
+    return law
 
 
 @cache
@@ -82,7 +82,7 @@ def by_atlas(alpha: float, kappa: float, mu: float):
                     Q += of_alpha[a] * v[b] * w[c] * Q_of[i + a, k + b, n + c]
         return mu * Q, M
 
-    return differenced(law, mu / kappa)
+    return law
 
 
 def _spline(values, axes):
@@ -112,14 +112,22 @@ def _basis(knots, x, weights):
     return span - 3
 
 
-def differenced(law, band):
-    """(V, omega) -> loads and slopes, of (|V|, |delta|) -> (|Q|, |M|); creep of stick is of the size of ``band``."""
+@cache
+def loaded(law):
+    """(V, omega) -> Q and M/2, of (|V|, |delta|) -> (|Q|, |M|)."""
 
     @numba.njit
     def loads(V, omega):
         speed = max(abs(V), 1e-300)
         Q, M = law(speed, abs(omega - V) / speed)
         return np.sign(omega - V) * Q, 0.5 * np.sign(V) * M
+
+    return loads
+
+
+def differenced(law, band):
+    """(V, omega) -> loads and slopes; creep of stick is of the size of ``band``."""
+    loads = loaded(law)
 
     @numba.njit
     def state(V, omega):

@@ -8,22 +8,25 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
 import viscoroll as vr
 
 from ...runtime import rolled
-from ..peers import lsoda_compiled, paper_method, scipy_peers
+from ..peers import lsoda, paper_method
 from ..timing import seconds_of, steady_seconds
 from . import implicit
 from .problem import Outcome, Problem, errors, own_problem, paper_problems, reference, reference_difference
 
-#: right-hand sides after which a peer gives up: 15 s of the paper's method, 1 min of scipy's
+#: right-hand sides after which a peer gives up: 15 s of the paper's method
 _MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000
 Call = Callable[[], Outcome]
 
@@ -39,7 +42,8 @@ def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
 def _implicit(problem: Problem, rtol: float, law: Any) -> Call:
     """The Rosenbrock method of pipeline/runtime.py on another law of one scene."""
     alpha, kappa, mu, gamma, j = problem.parameters()[0].tolist()
-    one, t = partial(rolled, law(alpha, kappa, mu), gamma, j, 0.5 * mu / kappa), np.concatenate([[0.0], problem.t])
+    state = implicit.differenced(law(alpha, kappa, mu), mu / kappa)
+    one, t = partial(rolled, state, gamma, j, 0.5 * mu / kappa), np.concatenate([[0.0], problem.t])
 
     def call(count: int | None = None) -> Outcome:
         found = [one(start, t, rtol) for start in list(zip(problem.V0, problem.omega0))[:count]]
@@ -61,20 +65,34 @@ def _build_folder() -> tempfile.TemporaryDirectory:
 
 
 def _scipy(problem: Problem, rtol: float, name: str) -> Call:
+    """SciPy's ``solve_ivp`` in (V, omega) on the printed equations, which are solved in compiled code."""
     motions = list(zip(problem.parameters().tolist(), zip(problem.V0.tolist(), problem.omega0.tolist())))
+    t = problem.t
 
-    def call() -> Outcome:
-        found = [scipy_peers.roll(name, *motion, problem.t, rtol, _MOST_PYTHON) for motion in motions]
-        V, omega, evaluations = zip(*found)
-        return Outcome(np.array(V), np.array(omega), evaluations=float(sum(evaluations)))
+    def one(parameters: list[float], start: tuple[float, float]) -> NDArray:
+        alpha, kappa, mu, gamma, j = parameters
+        loads, left = implicit.loaded(implicit.by_roots(alpha, kappa, mu)), iter(range(_MOST_PYTHON))
 
-    return call
+        def rates(_: float, y: NDArray) -> tuple[float, float]:
+            next(left)
+            Q, half = loads(y[0], y[1])
+            return gamma * (Q - half), -gamma / j * (Q + half)
+
+        found = np.full((2, t.size), np.nan)
+        with suppress(StopIteration):  # more than it may ask for
+            done = solve_ivp(rates, (0.0, t[-1]), start, name, t, rtol=rtol, atol=1e-3 * rtol)
+            found[:, : done.t.size] = done.y
+        return found
+
+    one(*motions[0])  # compiles
+    return lambda: Outcome(*np.array([one(*motion) for motion in motions]).transpose(1, 0, 2))
 
 
 def _lsoda(problem: Problem, rtol: float) -> Call:
-    stuck = lsoda_compiled.prepare(problem.parameters(), problem.V0, problem.omega0, problem.t)
-    lsoda_compiled.run(stuck, problem.t, 1e-2)
-    return lambda: Outcome(*lsoda_compiled.run(stuck, problem.t, rtol))
+    scenes = np.array([lsoda.given(vr.Scene(*each)) for each in problem.parameters().tolist()])
+    starts, t = np.column_stack([problem.V0, problem.omega0]), np.concatenate([[0.0], problem.t])
+    lsoda.roll(scenes[:1], starts[:1], t, 1e-2)  # compiles
+    return lambda: Outcome(*lsoda.roll(scenes, starts, t, rtol)[:, 1:].transpose(2, 0, 1))
 
 
 class Method(NamedTuple):
@@ -106,13 +124,13 @@ METHODS = {
         f"ends at kappa V = 1e-3: below, its law is held, 1e-3 in M; {_ROSENBROCK}",
     ),
     "lsoda": Method(
-        "LSODA, explicit right-hand side", _lsoda, "by numbalsoda; full slip is given to it and not timed",
-        lsoda_compiled.missing,
+        "LSODA on the law, compiled", _lsoda, "by numbalsoda in (V, omega), with the law's saturation, without events",
+        lsoda.missing,
     ),
     "gsl-adams": Method("the paper's method (GSL Adams)", partial(_paper_method, name="adams"), *_GSL),
     "gsl-bdf": Method("GSL BDF, root solves", partial(_paper_method, name="bdf"), *_GSL),
-    "scipy-lsoda": Method("scipy LSODA, brentq", partial(_scipy, name="LSODA")),
-    "scipy-radau": Method("scipy Radau, brentq", partial(_scipy, name="Radau")),
+    "scipy-lsoda": Method("SciPy's LSODA, root solves", partial(_scipy, name="LSODA")),
+    "scipy-radau": Method("SciPy's Radau, root solves", partial(_scipy, name="Radau")),
 }  # fmt: skip
 
 

@@ -72,9 +72,7 @@ def paper_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
 
 
 def own_problem(sizes: dict[str, Any]) -> dict[str, Problem]:
-    """Every motion its own scene, mu and kappa such that full slip does not return, which LSODA without events could
-    not follow.
-    """
+    """Every motion its own scene."""
     random, n = np.random.default_rng(sizes["seed"]), sizes["motions"]
     alpha, kappa, gamma = np.exp(random.uniform(*np.log([[1.5, 2.0, 5e3], [100.0, 30.0, 2e4]]), (n, 3))).T
     scene = vr.Scene(alpha, kappa, random.uniform(0.1, 0.6, n), gamma, random.uniform(0.3, 1.0, n))

@@ -1,11 +1,8 @@
-"""Whole processes: import, one motion from the command line, first calls, memory of many motions, the last release."""
+"""Whole processes: first calls, and calls beside the last release."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import tempfile
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,28 +10,7 @@ import numpy as np
 
 from ...stage import ROOT
 from ..same import checked_out
-from ..timing import printed, timed
-
-_PROCESSES = {
-    "bare_python": ("-c", "pass"),
-    "numpy": ("-c", "import numpy"),
-    "import": ("-c", "import viscoroll"),
-    "cli_help": ("-m", "viscoroll", "--help"),
-    "cli_roll": ("-m", "viscoroll", "roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3"),
-    "first_contact": ("-c", "import viscoroll as vr; vr.contact(vr.presets.PAPER_SECTION_5, 0.5, delta=-0.01)"),
-    "first_contact_alpha_1": ("-c", "import viscoroll as vr; vr.contact(vr.Scene(1.0, 2.91, 0.2), 0.5, delta=-0.01)"),
-    "first_roll": ("-c", "import viscoroll as vr; vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 3e-3)"),
-    "first_ensemble": ("-c", "import viscoroll as vr; vr.ensemble(vr.presets.PAPER_SECTION_5, [1.5] * 9, 0.5, 3e-3)"),
-}
-
-
-def cold_start(sizes: dict[str, Any]) -> dict[str, Any]:
-    """Median seconds of each of ``processes``, and those over a bare Python (``over_bare_s``)."""
-    run = partial(subprocess.run, check=True, stdout=subprocess.DEVNULL)
-    calls = {name: (1e9, partial(run, [sys.executable, *_PROCESSES[name]])) for name in sizes["processes"]}
-    seconds = {name: row["ns"] for name, row in timed(calls, sizes["repeats"]).items()}
-    return {name: {"s": value, "over_bare_s": value - seconds["bare_python"]} for name, value in seconds.items()}
-
+from ..timing import printed
 
 #: the first calls of one process, in this order: a row behind each, all since the process began
 _FIRST = """
@@ -65,49 +41,6 @@ def first_calls(sizes: dict[str, Any]) -> dict[str, Any]:
     """Rows of the first calls of a process whose kernel cache is empty, and of one that finds it full."""
     with tempfile.TemporaryDirectory() as folder:
         return {cache: printed(_FIRST, folder, sizes["calls"], sizes["motions"]) for cache in ("empty", "full")}
-
-
-#: one size in a process of its own, so that the peak is its own: prints {"seconds", "peak_mb", "before_mb"}.  Starts
-#: are drawn and distances added up block by block, which is part of the time: nothing is kept of a block
-_MANY = """
-count, threads, options, rtol, end, seed, block = given
-scene = vr.presets.PAPER_SECTION_5_ROUNDED
-def run(count):
-    total = 0.0
-    for first in range(0, count, block):
-        n = min(block, count - first)
-        V0, omega0 = np.random.default_rng([seed, first]).uniform(-2.0, 2.0, (2, n))
-        result = vr.ensemble(
-            scene, V0, omega0, end, rtol=rtol, fields=("V", "omega", "x"), threads=threads, **options)
-        total += result.x.sum()
-    return total
-run(10)
-vr.ensemble(scene, [1.0], [0.5], end, method="integrate")  # compiles what the map's few others need
-before, start = memory("VmHWM"), time.perf_counter()
-run(count)
-seconds = time.perf_counter() - start
-print(json.dumps({"seconds": seconds, "peak_mb": memory("VmHWM") / 1e6, "before_mb": before / 1e6}))
-"""
-
-
-def scaling(sizes: dict[str, Any]) -> dict[str, Any]:
-    """Rows of motions, threads, us a motion, peak MB; a size that would take too long is skipped and says so."""
-    rows, skipped = [], []
-    for name, options in sizes["methods"].items():
-        for threads in sizes["threads"]:
-            each = 0.0
-            for count in sizes["motions"]:
-                row = {"method": name, "threads": threads, "motions": count}
-                if each * count > sizes["longest_s"]:
-                    skipped.append(row | {"expected_s": each * count})
-                    print(f"benchmark: {count} motions skipped: {each * count:.0f} s > {sizes['longest_s']} s")
-                    continue
-                found = printed(
-                    _MANY, count, threads, options, *(sizes[key] for key in ("rtol", "end", "seed", "block"))
-                )
-                each = found.pop("seconds") / count
-                rows.append(row | {"us": 1e6 * each} | found)
-    return {"rows": rows, "skipped": skipped}
 
 
 #: {case: ns a state} of the package that is found: Q and M at the paper's material, median of some calls; of the

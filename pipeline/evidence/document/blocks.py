@@ -131,10 +131,6 @@ stated(
     "outside", "measure.outside", ("what", "measured"), {
         "C, gcc -O2, a state; with all slopes": "{states[c_ns]!n} ns; {states[c_slopes_ns]!n} ns",
         "JavaScript, Node, a state": "{states[node_ns]!n} ns",
-        "FMU: complaints of `validate_fmu`, both models, FMI 2.0 and 3.0": "{fmu[complaints]}",
-        "FMU: a thrown roller as co-simulation against `roll`": "{fmu[roller_error]!n}",
-        "FMU: the contact element in SciPy's Radau at rtol 1e-9, likewise": "{fmu[element_error]!n}",
-        "FMU: largest file, sources inside": "{fmu[bytes]!k} kB",
     }, lambda results: results["outside"],
 )  # fmt: skip
 
@@ -375,12 +371,12 @@ def paper_rows(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def random_rows(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of the random starts, with the largest error while moving.
+def moving(found: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows with their errors while moving.
 
     A motion that has all but ended has a large relative error in V with any method but one in log V.
     """
-    return [row | {"max": row.get("max_moving") or np.inf} for row in found if row["group"] == "random"]
+    return [row | {"max": row.get("max_moving") or np.inf, "p99": row.get("p99_moving")} for row in found]
 
 
 def finished(row: Row) -> bool:
@@ -411,8 +407,8 @@ def bench_peers(results: Results) -> str:
     """
     groups = {
         "IC1-IC3": ("work-precision", paper_rows),
-        "random starts": ("work-precision", random_rows),
-        "own parameters": ("own-parameters", list),
+        "random starts": ("work-precision", lambda found: moving(row for row in found if row["group"] == "random")),
+        "own parameters": ("own-parameters", moving),
     }
     lines, ours = [], "{own_us:.3g} µs at {own_error:.1e}"
     for where, (part, choose) in groups.items():
@@ -443,7 +439,7 @@ def bench_peers(results: Results) -> str:
 def bench_own(found: Any) -> Iterator[Row]:
     """Every tolerance of the motions with scenes of their own."""
     measured = found["measured"]
-    return (row | measured["methods"][row["method"]] for row in measured["results"])
+    return (row | measured["methods"][row["method"]] for row in moving(measured["results"]))
 
 
 @text("bench")
@@ -489,13 +485,6 @@ def named(found: Any) -> Iterator[dict[str, Any]]:
     return ({"name": name} | row for name, row in found["measured"].items())
 
 
-@rows("bench", "bench-law", {"Q and M of a state": "{name}", "time": _NS, "max error against 50 digits": "{worst:.1e}"})
-def bench_law(found: Any) -> Iterator[Row]:
-    """Time and error of the contact law."""
-    for row in named(found):
-        yield row | {"name": row["name"].replace("_", " "), "worst": max(row["error"].values())}
-
-
 @rows("bench", "bench-bound-law", {
     "material": "{material}", "called": "{called}", "a state": _NS, "by `contact`": "{of_contact}",
     _TIMES_FASTER: "{times:.2g}",
@@ -505,21 +494,6 @@ def bench_bound_law(found: Any) -> Iterator[Row]:
     for row in found["measured"]["rows"]:
         called, theirs = row["way"] + ", slopes" * row["slopes"], row["contact"]
         yield row | {"called": called, "of_contact": cell(_NS, theirs), "times": theirs["ns"] / row["ns"]}
-
-
-@rows("bench", "bench-scaling", {
-    "method": "{method}", "threads": "{threads}", "motions": "{motions:.0e}", "a motion": "{us!t} µs",
-    "peak memory": "{peak_mb:.0f} MB",
-})  # fmt: skip
-def bench_scaling(found: Any) -> list[Row]:
-    """Time and memory by number of motions."""
-    return found["measured"]["rows"]
-
-
-@rows("bench", "bench-skips", {"left out": "{name}", _TIMES_FASTER: "{ratio:.3g}"})
-def bench_skips(found: Any) -> Iterator[Row]:
-    """What leaving out saves."""
-    return named(found)
 
 
 @rows("bench", "bench-last-release", {
@@ -549,14 +523,6 @@ def bench_series(found: Any) -> Iterator[Row]:
 def bench_driven(found: Any) -> list[Row]:
     """Driven motions beside LSODA."""
     return found["measured"]["rows"]
-
-
-@rows("bench", "bench-cold-start", {
-    "process, kernels cached": "{process}", "over a bare Python": "{over_bare_s!u} ms",
-})  # fmt: skip
-def bench_cold_start(found: Any) -> Iterator[Row]:
-    """Whole processes."""
-    return (row | {"process": row["name"].replace("_", " ")} for row in named(found) if row["name"] != "bare_python")
 
 
 @rows("bench", "bench-first-calls", {

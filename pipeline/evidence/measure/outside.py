@@ -1,8 +1,8 @@
-"""The law outside Python: the page that computes, C, Node and FMUs -> data/results/outside.json (kept in git).
+"""The law outside Python: the page that computes, C and Node -> data/results/outside.json (kept in git).
 
     python -m pipeline.evidence.measure.outside [--config FILE] [--quick] [-o FILE]
 
-Wants chromium, node, cc and fmpy (make site-tools interop-tools); sizes are in [outside] of the configuration.  Every
+Wants chromium, node and cc (make site-tools interop-tools); sizes are in [outside] of the configuration.  Every
 number is of one core.  pipeline/evidence/document/ puts it into docs/live.md and docs/loading/README.md.
 """
 
@@ -20,12 +20,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 import viscoroll as vr
-from viscoroll import fmu, tables
+from viscoroll import tables
 from viscoroll.core.errors import MissingDependencyError
-from viscoroll.core.extras import imported
 from viscoroll.io.config import read_bodies
 
 from ...stage import ROOT
@@ -103,7 +101,7 @@ def measure(sizes: dict[str, Any]) -> dict[str, Any]:
         folder = Path(name)
         tables.export(law, folder / "rubber.json")
         tables.export(law, folder / "rubber.h")
-        return {"sizes": sizes, "page": page(folder, sizes), "states": programs(folder, sizes), "fmu": fmus(folder)}
+        return {"sizes": sizes, "page": page(folder, sizes), "states": programs(folder, sizes)}
 
 
 def program(*names: str) -> str:
@@ -164,64 +162,6 @@ def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
     printed(folder, program("cc"), "-std=c99", "-O2", "time.c", "-lm", "-o", "time")
     values, slopes = map(float, printed(folder, "./time").split())
     return {"c_ns": values, "c_slopes_ns": slopes, "node_ns": float(printed(folder, program("node"), "node.js"))}
-
-
-def fmus(folder: Path) -> dict[str, Any]:
-    """Size, complaints of the standard, and errors of both models on a throw of the rubber cylinder."""
-    fmpy, validation = imported("fmpy", "fmpy", "fmu"), imported("fmpy.validation", "fmpy", "fmu")
-    cylinder, t = vr.presets.RUBBER_CYLINDER, np.linspace(0.0, 1.0, 21)
-    exact = cylinder.roll(2.0, 0.0, t, rtol=1e-11)
-    found: dict[str, Any] = {"complaints": 0, "bytes": 0, "roller_error": 0.0, "element_error": 0.0}
-    for model in fmu.MODELS:
-        for version in (2, 3):
-            path = folder / f"{model}{version}.fmu"
-            fmu.build(cylinder, path, model, version)
-            found["complaints"] += len(validation.validate_fmu(str(path)))
-            found["bytes"] = max(found["bytes"], path.stat().st_size)
-            V, omega, x = (rolled if model == "Roller" else carried)(fmpy, path, cylinder, t)
-            errors = [largest(V, exact.V), largest(omega, exact.omega, np.abs(exact.omega).max())]
-            errors += [] if x is None else [largest(x, exact.x, np.abs(exact.x).max())]
-            name = "roller_error" if model == "Roller" else "element_error"
-            found[name] = max(found[name], *errors)
-    return found
-
-
-def rolled(fmpy: Any, path: Path, cylinder: vr.Cylinder, t: Any) -> tuple[Any, ...]:
-    """A roller as co-simulation that takes its own steps."""
-    options = {"stop_time": t[-1], "output_interval": t[1], "fmi_type": "CoSimulation", "output": ["v", "omega", "x"]}
-    found = fmpy.simulate_fmu(str(path), start_values={"v0": 2.0, "omega0": 0.0}, **options)
-    return found["v"], found["omega"], found["x"]
-
-
-def carried(fmpy: Any, path: Path, cylinder: vr.Cylinder, t: Any) -> tuple[Any, ...]:
-    """A contact element in SciPy's Radau, with its directional derivatives."""
-    about, folder = fmpy.read_model_description(str(path)), fmpy.extract(str(path))
-    one, inertia = (
-        fmpy.instantiate_fmu(folder, about, "ModelExchange"),
-        [cylinder.m, cylinder.j * cylinder.m * cylinder.R**2],
-    )
-    put, get = (one.setReal, one.getReal) if about.fmiVersion == "2.0" else (one.setFloat64, one.getFloat64)
-    references = {variable.name: variable.valueReference for variable in about.modelVariables}
-    forces, speeds = ([references[name] for name in names] for names in (("force", "torque"), ("v", "omega")))
-    if about.fmiVersion == "2.0":
-        one.setupExperiment()
-    one.enterInitializationMode()
-    one.exitInitializationMode()
-
-    def rates(_: float, y: Any) -> Any:
-        put(speeds, y.tolist())
-        return np.divide(get(forces), inertia)
-
-    def jacobian(_: float, y: Any) -> Any:
-        put(speeds, y.tolist())
-        columns = [one.getDirectionalDerivative(forces, [speed], [1.0]) for speed in speeds]
-        return np.transpose(columns) / np.array(inertia)[:, np.newaxis]
-
-    found = solve_ivp(rates, (0.0, t[-1]), [2.0, 0.0], "Radau", t, jac=jacobian, rtol=1e-9, atol=1e-12)
-    one.terminate()
-    one.freeInstance()
-    shutil.rmtree(folder)
-    return found.y[0], found.y[1], None
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from flint import arb
+from scipy.special import i0e, i1e, k0e, k1e
 
 import viscoroll as vr
 
@@ -23,6 +24,13 @@ def powers(random: np.random.Generator, *ends: tuple[float, float]) -> list[floa
     """10^x, x even between the ends."""
     low, high = zip(*ends)
     return (10.0 ** random.uniform(low, high)).tolist()
+
+
+def generators(z: Any, alpha: float) -> tuple[Any, Any]:
+    """g and h of one relaxation time, to place states by a half length z over V T."""
+    r, k = i1e(alpha * z) / i0e(alpha * z), k0e(z) / k1e(z)
+    h = (alpha - 1.0) / alpha * r / (1.0 + r * k)
+    return h * k, h
 
 
 def chosen_alpha(random: np.random.Generator) -> float:

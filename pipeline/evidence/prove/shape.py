@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 import viscoroll as vr
 from viscoroll.kernels.bessel import layout as layout
 
-from ..peers.standard import generators, standard
 from .claim import Found, Proof
-from .draws import EDGE_ALPHAS
-from .states import SLOPE, SLOPES, slope_scales
+from .draws import EDGE_ALPHAS, generators
 
 #: the two ways that contact() takes, and the largest fall allowed: see above
 WAYS, FALL = ("an alpha each", "one alpha"), 6.0
+#: and the largest step of these, over their scales
+SLOPES, STEP = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV"), 1e-10
 #: neighbouring doubles at an edge: so many on either side of it
 _NEIGHBOURS = np.arange(-4, 5)
 _CHUNK = 1_000_000
@@ -96,15 +96,12 @@ def at_edges(random: np.random.Generator, way: str, alpha: float) -> Any:
         yield 1.0, mu, V[inside][:, None], neighbours((0.5 * mu * (L - 2.0 * V / v))[inside])
         return
 
-    def functions(z: NDArray) -> NDArray:
-        return np.array([generators(each, standard(alpha)) for each in z.tolist()]).T
-
     z = np.sort(np.concatenate([_EDGES, _EDGES / alpha]))
-    g, h = functions(z)
+    g, h = generators(z, alpha)
     yield kappa, mu, neighbours(0.5 / kappa / np.sqrt(z * z + 2.0 * z * h)), np.float64(0.0)
     for _ in range(4):  # from a zeta somewhat above, eta on the edge
         zeta = z * (1.0 + log_uniform(random, 1e-3, 1e3, z.size))
-        g_zeta, h_zeta = functions(zeta)
+        g_zeta, h_zeta = generators(zeta, alpha)
         V = 0.5 / kappa / np.sqrt(zeta * zeta + 2.0 * zeta * h_zeta)
         yield kappa, mu, V[:, None], neighbours(mu * V * (zeta - z + (g_zeta - g)))
 
@@ -113,6 +110,12 @@ def falls_at_edges(random: np.random.Generator, _: int, way: str) -> Found:
     for alpha in (*EDGE_ALPHAS[1:], 1.5, 11.0, 24.0, 28.0, 81.5, 1e3):
         for case in at_edges(random, way, alpha):
             yield f"alpha = {alpha!r}", falls(way, alpha, *case)
+
+
+def slope_scales(mu: float, V: Any, alpha: float, star: Any) -> dict[str, Any]:
+    """What a slope may be measured by: a change of Q by mu as V or delta changes by all of itself; c for M."""
+    c = (alpha - 1.0) / alpha if alpha > 1.0 else 1.0
+    return {"dQ_dV": mu / V, "dQ_ddelta": mu / star, "dQ_domega": mu / (V * star), "dM_dV": c}
 
 
 def jumps(random: np.random.Generator, _: int) -> Found:
@@ -164,6 +167,6 @@ PROOFS = [
     ),
     Proof(
         "slopes", "shape_pairs", "every cell edge",
-        {name: (f"{name}: step between neighbouring doubles, over its scale", SLOPE) for name in SLOPES}, jumps,
+        {name: (f"{name}: step between neighbouring doubles, over its scale", STEP) for name in SLOPES}, jumps,
     ),
 ]  # fmt: skip

@@ -14,30 +14,21 @@ import viscoroll as vr
 from pipeline.validation.states import ALLOWED, differences, random_states
 from pipeline.validation.stresses import closures
 
-from ..peers.standard import generators, standard
 from ..truth import boundary
-from ..truth.enclosures import (
-    INPUTS,
-    condition_numbers,
-    contact_enclosure,
-    shape_enclosure,
-    slope_changes,
-    slopes,
-)
+from ..truth.enclosures import INPUTS, condition_numbers, contact_enclosure, shape_enclosure
 from .claim import Found, Proof, at
-from .draws import STATES, chosen_alpha, chosen_state, powers
+from .draws import STATES, chosen_alpha, chosen_state, generators, powers
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
-SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 #: relative error where the condition number leaves it, else that many roundings of the inputs
 WELL, ROUNDINGS, UNIT = 1e-13, 4.0, 2.0**-53
 #: the two bounds meet here
 WELL_CONDITIONED = WELL / (ROUNDINGS * UNIT)
-SLOPE, CLOSURE = 1e-10, 1e-11
+CLOSURE = 1e-11
 #: the last subnormals have no relative accuracy: their spacing, some times over
 _LEAST = 8 * 5e-324
-#: where the edges of the contact and of the stick zone lie: four roundings of x and lam, four of beta
-_SHIFT = 8.0 * UNIT
+#: relative errors that rows are allowed: of 24 powers of one octave of kappa V at alpha from 20 to 35
+LAM, EPSILON = 1.5e-14, 3e-14
 #: states of a call
 _TOGETHER = 150
 #: elements in either zone, and twice as many
@@ -99,40 +90,6 @@ def direct(random: np.random.Generator, count: int) -> Found:
     yield f"{count} states", differences(*both, scene)
 
 
-def slope_scales(mu: float, V: Any, alpha: float, star: Any) -> dict[str, Any]:
-    """What a slope may be measured by: a change of Q by mu as V or delta changes by all of itself; c for M."""
-    c = (alpha - 1.0) / alpha if alpha > 1.0 else 1.0
-    return {"dQ_dV": mu / V, "dQ_ddelta": mu / star, "dQ_domega": mu / (V * star), "dM_dV": c}
-
-
-def of_slopes(random: np.random.Generator, count: int) -> Found:
-    """dQ_ddelta, dQ_domega: relative, over what four roundings times the condition of beta exceed 1e-10; else by scale.
-
-    dQ_dV and dM_dV pass through zero; the others go to it with beta.  dQ_dV depends on eta through A = H'/F', which
-    rises from 0 within eta ~ 1/alpha: near the end of stick a relative error in delta, mu or V comes back up to about
-    2 alpha lam^2 (1 + epsilon)^2 times as large over mu/V.  Where it is beyond the bound its condition number is asked.
-    """
-    for _ in range(count):
-        alpha, ends = chosen_alpha(random), ((-6, 6), (-6, 6), (-8, 8), (-12, 0), (-12, 0))
-        kappa, mu, kappa_V, small, gap = powers(random, *ends)
-        V, s = kappa_V / kappa, small if random.random() < 0.5 else 1.0 - gap
-        scene = vr.Scene(alpha, kappa, mu)
-        star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
-        found = vr.contact(scene, V, delta=s * star, fields=(), slopes=True)
-        inputs = given((alpha, kappa, mu, V, s * star))
-        exact, scales = slopes(inputs), slope_scales(mu, V, alpha, star)
-        excuse = max(1.0, ROUNDINGS * UNIT * condition_numbers(inputs)["beta"] / SLOPE)
-        with flint.ctx.workprec(200):
-            exact["dQ_domega"] = exact["dQ_ddelta"] / V
-            errors = {name: float(abs(arb(getattr(found, name)) - exact[name]).upper()) for name in SLOPES}
-        for name in SLOPES:
-            of_scale = name in ("dQ_dV", "dM_dV")
-            errors[name] /= scales[name] if of_scale else float(abs(exact[name])) * excuse
-        if errors["dQ_dV"] > SLOPE:
-            errors["dQ_dV"] /= max(1.0, ROUNDINGS * UNIT * slope_changes(inputs)["dQ_dV"] / scales["dQ_dV"] / SLOPE)
-        yield at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s), errors
-
-
 def enclosed_stress(exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: Any, x: Any) -> tuple[Any, Any]:
     """p/E' and tau/E' at x."""
     zeta = exact["zeta"]
@@ -143,11 +100,14 @@ def enclosed_stress(exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: A
 
 
 def of_stress(random: np.random.Generator, count: int) -> Found:
-    """At x in l0 within 1e-16 to 1 of either edge and of the stick point, on both sides, and between."""
+    """At x in l0 within 1e-16 to 1 of either edge and of the stick point, on both sides, and between.
+
+    Edges, where stresses rise as a square root, lie where lam and epsilon have them.
+    """
     for _ in range(count):
         alpha, a, kappa, mu, small = powers(random, (0, 4), (-8, 8), (0, 2), (-2, 0), (-8, 0))
         zeta = a / alpha
-        V = 0.5 / kappa / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, standard(alpha))[1])
+        V = 0.5 / kappa / math.sqrt(zeta * zeta + 2.0 * zeta * generators(zeta, alpha)[1])
         s = (small, 1.0 - small, float(random.random()), 1.2)[random.integers(4)]
         scene = vr.Scene(alpha, kappa, mu)
         delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
@@ -160,7 +120,8 @@ def of_stress(random: np.random.Generator, count: int) -> Found:
         peak = vr.stress(scene, middle + half * np.linspace(-1, 1, 401), V, delta=delta).p.max()
         exact = contact_enclosure(alpha, kappa, mu, V, delta, 200)
         for i, place in enumerate(x.tolist()):
-            shift, where = _SHIFT * max(abs(place), front), at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s, x=place)
+            shift = LAM * max(abs(place), front) + EPSILON * middle
+            where = at(alpha=alpha, kappa=kappa, mu=mu, V=V, s=s, x=place)
             with flint.ctx.workprec(260):
                 inputs = map(arb, (alpha, kappa, mu, V))
                 of_x = partial(enclosed_stress, exact, *inputs)
@@ -202,9 +163,7 @@ def by_elements(random: np.random.Generator, count: int) -> Found:
         }
         ours = {"load": 1.0 / (2.0 * V) ** 2, "delta": delta}
         errors = {name: abs(value / float(ours.get(name) or getattr(c, name)) - 1.0) for name, value in theirs.items()}
-        part = V * float(found.shares @ bodies.half_space_weights) - float(c.M_half_space)
-        hurt = {"part": abs(part) / float(c.M), "hurt": not found.least > 0.0}
-        yield at(V=V, creep=creep) + f", {bodies!r:.200}", errors | hurt
+        yield at(V=V, creep=creep) + f", {bodies!r:.200}", errors | {"hurt": not found.least > 0.0}
 
 
 def _contact(way: str, size: str, by: Any) -> Proof:
@@ -217,7 +176,6 @@ def _contact(way: str, size: str, by: Any) -> Proof:
     return Proof("contact", size, STATES, claims | slip, partial(contact, by=by))
 
 
-_RELATIVE = "relative, over max(1, condition of beta × 4.4e-6)"
 _BY_ELEMENTS = f"against {_ELEMENTS} and {2 * _ELEMENTS} boundary elements a zone, extrapolated"
 PROOFS = [
     _contact("an alpha each", "states", by_axis),
@@ -227,16 +185,12 @@ PROOFS = [
         {name: (f"{name}, {unit}", bound) for name, (bound, unit) in ALLOWED.items()}, direct,
     ),
     Proof(
-        "slopes", "slope_states", "alpha in [1, 1e6], kappa V in [1e-8, 1e8], s in [1e-12, 1 - 1e-12]", {
-            "dQ_dV": ("dQ_dV, over μ/V, or where beyond the bound over its condition × 4.4e-6 μ/V", SLOPE),
-            "dQ_ddelta": (f"dQ_ddelta, {_RELATIVE}", SLOPE), "dQ_domega": (f"dQ_domega, {_RELATIVE}", SLOPE),
-            "dM_dV": ("dM_dV, over (α − 1)/α", SLOPE),
-        }, of_slopes,
-    ),
-    Proof(
         "slopes", "stress_states",
         "alpha zeta in [1e-8, 1e8], alpha in [1, 1e4], s over its range, x at edges, stick point and between",
-        {name: (f"{name} beyond a shift of x by 8 roundings, over its peak", CLOSURE) for name in ("p", "tau")},
+        {
+            name: (f"{name} beyond a shift of x by what lam and epsilon may be off, over its peak", CLOSURE)
+            for name in ("p", "tau")
+        },
         of_stress,
     ),
     Proof(
@@ -249,7 +203,6 @@ PROOFS = [
         "boundary", "boundary_states",
         "1 to 3 modes over up to 2 decades, kappa V in [0.03, 10], creep in [0.05, 0.95] of delta_star",
         {name: (f"{name} {_BY_ELEMENTS}", 1e-4) for name in ("load", "epsilon", "M", "delta", "Q")} | {
-            "part": (f"part of M in the half-space, over M, {_BY_ELEMENTS}", 1e-3),
             "hurt": ("share of states in which p, p - q, q or the slip is negative somewhere", 0.0),
         }, by_elements,
     ),

@@ -14,10 +14,10 @@ import sys
 from typing import Any
 
 from ..results import run_parts
-from . import cache, ensembles, tables
+from . import ensembles, tables
 
 #: name -> function of the sizes that returns rows of done, tried, refused, unharmed, wrong, slowest_s, peak_mb
-PARTS = {"tables": tables.rows, "ensembles": ensembles.rows, "cache": cache.rows}
+PARTS = {"tables": tables.rows, "ensembles": ensembles.rows}
 
 
 def harm(row: dict[str, Any]) -> str | None:

@@ -1,4 +1,4 @@
-"""Ensembles under torture: killed runs, workers and schedulers, a full disk, damaged files of a store.
+"""Ensembles under torture: killed runs, a full disk, damaged files of a store.
 
 After each the same call goes on; a row's "unharmed" are those whose store then equals an
 uninterrupted one bit for bit, with every block that was whole left as it was.
@@ -9,13 +9,9 @@ from __future__ import annotations
 import os
 import shutil
 import signal
-import socket
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -47,8 +43,6 @@ block = 400
 keep = "all"
 """
 THREADS = 2
-#: seconds that a cluster is given to fail or to finish
-PATIENCE = 180.0
 NO_TMPFS = "no tmpfs can be had"
 
 
@@ -67,8 +61,6 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         ensemble = Ensemble(run, content(folder / "whole.zarr"), folder, rng)
         return [
             row("SIGKILL of an ensemble", ensemble.kills(sizes["ensembles"], seconds)),
-            row("SIGKILL of a dask worker", ensemble.cluster_kills(sizes["clusters"], "worker")),
-            row("SIGKILL of the dask scheduler", ensemble.cluster_kills(sizes["clusters"], "scheduler")),
             row("ensemble on a full disk", ensemble.full_disks(sizes["full_ensembles"])),
             row("export of a store to a full disk", ensemble.full_exports(sizes["full_ensembles"])),
             row("one bit of a file of a store flipped", ensemble.damage(sizes["stores"], flip)),
@@ -105,45 +97,6 @@ class Ensemble:
                 process.join()
                 code = process.exitcode or 0
             yield self.outcome()
-
-    def cluster_kills(self, count: int, whom: str) -> Iterator[str]:
-        """Of a worker: dask gives its block to another, and the run goes on by itself; of the scheduler: it may end
-        with an error of its own, and the same command goes on.
-        """
-        for _ in tqdm(range(count), desc=whom, delay=1.0, leave=False):
-            with self.cluster() as (scheduler, workers, process):
-                (scheduler if whom == "scheduler" else workers[int(self.rng.integers(len(workers)))]).kill()
-                code = process.wait(PATIENCE)
-            yield self.outcome() if code == 0 or (code == 2 and whom == "scheduler") else f"exit code {code}"
-
-    @contextmanager
-    def cluster(self) -> Iterator[tuple[subprocess.Popen, list[subprocess.Popen], subprocess.Popen]]:
-        """(scheduler, workers, program) at work on a fresh store, somewhere in the middle."""
-        shutil.rmtree(self.store, ignore_errors=True)
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            address = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
-        dask = [sys.executable, "-m", "distributed.cli.dask_spec", "--spec"]
-        scheduler = (
-            f'{{"cls": "distributed.Scheduler", "opts": {{"port": {address.rpartition(":")[2]}, "dashboard": false}}}}'
-        )
-        worker = '{"cls": "distributed.Nanny", "opts": {"nthreads": 1}}'
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        processes = [subprocess.Popen([*dask, scheduler], **quiet)]
-        try:
-            time.sleep(2.0)
-            processes += [subprocess.Popen([*dask, worker, address], **quiet) for _ in range(THREADS)]
-            time.sleep(3.0)
-            command = ["-m", "viscoroll", "ensemble", self.folder / "run.toml", "-o", self.store, "--cluster", address]
-            processes.append(subprocess.Popen([sys.executable, *command], **quiet))
-            stop = int(self.rng.integers(1, self.run.blocks))
-            while processes[-1].poll() is None and len(list(self.store.glob("records/0*"))) < stop:
-                time.sleep(0.01)
-            yield processes[0], processes[1:-1], processes[-1]
-        finally:
-            for process in processes:
-                process.kill()
-                process.wait()
 
     def full_disks(self, count: int) -> Iterator[str]:
         """On a tmpfs of any size; where none can be had, that is the outcome, and counts as wrong."""

@@ -23,8 +23,6 @@ from viscoroll.materials.prony import Prony
 
 #: from here on f is its asymptotic series, of so many terms
 _FAR, _TERMS = 50.0, 30
-#: two points of Gauss-Legendre's rule on [-1, 1]
-_GAUSS = 1.0 / math.sqrt(3.0)
 
 
 class Boundary(NamedTuple):
@@ -32,7 +30,6 @@ class Boundary(NamedTuple):
 
     H, g, m : load over pi/2, distance of the axis behind the middle, M/V
     d, Q : creep over mu V, and friction over mu
-    shares : of the creep modes in m, slowest first
     least : least of p, p - q and q inside, over the largest p, and of the slip behind the stick zone over d: where all
         are positive, no inequality is hurt
     """
@@ -42,7 +39,6 @@ class Boundary(NamedTuple):
     m: float
     d: float
     Q: float
-    shares: NDArray[np.float64]
     least: float
 
 
@@ -92,10 +88,6 @@ class Elements:
             whole = whole + self._of_mode(mode, apart)
         return whole @ self._jumps / math.pi
 
-    def of_mode(self, mode: int, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The part of a creep mode in them."""
-        return self._of_mode(mode, at[:, None] - self.nodes[None, :]) @ self._jumps / math.pi
-
     def _of_mode(self, mode: int, apart: NDArray[np.float64]) -> NDArray[np.float64]:
         T, X = float(self.p.T[mode]), apart / float(self.p.T[mode])
         return self.p.J[mode] * T * (_memory(X) + _twice(X))
@@ -105,16 +97,6 @@ class Elements:
         inside, h, left = np.concatenate([[0.0], values, [0.0]]), self.lengths, self.nodes[:-1]
         a, b = inside[:-1], inside[1:]
         return float(h @ (a + b)) / 2.0, float(h @ (left * (a + b) / 2.0 + h * (a + 2.0 * b) / 6.0))
-
-    def work(self, values: NDArray[np.float64], mode: int) -> float:
-        """Integral of a traction times the slope that a creep mode makes under it."""
-        inside, middle = np.concatenate([[0.0], values, [0.0]]), 0.5 * (self.nodes[1:] + self.nodes[:-1])
-        total = 0.0
-        for side in (-_GAUSS, _GAUSS):
-            here = 0.5 * ((1.0 - side) * inside[:-1] + (1.0 + side) * inside[1:])
-            slope = self.of_mode(mode, middle + 0.5 * side * self.lengths) @ values
-            total += float(0.5 * self.lengths @ (here * slope))
-        return total
 
 
 def graded(first: float, last: float, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -154,13 +136,10 @@ def contact(p: Prony, z: float, eta: float, count: int = 100) -> Boundary:
     found = np.linalg.solve(np.column_stack([inside, -np.ones(count)]), -known)
     shear, d = np.concatenate([pressure[:count], found[:-1]]), float(found[-1])
     slip = d - slopes[:count] @ shear
-    shares = np.array([elements.work(pressure, mode) for mode in range(p.J.size)]) / load
     rest = pressure - shear
     least = min(pressure.min(), rest[count:].min(), shear.min()) / pressure.max()
-    return Boundary(
-        2.0 * load / math.pi, g, g + moment / load, d, elements.moments(shear)[0] / load, shares,
-        float(min(least, slip.min() / d)),
-    )  # fmt: skip
+    slipped = float(min(least, slip.min() / d))
+    return Boundary(2.0 * load / math.pi, g, g + moment / load, d, elements.moments(shear)[0] / load, slipped)
 
 
 def extrapolated(p: Prony, z: float, eta: float, count: int = 50) -> Boundary:

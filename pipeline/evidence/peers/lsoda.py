@@ -1,0 +1,84 @@
+"""LSODA, compiled, on Eq. (22) in (V, omega), free or driven, with the contact law and its own saturation: no events.
+
+What a user would do with the law and a good general integrator.  By numbalsoda (C++), called from compiled code; there
+is no such peer where that is not installed.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+import viscoroll as vr
+from viscoroll.kernels.compile.address import doubles, integers
+from viscoroll.kernels.rows.contact import traction_of
+from viscoroll.kernels.rows.law import place, speed, way_of
+from viscoroll.kernels.rows.record import Law
+from viscoroll.kernels.rows.states import State
+from viscoroll.materials.law_table import law_table
+
+#: share of rtol that the absolute tolerance is
+ATOL_SHARE = 1e-3
+#: between two outputs
+_MOST_STEPS = 20_000
+
+
+def missing() -> str | None:
+    """Why it cannot run here, or None."""
+    return None if find_spec("numbalsoda") else "numbalsoda is not installed (make peer-tools)"
+
+
+@cache
+def _compiled():
+    # the module of ``lsoda`` alone: beside it lies another method, which numba compiles on import, for 5 s
+    spec = spec_from_file_location("driver", Path(find_spec("numbalsoda").origin).with_name("driver.py"))
+    driver = module_from_spec(spec)
+    spec.loader.exec_module(driver)
+    lsoda = driver.lsoda
+
+    @numba.cfunc(driver.lsoda_sig)
+    def rates(t, u, du, p):
+        """At f = par[4] + par[6] t and q = par[5] + par[7] t; addresses and sizes of rows and marks behind."""
+        y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 12)
+        rows, marks = doubles(int(par[8]), int(par[9])), integers(int(par[10]), int(par[11]))
+        law, state = Law(rows, marks, rows[:0], 0, 0, 0), State(par[0], par[1], y[0], y[1], True)
+        u = state.kappa * abs(y[0])
+        at = place(u, law)
+        of = speed(at, u, law)
+        Q, M = traction_of(u, of.L, state, law), way_of(at, u, of.scale, state) * of.m
+        found[0] = par[2] * (Q - 0.5 * M + par[4] + par[6] * t)
+        found[1] = par[2] / par[3] * (par[5] + par[7] * t - Q - 0.5 * M)
+
+    @numba.njit(nogil=True)
+    def loop(address, given, starts, t, rtol, atol, found):
+        for i in range(len(starts)):
+            solution, good = lsoda(address, starts[i].copy(), t, given[i].copy(), rtol, atol, _MOST_STEPS)
+            if good:
+                for m in range(t.size):  # numba takes seconds to compile the message of slices that do not fit
+                    found[i, m, 0], found[i, m, 1] = solution[m, 0], solution[m, 1]
+
+    return lambda *rest: loop(rates.address, *rest)
+
+
+@cache
+def _law(alpha: float) -> Law:
+    return law_table(alpha).record
+
+
+def given(scene: vr.Scene, drive: NDArray | None = None) -> NDArray:
+    """What the rates ask of a scene; ``drive``: first values of force and torque, and their slopes."""
+    drive, law = np.zeros((2, 2)) if drive is None else drive, _law(float(scene.alpha))
+    rows = [each for part in (law.rows, law.marks) for each in (part.ctypes.data, part.size)]
+    return np.array([scene.kappa, scene.mu, scene.gamma, scene.j, *drive.ravel(), *rows])
+
+
+def roll(scenes: NDArray, starts: NDArray, t: NDArray, rtol: float) -> NDArray:
+    """V and omega at ``t``, which begins with 0, of each motion, or NaN."""
+    found = np.full((len(starts), t.size, 2), np.nan)
+    _compiled()(scenes, starts, t, rtol, ATOL_SHARE * rtol, found)
+    return found
