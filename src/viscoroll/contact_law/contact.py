@@ -13,9 +13,8 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.blocks import elements, run_blocks
 from ..core.checks import broadcast_shape, checked, checked_extent
-from ..core.errors import ConvergenceError, ParameterError, one_of
+from ..core.errors import ParameterError, one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
@@ -29,7 +28,6 @@ from .parameters import Parameters, Rolls, framed
 
 #: of bodies that are alike, half of each
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
-_BLOCK = 1 << 15
 #: in Eq. (15) as printed the rounding of a bracket grows with kappa |V|: beyond, Q has lost four digits of mu and more
 _FASTEST_DIRECT = 1e12
 
@@ -175,7 +173,7 @@ def states(
     unlike = one.unlike if isinstance(one, LawTable) else isinstance(one, Bodies)
     solved = _solved(names, unlike)
     broadcast = [*arrays.values()], shape, creep_is_omega, solved
-    found = _direct(*broadcast) if method == "direct" else states_of(one, *broadcast)
+    found = states_of(one, *broadcast, method == "direct")
     rows: dict[str, Any] = dict(zip(solved, found if shape else found[:, 0].tolist(), strict=True))
     if solved != names:
         rows |= {name: 0.5 * rows[of] for name, of in _HALVES.items() if name in names and name not in rows}
@@ -190,25 +188,6 @@ def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
     """What the kernels are asked for: not what is half of it, or the same in other units."""
     made = SAME if unlike else SAME | _HALVES
     return tuple(dict.fromkeys(made.get(name, name) for name in names))
-
-
-def _direct(arrays: list[NDArray], shape: tuple[int, ...], creep_is_omega: bool, names: tuple[str, ...]) -> NDArray:
-    """The fields ``names`` by the printed equations, a row each, of alpha, kappa, mu, V and the creep."""
-    from ..kernels.printed.loop import direct_loop
-    from ..kernels.rows.states import Asked, Fields, States
-
-    count, to = int(np.prod(shape)), Fields(**{name: row for row, name in enumerate(names)})
-    out, order = np.empty((len(names), count)), np.empty(0, np.int64)
-    alphas, *parts = (elements(np.asarray(array, np.float64), shape) for array in arrays)
-
-    def work(start: int, stop: int) -> None:
-        kappa, mu, V, creep = (part(start, stop) for part in parts)
-        states = States(kappa, mu, V, creep, creep_is_omega)
-        if direct_loop(alphas(start, stop), Asked(states, order, to, out, start), stop - start):
-            raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
-
-    run_blocks(work, count, _BLOCK)
-    return out
 
 
 def shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:

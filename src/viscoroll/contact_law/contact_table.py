@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..core.blocks import elements, run_blocks
 from ..core.checks import extent
-from ..core.errors import ParameterError
+from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials, order_of_alphas
 from ..materials.law_modes import by_modes
@@ -34,68 +34,72 @@ def states_of(
     shape: tuple[int, ...],
     creep_is_omega: bool,
     names: tuple[str, ...],
+    direct: bool = False,
 ) -> NDArray:
     """The fields ``names``, a row each, of the alphas, kappa, mu, V and the creep broadcast to ``shape``.
 
     ``given``: one law for all; many materials, with their numbers in place of the alphas; or, None, alphas.
+    ``direct``: by the printed equations, of alphas.
     """
     count = math.prod(shape)
     out = np.empty((len(names), count))
-    if count <= _TOGETHER and isinstance(given, LawTable):
+    loop, of, to = _asked(names, direct)
+    single = isinstance(given, LawTable)
+    room = _TOGETHER if single else 1
+
+    def fill(start: int, stop: int, each: NDArray, *parts: NDArray) -> None:
+        law: Any = each
+        order = _NO_ORDER
+        if isinstance(given, LawTable):
+            law = given.record
+        elif given is not None:
+            law = law_of_materials(given, each.astype(np.int64))
+            order = np.argsort(each, kind="stable") if each.size > 1 else order
+        elif not direct:
+            law, order = law_of_alphas(each), order_of_alphas(each, parts[0], parts[2])
+        asked = of.Asked(of.States(*parts, creep_is_omega), order, to, out, start)
+        if direct:
+            if loop(law, asked, stop - start):
+                raise ConvergenceError(f"contact: an iteration hit its cap near element {start} (method 'direct')")
+            return
+        if set(names) - {UNSTEADY}:
+            loop(law, asked, np.empty((3, room)), stop - start)
+        if UNSTEADY not in names:
+            return
+        N = out[names.index(UNSTEADY), start:stop]
+        if isinstance(given, LawTable):
+            from ..kernels.rows.added import unsteady_loop
+
+            unsteady_loop(given.unsteady_record, parts[0], parts[2], N)
+        else:
+            to_zeta = _asked(("zeta",), direct)[-1]
+            loop(law, asked._replace(to=to_zeta, out=N[None], first=0), np.empty((3, room)), stop - start)
+            N[:] = by_modes(each, N).N
+
+    if count <= _TOGETHER and single:
         states = np.empty((len(arrays), *(shape or (1,))))
         for row, array in zip(states, arrays, strict=True):
             row[...] = array
         states = states.reshape(len(arrays), count)
         states.flags.writeable = False  # as all that a kernel reads, see elements
-        _fill(given, given.record, tuple(states), _NO_ORDER, creep_is_omega, names, out, 0, count)
+        fill(0, count, *states)
         return out
     parts = [elements(np.asarray(array), shape) for array in arrays]
-
-    def work(start: int, stop: int) -> None:
-        each, *others = [part(start, stop) for part in parts]
-        order = _NO_ORDER
-        if isinstance(given, LawTable):
-            law: Any = given.record
-        elif given is None:
-            law, order = law_of_alphas(each), order_of_alphas(each, others[0], others[2])
-        else:
-            law = law_of_materials(given, each.astype(np.int64))
-            order = np.argsort(each, kind="stable") if each.size > 1 else order
-        _fill(given, law, (each, *others), order, creep_is_omega, names, out, start, stop)
-
-    run_blocks(work, count, _BLOCK_EACH if isinstance(given, Prony | Bodies) else _BLOCK)
+    block = _BLOCK_EACH if isinstance(given, Prony | Bodies) else _BLOCK
+    run_blocks(lambda start, stop: fill(start, stop, *(part(start, stop) for part in parts)), count, block)
     return out
 
 
-def _fill(
-    given: LawTable | Prony | Bodies | None, law: Any, parts: tuple[NDArray, ...], order: NDArray, creep_is_omega: bool,
-    names: tuple[str, ...], out: NDArray, start: int, stop: int,
-) -> None:  # fmt: skip
-    """The fields of some states."""
-    loop, of, to = _asked(names)
-    each, kappa, mu, V, creep = parts
-    asked = of.Asked(of.States(kappa, mu, V, creep, creep_is_omega), order, to, out, start)
-    room = np.empty((3, _TOGETHER if isinstance(given, LawTable) else 1))
-    if set(names) - {UNSTEADY}:
-        loop(law, asked, room, stop - start)
-    if UNSTEADY in names:
-        N = out[names.index(UNSTEADY), start:stop]
-        if isinstance(given, LawTable):
-            from ..kernels.rows.added import unsteady_loop
-
-            unsteady_loop(given.unsteady_record, kappa, V, N)
-        else:
-            loop(law, asked._replace(to=_asked(("zeta",))[-1], out=N[None], first=0), room, stop - start)
-            N[:] = by_modes(each, N).N
-
-
 @lru_cache(maxsize=64)
-def _asked(names: tuple[str, ...]) -> tuple[Any, Any, Any]:
+def _asked(names: tuple[str, ...], direct: bool) -> tuple[Any, Any, Any]:
     """(The kernel, what it takes, the row of each field)."""
     from ..kernels.rows import states
-    from ..kernels.rows.contact import contact_loop
 
-    return contact_loop, states, states.Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
+    if direct:
+        from ..kernels.printed.loop import direct_loop as loop
+    else:
+        from ..kernels.rows.contact import contact_loop as loop
+    return loop, states, states.Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:

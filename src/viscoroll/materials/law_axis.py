@@ -62,7 +62,7 @@ class LawAxis:
         row[..., _OVER_C] *= (alpha - 1.0) / alpha
         row = row[..., [0, 1, 2, 2, 3, 4, 5]]  # either body takes half of m
         row[..., 2:4] *= 0.5
-        return made(alpha, coefficients=row)
+        return made(alpha, row)
 
 
 def law_axis(low: float, high: float) -> LawAxis:
@@ -97,10 +97,8 @@ def law_axis(low: float, high: float) -> LawAxis:
 
 
 def tables_of(octave: int) -> list[LawTable]:
-    """Tables at the nodes of an octave of alpha, upward, with as many rows each: those of the highest."""
-    alphas = np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()
-    last = made(alphas[-1])
-    return [*(made(alpha, least=len(last.given_coefficients)) for alpha in alphas[:-1]), last]
+    """Tables at the nodes of an octave of alpha, upward; they have as many rows each."""
+    return [made(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
 
 
 def to_chebyshev(values: Floats) -> Floats:

@@ -15,6 +15,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +28,6 @@ Floats = NDArray[np.float64]
 TERMS = 24
 #: functions of a table in their order: the first five are of kappa |V|, the others of 1/F(eta)
 FUNCTIONS = ("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
-#: the octave behind the shortest time where the fast limit is first tried, and how many are
-_FIRST, _TRIED = 12, 32
-#: what the limit may be off by there, and how many octaves further it is taken: it comes closer by 3.5 an octave
-_NEAR, _FURTHER = 2.0**-44, 5
 #: in the slow row what follows a coefficient below this share of the largest is rounding, which would grow by 5.8^n
 _ROUNDING, _ROUNDING_OF_N = 1e-16, 3e-15
 #: of Newton's iteration from a thousandth: then 1e-13 is left, whose square is rounding
@@ -124,28 +121,6 @@ def _added(values: Floats, matrix: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Limits:
-    """alpha; sum J_j T_j, and the two numbers of the fast limit, of the half-space and of the cylinder."""
-
-    alpha: float
-    means: Floats
-    fast: Floats
-
-    def off(self, w: Floats, found: AtPlaces) -> Floats:
-        """What the fast limit is off by, at most, at the places w where ``found`` was evaluated."""
-        shift, rise, *parts = found.values
-        square, (W, C) = 1.0 + 2.0 * rise, self.fast.sum(axis=0)
-        v, z = w / (1.0 + shift), np.sqrt(square / self.alpha) / w
-        share = 1.0 - 0.5 * self.alpha * (C + W * np.log(v)) / v
-        half = 0.5 * self.alpha * z
-        pairs = [(square / (1.0 + shift) ** 2, self.alpha * share**2), (shift, half * (C - W * np.log(z)))]
-        pairs += [(m, half * z * (C - W * (np.log(z) - 0.25))) for m, (W, C) in zip(parts, self.fast, strict=True)]
-        known = 0.0625 * sum(parts)  # a small part is known to roundings of their sum
-        scales = [pairs[0][0], shift, *(np.maximum(m, known) for m in parts)]
-        return np.max([np.abs(limit - m) / scale for (m, limit), scale in zip(pairs, scales, strict=True)], axis=0)
-
-
-@dataclass(frozen=True)
 class Fine:
     """Polynomials over w = 1/z of g/z, h/z and the parts of m."""
 
@@ -184,34 +159,32 @@ class Fine:
         return np.exp(np.interp(np.log(x), np.log(w * per), np.log(w)))
 
 
-def first_octave(slowest: float) -> int:
-    """e0 of a table, from the slowest rate of creep."""
-    return math.frexp(slowest)[1] - _SLOW
+def octaves(slowest: Any, fastest: Any) -> tuple[Any, Any]:
+    """(e0, rows) of a table, or of each, from the slowest rate of creep and the fastest of relaxation.
 
-
-def build(
-    evaluate: Callable[[Floats], AtPlaces], slowest: float, fastest: float, limits: Limits, least: int = 0
-) -> Floats:
-    """The table (rows, 24 powers, 7 functions) with NaN for N, of no fewer rows than ``least``.
-
-    ``evaluate``: at places of z; ``slowest``, ``fastest``: rates of creep and of relaxation.
+    So far behind the shortest time the fast limit is good to rounding.
     """
-    e0 = first_octave(slowest)
-    tried = math.frexp(fastest)[1] + np.arange(_FIRST, _FIRST + _TRIED)
-    w = np.ldexp(1.0, tried)
-    near = limits.off(w, evaluate(1.0 / w)) <= _NEAR
-    near[-1] = True
-    last = int(tried[np.argmax(near)]) + _FURTHER
-    rows, mean = Rows(e0, max(last - e0 + 1, least)), float(limits.means.sum())
-    finer = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(limits.alpha)))
+    from ..kernels.rows.grid import FAST
+
+    e0 = np.frexp(slowest)[1] - _SLOW
+    return e0, np.frexp(fastest)[1] + FAST - e0 + 1
+
+
+def build(evaluate: Callable[[Floats], AtPlaces], rows: Rows, alpha: float, means: Floats) -> Floats:
+    """The table (rows, 24 powers, 7 functions) with NaN for N.
+
+    ``evaluate``: at places of z; ``means``: sums J_j T_j of half-space and cylinder.
+    """
+    e0, mean = rows.e0, float(means.sum())
+    finer = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
     found = evaluate(1.0 / finer.x.ravel())
     powers = finer.fit_slopes(*(each.reshape(-1, *finer.x.shape) for each in (found.values, found.slopes)))
-    powers[:2, 0, :2], powers[2:, 0, 0] = [0.0, math.ldexp(0.5 * mean, e0)], limits.means
+    powers[:2, 0, :2], powers[2:, 0, 0] = [0.0, math.ldexp(0.5 * mean, e0)], means
     fine = Fine(finer, powers, found.values)
     (speed, d_speed), (stick, d_stick) = fine.speed(rows.x.ravel()), fine.stick(rows.x.ravel())
     values, slopes = (np.concatenate(both).reshape(-1, *rows.x.shape) for both in ((speed, stick), (d_speed, d_stick)))
     powers = rows.fit_slopes(values, slopes)
-    powers[[0, 4, 5], 0, 0], powers[1, 0, :2], powers[2:4, 0, 0] = 1.0, [0.0, math.ldexp(mean, e0)], limits.means
+    powers[[0, 4, 5], 0, 0], powers[1, 0, :2], powers[2:4, 0, 0] = 1.0, [0.0, math.ldexp(mean, e0)], means
     table = np.full((rows.count, TERMS, len(FUNCTIONS)), np.nan)
     table[:, :, [0, 1, 2, 3, 5, 6]] = np.moveaxis(powers, 0, -1)
     return table

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .bodies import Bodies
 from .law_axis import OCTAVES, tables_of, to_chebyshev
+from .law_build import octaves
 from .law_modes import refuse_far, series_of
 from .law_table import Floats
 from .prony import Block, Prony, read_only
@@ -125,8 +126,6 @@ def law_of_materials(materials: Prony | Bodies, which: NDArray[np.int64]) -> Any
 
 def _numbers(block: Block) -> Floats:
     """What the kernels take of materials, a row each (:mod:`..kernels.rows.grid`)."""
-    from ..kernels.rows.grid import FAST
-
     modes, count = block.modes, block.rows.size
     weights = np.full(modes.J.shape, 0.5) if block.weights is None else block.weights
     alpha, fast = np.broadcast_to(modes.alpha, count), modes.J * modes.b
@@ -135,8 +134,7 @@ def _numbers(block: Block) -> Floats:
     means = [(share * modes.J / modes.b).sum(axis=-1) for share in (weights, 1.0 - weights)]
     first, rows, N = np.zeros(count), np.ones(count), np.full(count, modes.a.shape[-1])
     if modes.a.shape[-1]:
-        first = np.frexp(modes.b[:, 0])[1] - 5
-        rows = np.frexp(modes.a[:, -1])[1] + FAST - first + 1
+        first, rows = octaves(modes.b[:, 0], modes.a[:, -1])
     *vectors, Q = series_of(modes, weights)
     front = [alpha, 1.0 / np.sqrt(alpha), *sums, *means, first, rows, N]
     return np.concatenate([np.stack(front, axis=1), *vectors, Q.reshape(count, -1)], axis=1)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..core.errors import ParameterError
 from .bodies import Bodies, one_series
-from .law_build import FUNCTIONS, TERMS, Floats, Limits, added, arranged, build, first_octave, with_unsteady
+from .law_build import FUNCTIONS, TERMS, Floats, Rows, added, arranged, build, octaves, with_unsteady
 from .law_modes import by_modes, refuse_far
 from .pair import Pair
 from .prony import Prony, read_only
@@ -107,7 +107,7 @@ def law_table(given: float | Prony | Bodies | LawTable, coefficients: Floats | N
         given = given.total if given.total.E.size else 1.0
     given = given if isinstance(given, Prony | Bodies) else float(given)
     if coefficients is not None:
-        return made(given, coefficients=coefficients)
+        return made(given, coefficients)
     with _lock:
         return _made(given)
 
@@ -120,24 +120,22 @@ def _made(given: float | Prony | Bodies) -> LawTable:
     return made(given)
 
 
-def made(given: float | Prony | Bodies, least: int = 0, coefficients: Floats | None = None) -> LawTable:
-    """A table made anew, of no fewer rows than ``least``, or of ``coefficients`` that are known."""
+def made(given: float | Prony | Bodies, coefficients: Floats | None = None) -> LawTable:
+    """A table made anew, or of ``coefficients`` that are known."""
     total, unlike = one_series(given), isinstance(given, Bodies)
     modes, alpha = total.modes, total.alpha
     weights = given.half_space_weights if isinstance(given, Bodies) else np.full(modes.J.size, 0.5)
     W, shares = modes.J * modes.b, (1.0, weights, 1.0 - weights)
-    fast = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma)
-    limits, means = (
-        np.array([[math.fsum(share * row) for row in rows] for share in shares]) for rows in (fast, [modes.J / modes.b])
-    )
+    terms = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma), modes.J / modes.b
+    sums = np.array([[math.fsum(share * row) for row in terms] for share in shares])
     table, e0 = _elastic(), 0
     if modes.a.size:
         refuse_far(modes.b[0], modes.a[-1])
+        e0, count = map(int, octaves(modes.b[0], modes.a[-1]))
         if coefficients is None:
-            ends = Limits(alpha, means[1:, 0], limits[1:])
-            coefficients = build(lambda z: by_modes(given, z), modes.b[0], modes.a[-1], ends, least)
-        table, e0 = coefficients, first_octave(modes.b[0])
-    arrays = map(read_only, (limits, modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
+            coefficients = build(lambda z: by_modes(given, z), Rows(e0, count), alpha, sums[1:, 2])
+        table = coefficients
+    arrays = map(read_only, (sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights))
     return LawTable(given, read_only(table), e0, alpha, total.T_mean, unlike, *arrays)
 
 

@@ -21,9 +21,10 @@ from . import row
 from .loads import Loads, loads_of
 from .reason import Reasons
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
-from .result import States, Steady, packed
+from .result import Steady, packed
 from .scan import scanned
 from .solve import crossings, states_at
+from .states import States
 
 
 def steady(
@@ -100,9 +101,10 @@ def steady(
     count = np.bincount(held.load, minlength=loads.mu.size)
     top = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).top
     states = rolling.load, rolling.rows[row.V], rolling.rows[row.Q]
-    found = packed(loads, held, Reasons(loads, states, count, top, neutral, scale), scale)
+    reasons = Reasons(loads, states, count, top, neutral, scale)
+    found = packed(loads, held, reasons, scale, labels)
     roller.look(found.V)
-    return found.labelled(labels)
+    return found
 
 
 def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:

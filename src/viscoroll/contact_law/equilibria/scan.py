@@ -12,6 +12,7 @@ the sum fixes V, and R is an equation in omega.  All here is in a frame where V 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,8 +22,8 @@ from ...materials.law_table import LawTable
 from . import row
 from .loads import Loads
 from .resistance import grid
-from .result import States
 from .solve import contact_at, crossings, rows_at
+from .states import States
 from .zeros import zeros
 
 #: nodes that an interval of V within the stick limit is cut into, and those of a slip between its limits
@@ -35,15 +36,10 @@ _ROUNDING = 2e-15
 
 
 class _Case(NamedTuple):
-    """One load along the motion: force and torque at rest, their gains; kappa, mu."""
+    """One load along the motion; ``acts``: rows of force and torque, at rest and for each unit of V and omega."""
 
     law: LawTable
-    f: float
-    q: float
-    fV: float
-    fw: float
-    qV: float
-    qw: float
+    acts: NDArray
     kappa: float
     mu: float
 
@@ -53,32 +49,40 @@ class _Case(NamedTuple):
         M, M_half_space, star = contact_at(self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star")
         return V, M, M_half_space, star * V
 
-    def rows(self, V: NDArray, slip: NDArray) -> NDArray:
-        """Rows of :mod:`row` where omega - V is given, full slip included."""
-        return rows_at(self.law, self.kappa, self.mu, V, slip / V)
+    def acting(self, V: Any, omega: Any) -> NDArray:
+        """Force and torque at these speeds."""
+        return self.acts @ np.array([np.ones_like(V), V, omega])
 
     def slip(self, V: NDArray, M: NDArray) -> NDArray:
         """omega - V by the sum of the equations."""
-        return (M - (self.fV + self.qV + self.fw + self.qw) * V - (self.f + self.q)) / (self.fw + self.qw)
+        return (M - self.acting(V, V).sum(axis=0)) / self.acts[:, 2].sum()
 
     def excess(self, x: NDArray, slip: NDArray) -> NDArray:
         """R at x and omega - V."""
         V = np.exp2(x) / self.kappa
         Q, M_half_space = contact_at(self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space")
-        return Q - M_half_space + self.f + self.fV * V + self.fw * (V + slip)
+        return Q - M_half_space + self.acting(V, V + slip)[0]
+
+    def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
+        """(Rows of :mod:`row` where omega - V is given, full slip included; what is left of the sum of the equations,
+        and of that along V)."""
+        rows = rows_at(self.law, self.kappa, self.mu, V, slip / V)
+        force, torque = self.acting(V, V + slip)
+        M_half_space = rows[row.M_HALF_SPACE]
+        sums = M_half_space + rows[row.M_CYLINDER] - force - torque
+        return rows, np.array([sums, rows[row.Q] - M_half_space + force])
 
 
 def scanned(law: LawTable, loads: Loads) -> States:
     """All states of rolling but rest."""
     gains = loads.gains
+    gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
     parts = [States.none()]
     for n in range(loads.mu.size):
+        at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
         for sign in (1.0, -1.0):
-            case = _Case(
-                law, sign * loads.force[n], sign * loads.torque[n], gains.force_V, gains.force_omega, gains.torque_V,
-                gains.torque_omega, loads.kappa[n], loads.mu[n],
-            )  # fmt: skip
-            x, slip = _over_V(case) if case.fw + case.qw else _over_slip(case)
+            case = _Case(law, np.hstack([sign * at_rest, gained]), loads.kappa[n], loads.mu[n])
+            x, slip = _over_V(case) if case.acts[:, 2].sum() else _over_slip(case)
             rows = _polished(case, np.exp2(x) / case.kappa, slip)
             count = rows.shape[1]
             parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows))
@@ -96,9 +100,9 @@ def _on_the_spot(law: LawTable, loads: Loads, n: int) -> list[States]:
     side = math.copysign(1.0, omega)
     if side * loads.mu[n] + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
-    case = _Case(law, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, loads.kappa[n], loads.mu[n])
-    slowest = case.rows(np.exp2(grid(law)[:1]) / case.kappa, np.ones(1))
-    spinning = States.of(loads, np.array([n]), np.array([side]), slowest)
+    slowest = np.exp2(grid(law)[:1]) / loads.kappa[n]
+    rows = rows_at(law, loads.kappa[n], loads.mu[n], slowest, 1.0 / slowest)
+    spinning = States.of(loads, np.array([n]), np.array([side]), rows)
     spinning.rows[[row.V, row.DELTA, row.M_HALF_SPACE, row.M_CYLINDER, row.OMEGA], 0] = 0.0, math.inf, 0.0, 0.0, omega
     return [spinning]
 
@@ -106,51 +110,39 @@ def _on_the_spot(law: LawTable, loads: Loads, n: int) -> list[States]:
 def _over_V(case: _Case) -> tuple[NDArray, NDArray]:
     """x and slip of every state, where omega follows from V."""
 
-    def excess(x: NDArray) -> NDArray:
-        V, M, _, _ = case.at(x)
-        return case.excess(x, case.slip(V, M))
-
-    def beyond(part: float) -> Any:
-        def of(x: NDArray) -> NDArray:
-            V, M, _, limit = case.at(x)
-            return case.slip(V, M) - part * limit
-
-        return of
+    def beyond(x: NDArray, part: float) -> NDArray:
+        V, M, _, limit = case.at(x)
+        return case.slip(V, M) - part * limit
 
     nodes = grid(case.law)
-    edges = np.concatenate([zeros(beyond(part), nodes) for part in (-1.0, 0.0, 1.0)])
-    nodes = np.unique(np.concatenate([nodes, edges]))
+    nodes = np.unique(np.concatenate([nodes, *(zeros(partial(beyond, part=part), nodes) for part in (-1.0, 0.0, 1.0))]))
     V, M, _, limit = case.at(nodes)
     stuck = np.abs(case.slip(V, M)) <= limit * (1.0 + 1e-9)
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = nodes[within, None] + np.linspace(0.0, 1.0, _FINE)[1:-1] * np.diff(nodes)[within, None]
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
     V, M, M_half_space, _ = case.at(nodes)
-    omega = V + case.slip(V, M)
-    terms = case.mu + M_half_space + abs(case.f) + np.abs(case.fV) * V + np.abs(case.fw * omega)
-    found = zeros(excess, nodes, _ROUNDING * terms)
-    V, M, _, _ = case.at(found)
-    return found, case.slip(V, M)
+    terms = case.mu + M_half_space + np.abs(case.acts[0]) @ np.abs([np.ones_like(V), V, V + case.slip(V, M)])
+    found = zeros(lambda x: case.excess(x, case.slip(*case.at(x)[:2])), nodes, _ROUNDING * terms)
+    return found, case.slip(*case.at(found)[:2])
 
 
 def _over_slip(case: _Case) -> tuple[NDArray, NDArray]:
     """x and slip of every state, where the sum of the equations fixes V."""
-    total = np.array([case.kappa * (case.f + case.q)])
-    _, sign, u = crossings(case.law, case.fV + case.qV, total)
+    at_rest, of_V, _ = case.acts.sum(axis=0)
+    _, sign, u = crossings(case.law, of_V, np.array([case.kappa * at_rest]))
     places, slips = [np.empty(0)], [np.empty(0)]
     for x in np.log2(u[sign > 0.0]):
-        V, _, M_half_space, limit = (float(values[0]) for values in case.at(np.array([x])))
-        rest = M_half_space - case.f - (case.fV + case.fw) * V  # Q + fw slip
+        V, _, M_half_space, (limit,) = case.at(np.array([x]))
+        rest = M_half_space - case.acting(V, V)[0]  # Q + gain slip
 
         def excess(part: NDArray, x: float = x, limit: float = limit) -> NDArray:
             return case.excess(np.full(part.size, x), limit * part)
 
-        found = [limit * zeros(excess, np.linspace(-1.0, 1.0, _SLIPS))]
-        for side in (1.0, -1.0):
-            free = (rest - side * case.mu) / case.fw
-            found.append(np.array([free] if side * free > limit else []))
-        slips += found
-        places += [np.full(each.size, x) for each in found]
+        sides = np.array([1.0, -1.0])
+        free = (rest - sides * case.mu) / case.acts[0, 2]
+        slips += [limit * zeros(excess, np.linspace(-1.0, 1.0, _SLIPS)), free[sides * free > limit]]
+        places += [np.full(each.size, x) for each in slips[-2:]]
     return np.concatenate(places), np.concatenate(slips)
 
 
@@ -159,24 +151,22 @@ def _polished(case: _Case, V: NDArray, slip: NDArray) -> NDArray:
 
     Where the contact passes from slip to slip within rounding of V, two zeros are one state, or none.
     """
-    rows = case.rows(V, slip)
-    off = _residuals(case, rows, slip)
+    rows, off = case.rows(V, slip)
+    gains = case.acts[:, 1:]
+    (of_V, of_omega), (force_V, force_omega) = gains.sum(axis=0), gains[0]
     for _ in range(_POLISH if V.size else 0):
-        a, b = rows[row.DQ_DV], rows[row.DQ_DOMEGA]
-        one, other = rows[row.DM_HALF_SPACE], rows[row.DM_CYLINDER]
-        gained = case.fw + case.qw
-        sum_V, sum_slip = one + other - case.fV - case.qV - gained, np.full(slip.size, -gained)
-        rest_V, rest_slip = a + b - one + case.fV + case.fw, b + case.fw
+        a, b, one, other = rows[row.DQ_DV :]
+        sum_V, sum_slip = one + other - of_V - of_omega, -of_omega
+        rest_V, rest_slip = a + b - one + force_V + force_omega, b + force_omega
         det = sum_V * rest_slip - sum_slip * rest_V
         with np.errstate(divide="ignore", invalid="ignore"):
             dV = (off[0] * rest_slip - off[1] * sum_slip) / det
             dslip = (off[1] * sum_V - off[0] * rest_V) / det
         good = np.isfinite(dslip) & (np.abs(dV) < 1e-3 * V)
-        new_V, new_slip = np.where(good, V - dV, V), np.where(good, slip - dslip, slip)
-        new_rows = case.rows(new_V, new_slip)
-        new_off = _residuals(case, new_rows, new_slip)
+        new = np.where(good, [V - dV, slip - dslip], [V, slip])
+        new_rows, new_off = case.rows(*new)
         better = good & (np.abs(new_off).sum(axis=0) < np.abs(off).sum(axis=0))
-        V, slip = np.where(better, new_V, V), np.where(better, new_slip, slip)
+        V, slip = np.where(better, new, [V, slip])
         rows, off = np.where(better, new_rows, rows), np.where(better, new_off, off)
     V, delta = rows[row.V], rows[row.DELTA]
     left = np.abs(off).max(axis=0) <= _LEFT * (case.mu + np.abs(rows[row.M_HALF_SPACE]) + np.abs(rows[row.M_CYLINDER]))
@@ -185,12 +175,3 @@ def _polished(case: _Case, V: NDArray, slip: NDArray) -> NDArray:
     V, delta = V[order], delta[order]
     new = (np.abs(np.diff(V)) > _SAME * V[1:]) | (np.abs(np.diff(delta)) > _SAME * np.abs(delta[1:]))
     return rows[:, order[np.concatenate([[True], new]).astype(bool)[: order.size]]]
-
-
-def _residuals(case: _Case, rows: NDArray, slip: NDArray) -> NDArray:
-    """What is left of the sum of the equations, and of that along V."""
-    V, M_half_space = rows[row.V], rows[row.M_HALF_SPACE]
-    omega = V + slip
-    force = case.f + case.fV * V + case.fw * omega
-    torque = case.q + case.qV * V + case.qw * omega
-    return np.array([M_half_space + rows[row.M_CYLINDER] - force - torque, rows[row.Q] - M_half_space + force])

@@ -17,7 +17,7 @@ from ..contact_table import states_of
 from . import row
 from .loads import Loads
 from .resistance import branches
-from .result import States
+from .states import States
 
 _BLOCK = 1 << 12
 #: |Q|/mu up to which delta is first taken from its slope at 0, and up to which a step of Newton's iteration makes it
