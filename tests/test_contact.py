@@ -1,4 +1,4 @@
-"""The contact law: 50 digits, an alpha or a material each, closed forms, signs, V = 0, slopes, fields.
+"""The contact law: enclosures, an alpha or a material each, closed forms, signs, V = 0, slopes, fields.
 
 Accuracy over the whole domain is claimed in ``test_claims.py``.
 """
@@ -8,15 +8,15 @@ from __future__ import annotations
 import math
 import weakref
 
-import mpmath as mp
+import flint
 import numpy as np
-import precise
 import pytest
 import tolerances as tol
 from closeness import close
 from many import MATERIALS, states
 
 import viscoroll as vr
+from pipeline.evidence.truth.enclosures import INPUTS, contact_enclosure, slopes
 from viscoroll.contact_law.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
 from viscoroll.materials import law_each
 
@@ -36,18 +36,20 @@ EACH = vr.Scene(ALPHA, KAPPAS, MUS)
 # --- an alpha each, a material each ---
 
 
-def test_an_alpha_each_against_50_digits():
+def test_an_alpha_each_against_enclosures():
     delta = S * delta_star(EACH, V)
     found = vr.contact(EACH, V, delta=delta, fields=(*FIELDS, "grip"))
     for n in range(ALPHA.size):
-        with mp.workdps(precise.DIGITS):
-            exact = precise.state(ALPHA[n], KAPPAS[n], MUS[n], V[n], delta[n])
+        given = ALPHA[n], KAPPAS[n], MUS[n], V[n], delta[n]
+        with flint.ctx.workprec(200):
+            exact = contact_enclosure(*map(float, given))
+            left = float(1 - flint.arb(float(delta[n])) / exact["delta_star"])
             for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M", "beta"):
                 bound = tol.EACH_SHIFT if name == "epsilon" else tol.EACH_ALPHA
-                bound /= float(1 - mp.mpf(delta[n]) / exact.delta_star) if name == "beta" else 1.0
-                assert close(getattr(found, name)[n], float(getattr(exact, name)), rel=bound), (name, ALPHA[n], V[n])
-            left = float(1 - mp.mpf(delta[n]) / exact.delta_star)
-            assert close(found.grip[n], float(1 - exact.Q / MUS[n]), rel=2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
+                bound /= left if name == "beta" else 1.0
+                assert close(getattr(found, name)[n], float(exact[name]), rel=bound), (name, ALPHA[n], V[n])
+            grip = float(1 - exact["Q"] / float(MUS[n]))
+            assert close(found.grip[n], grip, rel=2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
 
 
 @pytest.mark.parametrize("name", MATERIALS)
@@ -197,8 +199,8 @@ def test_slope_by_V_at_slight_creep():
     for s in (1e-5, 1e-7):
         delta = s * delta_star(SCENE, 0.3)
         slope = vr.contact(SCENE, 0.3, delta=delta, fields="dQ_dV").dQ_dV
-        with mp.workdps(precise.DIGITS):
-            exact = precise.slope(SCENE.alpha, KAPPA, MU, 0.3, delta, "V")["Q"]
+        given = map(float, (SCENE.alpha, KAPPA, MU, 0.3, delta))
+        exact = slopes(dict(zip(INPUTS, map(flint.arb, given), strict=True)))["dQ_dV"]
         assert close(slope, float(exact), rel=tol.SLOPE_SLIGHT, what=s)
 
 

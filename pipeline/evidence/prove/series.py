@@ -85,7 +85,7 @@ def state_errors(material: Any, known: raw.Rates, zeta: float, share: float) -> 
     scales = {"dQ_dV": max(abs(exact["dQ_dV"]), 1 / V), "dM_dV": whole.m, **dict.fromkeys(OF_BODIES, exact["M"])}
     half = mpmath.mpf(0.5)
     if isinstance(material, vr.Bodies):
-        parts = raw.shares(mpmath, known, zeta, whole)
+        parts = whole.shares(known, mpmath.mpf(zeta), raw.creep_strengths(mpmath, known))
         half = sum(weight * part for weight, part in zip(material.half_space_weights.tolist(), parts))
         half /= sum(parts)  # V and zeta differ by a rounding
     exact |= dict(zip(OF_BODIES, (half * exact["M"], (1 - half) * exact["M"])))

@@ -5,6 +5,5 @@ Nothing here is installed with the package: python-flint and mpmath come with ``
 
 from .enclosures import contact_enclosure
 from .motion import roll_precise
-from .precise import contact_precise
 
-__all__ = ["contact_enclosure", "contact_precise", "roll_precise"]
+__all__ = ["contact_enclosure", "roll_precise"]

@@ -5,7 +5,7 @@ the Bessel functions and the error bounds of Arb (python-flint).  A root is a ba
 the enclosed function, which rises strictly, lies certainly below and certainly above.  Digits
 that cancel show as a wide ball, and the whole is done again with more.
 
-:mod:`precise` solves the equations as printed; ``tests/truth/test_enclosures.py`` holds the two together.
+``tests/truth/test_enclosures.py`` puts the balls into the equations as printed.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from viscoroll.core.errors import ConvergenceError
-from viscoroll.core.extras import imported
+import numpy as np
 
-from .precise import single_numbers
+from viscoroll.core.checks import checked
+from viscoroll.core.errors import ConvergenceError, ParameterError
+from viscoroll.core.extras import imported
+from viscoroll.scene import Scene
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14
 _MOST_STEPS = 100
 #: log2 of the relative step of the differences in :func:`condition_numbers` and :func:`slopes`
 _STEP_BITS = 180
-#: and of that in :func:`slope_changes`, which differs differences
-_OUTER_BITS = 80
 
 
 def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: float, bits: int = 100) -> dict[str, Any]:
@@ -58,12 +58,24 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
     Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
     most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
     """
-    given, sign_V, sign_delta = single_numbers("contact_enclosure", alpha, kappa, mu, V, delta)
+    given, sign_V, sign_delta = _single_numbers("contact_enclosure", alpha, kappa, mu, V, delta)
     flint = _flint()
     state = enclosed({name: flint.arb(value) for name, value in zip(INPUTS, given, strict=True)}, bits)
     with flint.ctx.workprec(_MOST_BITS):  # a change of sign shall not round
         state["Q"], state["M"] = state["Q"] * (sign_V * sign_delta or 1), state["M"] * sign_V
     return state
+
+
+def _single_numbers(caller: str, alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> tuple[list[float], int, int]:
+    """(alpha, kappa, mu, |V| and |delta| as floats, signs of V and of delta), of one state with V other than 0."""
+    scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
+    speed, creep = checked("V", V), checked("delta", delta)
+    if scene.shape or speed.ndim or creep.ndim:
+        raise ParameterError(caller, "arrays", "called with single numbers")
+    if speed == 0.0:
+        raise ParameterError("V", 0.0, "different from 0")
+    given = [float(value) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep))]
+    return given, int(np.sign(speed)), int(np.sign(creep))
 
 
 def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
@@ -81,13 +93,21 @@ def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
 def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]:
     """Sum over the inputs of |d ln f/d ln input| for every f: the relative error of f for one in each input.
 
-    By differences with a relative step of 2^-180, far above the balls and far below anything that bends.
+    By differences with a relative step of 2^-180, far above the balls and far below anything that bends; alpha moves
+    up, away from 1, and delta down, away from delta_star.
     """
-
-    def fields(given: dict[str, Any], bits: int) -> dict[str, Any]:
-        return {name: value for name, value in enclosed(given, bits).items() if name != "full_slip"}
-
-    return _changes(fields, given, bits + _STEP_BITS, _STEP_BITS, lambda value: value)
+    flint, bits = _flint(), bits + _STEP_BITS
+    base = enclosed(given, bits)
+    del base["full_slip"]
+    total = dict.fromkeys(base, 0.0)
+    with flint.ctx.workprec(2 * bits):
+        step = flint.arb(2) ** -_STEP_BITS
+        for name in INPUTS:
+            moved = enclosed(given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits)
+            for field, value in base.items():
+                if value != 0:
+                    total[field] += float(abs((moved[field] / value - 1) / step).mid())
+    return total
 
 
 def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
@@ -105,25 +125,6 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
             for name in ("Q", "M") if by == "V" else ("Q",):
                 found[f"d{name}_d{by}"] = (up[name] - down[name]) / (2 * step * given[by])
     return found
-
-
-def slope_changes(given: dict[str, Any], bits: int = 40) -> dict[str, float]:
-    """Sum over the inputs of |d slope/d ln input| for every slope: its change for a relative error of one in each."""
-    return _changes(slopes, given, bits + _OUTER_BITS, _OUTER_BITS, lambda value: 1)
-
-
-def _changes(function: Any, given: dict[str, Any], bits: int, step_bits: int, scale: Any) -> dict[str, float]:
-    """Sums of differences over their scales; alpha moves up, away from 1, and delta down, away from delta_star."""
-    flint, base = _flint(), function(given, bits)
-    total = dict.fromkeys(base, 0.0)
-    with flint.ctx.workprec(4 * (bits + _STEP_BITS)):
-        step = flint.arb(2) ** -step_bits
-        for name in INPUTS:
-            moved = function(given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits)
-            for field, value in base.items():
-                if scale(value) != 0:
-                    total[field] += float(abs((moved[field] - value) / (scale(value) * step)).mid())
-    return total
 
 
 def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:

@@ -7,16 +7,18 @@ mode's memory must be continuous at the front edge:
     g = T_mean - sum X_i      h = sum X_i r_i      m = g + (z^2/H) sum X_i I2/I0(a_i z)      H = z^2 + 2 z h
 
 Goryacheva's way.  It loses digits (its condition number reaches 1e5, and g is a difference), which the precision
-makes up for; the kernels solve another system.
+makes up for; the kernels solve another system.  ``mp`` is mpmath; Bessel functions are Arb's.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from viscoroll import Bodies
+from viscoroll.core.extras import imported
 
-from .precise import ratio_k, ratio_r
+from .enclosures import ratio_i2, ratio_k, ratio_r
 
 
 class Rates(NamedTuple):
@@ -73,11 +75,9 @@ def rates_of(mp: Any, material: Any) -> Rates:
         alpha = mp.mpf(material)
         return Rates([alpha], [mp.mpf(1)], alpha, 1 - 1 / alpha)
     if isinstance(material, Bodies) and material.cylinder != material.base:
-        share = mp.mpf(material.share)
-        bodies = [(share, rates_of(mp, material.cylinder)), (1 - share, rates_of(mp, material.base))]
-        J = [part * strength for part, known in bodies for strength in creep_strengths(mp, known)]
-        T = [1 / b for _, known in bodies for b in known.b]
-        return rates_of_creep(mp, J, T, 1 / sum(part / known.alpha for part, known in bodies))
+        T, J, _ = (list(column) for column in zip(*creep_of(mp, material), strict=True))
+        alphas = ((part, rates_of(mp, body).alpha) for part, body, _ in _bodies(mp, material))
+        return rates_of_creep(mp, J, T, 1 / sum(part / alpha for part, alpha in alphas))
     total = material.total if isinstance(material, Bodies) else material
     if not total.by_creep:
         return rates(mp, total.E.tolist(), total.tau.tolist())
@@ -85,46 +85,84 @@ def rates_of(mp: Any, material: Any) -> Rates:
     return rates_of_creep(mp, total.J.tolist(), total.T.tolist(), alpha)
 
 
+def _bodies(mp: Any, bodies: Bodies) -> list[tuple[Any, Any, int]]:
+    """(Share, material, whether it is the half-space) of both."""
+    share = mp.mpf(bodies.share)
+    return [(share, bodies.cylinder, 0), (1 - share, bodies.base, 1)]
+
+
+def creep_of(mp: Any, bodies: Bodies) -> list[tuple[Any, Any, int]]:
+    """(Time, strength, whether it is the half-space's) of each creep mode, slowest first; no two share a time."""
+    both = [(part, rates_of(mp, body), which) for part, body, which in _bodies(mp, bodies)]
+    modes = [
+        (1 / b, part * J, which)
+        for part, known, which in both for b, J in zip(known.b, creep_strengths(mp, known)) if part
+    ]  # fmt: skip
+    return sorted(modes, key=lambda mode: mode[0], reverse=True)
+
+
+class Numbers(NamedTuple):
+    """What is asked of numbers of a kind: I1/I0, K0/K1, I2/I0, and the solution of a linear system."""
+
+    r: Callable[[Any], Any]
+    k: Callable[[Any], Any]
+    i2: Callable[[Any], Any]
+    solved: Callable[[list[list[Any]], list[Any]], list[Any]]
+
+
+def of_mpmath(mp: Any) -> Numbers:
+    """At its working precision."""
+    flint = imported("flint", "python-flint", "dev")
+
+    def of(ratio: Callable[[Any], Any], x: Any) -> Any:
+        with flint.ctx.workprec(mp.mp.prec + 20):
+            return mp.mpf(ratio(flint.arb(x)).mid())
+
+    ratios = (lambda x, ratio=ratio: of(ratio, x) for ratio in (ratio_r, ratio_k, ratio_i2))
+    return Numbers(*ratios, lambda matrix, right: list(mp.lu_solve(mp.matrix(matrix), mp.matrix(right))))
+
+
 class Functions(NamedTuple):
-    """g, h, m at z, and the amplitudes X."""
+    """g, h, m at z; the amplitudes X, ratios of the modes, a_i/(a_i - b_j), and the matrix of the conditions."""
 
     g: Any
     h: Any
     m: Any
     X: list[Any]
+    r: list[Any]
+    k: list[Any]
+    i2: list[Any]
+    per: list[list[Any]]
+    matrix: list[list[Any]]
+
+    def shares(self, known: Any, z: Any, J: list[Any]) -> list[Any]:
+        """Shares of the creep modes in m, slowest first: what their memory does to the pressure.
+
+        m_j = J_j sum_i X_i a_i/(a_i - b_j) (r_i k_j + (z^2/H) u_i)
+        u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
+        """
+        a, X, modes, square = known.a, self.X, range(len(known.a)), 1 / (1 + 2 * self.h / z)
+        between = [[a[i] * a[n] / (a[i] + a[n]) * (self.i2[i] - self.i2[n]) for n in modes] for i in modes]
+        u = [self.i2[i] + sum(X[n] * between[i][n] for n in modes) for i in modes]
+        return [
+            J[n] * sum(X[i] * self.per[n][i] * (self.r[i] * self.k[n] + square * u[i]) for i in modes) for n in modes
+        ]
 
 
 def functions(mp: Any, known: Rates, z: Any) -> Functions:
     """g, h and m at z."""
-    z, count = mp.mpf(z), len(known.a)
-    r, k = [ratio_r(mp, at * z) for at in known.a], [ratio_k(mp, at * z) for at in known.b]
-    matrix, right = mp.matrix(count, count), mp.matrix(count, 1)
-    for j in range(count):
-        right[j] = 1 / known.b[j]
-        for i in range(count):
-            matrix[j, i] = known.a[i] * (1 + r[i] * k[j]) / (known.a[i] - known.b[j])
-    X = list(mp.lu_solve(matrix, right))
-    g, h = known.T_mean - sum(X), sum(amplitude * ratio for amplitude, ratio in zip(X, r, strict=True))
-    pressed = sum(
-        amplitude * mp.besseli(2, at * z) / mp.besseli(0, at * z) for amplitude, at in zip(X, known.a, strict=True)
-    )
-    return Functions(g, h, g + pressed / (1 + 2 * h / z), X)
+    return conditions(of_mpmath(mp), known, mp.mpf(z))
 
 
-def shares(mp: Any, known: Rates, z: Any, found: Functions) -> list[Any]:
-    """Shares of the creep modes in m, slowest first: what their memory does to the pressure, from the amplitudes.
-
-    m_j = J_j sum_i X_i a_i/(a_i - b_j) (r_i k_j + (z^2/H) u_i)
-    u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
-    """
-    z, a, X = mp.mpf(z), known.a, found.X
-    r, i2 = [ratio_r(mp, at * z) for at in a], [mp.besseli(2, at * z) / mp.besseli(0, at * z) for at in a]
-    u = [at + sum(X[n] * a[i] * a[n] / (a[i] + a[n]) * (at - i2[n]) for n in range(len(a))) for i, at in enumerate(i2)]
-    lam2 = 1 / (1 + 2 * found.h / z)
-    return [
-        strength * sum(X[i] * a[i] / (a[i] - b) * (r[i] * ratio_k(mp, b * z) + lam2 * u[i]) for i in range(len(a)))
-        for strength, b in zip(creep_strengths(mp, known), known.b, strict=True)
-    ]
+def conditions(of: Numbers, known: Any, z: Any) -> Functions:
+    """The same of numbers of any kind; of ``known``: a, b, T_mean."""
+    a, b, modes = known.a, known.b, range(len(known.a))
+    r, k, i2 = [of.r(at * z) for at in a], [of.k(at * z) for at in b], [of.i2(at * z) for at in a]
+    per = [[a[i] / (a[i] - b[n]) for i in modes] for n in modes]
+    matrix = [[per[n][i] * (1 + r[i] * k[n]) for i in modes] for n in modes]
+    X = of.solved(matrix, [1 / at for at in b])
+    g, h = known.T_mean - sum(X), sum(X[i] * r[i] for i in modes)
+    return Functions(g, h, g + sum(X[i] * i2[i] for i in modes) / (1 + 2 * h / z), X, r, k, i2, per, matrix)
 
 
 def creep_strengths(mp: Any, known: Rates) -> list[Any]:

@@ -13,7 +13,7 @@ import numpy as np
 import tolerances as tol
 
 from pipeline.evidence.prove.ratios import ulps
-from pipeline.evidence.truth import enclosures, precise
+from pipeline.evidence.truth import enclosures, series
 from pipeline.evidence.truth.ratios import NODES, chebyshev_fit
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
@@ -64,12 +64,13 @@ def test_monotone():
 
 # --- the table ---
 
+RATIOS = series.of_mpmath(mp)
 EXACT: dict[str, Callable] = {
-    "r(x)/x": lambda x: precise.ratio_r(mp, x) / x,
-    "x (1 - r(x))": lambda x: x * (1 - precise.ratio_r(mp, x)),
-    "k(z)/z": lambda z: precise.ratio_k(mp, z) / z,
-    "z (1 - k(z))": lambda z: z * (1 - precise.ratio_k(mp, z)),
-    "i2(x)/x^2": lambda x: mp.besseli(2, x) / mp.besseli(0, x) / x**2,
+    "r(x)/x": lambda x: RATIOS.r(x) / x,
+    "x (1 - r(x))": lambda x: x * (1 - RATIOS.r(x)),
+    "k(z)/z": lambda z: RATIOS.k(z) / z,
+    "z (1 - k(z))": lambda z: z * (1 - RATIOS.k(z)),
+    "i2(x)/x^2": lambda x: RATIOS.i2(x) / x**2,
 }
 
 
