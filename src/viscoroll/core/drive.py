@@ -129,6 +129,8 @@ def over(name: str, given: Any, scale: Scale) -> Any:
     if given is None or not scale.si:
         return given
     unit, low = scale[name], 0.0 if name in ("brake", "drag") else -np.inf
+    if type(given) is type(unit) is float and low < given < np.inf:
+        return given / unit
     if isinstance(given, Feedback):
         gains = given.V * scale["V"] / unit, given.omega * scale["omega"] / unit
         return Feedback(over(name, given.value, scale), *gains)

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+#: numbers as results hold them
+Floats: TypeAlias = NDArray[np.float64]
+
 if TYPE_CHECKING:
     Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 

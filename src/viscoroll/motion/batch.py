@@ -8,21 +8,21 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import PARAMETERS, Parameters, Rolls, framed
+from ..contact_law.parameters import Parameters, Rolls
 from ..core.blocks import flattened, run_blocks, thread_count
 from ..core.checks import broadcast_shape, extent, number
 from ..core.drive import Feedback, Schedule, over
 from ..core.errors import MotionStatus, ParameterError, unknown
 from ..core.scale import OF_TIME
-from ..core.typed import Numbers
+from ..core.typed import Floats, Numbers
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
-from .checks import SPEED_RANGE, controls, in_words, output_times, start_speeds
-from .driven import ACTING, LOSSES, ROWS, STATES, Drive, Prepared, bare, prepared, refuse_rest
+from .checks import SPEED_RANGE, in_words, output_times
+from .driven import ACTING, LOSSES, ROWS, STATES, Drive, bare
 from .flow import Answer, FlowMap, ask, flow_map
 from .many import Ensemble
-from .unsteady import climbed, refuse_unlike, time_of_rest
+from .rolling import Begun, begin, integrate
 from .warned import look
 
 #: a function of time of each motion
@@ -114,11 +114,13 @@ def ensemble(
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V))
     begun = begin(roller, starts, given, times[-1], (rtol, rest, max_steps), unsteady=unsteady, rested=rested)
-    roller, inputs, count = begun.roller, begun.inputs, begun.caught.size
-    scene, scale, ready, drive = roller.scene(), roller.scale, begun.ready, given.acting
-    roller.look_at_starts(*starts)
+    begun.roller.look_at_starts(*starts)
+    inputs, count = _inputs(begun, given.numbers)
+    look(begun)
+    scale = begun.roller.scale
     many = _Many(
-        scene, inputs, begun.caught, ready, drive.acts, unsteady, times / scale["t"], begun.limits, names,
+        begun, inputs, np.broadcast_to(begun.caught, (count,)), times / scale["t"],
+        names if begun.drive.acts else tuple(name for name in names if name not in ACTING),
         thread_count(threads), "motions" if progress else None,
     )  # fmt: skip
     try:
@@ -138,97 +140,47 @@ def ensemble(
             np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
         notes = {name: each * scale[name] for name, each in notes.items()}
     notes = {name: np.broadcast_to(each, (count,)) for name, each in notes.items()}
-    notes |= {"status": answer.status, "switches": answer.switches, "drive_error": ready.error} | found
+    notes |= {"status": answer.status, "switches": answer.switches, "drive_error": begun.ready.error} | found
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | rows | notes
-    result = Ensemble(roller=roller, t=times, drive=drive, labels=labels, **kept)
-    roller.look(result.V)
+    result = Ensemble(roller=begun.roller, t=times, drive=begun.drive, labels=labels, **kept)
+    begun.roller.look(result.V)
     return result
 
 
-class Begun(NamedTuple):
-    """Motions that may be rolled, without dimension but for what rolls, on its slope.
-
-    inputs : parameters and start speeds, one for all or one a motion.  caught : those that a rest keeps.
-    limits : rtol, the threshold of rest and max_steps.
-    """
-
-    roller: Rolls
-    inputs: dict[str, NDArray]
-    ready: Prepared
-    caught: NDArray[np.bool_]
-    limits: tuple[float, float, int]
-
-
-def begin(
-    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: tuple[float, float | None, int],
-    *, unsteady: bool, rested: bool | float,
-) -> Begun:  # fmt: skip
-    """All that is refused of motions up to a time before any is rolled; ``asked``: rtol, rest and max_steps.
-
-    Raises ParameterError.
-    """
-    drive, (rtol, rest, max_steps) = given.acting, asked
-    roller, scene, scale = framed(roller, "ensemble", moves=True, slope=drive.slope)
-    if rest is not None and np.ndim(scale["V"]):
-        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
-    try:
-        limits = controls(rtol, over("rest", rest, scale), max_steps)
-        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
-        ready = prepared(drive.over(scale), *own, float(end / scale["t"]), rtol)
-        refuse_rest(limits[1], ready)
-        if unsteady:
-            refuse_unlike(scene)
-        ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
-        inputs, count = _inputs(scene, given.numbers, ready)
-    except ParameterError as error:
-        raise in_words(error, scale) from error
-    return Begun(roller, inputs, ready, np.broadcast_to(caught, (count,)), limits)
-
-
 class _Many(NamedTuple):
-    """Motions to be rolled, without dimension.
+    """Motions to be rolled.
 
     inputs : parameters and start speeds, one for all or one a motion.  caught : those that a rest keeps.
+    times : without dimension.  rows : what is computed; without a drive nothing acts.
     """
 
-    scene: Parameters
+    begun: Begun
     inputs: dict[str, NDArray]
     caught: NDArray[np.bool_]
-    ready: Prepared
-    driven: bool
-    unsteady: bool
-    times: NDArray[np.float64]
-    limits: tuple[float, float, int]
-    names: tuple[str, ...]
+    times: Floats
+    rows: tuple[str, ...]
     threads: int | None
     bar: str | None
-
-    @property
-    def rows(self) -> tuple[str, ...]:
-        """What is computed: without a drive nothing acts."""
-        return self.names if self.driven else tuple(name for name in self.names if name not in ACTING)
 
 
 def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict[str, Any]]:
     """The motions, and by what they were found."""
-    scene, rows, (rtol, threshold, _), times = many.scene, many.rows, many.limits, many.times
-    mapped = not (many.driven or scene.shape or many.unsteady) and scene.like_bodies
-    if method == "flow" and not mapped:
-        alike = many.driven or many.unsteady or not scene.like_bodies
-        what = "motions are driven or unsteady, or bodies differ" if alike else "motions have scenes of their own"
+    begun, rows, times, count = many.begun, many.rows, many.times, many.caught.size
+    scene, (rtol, threshold, _) = begun.scene, begun.limits
+    alike = not (begun.drive.acts or begun.unsteady) and scene.like_bodies
+    if method == "flow" and (scene.shape or not alike):
+        what = "motions have scenes of their own" if alike else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {what}")
-    look(scene, many.inputs["V0"], many.inputs["omega0"], driven=many.driven or many.unsteady)
-    flat, count = [*many.inputs.values()], many.caught.size
     answer, chosen, error = None, None, np.nan
-    unit = scene.in_own_time()[1] if mapped else 1.0
-    own = flat if unit == 1.0 else [*flat[:5], flat[5] * unit, flat[6] * unit]  # no copy of 10^8 for nothing
-    if mapped and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
-        chosen = _map_of(scene, own[5], own[6], speed and speed * unit, many.threads)
-    if chosen is not None:
-        error = chosen.stated_error(path=_among(rows, "x", "angle"), loss=_among(rows, *LOSSES))
-        if error <= rtol:
+    if alike and not scene.shape and (method == "flow" or (method == "auto" and count >= FLOW_PAYS)):
+        unit = scene.in_own_time()[1]
+        V0, omega0 = (many.inputs[name] if unit == 1.0 else many.inputs[name] * unit for name in ("V0", "omega0"))
+        chosen = _map_of(scene, V0, omega0, speed and speed * unit, many.threads)
+        if chosen is not None:
+            error = chosen.stated_error(path=_among(rows, "x", "angle"), loss=_among(rows, *LOSSES))
+        if chosen is not None and error <= rtol:
             of = tuple((STATES + LOSSES).index(name) for name in rows)
-            given = float(flat[3][0]) * unit * unit, threshold * unit, own[5], own[6], times / unit
+            given = scene.gamma * unit * unit, threshold * unit, V0, omega0, times / unit
             answer = ask(chosen, *given, of, threads=many.threads, progress=many.bar)
             if unit != 1.0:
                 for n, name in enumerate(rows):
@@ -258,10 +210,11 @@ def _names(fields: Iterable[str]) -> tuple[str, ...]:
     return names
 
 
-def _inputs(scene: Parameters, drives: dict[str, NDArray], ready: Prepared) -> tuple[dict[str, NDArray], int]:
+def _inputs(begun: Begun, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
     """(Parameters and start speeds, how many motions they and the ``drives`` make)."""
-    arrays: dict[str, NDArray] = {name: np.asarray(getattr(scene, name)) for name in PARAMETERS}
-    arrays |= zip(("V0", "omega0"), map(np.asarray, start_speeds(ready.V0, ready.omega0)), strict=True)
+    ready = begun.ready
+    arrays = {name: np.asarray(value) for name, value in begun.scene.numbers.items()}
+    arrays |= {"V0": np.asarray(ready.V0), "omega0": np.asarray(ready.omega0)}
     counts = {"pieces": ready.pieces.shape[0], "gains": ready.gains.shape[1]}
     shape = broadcast_shape(**arrays, **drives, **{name: np.zeros(n) for name, n in counts.items() if n > 1})
     if len(shape) > 1:
@@ -283,55 +236,44 @@ def _map_of(
 
 def _integrate_others(answer: Answer, many: _Many) -> NDArray[np.int64]:
     """Integrate the motions without an answer; returns the steps of each."""
-    law, names, times = _law_of(many.scene, many.unsteady), many.rows, many.times
-    steps, rows = np.zeros(answer.status.size, dtype=np.int64), np.array([ROWS.index(name) for name in names], np.int64)
+    begun, inputs = many.begun, many.inputs.values()
+    law, rows = _law_of(begun.scene, begun.unsteady), np.array([ROWS.index(name) for name in many.rows], np.int64)
+    steps = np.zeros(answer.status.size, dtype=np.int64)
 
     def work(start: int, stop: int) -> None:
-        from ..kernels.motion.loop import INFO, motion_loop
-
         left = start + np.flatnonzero(answer.status[start:stop] < 0)
         if not left.size:
             return
-        parts = many.inputs.values()
-        alpha, *inputs = (flattened(array[left], left.shape) if array.size > 1 else array for array in parts)
-        out, info = np.empty((len(names), left.size, times.size)), np.empty((left.size, len(INFO)))
-        batch, notes = (*law(alpha, left), *inputs), (np.empty((0, 2)), np.empty(0))
-        motion_loop(batch, many.ready.for_kernel(left), times, many.limits, rows, out, info, notes)
-        answer.out[:, left] = out
+        alpha, *own = (flattened(array[left], left.shape) if array.size > 1 else array for array in inputs)
+        batch, drive = (*law(alpha, left), *own), begun.ready.for_kernel(left)
+        answer.out[:, left], info = integrate(left.size, batch, drive, many.times, begun.limits, rows)
         answer.status[left], steps[left], answer.switches[left], answer.onset[left], answer.rest[left] = info.T
 
     mapped = answer.status.max(initial=-1) >= 0
-    block = _MAPPED_BLOCK if mapped else 1 if many.unsteady and _many_materials(many.scene) else _BLOCK
+    block = _MAPPED_BLOCK if mapped else 1 if begun.unsteady and np.ndim(begun.scene.alpha) else _BLOCK
     run_blocks(work, steps.size, block, threads=many.threads, progress=many.bar)
     return steps
-
-
-def _many_materials(scene: Parameters) -> bool:
-    return np.ndim(scene.alpha) > 0
 
 
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, bool]]:
     """(alphas of motions, which they are) -> the law that they share, or that of each in turn; whether bodies
     differ.  ``unsteady``: of one motion, with N."""
-    material: Any = scene.each
+    each: Any = scene.each
+    if each is None and not np.ndim(scene.alpha):
+        one: Any = scene.table
+        law = (one.unsteady_record if unsteady else one.record), one.unlike
+        return lambda alpha, which: law
 
-    def each(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
-        found = law_of_materials(material, np.minimum(which, len(material) - 1))
-        return found, isinstance(material, Bodies)
+    def made(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
+        if each is None:
+            return law_table(alpha.item()).unsteady_record if unsteady else law_of_alphas(alpha), False
+        which = np.minimum(which, len(each) - 1)
+        if unsteady:
+            given: Any = scene.material
+            return law_table(given[which.item()]).unsteady_record, False
+        return law_of_materials(each, which), isinstance(each, Bodies)
 
-    def own(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
-        given: Any = scene.material
-        one = law_table(alpha.item() if given is None else given[min(which.item(), len(given) - 1)])
-        return one.unsteady_record, False
-
-    if unsteady and _many_materials(scene):
-        return own
-    if material is not None:
-        return each
-    if scene.material is None and np.ndim(scene.alpha):
-        return lambda alpha, which: (law_of_alphas(alpha), False)
-    one: Any = scene.table
-    return lambda alpha, which: (one.unsteady_record if unsteady else one.record, one.unlike)
+    return made
 
 
 def _among(names: tuple[str, ...], *some: str) -> bool:

@@ -13,6 +13,7 @@ from ..core.drive import Feedback, Schedule, over, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
 from ..core.scale import Scale
+from .checks import start_speeds
 from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
@@ -132,7 +133,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
     from ..kernels.motion.records import NEITHER, OMEGA, SPEED
 
     if not drive.acts:
-        return Prepared(*undriven(), V0, omega0, 0.0)
+        return Prepared(*undriven(), *start_speeds(V0, omega0), 0.0)
     tangent = slope_factor(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
         raise one_of("V", "omega", both=True)
@@ -164,7 +165,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
             raise ParameterError(name, None, "a number", f"{name} is not given, and no {by}= prescribes it")
     pieces = pieces_of((force, torque, rate, brake), end)
     error = max(error, force.error, torque.error, brake.error)
-    return Prepared(pieces, _gains(drive), prescribed, V0, omega0, error)
+    return Prepared(pieces, _gains(drive), prescribed, *start_speeds(V0, omega0), error)
 
 
 def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.float64]) -> Any:
@@ -184,6 +185,12 @@ def _gains(drive: Drive) -> NDArray[np.float64]:
     rows[3] = rows[3] - checked("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
     return np.array([np.broadcast_to(row, count) for row in rows])
+
+
+def refuse_drives(drives: Prepared) -> None:
+    """Raise ParameterError where a drive is of many motions."""
+    if (many := max(drives.pieces.shape[0], drives.gains.shape[1])) > 1:
+        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
 
 
 def refuse_rest(rest: float, drives: Prepared) -> None:

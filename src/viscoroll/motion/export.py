@@ -9,22 +9,25 @@ import numpy as np
 import xarray as xr
 
 from .. import __version__
-from ..contact_law.parameters import PARAMETERS, Rolls
+from ..contact_law.parameters import PARAMETERS
+from ..core.drive import Feedback, Schedule
 from ..core.errors import MotionStatus, ParameterError
+from ..core.results import short
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
-from .driven import ACTING
-from .export_drive import drive_variables
+from .driven import ACTING, LOSSES, ROWS, STATES
+from .many import Ensemble
+from .one import Motion
+from .result import Rolled
 
-_LOSSES = ("slip_loss", "rolling_loss")
-_REGIME = {
-    "long_name": "regime of motion",
-    "flag_values": np.array([-1, 0, 1, 2, 3, 4], dtype=np.int8),
-    "flag_meanings": "not_reached full_slip partial_slip rest locked held",
-}
+_LINEAR = "linear between its times, constant outside; a time given twice is a jump"
 _OWN: dict[str, dict[str, Any]] = {
-    "regime": _REGIME,
+    "regime": {
+        "long_name": "regime of motion",
+        "flag_values": np.array([-1, 0, 1, 2, 3, 4], dtype=np.int8),
+        "flag_meanings": "not_reached full_slip partial_slip rest locked held",
+    },
     "status": {
         "long_name": "how the motion ended",
         "flag_values": np.array([int(s) for s in MotionStatus], dtype=np.int8),
@@ -43,23 +46,63 @@ def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
     return dict(_OWN[name]) if name in _OWN else dict(attributes(name, si))
 
 
-def _about(roller: Rolls) -> dict[str, Any]:
-    """Numbers of a cylinder."""
-    return {name: getattr(roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")} if roller.scale.si else {}
-
-
 def _globals(title: str) -> dict[str, str]:
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
 
 
-def _material(scene: Any) -> dict[str, Any]:
-    """The series that a scene counts time by; nothing where it has an alpha."""
-    return (
-        {} if scene.series is None else {"relaxation_strengths": scene.series.E, "relaxation_times": scene.series.tau}
-    )
+def _dataset(
+    result: Rolled, title: str, dims: tuple[str, ...], more: dict[str, Any], about: dict[str, Any]
+) -> xr.Dataset:
+    """Its rows over ``dims``, what drove it and what rolled, beside ``more`` variables and attributes."""
+    whole, described = result.drive.acts or "motion" in dims, partial(column_attributes, si=result.scale.si)
+    data: dict[str, Any] = {}
+    for name in ROWS if whole else STATES:
+        if (values := result[name]) is not None:
+            if name == "regime":
+                values = np.where(np.isnan(values), -1, values).astype(np.int8)
+            data[name] = dims, values, described(name)
+    drives, texts = _drive(result)
+    roller, series = result.roller, result.scene.series
+    attrs = _globals(title) | about | texts
+    if whole:
+        attrs["drive_error"] = result.drive_error
+    if series is not None:  # by which it counts time
+        attrs |= {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+    if result.scale.si:
+        attrs |= {name: getattr(roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")}
+    return xr.Dataset(data | more | drives, {"t": ("t", result.t, described("t"))}, attrs)
 
 
-def _series(materials: Any, count: int) -> dict[str, xr.Variable]:
+def _drive(result: Rolled) -> tuple[dict[str, Any], dict[str, Any]]:
+    """(Variables ``drive_force`` and the like, with their times where they have some; attributes for callables).
+
+    Numbers stand over () or (motion), schedules over (drive_force_time) or (motion, drive_force_time), or where
+    motions have times of their own over (motion, drive_force_corner); gains of a feedback are attributes.
+    """
+    variables: dict[str, Any] = {}
+    texts: dict[str, Any] = {}
+    for name, whole in result.drive.given.items():
+        key, feeds_back = f"drive_{name}", isinstance(whole, Feedback)
+        given = whole.value if feeds_back else whole
+        gains = {"gain_V": whole.V, "gain_omega": whole.omega} if feeds_back else {}
+        if callable(given):
+            told = (f", {what} = {short(gain) if np.ndim(gain) else f'{gain:.15g}'}" for what, gain in gains.items())
+            texts[key] = "a function of t" + "".join(told)
+            continue
+        about = attributes(name, result.scale.si)
+        about = about | {"long_name": f"given: {about['long_name']}"} | gains
+        dims: tuple[str, ...] = ("motion",)
+        if isinstance(given, Schedule):
+            along = {"long_name": f"times of the given {name}", "units": result.scale.unit("t")}
+            dims = "motion", f"{key}_time" if given.times.ndim == 1 else f"{key}_corner"
+            variables[f"{key}_time"] = dims[-given.times.ndim :], given.times, along
+            given, about = given.values, about | {"comment": _LINEAR}
+        number = np.asarray(given, np.float64)
+        variables[key] = dims[len(dims) - number.ndim :], number, about
+    return variables, texts
+
+
+def _series(materials: Any, count: int) -> dict[str, Any]:
     """Strengths and times of a material each as they were given, or of both bodies and the cylinder's share."""
     if materials is None or not materials.shape:
         return {}
@@ -69,109 +112,70 @@ def _series(materials: Any, count: int) -> dict[str, xr.Variable]:
     return (
         _modes(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _modes(materials.base, count, "base_", "base: ")
-        | {"share": xr.Variable(("motion",), np.broadcast_to(materials.share, (count,)), share)}
+        | {"share": ("motion", np.broadcast_to(materials.share, (count,)), share)}
     )
 
 
-def _modes(given: Prony, count: int, body: str, of: str) -> dict[str, xr.Variable]:
+def _modes(given: Prony, count: int, body: str, of: str) -> dict[str, Any]:
     """Strengths and times of one body, over (motion, mode)."""
     form, over = ("creep", "compliance") if given.by_creep else ("relaxation", "modulus")
-    strengths, times = (given.J, given.T) if given.by_creep else (given.E, given.tau)
-    about = {"strengths": f"strengths of {form} over the long-time {over}", "times": f"times of {form} over T_ref"}
+    parts = {
+        "strengths": (given.J if given.by_creep else given.E, f"strengths of {form} over the long-time {over}"),
+        "times": (given.T if given.by_creep else given.tau, f"times of {form} over T_ref"),
+    }
     return {
-        f"{body}{form}_{name}": xr.Variable(
+        f"{body}{form}_{name}": (
             ("motion", f"{body}mode"), np.broadcast_to(values, (count, np.shape(values)[-1])),
-            {"long_name": of + about[name], "units": "1"},
+            {"long_name": of + about, "units": "1"},
         )
-        for name, values in (("strengths", strengths), ("times", times))
+        for name, (values, about) in parts.items()
     }  # fmt: skip
 
 
-def motion_dataset(motion: Any) -> xr.Dataset:
+def motion_dataset(motion: Motion) -> xr.Dataset:
     """One motion over t; under a drive with what acted, works and losses."""
-    described = partial(attributes, si=motion.scale.si)
-    names = ("V", "omega", "x", "angle", "delta", *((*ACTING, *_LOSSES) if motion.drive.acts else ()))
-    data = {name: xr.Variable(("t",), getattr(motion, name), described(name)) for name in names}
-    data["regime"] = xr.Variable(("t",), motion.regime, _REGIME)
-    driven: dict[str, Any] = {}
-    if motion.drive.acts:
-        given, driven = drive_variables(motion.drive, described)
-        data |= given
-        when = {"long_name": "times at which V changes its sign", "units": described("t")["units"]}
-        data["reversals"] = xr.Variable(("reversal",), motion.reversals, when)
-        driven["drive_error"] = motion.drive_error
-    return xr.Dataset(
-        data,
-        coords={"t": xr.Variable(("t",), motion.t, described("t"))},
-        attrs=_globals("Motion of a viscoelastic cylinder rolling with partial slip")
-        | motion.scene.numbers
-        | _material(motion.scene)
-        | driven
-        | {
-            "onset_time": motion.onset_time,
-            "rest_time": motion.rest_time,
-            "switches": "; ".join(f"t = {s.t:.15g}: {s.regime}" for s in motion.switches),
-            "status": motion.message,
-            "steps": motion.steps,
-        }
-        | _about(motion.roller),
-    )
-
-
-def ensemble_dataset(result: Any) -> xr.Dataset:
-    """All motions over (motion, t)."""
-    described = partial(column_attributes, si=result.scale.si)
-    dims = ("motion", "t")
-    data = {
-        name: xr.Variable(dims, getattr(result, name), described(name))
-        for name in ("V", "omega", "x", "angle", "delta", *_LOSSES, *ACTING)
-        if getattr(result, name) is not None
+    turns = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
+    about = motion.scene.numbers | {
+        "onset_time": motion.onset_time,
+        "rest_time": motion.rest_time,
+        "switches": "; ".join(f"t = {s.t:.15g}: {s.regime}" for s in motion.switches),
+        "status": motion.message,
+        "steps": motion.steps,
     }
-    if result.regime is not None:
-        reached = np.where(np.isnan(result.regime), -1, result.regime)
-        data["regime"] = xr.Variable(dims, reached.astype(np.int8), _REGIME)
+    more = {"reversals": ("reversal", motion.reversals, turns)} if motion.drive.acts else {}
+    return _dataset(motion, "Motion of a viscoelastic cylinder rolling with partial slip", ("t",), more, about)
+
+
+def ensemble_dataset(result: Ensemble) -> xr.Dataset:
+    """All motions over (motion, t)."""
+    si, more = result.scale.si, _series(result.scene.material, len(result))
     for name in PARAMETERS:
         value = np.asarray(getattr(result.scene, name))
-        data[name] = xr.Variable(("motion",) if value.ndim else (), value, attributes(name))
-    data |= _series(result.scene.material, len(result))
+        more[name] = ("motion",)[: value.ndim], value, attributes(name)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
-        data[name] = xr.Variable("motion", getattr(result, name), described(name))
-    data["flow"] = xr.Variable("motion", result.flow.astype(np.int8), described("flow"))
-    given, texts = drive_variables(result.drive, described)
-    data |= given
-    attrs = (
-        _globals("Ensemble of motions")
-        | _material(result.scene)
-        | texts
-        | {"drive_error": result.drive_error}
-        | {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
-        | _about(result.roller)
-    )
+        more[name] = "motion", result[name], column_attributes(name, si)
+    more["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
+    about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
+    found = _dataset(result, "Ensemble of motions", ("motion", "t"), more, about)
     own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
-    coords = {name: values for name, values in own.items() if name not in data}
-    return xr.Dataset(data, coords | {"t": xr.Variable(("t",), result.t, described("t"))}, attrs)
+    return found.assign_coords({name: values for name, values in own.items() if name not in found})
 
 
-def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
+def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
     described = partial(attributes, si=result.scale.si)
     if not len(result):
         raise ParameterError("motions", 0, "at least one: a summary is over motions")
-    data: dict[str, xr.Variable] = {}
-    for name in ("V", "omega", "x", "angle", *_LOSSES, *ACTING):
-        values = getattr(result, name)
-        if values is None:
-            continue
-        data[f"{name}_mean"] = xr.Variable(("t",), np.nanmean(values, axis=0), described(name))
-        data[f"{name}_std"] = xr.Variable(("t",), np.nanstd(values, axis=0), described(name))
-        data[f"{name}_quantiles"] = xr.Variable(
-            ("quantile", "t"), np.nanquantile(values, quantiles, axis=0), described(name)
-        )
+    data: dict[str, Any] = {}
+    for name in ("V", "omega", "x", "angle", *LOSSES, *ACTING):
+        if (values := result[name]) is not None:
+            about = described(name)
+            data[f"{name}_mean"] = "t", np.nanmean(values, axis=0), about
+            data[f"{name}_std"] = "t", np.nanstd(values, axis=0), about
+            data[f"{name}_quantiles"] = ("quantile", "t"), np.nanquantile(values, quantiles, axis=0), about
     onset = result.onset_time[np.isfinite(result.onset_time)]
     if onset.size:
-        data["onset_time_quantiles"] = xr.Variable(
-            ("quantile",), np.quantile(onset, quantiles), described("onset_time")
-        )
-    coords = {"t": xr.Variable(("t",), result.t, described("t")), "quantile": ("quantile", np.array(quantiles))}
-    attrs = _globals("Summary of an ensemble of motions") | {"motions": len(result)}
-    return xr.Dataset(data, coords=coords, attrs=attrs | {f"ended: {text}": n for text, n in result.messages().items()})
+        data["onset_time_quantiles"] = "quantile", np.quantile(onset, quantiles), described("onset_time")
+    coords = {"t": ("t", result.t, described("t")), "quantile": np.array(quantiles)}
+    ends = {f"ended: {text}": n for text, n in result.messages().items()}
+    return xr.Dataset(data, coords, _globals("Summary of an ensemble of motions") | {"motions": len(result)} | ends)

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 from ..core.blocks import flattened, run_blocks
 from ..materials.law_table import law_table
 from .driven import LOSSES, ROWS, STATES, undriven
+from .rolling import integrate
 
 Floats = NDArray[np.float64]
 
 #: as tight as the integrator goes; with alpha of 1e10 it takes tens of thousands of steps
 _RTOL, _MOST_STEPS = 1e-12, 100_000
 _BLOCK = 40
+#: status, steps, switches, onset and rest time
+_INFO = 5
 
 
 def motions(
@@ -30,20 +33,16 @@ def motions(
     starts : V and omega.
     gamma : one a motion, which makes the common times what that counts in.
     """
-    from ..kernels.motion.loop import INFO, motion_loop
-
     rows = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
     given, kappa, mu, j = parameters
-    law = law_table(given)
+    law, limits = law_table(given), (_RTOL, 0.0, _MOST_STEPS)
     arrays = [flattened(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
-    out, info = np.empty((len(rows), starts[0].size, t.size)), np.empty((starts[0].size, len(INFO)))
+    out, info = np.empty((len(rows), starts[0].size, t.size)), np.empty((starts[0].size, _INFO))
 
     def work(start: int, stop: int) -> None:
         own = (array[start:stop] if array.size > 1 else array for array in arrays)
-        found, notes = np.empty((len(rows), stop - start, t.size)), (np.empty((0, 2)), np.empty(0))
-        batch, limits = (law.record, law.unlike, *own), (_RTOL, 0.0, _MOST_STEPS)
-        motion_loop(batch, undriven(), t, limits, rows, found, info[start:stop], notes)
-        out[:, start:stop] = found
+        batch = law.record, law.unlike, *own
+        out[:, start:stop], info[start:stop] = integrate(stop - start, batch, undriven(), t, limits, rows)
 
     run_blocks(work, starts[0].size, _BLOCK, threads=threads)
     return out, info

@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 
 from ..contact_law.assumptions import Validity
 from ..contact_law.judged import validity
-from ..contact_law.parameters import Parameters, Rolls
 from ..contact_law.steadiness import Steadiness
 from ..core.errors import MotionStatus
 from ..core.labels import Labels
-from ..core.results import Row, Shown, unit_of
-from ..core.scale import Scale
-from ..core.symbols import attributes
-from .driven import Drive
+from ..core.results import Row
+from ..core.typed import Floats
+from .result import Rolled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +26,7 @@ _JUDGED = 256
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble(Shown):
+class Ensemble(Rolled):
     """Motions 0 ... n - 1 at common output times, in the units of what rolled, as of a :class:`Motion`.
 
     Attributes
@@ -55,52 +53,15 @@ class Ensemble(Shown):
     labels : of the starts and loads, where they came as arrays of xarray or pandas; :meth:`to_xarray` has them.
     """
 
-    roller: Rolls
-    V0: NDArray[np.float64]
-    omega0: NDArray[np.float64]
-    t: NDArray[np.float64]
-    V: NDArray[np.float64] | None
-    omega: NDArray[np.float64] | None
-    x: NDArray[np.float64] | None
-    angle: NDArray[np.float64] | None
-    delta: NDArray[np.float64] | None
-    regime: NDArray[np.float64] | None
-    slip_loss: NDArray[np.float64] | None
-    rolling_loss: NDArray[np.float64] | None
-    force: NDArray[np.float64] | None
-    torque: NDArray[np.float64] | None
-    work_force: NDArray[np.float64] | None
-    work_torque: NDArray[np.float64] | None
-    brake_loss: NDArray[np.float64] | None
-    onset_time: NDArray[np.float64]
-    rest_time: NDArray[np.float64]
-    status: NDArray[np.int8]
-    switches: NDArray[np.int64]
-    steps: NDArray[np.int64]
+    V0: Floats
+    omega0: Floats
     flow: NDArray[np.bool_]
     flow_error: float
     flow_problem: str
-    drive_error: float
-    drive: Drive
     labels: Labels | None = None
 
     def __len__(self) -> int:
         return self.status.size
-
-    @property
-    def scene(self) -> Parameters:
-        """The dimensionless scene, on its slope."""
-        return self.roller.scene()
-
-    @property
-    def scale(self) -> Scale:
-        """What 1 of each quantity is: in SI units of a cylinder."""
-        return self.roller.scale
-
-    @property
-    def success(self) -> NDArray[np.bool_]:
-        """Which reached the last output time, or rest."""
-        return self.status <= MotionStatus.RESTED
 
     @property
     def message(self) -> str:
@@ -153,7 +114,7 @@ class Ensemble(Shown):
         free = scene.freely(np.nan_to_num(speeds / scale["V"])).scaled(scale)
         return found._replace(steady=Steadiness.along(free, rolls, x, ends=True))
 
-    def judged(self) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    def judged(self) -> tuple[NDArray[np.int64], Floats, Floats]:
         """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
         fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, found in fastest.items():
@@ -163,17 +124,14 @@ class Ensemble(Shown):
         return some, fastest["V"][some], np.copysign(fastest["omega"], self.V0 * self.omega0)[some]
 
     def _card(self) -> tuple[str, list[Row]]:
-        def unit(name: str) -> str:
-            return unit_of(attributes(name, self.scale.si))
-
         ends = [Row("ended", f"{count}: {message}") for message, count in self.messages().items()]
-        rows = [Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", unit("t"))]
+        rows = [self._times()]
         for name in ("V", "omega", "x"):
             if (values := getattr(self, name)) is not None and values.size:
                 last = values[:, -1][np.isfinite(values[:, -1])]
                 low, middle, high = np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
                 text = f"median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g} at the end"
-                rows.append(Row(name, text, unit(name)))
+                rows.append(Row(name, text, self._unit(name)))
         rows.append(Row("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
         if self.flow.any():
             rows.append(Row("by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"))

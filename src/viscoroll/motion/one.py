@@ -13,15 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from ..contact_law.assumptions import Validity
 from ..contact_law.contact import contact
 from ..contact_law.judged import validity
-from ..contact_law.parameters import Parameters, Rolls
 from ..contact_law.steadiness import Steadiness
 from ..core.errors import MotionStatus, ParameterError
-from ..core.results import Row, Shown, Values, unit_of
-from ..core.scale import Scale
-from ..core.symbols import attributes
+from ..core.results import Row, Values
+from ..core.typed import Floats
 from .checks import SPEED_RANGE, output_times
-from .driven import ROWS, Drive
-from .rolling import Inputs, rolled
+from .driven import ROWS
+from .result import Rolled
+from .rolling import NO_NOTES, Begun, rolled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +41,7 @@ class Switch(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Shown):
+class Motion(Rolled):
     """One motion, in the units of what rolled: of a scene without dimension, of a cylinder in SI units per m of length.
 
     Attributes
@@ -71,45 +70,8 @@ class Motion(Shown):
     steps : integration steps taken, rejected ones included.
     """
 
-    roller: Rolls
-    drive: Drive
-    t: NDArray[np.float64]
-    V: NDArray[np.float64]
-    omega: NDArray[np.float64]
-    x: NDArray[np.float64]
-    angle: NDArray[np.float64]
-    delta: NDArray[np.float64]
-    regime: NDArray[np.int8]
-    switches: tuple[Switch, ...]
-    onset_time: float
-    rest_time: float
-    status: MotionStatus
-    steps: int
-    reversals: NDArray[np.float64]
-    force: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    work_force: NDArray[np.float64]
-    work_torque: NDArray[np.float64]
-    brake_loss: NDArray[np.float64]
-    slip_loss: NDArray[np.float64]
-    rolling_loss: NDArray[np.float64]
-    drive_error: float
-    _inputs: Inputs = field(repr=False)
-
-    @property
-    def scene(self) -> Parameters:
-        """The dimensionless scene, on its slope."""
-        return self._inputs.scene
-
-    @property
-    def scale(self) -> Scale:
-        """What 1 of each quantity is: in SI units of a cylinder."""
-        return self.roller.scale
-
-    @property
-    def success(self) -> bool:
-        """Whether it reached the last output time, or rest."""
-        return self.status <= MotionStatus.RESTED
+    reversals: Floats
+    _begun: Begun = field(repr=False)
 
     @property
     def message(self) -> str:
@@ -118,29 +80,25 @@ class Motion(Shown):
         if self.success or self.status == MotionStatus.CAUGHT:
             return words
         stood = self._stood
-        t, V, omega = (
-            f"{name} = {float(stood[name][0]):.6g} {unit_of(attributes(name, self.scale.si))}".rstrip()
-            for name in ("t", "V", "omega")
-        )
+        at = (f"{name} = {float(stood[name][0]):.6g} {self._unit(name)}".rstrip() for name in ("t", "V", "omega"))
+        t, V, omega = at
         return f"{words}; it stood at {t} in {REGIMES[stood.regime[0]]}, {V}, {omega}"
 
     @cached_property
     def _stood(self) -> Motion:
         """The motion up to where it was given up."""
         ends = np.full(self.steps + 1, np.nan)
-        rolled(self._inputs, np.array([self._inputs.end]), (np.empty((0, 2)), ends))
+        rolled(self._begun, np.array([self._begun.end]), NO_NOTES[0], ends)
         reached = float(np.nanmax(np.append(ends, 0.0)))
-        return integrated(
-            self._inputs._replace(end=reached), np.array([reached * self.scale["t"]]), self.roller, self.drive
-        )
+        return integrated(self._begun._replace(end=reached), np.array([reached * self.scale["t"]]))
 
     @property
-    def power_force(self) -> NDArray[np.float64]:
+    def power_force(self) -> Floats:
         """Power of the force."""
         return self.force * self.V
 
     @property
-    def power_torque(self) -> NDArray[np.float64]:
+    def power_torque(self) -> Floats:
         """Power of the torque."""
         return self.torque * self.omega
 
@@ -188,19 +146,16 @@ class Motion(Shown):
         return found._replace(steady=Steadiness.along(free, rolls, self.x[reached], ends=False))
 
     def _card(self) -> tuple[str, list[Row]]:
-        def unit(name: str) -> str:
-            return unit_of(attributes(name, self.scale.si))
-
-        rows = [Row("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", unit("t"))]
-        rows += [Row(name, _course(self.t, getattr(self, name)), unit(name)) for name in ("V", "omega", "x")]
+        rows = [self._times()]
+        rows += [Row(name, _course(self.t, self[name]), self._unit(name)) for name in ("V", "omega", "x")]
         for name, given in self.drive.given.items():
-            rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", unit(name)))
+            rows.append(Row(name, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
         if not np.isnan(self.onset_time):
-            rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", unit("t")))
+            rows.append(Row("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
             last = self.switches[-1]
             died = ": V fell to 0 in double precision" if last.regime == "rest" and np.isnan(self.rest_time) else ""
-            when = f"t = {last.t:.6g} {unit('t')}".rstrip()
+            when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
             rows.append(Row("changes of regime", f"{len(self.switches)}, the last to {last.regime} at {when}{died}"))
         if self.reversals.size:
             rows.append(Row("reversals of V", str(self.reversals.size)))
@@ -224,23 +179,23 @@ class Motion(Shown):
             Times that are not ascending or lie beyond the end of the motion.
         """
         times = output_times(t)
-        end = self._inputs.end * self.scale["t"]
-        if times[-1] > end and times[-1] / self.scale["t"] > self._inputs.end:
+        end = self._begun.end * self.scale["t"]
+        if times[-1] > end and times[-1] / self.scale["t"] > self._begun.end:
             raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
-        return integrated(self._inputs, times, self.roller, self.drive)
+        return integrated(self._begun, times)
 
     @cached_property
     def course(self) -> Motion:
         """The same motion at 0, at the ends of its steps, at places between them, and at its end."""
-        ends, end, most = np.empty(0), self._inputs.end, self._inputs.limits[2]
+        ends, end, most = np.empty(0), self._begun.end, self._begun.limits[2]
         while ends.size < most and not np.isnan(ends).any():  # full: there may be more
             ends = np.full(min(max(4 * ends.size, _STEPS), most), np.nan)
-            rolled(self._inputs, np.array([end]), (np.empty((0, 2)), ends))
+            rolled(self._begun, np.array([end]), NO_NOTES[0], ends)
         return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])
 
     def _figure(self) -> Figure:
         """All of it where it was asked for at one time."""
-        return Shown._figure(self if self.t.size > 1 else self.course)
+        return Rolled._figure(self if self.t.size > 1 else self.course)
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""
@@ -249,14 +204,14 @@ class Motion(Shown):
         return motion_dataset(self)
 
 
-def integrated(inputs: Inputs, times: NDArray, roller: Rolls, drive: Drive) -> Motion:
+def integrated(begun: Begun, times: Floats) -> Motion:
     """The motion at ``times``, up to its end, in the units of what rolled."""
-    scale = roller.scale
-    T, at = scale["t"], np.minimum(times / scale["t"], inputs.end)
-    asked = at if at[-1] == inputs.end else np.append(at, inputs.end)
+    scale, end = begun.roller.scale, begun.end
+    T, at = scale["t"], np.minimum(times / scale["t"], end)
+    asked = at if at[-1] == end else np.append(at, end)
     switches = np.empty((_SWITCHES_KEPT, 2))
     switches.fill(np.nan)
-    error, out, (status, steps, _, onset_time, rest_time) = rolled(inputs, asked, (switches, np.empty(0)))
+    out, (status, steps, _, onset_time, rest_time) = rolled(begun, asked, switches, NO_NOTES[1])
     rows = dict(zip(ROWS, out[:, : times.size], strict=True))
     whole = rows.pop("regime")
     if scale.si:
@@ -265,9 +220,9 @@ def integrated(inputs: Inputs, times: NDArray, roller: Rolls, drive: Drive) -> M
     noted = switches[~np.isnan(switches[:, 1])]
     changes = tuple(Switch(float(when) * T, REGIMES[int(what)]) for when, what in noted if what >= 0.0)
     return Motion(
-        roller, drive, times, **rows, regime=regime, switches=changes, onset_time=onset_time * T,
+        begun.roller, begun.drive, times, **rows, regime=regime, switches=changes, onset_time=onset_time * T,
         rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
-        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=error, _inputs=inputs,
+        reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=begun.ready.error, _begun=begun,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""One motion by the kernel."""
+"""Motions that may be rolled, and the kernel that rolls them: one and many."""
 
 from __future__ import annotations
 
@@ -7,48 +7,92 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters
+from ..contact_law.parameters import Parameters, Rolls, framed
+from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
-from .driven import ROWS, Drive, prepared, refuse_rest
-from .unsteady import climbed
+from .checks import controls, in_words, refuse_many
+from .driven import ROWS, Drive, Prepared, prepared, refuse_drives, refuse_rest
+from .unsteady import climbed, refuse_unlike, time_of_rest
 
 _ALL = np.arange(len(ROWS))
+#: no room for switches and ends of steps
+NO_NOTES = np.empty((0, 2)), np.empty(0)
 
 
-class Inputs(NamedTuple):
-    """What a motion was rolled from, without dimension."""
+class Begun(NamedTuple):
+    """Motions that may be rolled, without dimension but for what rolls and its drive.
 
+    roller, scene : on the slope.  caught : those that a rest keeps.  end : the last time.
+    limits : rtol, the threshold of rest and max_steps.
+    """
+
+    roller: Rolls
     scene: Parameters
-    V0: Any
-    omega0: Any
-    end: float
-    #: rtol, rest, max_steps
-    limits: tuple[float, float, int]
     drive: Drive
+    ready: Prepared
+    caught: Any
+    end: float
+    limits: tuple[float, float, int]
     unsteady: bool
-    rested: float
 
 
-def rolled(inputs: Inputs, times: NDArray, notes: tuple) -> tuple[float, NDArray, list[float]]:
-    """(Error of the drive, rows of ``ROWS``, (status, steps, switches, onset time, rest time)) of one motion.
+def begin(
+    roller: Rolls, starts: tuple[Any, Any], given: Drive, end: float, asked: tuple[float, float | None, int],
+    *, unsteady: bool, rested: bool | float, one: bool = False,
+) -> Begun:  # fmt: skip
+    """All that is refused of motions up to a time before any is rolled, or of ``one``.
 
-    ``notes``: room for the switches and for the ends of steps.
+    ``asked`` : rtol, rest and max_steps.  Raises ParameterError.
+    """
+    acts = given.acts
+    if one:
+        refuse_many(V0=starts[0], omega0=starts[1], **(given.numbers if acts else {}))
+    drive, (rtol, rest, max_steps) = given.acting if acts else given, asked
+    roller, scene, scale = framed(roller, "roll" if one else "ensemble", moves=True, slope=drive.slope)
+    if one and scene.shape:
+        refuse_many(material=roller.material, **roller.numbers)
+    if rest is not None and np.ndim(scale["V"]):
+        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    try:
+        limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
+        own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
+        ready = prepared(drive.over(scale), *own, last, rtol)
+        if one:
+            refuse_drives(ready)
+        refuse_rest(limits[1], ready)
+        if unsteady:
+            refuse_unlike(scene)
+        ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
+    except ParameterError as error:
+        raise in_words(error, scale) from error
+    return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
+
+
+def integrate(
+    count: int, batch: tuple[Any, ...], drive: tuple[NDArray, NDArray, int], times: NDArray[np.float64],
+    limits: tuple[float, float, int], rows: NDArray[np.int64], notes: tuple[NDArray, ...] = NO_NOTES,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
+    """(Rows of :data:`ROWS` of ``count`` motions at the times; status, steps, switches, onset and rest time of each).
+
+    ``batch`` : law, whether bodies differ, kappa, mu, gamma, j, V0 and omega0.  ``notes`` : room for the switches and
+    for the ends of steps.
     """
     from ..kernels.motion.loop import INFO, motion_loop
 
-    ready = prepared(inputs.drive, inputs.V0, inputs.omega0, inputs.end, inputs.limits[0])
-    refuse_rest(inputs.limits[1], ready)
-    if (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
-        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
-    ready, caught = climbed(ready, inputs.scene, inputs.rested)
-    if caught:
-        nothing = np.full((len(ROWS), times.size), np.nan)
-        return ready.error, nothing, [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
-    scene, law = inputs.scene, inputs.scene.table
+    out, info = np.empty((rows.size, count, times.size)), np.empty((count, len(INFO)))
+    motion_loop(batch, drive, times, limits, rows, out, info, notes)
+    return out, info
+
+
+def rolled(begun: Begun, times: NDArray[np.float64], *notes: NDArray) -> tuple[NDArray[np.float64], list[float]]:
+    """What :func:`integrate` finds, of one motion."""
+    scene, ready = begun.scene, begun.ready
+    if begun.caught:
+        return np.full((_ALL.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
+    law = scene.table
     assert law is not None
-    one = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
-    one.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
-    out, info = np.empty((_ALL.size, 1, times.size)), np.empty((1, len(INFO)))
-    batch = law.unsteady_record if inputs.unsteady else law.record, law.unlike, *one
-    motion_loop(batch, ready.for_kernel(), times, inputs.limits, _ALL, out, info, notes)
-    return ready.error, out[:, 0], info[0].tolist()
+    own = np.array((scene.kappa, scene.mu, scene.gamma, scene.j, ready.V0, ready.omega0), float).reshape(-1, 1)
+    own.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
+    batch = law.unsteady_record if begun.unsteady else law.record, law.unlike, *own
+    out, info = integrate(1, batch, ready.for_kernel(), times, begun.limits, _ALL, notes)
+    return out[:, 0], info[0].tolist()

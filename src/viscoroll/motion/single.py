@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import Any
 
-from ..contact_law.parameters import Rolls, framed
-from ..core.checks import number
-from ..core.drive import Feedback, Schedule, over
-from ..core.errors import ParameterError
+from ..contact_law.parameters import Rolls
+from ..core.drive import Feedback, Schedule
 from ..core.typed import Numbers
-from .checks import controls, in_words, output_times, refuse_many, start_speeds
+from .checks import output_times
 from .driven import Drive
 from .one import Motion, integrated
-from .rolling import Inputs
-from .unsteady import refuse_unlike, time_of_rest
+from .rolling import begin
 from .warned import look
 
 #: a function of time
@@ -116,30 +112,13 @@ def roll(
     RuntimeWarning
         Where the motion could not be rolled to the end; ``status`` and ``message`` say why.
     """
-    times, drive = output_times(t), Drive(force, torque, slope, brake, drag, omega, V)
-    if drive.acts:
-        refuse_many(**drive.numbers)
-        drive = drive.acting
-    roller, scene, scale = framed(roller, "roll", moves=True, slope=drive.slope)
-    if scene.shape:
-        refuse_many(material=roller.material, **roller.numbers)
-    refuse_many(V0=V0, omega0=omega0)
-    given: list[Any] = [("V0", V0), ("omega0", omega0)]
-    V0, omega0 = (None if start is None and drive.prescribes else number(name, start) for name, start in given)
-    roller.look_at_starts(V0, omega0)
-    try:
-        limits = controls(rtol, over("rest", rest, scale), max_steps)
-        end, rest_before = float(times[-1] / scale["t"]), time_of_rest(rested) / scale["t"]
-        starts = None if V0 is None else V0 / scale["V"], None if omega0 is None else omega0 / scale["omega"]
-        speeds = start_speeds(starts[0] or 0.0, starts[1] or 0.0)
-        if unsteady:
-            refuse_unlike(scene)
-        look(scene, *map(float, speeds), driven=drive.acts or unsteady)
-        inputs = Inputs(scene, *starts, end, limits, drive.over(scale), unsteady, rest_before)
-        motion = integrated(inputs, times, roller, drive)
-    except ParameterError as error:
-        raise in_words(error, scale) from error
-    roller.look(motion.V)
+    times, given = output_times(t), Drive(force, torque, slope, brake, drag, omega, V)
+    asked = rtol, rest, max_steps
+    begun = begin(roller, (V0, omega0), given, times[-1], asked, unsteady=unsteady, rested=rested, one=True)
+    begun.roller.look_at_starts(V0, omega0)
+    look(begun)
+    motion = integrated(begun, times)
+    begun.roller.look(motion.V)
     if not motion.success:
         words = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)

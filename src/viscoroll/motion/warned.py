@@ -10,7 +10,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_law.free_rolling import curve
 from ..contact_law.parameters import PARAMETERS, Parameters
@@ -19,6 +18,7 @@ from ..core.errors import ModelWarning, outside
 from ..kernels.compile.notice import is_worker
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
+from .rolling import Begun
 
 #: kappa at which the contact at rest reaches half a radius from the axis
 _LEAST_KAPPA = 1.0
@@ -35,12 +35,14 @@ _PLAIN = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
 _LOOKED_AT = 256
 
 
-def look(scene: Parameters, V0: Any, omega0: Any, *, driven: bool) -> None:
-    """Warn where the model is grossly at fault for motions from these starts, checked ones; in workers never.
+def look(begun: Begun) -> None:
+    """Warn where the model is grossly at fault for motions; in workers never.
 
-    Of one motion, two floats, it takes a microsecond or two; of many it looks at some, evenly picked.
+    Of one motion from two floats it takes a microsecond or two; of many it looks at some, evenly picked.
     """
-    say(_faults(scene, V0, omega0, driven) if type(V0) is float else _faults_of_many(scene, V0, omega0, driven))
+    scene, V0, omega0 = begun.scene, begun.ready.V0, begun.ready.omega0
+    one = type(V0) is type(omega0) is float and not scene.shape
+    say((_faults if one else _faults_of_many)(scene, V0, omega0, begun.drive.acts or begun.unsteady))
 
 
 def say(faults: list[str]) -> None:
@@ -77,7 +79,7 @@ def _faults(scene: Parameters, V0: float, omega0: float, driven: bool) -> list[s
     return found
 
 
-def _faults_of_many(scene: Parameters, V0: NDArray[np.float64], omega0: NDArray[np.float64], driven: bool) -> list[str]:
+def _faults_of_many(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
     """Of the motions that are worst by bounds, among some."""
     arrays = [np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)]
     count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))

@@ -73,7 +73,7 @@ def _each(name: str) -> Quantity:
 QUANTITIES = {
     **{name: _field(name) for name in ("V", "omega", "x", "angle", "delta", "force", "torque")},
     **{name: _field(name) for name in ("work_force", "work_torque", "brake_loss")},
-    "distance": Quantity(("x",), lambda motions, k: np.abs(motions.x[:, k]), "x"),  # type: ignore[index]
+    "distance": Quantity(("x",), lambda motions, k: np.abs(motions.x[:, k]), "x"),
     "translation": Quantity(("V",), _translation, share="in translation"),
     "rotation": Quantity(("omega",), _rotation, share="in rotation"),
     "lost": Quantity(
