@@ -128,8 +128,9 @@ class FromPrograms:
             neither of nu and bulk.
         """
         strengths, rates = pairs("G", G, "beta", beta, strict=False)
-        rest = _long_time(strengths, rates, G0, G_inf)
-        strengths, times = strengths[rates > 0.0], 1.0 / rates[rates > 0.0]
+        resting = rates == 0.0
+        rest = _long_time(strengths, G0, G_inf, strengths[resting])
+        strengths, times = strengths[~resting], 1.0 / rates[~resting]
         if (nu is None) == (bulk is None):
             raise one_of("nu", "bulk", both=nu is not None)
         if bulk is None:
@@ -168,22 +169,19 @@ def pairs(
     return first, second
 
 
-def _long_time(
-    strengths: NDArray[np.float64], rates: NDArray[np.float64], G0: float | None, G_inf: float | None
-) -> float:
+def _long_time(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
     """The long-time shear modulus of LS-DYNA's three ways to give it."""
-    resting = strengths[rates == 0.0]
-    given = [name for name, there in (("G0", G0 is not None), ("G_inf", G_inf is not None)) if there]
-    given += ["beta = 0"] * bool(resting.size)
+    ways = {
+        "G0": None if G0 is None else number("G0", G0) - math.fsum(strengths),
+        "G_inf": G_inf,
+        "beta = 0": math.fsum(resting) if resting.size else None,
+    }
+    given = {name: value for name, value in ways.items() if value is not None}
     if len(given) != 1:
         found = " and ".join(given) or "nothing"
         raise ParameterError("long-time modulus by", found, "one of G_inf, G0 and a pair with beta = 0")
-    if G_inf is not None:
-        return number("G_inf", G_inf, low=0.0, strict=True)
-    if G0 is None:
-        return number("G of beta = 0", math.fsum(resting), low=0.0, strict=True)
-    total = math.fsum(strengths)
-    return number("G0 - sum G", number("G0", G0) - total, low=0.0, strict=True)
+    (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G of beta = 0"}
+    return number(named.get(name, name), value, low=0.0, strict=True)
 
 
 def plane_strain(G_inf: float, G: NDArray, tau: NDArray, K: float) -> tuple[float, Prony]:

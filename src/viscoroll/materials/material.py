@@ -17,6 +17,7 @@ from ..core.results import Row, Shown
 from .importers import FromPrograms, poisson
 from .measured import Measured
 from .prony import Prony
+from .shift import keep
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,14 +68,11 @@ class Material(FromPrograms):
             if self.prony.alpha > 1.0:
                 raise ParameterError("E", self.E, "finite where the material relaxes")
         else:
-            object.__setattr__(self, "E", number("E", self.E, low=0.0, strict=True))
+            keep(self, E=0.0)
         object.__setattr__(self, "nu", poisson(self.nu))
-        object.__setattr__(self, "T_ref", number("T_ref", self.T_ref, low=0.0, strict=True))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        for name in ("density", "thickness"):
-            if (given := getattr(self, name)) is not None:
-                object.__setattr__(self, name, number(name, given, low=0.0, strict=True))
+        keep(self, T_ref=0.0, **{name: 0.0 for name in ("density", "thickness") if getattr(self, name) is not None})
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
 

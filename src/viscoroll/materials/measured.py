@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from ..core.checks import number
 from ..core.errors import ParameterError
+from .shift import keep
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,8 @@ class Measured:
     source: str = ""
 
     def __post_init__(self) -> None:
-        for name, strict in (("low", True), ("high", True), ("misfit", False)):
-            object.__setattr__(self, name, number(name, getattr(self, name), low=0.0, strict=strict))
+        keep(self, low=0.0, high=0.0)
+        object.__setattr__(self, "misfit", number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
         if not isinstance(self.source, str):

@@ -62,16 +62,20 @@ class Pair:
         return (one.E, one.nu, one.prony, one.T_ref) == (other.E, other.nu, other.prony, other.T_ref)
 
     @cached_property
+    def _moduli(self) -> tuple[float, float]:
+        """E' of either body, of long times."""
+        one, other = self.cylinder, self.half_space
+        return effective_modulus(one.E, one.nu, self.plane), effective_modulus(other.E, other.nu, self.plane)
+
+    @property
     def E_prime(self) -> float:
         """E' of the pair, Pa, of long times: 2 E'_1 on a rigid base."""
-        one, other = (effective_modulus(body.E, body.nu, self.plane) for body in (self.cylinder, self.half_space))
-        return one if self.like else float(joint_modulus(one, other))
+        return self._moduli[0] if self.like else float(joint_modulus(*self._moduli))
 
-    @cached_property
+    @property
     def share(self) -> float:
         """The cylinder's part of the long-time compliance: 0 where it is rigid, 1 on a rigid base."""
-        one, other = (effective_modulus(body.E, body.nu, self.plane) for body in (self.cylinder, self.half_space))
-        return cylinders_share(one, other)
+        return cylinders_share(*self._moduli)
 
     @property
     def T_ref(self) -> float:
@@ -90,9 +94,8 @@ class Pair:
     def dundurs(self) -> tuple[float, float]:
         """Dundurs' constant beta_D of the long-time and of the instantaneous moduli; body 1 is the cylinder."""
         one, other = self.cylinder, self.half_space
-        moduli = (one.G, other.G), (one.G * one.prony.alpha, other.G * other.prony.alpha)
-        long, instant = (dundurs(first, one.nu, second, other.nu, self.plane) for first, second in moduli)
-        return long, instant
+        instant = one.G * one.prony.alpha, other.G * other.prony.alpha
+        return tuple(dundurs(G, one.nu, G_2, other.nu, self.plane) for G, G_2 in ((one.G, other.G), instant))  # type: ignore[return-value]
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:

@@ -6,7 +6,8 @@ Every time of a material is a_T times that at the reference temperature T0.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import Any
 
 from ..core.checks import number
 from ..core.errors import ParameterError
@@ -39,9 +40,7 @@ class WLF:
     C2: float = 51.6
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "T0", number("T0", self.T0))
-        for name in ("C1", "C2"):
-            object.__setattr__(self, name, number(name, getattr(self, name), low=0.0, strict=True))
+        keep(self, T0=-math.inf, C1=0.0, C2=0.0)
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
@@ -72,15 +71,18 @@ class Arrhenius:
     T0: float
 
     def __post_init__(self) -> None:
-        lows = {"energy": 0.0, "T0": ABSOLUTE_ZERO}
-        for field in fields(self):
-            value = number(field.name, getattr(self, field.name), low=lows[field.name], strict=True)
-            object.__setattr__(self, field.name, value)
+        keep(self, energy=0.0, T0=ABSOLUTE_ZERO)
 
     def __call__(self, temperature: float) -> float:
         """a_T at a temperature in degrees Celsius."""
         kelvin = number("temperature", temperature, low=ABSOLUTE_ZERO, strict=True) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
+
+
+def keep(given: Any, **lows: float) -> None:
+    """Have numbers above these in place of what a frozen dataclass was given for its fields; raises ParameterError."""
+    for name, low in lows.items():
+        object.__setattr__(given, name, number(name, getattr(given, name), low=low, strict=low > -math.inf))
 
 
 def _shift(temperature: float, exponent: float) -> float:

@@ -55,11 +55,9 @@ def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
     def good(tried: Spectrum) -> bool:
         return _reaches(curve, tried, target) if reached else _size(curve, tried) <= limit
 
-    if modes is None:
-        spectrum, ends = next(start for start in starts if good(start[0]))
-    else:
-        spectrum, ends = next((start for start in starts if start[0].tau.size >= modes), starts[-1])
     fewest = modes or 1
+    enough = (start for start in starts if (good(start[0]) if modes is None else start[0].tau.size >= modes))
+    spectrum, ends = next(enough, starts[-1])
     for _ in _shown(range(spectrum.tau.size - fewest), "modes left out"):
         fewer = _with_one_less(curve, spectrum, ends, good if modes is None else None)
         if fewer is None or spectrum.tau.size <= fewest:  # one step may leave out several
@@ -71,10 +69,17 @@ def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
 
 
 def _starts(curve: Curve, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
-    """Spectra on grids further and further, denser and denser, until one reaches the target, and their ends."""
+    """Spectra on grids further and further, denser and denser, until one reaches the target, and their ends.
+
+    The slow end of a grid is drawn in until there is a long-time modulus.
+    """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     for margin, density in _shown(list(product(MARGINS, DENSITIES)), "grids of times"):
-        starts += _solid(curve, margin, density)
+        for slow in np.arange(margin, _DRAWN_IN - 0.1, -0.25):
+            ends = 10.0**-margin / float(curve.omega[-1]), 10.0**slow / float(curve.omega[0])
+            if ends[1] > ends[0] and has_plateau(curve, found := on_times(curve, grid_of_times(ends, density))):
+                starts.append((polished(curve, found, ends, _CALLS), ends))
+                break
         if target is not None and starts and _reaches(curve, starts[-1][0], target):
             break
     return starts
@@ -85,19 +90,6 @@ def _shown(steps: Sequence[T], what: str) -> Iterable[T]:
     from tqdm import tqdm
 
     return tqdm(steps, desc=f"fit_prony, {what}", delay=_WAIT, leave=False, disable=is_quiet())
-
-
-def _solid(curve: Curve, margin: float, density: float) -> list[tuple[Spectrum, tuple[float, float]]]:
-    """The start on a grid that far beyond the data, its slow end drawn in until there is a long-time modulus."""
-    for slow in np.arange(margin, _DRAWN_IN - 0.1, -0.25):
-        ends = 10.0**-margin / float(curve.omega[-1]), 10.0**slow / float(curve.omega[0])
-        if ends[1] > ends[0] and has_plateau(curve, on_times(curve, grid_of_times(ends, density))):
-            return [_start(curve, ends, density)]
-    return []
-
-
-def _start(curve: Curve, ends: tuple[float, float], density: float) -> tuple[Spectrum, tuple[float, float]]:
-    return polished(curve, on_times(curve, grid_of_times(ends, density)), ends, _CALLS), ends
 
 
 def grid_of_times(ends: tuple[float, float], density: float) -> NDArray[np.float64]:

@@ -46,16 +46,15 @@ def curve_of(omega: ArrayLike, storage: ArrayLike, loss: ArrayLike, fewest: int 
     ParameterError
         Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
     """
-    given = {"omega": omega, "storage": storage, "loss": loss}
-    columns = {name: checked(name, values, low=0.0, strict=True) for name, values in given.items()}
-    first = columns["omega"]
-    for name, values in columns.items():
-        if values.ndim != 1 or values.shape != first.shape:
+    given = zip(Curve._fields, (omega, storage, loss), strict=True)
+    columns = Curve(*(checked(name, values, low=0.0, strict=True) for name, values in given))
+    for name, values in columns._asdict().items():
+        if values.ndim != 1 or values.shape != columns.omega.shape:
             raise ParameterError(name, f"of shape {values.shape}", "one column, of the shape of omega")
-    if first.size < fewest:
-        raise ParameterError("omega", f"{first.size} points", f"at least {fewest} points")
-    order = np.argsort(first, kind="stable")
-    return Curve(*(np.ascontiguousarray(values[order]) for values in columns.values()))
+    if columns.omega.size < fewest:
+        raise ParameterError("omega", f"{columns.omega.size} points", f"at least {fewest} points")
+    order = np.argsort(columns.omega, kind="stable")
+    return Curve(*(values[order] for values in columns))
 
 
 def kramers_kronig(curve: Curve) -> KramersKronig:
@@ -66,10 +65,10 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     that of a straight line in ln E' through the neighbours of a point.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)
-    ratio = np.empty_like(x)
+    ratio, nearest = np.empty_like(x), min(_NEIGHBOURS, x.size) - 1
     for n, at in enumerate(x):
         away = np.abs(x - at)
-        near = away <= max(_WINDOW, np.partition(away, min(_NEIGHBOURS, x.size) - 1)[min(_NEIGHBOURS, x.size) - 1])
+        near = away <= max(_WINDOW, np.partition(away, nearest)[nearest])
         slope, here = _line(x[near] - at, y[near])
         allowed = 0.5 * math.pi * slope * math.exp(here)
         ratio[n] = curve.loss[n] / allowed if allowed > 0.0 else math.nan if math.isnan(slope) else math.inf
@@ -79,8 +78,9 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
 
 def _line(x: NDArray, y: NDArray) -> tuple[float, float]:
     """Slope and value at 0 of the line of least squares; a NaN slope where all x are the same."""
-    dx, spread = x - x.mean(), float(((x - x.mean()) ** 2).sum())
-    if spread <= 1e-24 * (1.0 + float((x * x).sum())):
+    dx = x - x.mean()
+    spread = float(dx @ dx)
+    if spread <= 1e-24 * (1.0 + float(x @ x)):
         return math.nan, float(y.mean())
-    slope = float((dx * y).sum()) / spread
-    return slope, float(y.mean()) - slope * float(x.mean())
+    slope = float(dx @ y) / spread
+    return slope, float(y.mean() - slope * x.mean())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...core.checks import checked, number
 from ...core.errors import ParameterError
-from .curve import FEWEST_POINTS, Curve, curve_of
+from .curve import Curve, curve_of
 
 #: points of both curves that must lie in the overlap, and share of the shorter range
 _POINTS, _SHARE = 3, 0.15
@@ -55,25 +56,23 @@ def master_curve(
     """
     at, columns = _points(temperature, omega, storage, loss)
     whole = [checked(name, column, low=0.0, strict=True) for name, column in zip(Curve._fields, columns, strict=True)]
-    temperatures = np.unique(at)
+    temperatures, which = np.unique(at, return_inverse=True)
     middle = float(temperatures[temperatures.size // 2])
     base = middle if reference is None else number("reference", reference)
     if not callable(shift) and not temperatures[0] <= base <= temperatures[-1]:
         raise ParameterError("reference", base, f"within [{temperatures[0]:g}, {temperatures[-1]:g}]")
     if shift is None:
-        curves = [_at(T, at, whole) for T in temperatures]
-        logs, mismatch = _by_overlap(curves, temperatures)
-        logs = logs - np.interp(base, temperatures, logs)
+        parts = (Curve(*(column[at == T] for column in whole)) for T in temperatures)
+        curves = (curve_of(part.omega, part.storage, part.loss, fewest=2) for part in parts)
+        logs, mismatch = _by_overlap([_Smooth(curve) for curve in curves], temperatures)
+        factor = np.exp(logs - np.interp(base, temperatures, logs))
     else:
-        logs, mismatch = _given(shift, temperatures), np.full(temperatures.size - 1, math.nan)
-    factor = np.exp(logs)
-    moved = whole[0] * factor[np.searchsorted(temperatures, at)]
-    return curve_of(moved, whole[1], whole[2], FEWEST_POINTS), Shifts(temperatures, factor, base, mismatch)
-
-
-def _at(T: float, at: NDArray, columns: list[NDArray[np.float64]]) -> Curve:
-    omega, storage, loss = (column[at == T] for column in columns)
-    return curve_of(omega, storage, loss, fewest=2)
+        values = [float(shift(T)) for T in temperatures.tolist()] if callable(shift) else shift
+        factor, mismatch = checked("shift", values, low=0.0, strict=True), np.full(temperatures.size - 1, math.nan)
+        if factor.shape != temperatures.shape:
+            allowed = f"a factor each of {temperatures.size} temperatures"
+            raise ParameterError("shift", f"of shape {factor.shape}", allowed)
+    return curve_of(whole[0] * factor[which], whole[1], whole[2]), Shifts(temperatures, factor, base, mismatch)
 
 
 def _points(temperature: Any, *columns: Any) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
@@ -82,12 +81,11 @@ def _points(temperature: Any, *columns: Any) -> tuple[NDArray[np.float64], list[
     if given.ndim != 1:
         raise ParameterError("temperature", f"of shape {given.shape}", "one column, or one a curve")
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
-        sizes = [[np.size(curve) for curve in column] for column in columns]
-        if sizes[0] != sizes[1] or sizes[0] != sizes[2] or len(sizes[0]) != given.size:
-            raise ParameterError(
-                "temperature", f"{given.size} temperatures", f"one a curve, here {len(sizes[0])} curves"
-            )
-        return np.repeat(given, sizes[0]), [np.concatenate([np.asarray(c) for c in column]) for column in columns]
+        sizes, *others = ([np.size(curve) for curve in column] for column in columns)
+        if others != [sizes, sizes] or len(sizes) != given.size:
+            found = f"{given.size} temperatures"
+            raise ParameterError("temperature", found, f"one a curve, here {len(sizes)} curves")
+        return np.repeat(given, sizes), [np.concatenate(column) for column in columns]
     flat = [np.asarray(column) for column in columns]
     for name, column in zip(Curve._fields, flat, strict=True):
         if column.shape != given.shape:
@@ -95,27 +93,15 @@ def _points(temperature: Any, *columns: Any) -> tuple[NDArray[np.float64], list[
     return given, flat
 
 
-def _given(shift: Any, temperatures: NDArray) -> NDArray[np.float64]:
-    """ln a_T of factors or of a function."""
-    values = [float(shift(float(T))) for T in temperatures] if callable(shift) else shift
-    factors = checked("shift", values, low=0.0, strict=True)
-    if factors.shape != temperatures.shape:
-        raise ParameterError("shift", f"of shape {factors.shape}", f"a factor each of {temperatures.size} temperatures")
-    return np.log(factors)
-
-
-def _by_overlap(curves: list[Curve], temperatures: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _by_overlap(curves: list[_Smooth], temperatures: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """ln a_T from the coldest on, and the mismatch of neighbours."""
-    smooth = [_Smooth(curve) for curve in curves]
-    logs, mismatch = [0.0], []
-    for n in range(len(curves) - 1):
-        step, error = _aligned(smooth[n], smooth[n + 1])
+    found = [_aligned(*both) for both in pairwise(curves)]
+    for (_, error), pair in zip(found, pairwise(temperatures), strict=True):
         if not error <= _APART:
-            pair = f"{temperatures[n]:g} and {temperatures[n + 1]:g}"
-            raise ParameterError("temperature", pair, "those of neighbouring curves that overlap when shifted")
-        logs.append(logs[-1] + step)
-        mismatch.append(error)
-    return np.array(logs), np.array(mismatch)
+            allowed = "those of neighbouring curves that overlap when shifted"
+            raise ParameterError("temperature", "{:g} and {:g}".format(*pair), allowed)
+    steps, mismatch = np.reshape(found, (-1, 2)).T
+    return np.append(0.0, np.cumsum(steps)), mismatch
 
 
 class _Smooth:
@@ -144,8 +130,8 @@ def _aligned(cold: _Smooth, warm: _Smooth) -> tuple[float, float]:
         return math.nan, math.nan
     around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
     done = minimize_scalar(_mismatch, bounds=around, args=(cold, warm), method="bounded", options={"xatol": 1e-9})
-    step = float(done.x) if done.fun <= errors[best] else float(steps[best])
-    return step, math.sqrt(_mismatch(step, cold, warm))
+    error, step = min((done.fun, done.x), (errors[best], steps[best]))
+    return float(step), math.sqrt(error)
 
 
 def _mismatch(step: float, cold: _Smooth, warm: _Smooth) -> float:

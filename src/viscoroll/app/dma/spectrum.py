@@ -40,23 +40,34 @@ def responses(omega: NDArray, tau: NDArray) -> tuple[NDArray[np.float64], NDArra
     return z * loss, loss
 
 
+def _relative(curve: Curve, constant: float, storage: NDArray, loss: NDArray) -> NDArray[np.float64]:
+    """Columns of a constant and of modes: parts of E' and, below, of E'', over those of the curve."""
+    found = np.zeros((2, curve.omega.size, 1 + storage.shape[1]))
+    found[0, :, 0], found[0, :, 1:], found[1, :, 1:] = constant, storage, loss
+    found /= np.array(curve[1:])[..., None]
+    return found.reshape(2 * curve.omega.size, -1)
+
+
+def _residuals(curve: Curve, values: NDArray) -> NDArray[np.float64]:
+    """Relative errors of E' and, behind them, of E'', by long-time modulus, strengths and times."""
+    count = values.size // 2
+    return _relative(curve, 1.0, *responses(curve.omega, values[1 + count :])) @ values[: 1 + count] - 1.0
+
+
 def misfits(curve: Curve, spectrum: Spectrum) -> tuple[float, float]:
     """Root mean square of the relative error of E' and of E''."""
-    storage, loss = spectrum.modulus(curve.omega)
-    return _rms(storage / curve.storage - 1.0), _rms(loss / curve.loss - 1.0)
+    errors = _residuals(curve, np.concatenate([[spectrum.E], *spectrum[1:]])).reshape(2, -1)
+    storage, loss = np.sqrt(np.mean(errors * errors, axis=1)).tolist()
+    return storage, loss
 
 
 def on_times(curve: Curve, tau: NDArray) -> Spectrum:
     """The least squares with non-negative strengths on given times; modes without strength are left out."""
     from scipy.optimize import nnls
 
-    storage, loss = responses(curve.omega, tau)
-    constant = np.concatenate([1.0 / curve.storage, np.zeros_like(curve.loss)])
-    modes = np.concatenate([storage / curve.storage[:, None], loss / curve.loss[:, None]])
-    columns = np.column_stack([constant, modes])
-    floor = _floor(curve)
+    columns, floor = _relative(curve, 1.0, *responses(curve.omega, tau)), _floor(curve)
     size = np.sqrt((columns * columns).sum(axis=0))
-    found, _ = nnls(columns / size, 1.0 - floor * constant, maxiter=100 * size.size)
+    found, _ = nnls(columns / size, 1.0 - floor * columns[:, 0], maxiter=100 * size.size)
     order = np.argsort(-tau, kind="stable")
     order = order[found[1:][order] > _NOTHING * np.sqrt(tau.size)]
     found = found / size
@@ -74,9 +85,9 @@ def polished(curve: Curve, spectrum: Spectrum, ends: tuple[float, float], calls:
     if not count:
         return spectrum
     start = np.log(np.concatenate([[spectrum.E], spectrum.strength, spectrum.tau]))
-    low, high = np.full(start.size, -np.inf), np.full(start.size, np.inf)
-    low[0], low[1 + count :], high[1 + count :] = np.log(_floor(curve)), np.log(ends[0]), np.log(ends[1])
-    low[1 : 1 + count], high[1 : 1 + count] = start[1 : 1 + count] - _RANGE, start[1 : 1 + count] + _RANGE
+    low, high = start - _RANGE, start + _RANGE
+    low[0], high[0] = np.log(_floor(curve)), np.inf
+    low[1 + count :], high[1 + count :] = np.log(ends)
     return on_times(curve, np.exp(_descended(curve, start, low, high, calls)[1 + count :]))
 
 
@@ -96,7 +107,7 @@ def _descended(curve: Curve, logs: NDArray, low: NDArray, high: NDArray, calls: 
     from scipy.linalg.lapack import dposv
 
     logs = np.clip(logs, low, high)
-    errors, slopes = _residuals(logs, curve), _slopes(logs, curve)
+    errors, slopes = _residuals(curve, np.exp(logs)), _slopes(logs, curve)
     damping, more = _DAMPING, 2.0
     for _ in range(calls - 1):
         downhill = -(slopes.T @ errors)
@@ -107,7 +118,7 @@ def _descended(curve: Curve, logs: NDArray, low: NDArray, high: NDArray, calls: 
         way = np.zeros_like(logs)
         way[free] = 0.0 if indefinite else step
         way = np.clip(logs + way, low, high) - logs
-        found = _residuals(logs + way, curve)
+        found = _residuals(curve, np.exp(logs + way))
         before, gain = errors @ errors, errors @ errors - found @ found
         if gain > 0.0:
             hoped = way @ (2.0 * downhill) - np.square(slopes @ way).sum()
@@ -129,26 +140,15 @@ def _squared(slopes: NDArray) -> NDArray[np.float64]:
     return sum((part.T @ part for part in parts), np.zeros(2 * (slopes.shape[1],)))
 
 
-def _residuals(logs: NDArray, curve: Curve) -> NDArray[np.float64]:
-    values, count = np.exp(logs), logs.size // 2
-    storage, loss = Spectrum(values[0], values[1 : 1 + count], values[1 + count :]).modulus(curve.omega)
-    return np.concatenate([storage / curve.storage - 1.0, loss / curve.loss - 1.0])
-
-
 def _slopes(logs: NDArray, curve: Curve) -> NDArray[np.float64]:
     """Of the residuals over the logarithms of long-time modulus, strengths and times."""
     values, count = np.exp(logs), logs.size // 2
     strength = values[1 : 1 + count]
     storage, loss = responses(curve.omega, values[1 + count :])
-    constant = np.full((curve.omega.size, 1), values[0])
-    upper = np.hstack([constant, storage * strength, 2.0 * loss * loss * strength]) / curve.storage[:, None]
-    lower = np.hstack([0.0 * constant, loss * strength, loss * (1.0 - 2.0 * storage) * strength]) / curve.loss[:, None]
-    return np.vstack([upper, lower])
+    of_times = 2.0 * loss * loss * strength, loss * (1.0 - 2.0 * storage) * strength
+    upper, lower = (np.hstack([each * strength, by]) for each, by in zip((storage, loss), of_times, strict=True))
+    return _relative(curve, values[0], upper, lower)
 
 
 def _floor(curve: Curve) -> float:
     return FLOOR * float(curve.storage.min())
-
-
-def _rms(values: NDArray) -> float:
-    return float(np.sqrt(np.mean(values * values)))
