@@ -17,8 +17,6 @@ from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
 from .driven import ACTING, LOSSES, ROWS, STATES
-from .many import Ensemble
-from .one import Motion
 from .result import Rolled
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
@@ -132,7 +130,7 @@ def _modes(given: Prony, count: int, body: str, of: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def motion_dataset(motion: Motion) -> xr.Dataset:
+def motion_dataset(motion: Any) -> xr.Dataset:
     """One motion over t; under a drive with what acted, works and losses."""
     turns = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {
@@ -146,7 +144,7 @@ def motion_dataset(motion: Motion) -> xr.Dataset:
     return _dataset(motion, "Motion of a viscoelastic cylinder rolling with partial slip", ("t",), more, about)
 
 
-def ensemble_dataset(result: Ensemble) -> xr.Dataset:
+def ensemble_dataset(result: Any) -> xr.Dataset:
     """All motions over (motion, t)."""
     si, more = result.scale.si, _series(result.scene.material, len(result))
     for name in PARAMETERS:
@@ -161,7 +159,7 @@ def ensemble_dataset(result: Ensemble) -> xr.Dataset:
     return found.assign_coords({name: values for name, values in own.items() if name not in found})
 
 
-def summary_dataset(result: Ensemble, quantiles: tuple[float, ...]) -> xr.Dataset:
+def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
     """Mean, standard deviation and quantiles over the motions that reached each time."""
     described = partial(attributes, si=result.scale.si)
     if not len(result):
