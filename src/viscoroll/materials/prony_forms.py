@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 HIGHEST_ALPHA = 1e12
 #: most modes of a series, and longest over shortest time
 MOST_MODES, WIDEST = 64, 1e32
-#: halvings of ln(distance) until it is good to rounding, and steps of Newton's iteration behind them
-_HALVINGS, _POLISH = 64, 3
+#: halvings of ln(distance) until it is good to a thousandth, and steps of Newton's iteration from there to rounding
+_HALVINGS, _POLISH = 20, 3
 #: a zero lies no closer to its pole than this share of the interval, whose logarithm is halved
 _CLOSEST = 1e-300
 

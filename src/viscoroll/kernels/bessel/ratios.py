@@ -112,9 +112,10 @@ def r_from(piece, x, complement):
 @kernel(inline=True)
 def ratio_r(x):
     """r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy."""
-    row, t = place_r(x, 1.0 / x)
+    per_x = 1.0 / x
+    row, t = place_r(x, per_x)
     piece = piece_of(row, t)
-    return r_from(piece, x, piece / x)
+    return r_from(piece, x, piece * per_x)
 
 
 @kernel(inline=True)
@@ -150,9 +151,10 @@ def ratio_k(z):
     """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
     if z < K_LEAST:
         return small_k(z)
-    row, t = place_k(z, 1.0 / z)
+    per_z = 1.0 / z
+    row, t = place_k(z, per_z)
     piece = piece_of(row, t)
-    return k_from(piece, z, piece / z)
+    return k_from(piece, z, piece * per_z)
 
 
 @kernel(inline=True)

@@ -14,7 +14,8 @@ import numpy as np
 from ..compile.address import doubles, integers, record_at
 from ..compile.bits import bits_of, from_bits
 from ..compile.jit import kernel
-from ..numerics.four import LANES, four, fused, load, spread, store
+from ..numerics.four import LANES, four, load, store
+from .newton import product
 from .record import ALPHA, COUNT, LOW, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WHOLE, WIDTH
 
 #: terms of a sum; numbers of a part of a row for all alphas of an octave
@@ -74,13 +75,6 @@ def make(start, source):
 @kernel(inline=True)
 def _sum(axis, at, terms, c, rows, to):
     """Twenty-four numbers of a row, every third and fourth times c."""
-    scale = four(1.0, 1.0, c, c)
-    for k in range(0, PART, 3 * LANES):
-        a0 = a1 = a2 = spread(0.0)
-        for j in range(terms):
-            weight, p = spread(rows[_WEIGHTS + j]), at + PART * j + k
-            a0, a1 = fused(weight, load(axis, p), a0), fused(weight, load(axis, p + LANES), a1)
-            a2 = fused(weight, load(axis, p + 2 * LANES), a2)
-        store(rows, to + k, scale * a0)
-        store(rows, to + k + LANES, scale * a1)
-        store(rows, to + k + 2 * LANES, scale * a2)
+    product(axis, at, terms, _WEIGHTS, to, rows)
+    for k in range(0, PART, LANES):
+        store(rows, to + k, four(1.0, 1.0, c, c) * load(rows, to + k))

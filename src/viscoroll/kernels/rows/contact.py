@@ -21,9 +21,9 @@ SLIGHT = 0.125
 
 @kernel(inline=True)
 def traction(u, L, D, law):
-    """|Q|/mu in partial slip."""
+    """|Q|/mu; in full slip D is infinite."""
     w = L - D
-    if not w > 0.0:  # delta_star is further than D by a rounding
+    if not w > 0.0:  # or delta_star is further than D by a rounding
         return 1.0
     v = 2.0 * u / w
     at = place(v, law)
@@ -44,7 +44,7 @@ def _cancels(part, D, L):
 
 @kernel(inline=True)
 def grip(u, L, D, law):
-    """1 - |Q|/mu in partial slip, with all its digits where little is left."""
+    """1 - |Q|/mu, with all its digits where little is left."""
     w = L - D
     if not w > 0.0:
         return 0.0
@@ -54,7 +54,7 @@ def grip(u, L, D, law):
 
 @kernel(inline=True)
 def stick_share(u, lam, L, D, law):
-    """beta in partial slip."""
+    """beta."""
     w = L - D
     if not w > 0.0:
         return 0.0
@@ -86,22 +86,27 @@ def traction_slopes(u, L, dL, D, law):
 
 
 @kernel(inline=True)
+def _creep(L, state):
+    """(A number with the sign of omega - V, creep ratio, D or, in full slip, infinity)."""
+    slip, delta = slip_and_creep(state)
+    full = abs(delta) >= 0.5 * state.mu / state.kappa * L
+    return slip, delta, np.inf if full else 2.0 * state.kappa / state.mu * abs(delta)
+
+
+@kernel(inline=True)
 def traction_of(u, L, state, law):
     """Q."""
-    slip, delta = slip_and_creep(state)
-    D, part = 2.0 * state.kappa / state.mu * abs(delta), 1.0
-    if not abs(delta) >= 0.5 * state.mu / state.kappa * L:
-        part = traction(u, L, D, law)
-    return np.copysign(state.mu * part, slip)
+    slip, _, D = _creep(L, state)
+    return np.copysign(state.mu * traction(u, L, D, law), slip)
 
 
 @kernel(inline=True)
 def slopes_of_Q(u, L, dL, state, law):
     """Slopes of Q: over V at fixed delta or omega, whichever is given; over delta and over omega."""
-    _, delta = slip_and_creep(state)
-    if abs(delta) >= 0.5 * state.mu / state.kappa * L:
+    _, delta, D = _creep(L, state)
+    if D == np.inf:
         return 0.0, 0.0, 0.0
-    over_u, over_D = traction_slopes(u, L, dL, 2.0 * state.kappa / state.mu * abs(delta), law)
+    over_u, over_D = traction_slopes(u, L, dL, D, law)
     over_delta = 2.0 * state.kappa * over_D
     over_V, over_omega = np.sign(delta) * state.mu * state.kappa * over_u, over_delta / abs(state.V)
     if state.creep_is_omega:
@@ -154,19 +159,17 @@ def _at_speed(k, at, room, law, asked):
 def _at_creep(k, at, room, law, asked):
     """What depends on the creep too."""
     to, (state, n, u) = asked.to, _turn(k, asked)
-    L, (slip, delta) = room[0, at], slip_and_creep(state)
-    delta_star, D = 0.5 * state.mu / state.kappa * L, 2.0 * state.kappa / state.mu * abs(delta)
-    full_slip = abs(delta) >= delta_star
+    L = room[0, at]
+    _, delta, D = _creep(L, state)
     if to.Q >= 0:
-        part = 1.0 if full_slip else traction(u, L, D, law)
-        put(to.Q, np.copysign(state.mu * part, slip), n, asked)
+        put(to.Q, traction_of(u, L, state, law), n, asked)
     if to.beta >= 0:
-        put(to.beta, 0.0 if full_slip else stick_share(u, room[1, at], L, D, law), n, asked)
+        put(to.beta, stick_share(u, room[1, at], L, D, law), n, asked)
     if to.grip >= 0:
-        put(to.grip, 0.0 if full_slip else grip(u, L, D, law), n, asked)
-    put(to.delta_star, delta_star, n, asked)
+        put(to.grip, grip(u, L, D, law), n, asked)
+    put(to.delta_star, 0.5 * state.mu / state.kappa * L, n, asked)
     put(to.delta, delta, n, asked)
-    put(to.full_slip, 1.0 if full_slip else 0.0, n, asked)
+    put(to.full_slip, 1.0 if D == np.inf else 0.0, n, asked)
     if _of_Q(to):
         over_V, over_delta, over_omega = slopes_of_Q(u, L, room[2, at], state, law)
         put(to.dQ_dV, over_V, n, asked)

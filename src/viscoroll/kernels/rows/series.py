@@ -26,7 +26,7 @@ import numpy as np
 
 from ..bessel.ratios import ratio_i2, ratio_k, ratio_r
 from ..compile.jit import kernel
-from ..numerics.four import LANES, four, load, parts, spread, store
+from ..numerics.four import LANES, four, fused, load, parts, spread, store
 
 #: functions of z that rows are made of: g/z, h/z, m of the half-space and of the cylinder
 SHIFT, RISE, HALF_SPACE, CYLINDER = range(4)
@@ -48,7 +48,7 @@ class Series(NamedTuple):
 
 
 class Room(NamedTuple):
-    """What an evaluation keeps, four numbers each, of every mode: 1/r, k, i2, y and then X, f; a right side.
+    """What an evaluation keeps, four numbers each, of every mode: 1/r, k, i2, y and then X, k f; a right side.
 
     matrix : 1/r + Q^T k Q.  found : four numbers a function.
     """
@@ -57,7 +57,7 @@ class Room(NamedTuple):
     k: Any
     i2: Any
     y: Any
-    f: Any
+    kf: Any
     right: Any
     matrix: Any
     found: Any
@@ -140,52 +140,61 @@ def _strength(jets, strength, rate):
 
 
 @kernel(inline=True)
+def _value(jets, p):
+    """Of a jet, its value four times."""
+    return spread(parts(p)[0]) if jets else p
+
+
+@kernel(inline=True)
 def _factorize(matrix, count):
-    """Two triangular factors in place of a matrix, without pivoting: it is positive definite."""
+    """A triangle times its diagonal, and 1 over that, in the lower half of a symmetric positive definite matrix."""
     row_of = LANES * count
-    for i in range(count):
-        per = 1.0 / load(matrix, i * row_of + LANES * i)
-        for row in range(i + 1, count):
-            share = load(matrix, row * row_of + LANES * i) * per
-            store(matrix, row * row_of + LANES * i, share)
-            for column in range(LANES * (i + 1), row_of, LANES):
-                at = row * row_of + column
-                store(matrix, at, load(matrix, at) - share * load(matrix, i * row_of + column))
+    for i in range(0, LANES * count, LANES):
+        per = 1.0 / load(matrix, i * count + i)
+        store(matrix, i * count + i, per)
+        for row in range(i + LANES, row_of, LANES):
+            share = load(matrix, row * count + i) * (0.0 - per)
+            for column in range(i + LANES, row + LANES, LANES):
+                at = row * count + column
+                store(matrix, at, fused(share, load(matrix, column * count + i), load(matrix, at)))
 
 
 @kernel(inline=True)
 def _substitute(matrix, right, count):
     """Solve a linear system in place of its right side, from the factors of the matrix."""
     row_of = LANES * count
-    for row in range(count):
-        total = load(right, LANES * row)
-        for i in range(row):
-            total -= load(matrix, row * row_of + LANES * i) * load(right, LANES * i)
-        store(right, LANES * row, total)
-    for row in range(count - 1, -1, -1):
-        total = load(right, LANES * row)
-        for i in range(row + 1, count):
-            total -= load(matrix, row * row_of + LANES * i) * load(right, LANES * i)
-        store(right, LANES * row, total / load(matrix, row * row_of + LANES * row))
+    for i in range(0, row_of, LANES):
+        known = load(matrix, i * count + i) * load(right, i)
+        for row in range(i + LANES, row_of, LANES):
+            store(right, row, load(right, row) - load(matrix, row * count + i) * known)
+    for row in range(row_of - LANES, -1, -LANES):
+        known = load(matrix, row * count + row) * load(right, row)
+        store(right, row, known)
+        for i in range(0, row, LANES):
+            store(right, i, load(right, i) - load(matrix, row * count + i) * known)
 
 
 @kernel(inline=True)
 def solve(jets, series, work):
-    """y and f, from the ratios.
+    """y and k f, from the ratios.
 
     A jet takes the factors of the matrix's value for those of all of it, which leaves an error with d/dz or d/ds as a
     factor: the second time with both, the third time none.
     """
     count, matrix = series.a.size, work.matrix
     for i in range(count):
-        for n in range(i + 1):
-            total = load(work.per_r, LANES * i) if n == i else spread(0.0)
+        for j in range(count):
+            store(work.kf, LANES * j, series.Q[j, i] * load(work.k, LANES * j))
+        for n in range(0, i + 1, 2):  # two sums that do not wait for one another
+            other, at = min(n + 1, i), LANES * i * count
+            one = two = spread(0.0)
             for j in range(count):
-                total += series.Q[j, i] * series.Q[j, n] * load(work.k, LANES * j)
-            if jets:
-                total = spread(parts(total)[0])
-            store(matrix, LANES * (i * count + n), total)
-            store(matrix, LANES * (n * count + i), total)
+                x = load(work.kf, LANES * j)
+                one, two = fused(spread(series.Q[j, n]), x, one), fused(spread(series.Q[j, other]), x, two)
+            store(matrix, at + LANES * n, _value(jets, one))
+            store(matrix, at + LANES * other, _value(jets, two))
+        at = LANES * i * (count + 1)
+        store(matrix, at, load(matrix, at) + _value(jets, load(work.per_r, LANES * i)))
         store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]))
         store(work.y, LANES * i, spread(0.0))
     _factorize(matrix, count)
@@ -194,16 +203,16 @@ def solve(jets, series, work):
             for i in range(count):
                 total = times(jets, load(work.per_r, LANES * i), load(work.y, LANES * i))
                 for j in range(count):
-                    total += series.Q[j, i] * times(jets, load(work.k, LANES * j), load(work.f, LANES * j))
+                    total = fused(spread(series.Q[j, i]), load(work.kf, LANES * j), total)
                 store(work.right, LANES * i, _strength(jets, series.e[i], series.a[i]) - total)
         _substitute(matrix, work.right, count)
         for at in range(0, LANES * count, LANES):
             store(work.y, at, load(work.y, at) + load(work.right, at))
         for j in range(count):
-            total = spread(0.0)
+            f = spread(0.0)
             for i in range(count):
-                total += series.Q[j, i] * load(work.y, LANES * i)
-            store(work.f, LANES * j, total)
+                f = fused(spread(series.Q[j, i]), load(work.y, LANES * i), f)
+            store(work.kf, LANES * j, times(jets, load(work.k, LANES * j), f))
 
 
 @kernel
@@ -219,7 +228,7 @@ def _shares(jets, lam2, series, work):
         pressed = times(jets, times(jets, load(work.y, LANES * i), u), lam2)
         store(work.right, LANES * i, (1.0 / series.e[i]) * pressed)
     for j in range(count):
-        share = times(jets, load(work.k, LANES * j), load(work.f, LANES * j))
+        share = load(work.kf, LANES * j)
         for i in range(count):
             share += series.Q[j, i] * load(work.right, LANES * i)
         half_space += series.weights[j] * series.t[j] * share
@@ -239,10 +248,10 @@ def values(jets, z, series, work):
     for i in range(series.a.size):
         at = LANES * i
         e, t = _strength(jets, series.e[i], series.a[i]), _strength(jets, series.t[i], series.b[i])
-        ey, kf = times(jets, e, load(work.y, at)), times(jets, load(work.k, at), load(work.f, at))
+        ey = times(jets, e, load(work.y, at))
         X = times(jets, ey, load(work.per_r, at))
         store(work.y, at, X)
-        h, g, pressed = h + ey, g + times(jets, t, kf), pressed + times(jets, X, load(work.i2, at))
+        h, g, pressed = h + ey, g + times(jets, t, load(work.kf, at)), pressed + times(jets, X, load(work.i2, at))
     per_z = inverse(jets, z)
     rise = times(jets, h, per_z)
     lam2 = inverse(jets, one + 2.0 * rise)
