@@ -72,9 +72,9 @@ ROWS = [
     ("rows/axis.py", "        marks[STAMP] += 1\n", "", _LAW),
     ("rows/axis.py", "rows[at - j + j % 2]", "rows[at - j]", _LAW),
     ("rows/grid.py", "        marks[STAMP] += 1\n", "", _LAW),
-    ("rows/grid.py", "PER, POINTS, FAST = 10, 36, 34\n", "PER, POINTS, FAST = 6, 36, 34\n", _LAW),
+    ("rows/grid.py", "PER, FAST = 10, 34\n", "PER, FAST = 6, 34\n", _LAW),
     ("rows/grid.py", "numbers[LIMITS], numbers[LIMITS + 1], numbers", "numbers[LIMITS], numbers[LIMITS + 1] - 12, numbers", _LAW),
-    ("rows/grid.py", "    numbers[_Y] += limit\n", "    numbers[_Y] += 0.999 * limit\n", _LAW),
+    ("rows/newton.py", "    numbers[Y] += limit\n", "    numbers[Y] += 0.999 * limit\n", _LAW),
 ]  # fmt: skip
 MOTION = [
     ("flow/states.py", "edge, V[i] * found.scale * found.m\n", "edge, V[i] * found.scale * found.m * (1.0 + 1e-7)\n", "tests/motion/test_flow.py"),
@@ -94,7 +94,7 @@ MOTION = [
 ]  # fmt: skip
 _UNSTEADY = "tests/kernels/rows/test_unsteady.py"
 SERIES = [
-    ("rows/series.py", "store(matrix, at, load(matrix, at) - share", "store(matrix, at, load(matrix, at) + share", claims("series", "states")),
+    ("rows/series.py", "* (0.0 - per)", "* per", claims("series", "states")),
     ("rows/series.py", "inverse(jets, one + 2.0 * rise)", "inverse(jets, one + rise)", claims("series", "states")),
     ("rows/series.py", "w * w * (2.0 * w * dz * ds - dzds)", "w * w * (w * dz * ds - dzds)", _UNSTEADY),
     ("rows/series.py", "weight = a * series.a[n] / (a + series.a[n])", "weight = series.a[n]", claims("series", "states")),
