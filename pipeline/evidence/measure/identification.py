@@ -173,7 +173,7 @@ def _measured(record: Record, rng: np.random.Generator | None, bearing: dict[str
     """A planned record with values, at the truth, with noise."""
     exact = record.model(roller().replace(**record.own), bearing or {})
     values = {
-        name: exact[name] + (0.0 if rng is None else sigma * rng.standard_normal(record.shape))
+        name: exact[name] + (0.0 if rng is None else sigma * rng.standard_normal(exact[name].shape))
         for name, sigma in record.sigma.items()
     }
     places = {name: getattr(record, name) for name in record.PLACES}
@@ -262,9 +262,9 @@ def _counted(sizes: dict[str, Any], experiments: dict[str, Any]) -> list[dict[st
 def rise_at_truth(fit: Identification, product: str) -> float:
     """By what chi2 rises with an unknown, or a product of some, held at its true value, all others following."""
     powers = np.array([float(name in product.split()) for name in fit.values])
-    walk = Walk(fit, powers)
+    walk = Walk(fit._about, powers)
     true = np.log([TRUTH.get(name, 1.0) for name in fit.values])
-    return walk.at(walk.way(true), fit._best.u).chi2 - fit.chi2
+    return walk.at(walk.way(true), fit._about.best.u).chi2 - fit.chi2
 
 
 def _holds(fit: Identification, product: str) -> bool:

@@ -16,7 +16,7 @@ Kernels never raise; they return a status.  Motions carry one each, with a sente
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from enum import IntEnum
 from typing import Any
 
@@ -51,6 +51,13 @@ def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> Parameter
     """The error where ``value`` is none of the ``known`` names; ``kind``: what they are names of, with its article."""
     names = ", ".join(known)
     return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
+
+
+def refuse_unknown(name: str, values: Iterable[Any], known: Collection[str], kind: str) -> None:
+    """Raise :func:`unknown` for the first of ``values`` that is none of the ``known`` names."""
+    for value in values:
+        if value not in known:
+            raise unknown(name, value, known, kind)
 
 
 class OutOfTableError(ParameterError):

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from ...core.checks import whole
-from ...core.errors import ParameterError
-from ...core.errors import unknown as not_among
+from ...core.errors import ParameterError, refuse_unknown
 from ...cylinder import Cylinder
 from ...materials.file import SECTIONS
 from .fit import Identification
@@ -24,24 +23,13 @@ _ROUGH, _STEPS, _HOPELESS = 1e-4, 60, 60.0
 _NEAR, _LEAP = 0.6, 3.0
 #: what chi2 may rise by between two places of one minimum, and how near they are one place
 _RIDGE, _SAME = 0.5, 1e-2
-#: rounds in which standard deviations settle, and to what share
-_ROUNDS, _SETTLED = 20, 1e-3
-#: median of |normal| over its s.d.
-_MEDIAN = 0.6745
 
 
 def identify(
-    cylinder: Cylinder,
-    unknown: Mapping[str, tuple[float, float]],
-    data: Sequence[Record],
-    *,
-    prior: Mapping[str, tuple[float, float]] | None = None,
-    shift: Shift | Mapping[str, Shift] | None = None,
-    robust: bool = False,
-    starts: int = 8,
-    seed: int = 0,
-    progress: bool = False,
-) -> Identification:
+    cylinder: Cylinder, unknown: Mapping[str, tuple[float, float]], data: Sequence[Record], *,
+    prior: Mapping[str, tuple[float, float]] | None = None, shift: Shift | Mapping[str, Shift] | None = None,
+    robust: bool = False, starts: int = 8, seed: int = 0, progress: bool = False,
+) -> Identification:  # fmt: skip
     """Fit what is unknown of a cylinder and its bearing to measurements, and say what they do not tell.
 
     Parameters
@@ -73,7 +61,7 @@ def identify(
         A name that is none, a range that does not hold the start, more unknowns than points, records without
         standard deviations where values are missing, records with and without values, two records of one name.
     """
-    shifts = {"material": shift, "base": shift} if callable(shift) else shift or {}
+    shifts = dict.fromkeys(SECTIONS, shift) if callable(shift) else shift or {}
     data, prior = [data] if isinstance(data, Record) else data, prior or {}
     for name, value, kind, allowed in (
         ("cylinder", cylinder, Cylinder, "a Cylinder"), ("unknown", unknown, Mapping, "{name: (low, high)}"),
@@ -82,27 +70,20 @@ def identify(
     ):  # fmt: skip
         if not isinstance(value, kind):
             raise ParameterError(name, f"{value!r:.60}", allowed)
-    for name in shifts:
-        if name not in SECTIONS:
-            raise not_among("shift", name, SECTIONS, "a body")
-    count, seed = whole("starts", starts, 1), whole("seed", seed, 0)
-    records = _called(data)
+    refuse_unknown("shift", shifts, SECTIONS, "a body")
+    count, seed, records = whole("starts", starts, 1), whole("seed", seed, 0), _called(data)
     for record in records.values():
         cylinder_of(cylinder, {}, record, shifts)  # refuses a temperature without a shift
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise ParameterError("unknown", "nothing", "at least one name and its range")
     problem = Problem(cylinder, unknowns, records, bool(robust), shifts)
-    if problem.points < len(unknowns) + any(one.estimated for one in problem.columns):
-        sentence = (
-            f"{len(unknowns)} unknowns, but {problem.points} points: measure more, give sigma, or leave unknowns out"
-        )
-        raise ParameterError("unknown", len(unknowns), f"at most {problem.points}", sentence)
-    idle = problem.idle()
-    problem.live = [i for i in problem.live if i not in idle]
+    most = problem.points - any(one.estimated for one in problem.columns)
+    if len(unknowns) > most:
+        allowed = f"at most {most} for {problem.points} points: measure more, give sigma, or leave unknowns out"
+        raise ParameterError("unknown", f"{len(unknowns)} names", allowed)
     planned = not any(record.measured for record in records.values())
-    found = [Found(problem.start, problem.cost(problem.start))] if planned else _minima(problem, count, seed, progress)
-    return Identification(problem, found, planned)
+    return Identification(problem, _minima(problem, 1 if planned else count, seed, progress))
 
 
 def _called(data: Iterable[Record]) -> dict[str, Record]:
@@ -118,11 +99,9 @@ def _called(data: Iterable[Record]) -> dict[str, Record]:
         if not record.sigma:
             raise ParameterError(f"{called}: sigma", None, "given where there are no values")
         found[called] = record
-    if not found:
-        raise ParameterError("data", "no record", "at least one")
-    if len({bool(record.measured) for record in found.values()}) > 1:
-        sentence = "some records have values and some have none: fit those first, then plan with its cylinder"
-        raise ParameterError("data", "mixed", "all with values, or none", sentence)
+    if len({bool(record.measured) for record in found.values()}) != 1:
+        allowed = "some with values, or some without: fit the former first, then plan with its cylinder"
+        raise ParameterError("data", f"{len(found)} records", allowed)
     return found
 
 
@@ -130,13 +109,13 @@ def _minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Fou
     """All that the starts lead to and that are parted by a ridge, the best first."""
     from tqdm import tqdm
 
-    first = _settled(problem, problem.least(problem.start))
+    first = problem.settled(problem.least(problem.start))
     starts = [*_spread(problem, count, seed), *_beyond(problem, first.u)]
     others = tqdm(starts, "identify", delay=1.0, leave=False, disable=not progress)
     tries = [first, *(problem.least(u, None, _ROUGH, _STEPS) for u in others)]
     good = min(found.chi2 for found in tries) + _HOPELESS
     near = [problem.least(one.u) for one in tries if one.chi2 < good]
-    kept = [_settled(problem, min(near, key=lambda found: found.chi2))]
+    kept = [problem.settled(min(near, key=lambda found: found.chi2))]
     for one in sorted((Found(one.u, problem.cost(one.u)) for one in near), key=lambda one: one.chi2):
         if one.chi2 - kept[0].chi2 < _ALTERNATIVE and not any(_joined(problem, one, other) for other in kept):
             kept.append(one)
@@ -174,19 +153,3 @@ def _joined(problem: Problem, one: Found, other: Found) -> bool:
     powers, top = np.eye(apart.size)[which], max(one.chi2, other.chi2) + _RIDGE
     ways = (one.u + share * apart for share in (0.5, 0.25, 0.75))
     return all(problem.least(u, powers, _ROUGH, _STEPS).chi2 < top for u in ways)
-
-
-def _settled(problem: Problem, best: Found) -> Found:
-    """Estimate each sigma that was not given from its residuals, and fit again, until both stay."""
-    estimated = [one for one in problem.columns if one.estimated]
-    for _ in range(_ROUNDS if estimated else 0):
-        r, before = problem.residuals(best.u), problem.sigma.copy()
-        share = 1.0 - min(len(problem.live) / r.size, 0.9)
-        for one in estimated:
-            own = r[one.at]
-            size = np.median(np.abs(own)) / _MEDIAN if problem.robust else np.sqrt(np.mean(own**2) / share)
-            problem.sigma[one.at] *= max(float(size), 1e-12)
-        best = problem.least(best.u)
-        if np.abs(problem.sigma / before - 1.0).max() < _SETTLED:
-            break
-    return best

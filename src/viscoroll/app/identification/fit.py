@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...core.checks import number, whole
-from ...core.errors import ParameterError, unknown
+from ...core.errors import ParameterError, refuse_unknown
 from ...core.results import Row, Shown, Values
-from .problem import Found, Noise, Problem, Vector, slopes
-from .products import Product, products, undetermined
-from .profile import Profile, profile
-from .records import OF_RECORDS, Record
+from .problem import Found, Problem, Vector
+from .profile import Likelihood, Product
+from .records import Record
+from .report import as_dataset, report
 from .unknowns import cylinder_of
 
 if TYPE_CHECKING:
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LEVEL = 0.95
-#: of coordinates, what is one place
-_SAME = 1e-6
 #: most draws of a band, and of them that are thrown away, at most, for one that lies within the ranges
 _DRAWS, _TRIES = 100_000, 50
 
@@ -69,59 +67,29 @@ class Identification(Shown):
     planned : whether the records hold no values: standard deviations and intervals are what to expect.
     """
 
-    def __init__(self, problem: Problem, found: list[Found], planned: bool) -> None:
-        self._problem, self._best = problem, found[0]
-        u, self.chi2 = self._best
-        begun = [problem.start] * bool(np.abs(problem.start - u).max() > _SAME)
-        self._others = [*(one.u for one in found[1:]), *begun]
+    def __init__(self, problem: Problem, found: list[Found]) -> None:
+        self._problem, self._about, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
         self.minima = [(one.chi2, problem.values(one.u)) for one in found]
-        self.dof = problem.points - u.size
-        self.records, self.planned = problem.records, planned
+        self.dof, self.records = problem.points - u.size, problem.records
+        self.planned = not any(one.measured for one in self.records.values())
         self.sigma = {str(one): problem.sigma[one.at].copy() for one in problem.columns}
-        self.noise: dict[str, Noise] = {} if planned else problem.noise(u)
+        self.noise = problem.noise(u)
         self.misfit = tuple(name for name, noise in self.noise.items() if not noise.is_noise)
         self.cylinder = cylinder_of(problem.cylinder, self.values)
         self.does_not_act = tuple(name for i, name in enumerate(self.values) if i not in problem.live)
-        # by slopes, and as far as the ranges let them
-        J = problem.weighed(u)[1]
-        self._cov: Any = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
-        sd = np.sqrt(np.diag(self._cov))
-        self.correlations = self._cov / np.outer(sd, sd)
-        self.stderr = {
-            one.name: math.inf if one.name in self.does_not_act else float(one.spread(self.values[one.name]) * size)
-            for one, size in zip(problem.unknowns, sd, strict=True)
-        }
-        self._profiles: dict[tuple[float, ...], Profile] = {}
-        self._ends: list[Vector] = []
+        sd = np.sqrt(np.diag(self._about.cov))
+        self.correlations = self._about.cov / np.outer(sd, sd)
+        sizes = zip(problem.unknowns, sd.tolist(), strict=True)
+        self.stderr = {one.name: one.spread(self.values[one.name]) * size for one, size in sizes}
+        self.stderr |= dict.fromkeys(self.does_not_act, math.inf)
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
         """The best fit to each record, with its bands."""
         return {called: self._predicted(record, called, _LEVEL) for called, record in self.records.items()}
 
-    def _axis(self, which: Any) -> Vector:
-        """Of one coordinate, or of some."""
-        return np.eye(len(self.values))[which]
-
-    def _profile(self, powers: Vector, level: float = _LEVEL) -> Profile:
-        """Of a combination of coordinates."""
-        key = (level, *powers.tolist())
-        if key not in self._profiles:
-            self._profiles[key] = profile(self, powers, self._rise(level))
-        return self._profiles[key]
-
-    def _axes(self, level: float = _LEVEL) -> dict[int, Profile]:
-        """Of each unknown that acts; where a side is open, as seen from the ends of what fits of the others too."""
-        found = {i: self._profile(self._axis(i), level) for i in self._problem.live}
-        if not self._ends and any(None in one.ends for one in found.values()):
-            places = ((one.within, one.within[:, i]) for i, one in found.items())
-            self._ends = [within[n] for within, way in places for n in (np.argmin(way), np.argmax(way))]
-            self._profiles.clear()
-            return self._axes(level)
-        return found
-
-    def _rise(self, level: float) -> float:
+    def _rise(self, level: float = _LEVEL) -> float:
         """What chi2 may rise by: chi-squared where sigma is given, F where it is estimated."""
         from scipy import stats
 
@@ -146,24 +114,26 @@ class Identification(Shown):
             Another level.
         """
         found: dict[str, tuple[float | None, float | None]] = dict.fromkeys(self.values, (None, None))
-        for i, sides in self._axes(level).items():
+        for i, sides in self._about.axes(self._rise(level)).items():
             one = self._problem.unknowns[i]
             low, high = (None if end is None else float(one.to_value(end)) for end in sides.ends)
-            found[one.name] = (low, high)
+            found[one.name] = low, high
         return found
 
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
         """See above."""
-        return tuple(self._problem.names[i] for i in undetermined(self))
+        return tuple(self._problem.names[i] for i in self._about.undetermined(self._rise()))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
-        """What is determined of the :attr:`undetermined` unknowns: products of powers, with profiles as intervals.
+        """What is determined of the :attr:`undetermined` unknowns: products of powers, with their intervals.
 
-        Exponents are those in which all that fits lies nearest to each other; the interval is of just these.  Where no
-        exponents do, those by slopes at the best fit.
+        First those that hold over the whole intervals: exponents in which all that fits lies nearest to each other,
+        and the profile of just these.  Then, where it is much sharper, what holds near the values found alone, by the
+        slopes there.
         """
-        return products(self, level)
+        which = [i for i, name in enumerate(self.values) if name in self.undetermined]
+        return self._about.products(which, self._rise(level))
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
         """What a record would show, with bands.
@@ -189,14 +159,13 @@ class Identification(Shown):
         """
         if not isinstance(record, Record):
             raise ParameterError("record", f"{record!r:.60}", "a Resistance, Traction or Coastdown")
-        for name in OF_RECORDS:
-            if isinstance(getattr(record, name, 0.0), tuple | None):
-                sentence = f"{name} of the record is not given: a prediction needs it"
-                raise ParameterError(name, None, "a number", sentence)
+        for name, (_, span) in record.starts(self.cylinder.R).items():
+            if span is not None:
+                raise ParameterError(name, None, "a number", f"{name} of the record is open: a prediction needs it")
         return self._predicted(record, "", level, whole("draws", draws, 0, _DRAWS), whole("seed", seed, 0))
 
     def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
-        problem, u = self._problem, self._best.u
+        problem, cov, u = self._problem, self._about.cov, self._about.best.u
 
         def seen(u: Vector) -> Vector:
             values = problem.predicted(record, u, called)
@@ -204,17 +173,16 @@ class Identification(Shown):
 
         value, half = seen(u), math.sqrt(self._rise(level))
         if draws:
-            many = np.random.default_rng(seed).multivariate_normal(u, self._cov, draws * _TRIES, method="eigh")
+            many = np.random.default_rng(seed).multivariate_normal(u, cov, draws * _TRIES, method="eigh")
             inside = many[((many >= problem.low) & (many <= problem.high)).all(axis=1)][:draws]
-            share = 0.5 * (1.0 - level)
             drawn = [seen(at) for at in (inside if len(inside) else [u])]
-            low, high = np.nanquantile(drawn, (share, 1.0 - share), axis=0)
+            low, high = np.nanquantile(drawn, (0.5 - 0.5 * level, 0.5 + 0.5 * level), axis=0)
         else:
-            J = slopes(seen, u, problem.low, problem.high, range(u.size)).T
-            spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, self._cov, J), 0.0))
+            J = problem.slopes(seen, u, range(u.size)).T
+            spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
             low, high = value - spread, value + spread
         ends = {"": value, "_low": low, "_high": high}
-        found = {name + end: rows[n] for end, rows in ends.items() for n, name in enumerate(record.KINDS)}
+        found = {name + end: row for end, rows in ends.items() for name, row in zip(record.KINDS, rows, strict=True)}
         places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
         units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
         return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
@@ -232,12 +200,9 @@ class Identification(Shown):
         return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
     def _coordinates(self, values: Mapping[str, float]) -> Vector:
-        for name in values:
-            if name not in self.values:
-                raise unknown("values", name, self.values, "an unknown")
-            one = self._problem.unknowns[self._problem.names.index(name)]
-            number(name, values[name], low=one.least, strict=True)
-        return self._problem.coordinates(values)
+        refuse_unknown("values", values, self.values, "an unknown")
+        given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
+        return np.array([one.to_u(number(one.name, value, low=one.least, strict=True)) for one, value in given])
 
     def _card(self) -> tuple[str, list[Row]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
@@ -245,8 +210,6 @@ class Identification(Shown):
         return title, [*rows, Row("chi2", f"{self.chi2:.1f} of {self.dof}")]
 
     def __str__(self) -> str:
-        from .report import report
-
         return report(self)
 
     def _figure(self) -> Figure:
@@ -257,6 +220,4 @@ class Identification(Shown):
 
     def to_xarray(self) -> xr.Dataset:
         """Values, standard deviations, intervals and correlations over ``unknown``, data and fit over their places."""
-        from .report import as_dataset
-
         return as_dataset(self)

@@ -27,16 +27,13 @@ _SIDE = 1e-5
 FAR = 1e6
 #: weight of a combination that is held, over what the data know of any
 _STIFF = 1e6
-#: a standard deviation that was not given, over that of the values, to begin with
-_GUESS = 1e-3
+#: a standard deviation that was not given, over that of the values, to begin with; rounds in which it settles, to what
+#: share
+_GUESS, _ROUNDS, _SETTLED = 1e-3, 20, 1e-3
 #: norm of a column of slopes that counts as none: a factor of e moves all residuals by so small a part of sigma
 _NONE = 1e-2
-#: places beside the start at which slopes are looked at
-_PLACES = 4
 #: of a range, how near to an end counts as at it
 _AT_END = 1e-6
-#: predictions that are kept
-_KEPT = 16
 
 
 class Column(NamedTuple):
@@ -70,25 +67,12 @@ class Found(NamedTuple):
     chi2: float
 
 
-def slopes(
-    of: Callable[[Vector], Vector], u: Vector, low: Vector, high: Vector, which: Sequence[int], sided: bool = False
-) -> Vector:
-    """Of a vector over some coordinates within a box: central differences, or to one side."""
-    step, columns = _SIDE if sided else _STEP, []
-    for i in which:
-        up, down = u.copy(), u.copy()
-        up[i] = min(u[i] + step, high[i])
-        if not sided or up[i] < u[i] + step:
-            down[i] = max(u[i] - step, low[i])
-        columns.append((of(up) - of(down)) / (up[i] - down[i]))
-    return np.array(columns).T
-
-
 class Problem:
     """What is minimised.
 
-    cylinder, unknowns, records, shifts : what is known; y, sigma : all data, one after the other, by ``columns``;
-    points : how many, and priors; live : which unknowns are searched, the others stay at their start.
+    cylinder, unknowns, records, shifts : what is known; y, sigma : all data, one after the other, by ``columns``, those
+    of a plan as they are at the start; points : how many, and priors; live : which unknowns are searched, the others
+    act nowhere and stay at their start.
     """
 
     def __init__(
@@ -98,10 +82,8 @@ class Problem:
         self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
         self.robust, self.names = robust, [one.name for one in unknowns]
         self.start, self.low, self.high = np.array([one.to_u(np.array(one[1:4])) for one in unknowns]).T
-        self.live = list(range(len(unknowns)))
-        mean, sd = np.array([(one.mean, one.sd) for one in unknowns]).T
-        self._known, self._mean, self._sd = np.isfinite(sd), mean, sd
-        self._model = lru_cache(_KEPT)(self._modelled)
+        self._mean, self._sd = np.array([(one.mean, one.sd) for one in unknowns]).T
+        self._known, self._model = np.isfinite(self._sd), lru_cache(16)(self._modelled)
         self.columns: list[Column] = []
         y, sigma, size = [], [], 0
         for called, record in records.items():
@@ -114,14 +96,21 @@ class Problem:
                 self.columns.append(Column(called, quantity, slice(size, size + own.size), given is None))
                 size += own.size
         self.y, self.sigma, self.points = np.concatenate(y), np.concatenate(sigma), size + int(self._known.sum())
+        self.live = self._acting()
+
+    def _acting(self) -> list[int]:
+        """Unknowns that act anywhere: at the start one may have ceased to, so that other places are asked too."""
+        rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
+        others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
+        idle = [*range(middle.size)]
+        for u in (self.start, *others):
+            J = self.slopes(self.residuals, u, idle)
+            idle = [i for i, column in zip(idle, J.T, strict=True) if np.linalg.norm(column) < _NONE]
+        return [i for i in range(middle.size) if i not in idle]
 
     def values(self, u: Vector) -> dict[str, float]:
         """By name, at coordinates."""
         return {one.name: float(one.to_value(x)) for one, x in zip(self.unknowns, u, strict=True)}
-
-    def coordinates(self, values: Mapping[str, float]) -> Vector:
-        """The other way; what is not given is at its start."""
-        return np.array([one.to_u(values.get(one.name, one.start)) for one in self.unknowns], float)
 
     def predicted(self, record: Record, u: Vector, called: str = "") -> dict[str, NDArray]:
         """What would be seen of a record."""
@@ -134,8 +123,7 @@ class Problem:
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
             warnings.simplefilter("ignore")
-            at = np.frombuffer(u)
-            seen = {called: self.predicted(record, at, called) for called, record in self.records.items()}
+            seen = {called: self.predicted(one, np.frombuffer(u), called) for called, one in self.records.items()}
             return np.concatenate([np.ravel(seen[one.record][one.quantity]) for one in self.columns])
         return np.full(self.y.size, np.nan)
 
@@ -144,9 +132,22 @@ class Problem:
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
         return np.append(r, ((u - self._mean) / self._sd)[self._known])
 
+    def slopes(
+        self, of: Callable[[Vector], Vector], u: Vector, which: Sequence[int], step: float = _STEP, sided: bool = False
+    ) -> Vector:
+        """Of a vector over some coordinates within their ranges: central differences, or to one side."""
+        columns = []
+        for i in which:
+            up, down = u.copy(), u.copy()
+            up[i] = min(u[i] + step, self.high[i])
+            if not sided or up[i] < u[i] + step:
+                down[i] = max(u[i] - step, self.low[i])
+            columns.append((of(up) - of(down)) / (up[i] - down[i]))
+        return np.array(columns).T
+
     def jacobian(self, u: Vector) -> Vector:
         """Slopes of the residuals over the coordinates."""
-        return slopes(self.residuals, u, self.low, self.high, range(u.size))
+        return self.slopes(self.residuals, u, range(u.size))
 
     def cost(self, u: Vector) -> float:
         """chi2: squares of the residuals, or what outliers count less in."""
@@ -166,8 +167,7 @@ class Problem:
         powers = np.zeros_like(u) if held is None else held
         fixed = np.count_nonzero(powers) == 1
         free = [i for i in self.live if not (fixed and powers[i])]
-        rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
-        whole = np.clip(u, self.low, self.high)
+        rule, whole = _STIFF * powers[free], np.clip(u, self.low, self.high)
 
         def at(v: Vector) -> Vector:
             inside = whole.copy()
@@ -178,7 +178,7 @@ class Problem:
             return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
         def jacobian(v: Vector) -> Vector:
-            return np.vstack([slopes(self.residuals, at(v), self.low, self.high, free, sided=True), rule])
+            return np.vstack([self.slopes(self.residuals, at(v), free, _SIDE, sided=True), rule])
 
         if free:
             found = least_squares(
@@ -187,6 +187,21 @@ class Problem:
             )  # fmt: skip
             whole = at(found.x)
         return Found(whole, self.cost(whole))
+
+    def settled(self, best: Found) -> Found:
+        """Each sigma that was not given estimated from its residuals, and fitted again, until both stay."""
+        estimated = [one for one in self.columns if one.estimated]
+        for _ in range(_ROUNDS if estimated else 0):
+            r, before = self.residuals(best.u), self.sigma.copy()
+            share = 1.0 - min(len(self.live) / r.size, 0.9)
+            for one in estimated:
+                own = r[one.at]
+                size = np.median(np.abs(own)) / 0.6745 if self.robust else np.sqrt(np.mean(own**2) / share)
+                self.sigma[one.at] *= max(float(size), 1e-12)
+            best = self.least(best.u)
+            if np.abs(self.sigma / before - 1.0).max() < _SETTLED:
+                break
+        return best
 
     def noise(self, u: Vector) -> dict[str, Noise]:
         """Of each column, by record and quantity; lag by the order of its places."""
@@ -198,16 +213,6 @@ class Problem:
             lag = float(part[1:] @ part[:-1]) / max(float(part @ part), 1e-300)
             large = not one.estimated and rms > 1.0 + allowed / math.sqrt(2.0)
             found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
-        return found
-
-    def idle(self) -> list[int]:
-        """Unknowns that act nowhere: at the start one may have ceased to, so that other places are asked too."""
-        rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
-        others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (_PLACES, middle.size))
-        found = self.live
-        for u in (self.start, *others):
-            J = slopes(self.residuals, u, self.low, self.high, found)
-            found = [i for i, column in zip(found, J.T, strict=True) if np.linalg.norm(column) < _NONE]
         return found
 
     def at_end(self, u: Vector) -> list[int]:

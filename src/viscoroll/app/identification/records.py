@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.checks import broadcast_shape, checked, number
 from ...core.drive import Feedback
-from ...core.errors import ParameterError, one_of, unknown
+from ...core.errors import ParameterError, refuse_unknown
 from ...core.labels import Labels, unlabelled
 from ...core.scale import refuse_other_unit, si_unit
 from ...core.typed import Numbers
@@ -27,6 +27,8 @@ ROLLING = "rolling"
 OF_RECORDS = ("V0", "omega0", "t0")
 #: numbers of a record, each above its least
 _NUMBERS = {"load": 0.0, "m": 0.0, "temperature": -math.inf, "V0": -math.inf, "omega0": -math.inf}
+#: name -> where it starts, and a range
+Starts = dict[str, tuple[float, tuple[float, float] | None]]
 #: of a motion: free, and driven, whose outputs are smooth in the parameters to 2e-12 at this one
 _RTOL, _RTOL_DRIVEN = 1e-8, 1e-10
 
@@ -40,10 +42,11 @@ class Record:
     KINDS: ClassVar[tuple[str, ...]] = ()
     KIND: ClassVar[str] = ""
 
-    sigma: Any = field(default=None, kw_only=True)
-    load: float | None = field(default=None, kw_only=True)
-    temperature: float | None = field(default=None, kw_only=True)
-    name: str = field(default="", kw_only=True)
+    _: KW_ONLY
+    sigma: Any = None
+    load: float | None = None
+    temperature: float | None = None
+    name: str = ""
     labels: Labels | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -54,16 +57,19 @@ class Record:
             refuse_other_unit(self.of(name), value, self.unit(name))
         plain, labels = unlabelled(given)
         arrays = {name: np.atleast_1d(checked(self.of(name), value)) for name, value in plain.items()}
+        for name, value in (sigma := self._sigmas()).items():
+            arrays[f"sigma of {name}"] = checked(self.of(f"sigma of {name}"), value, low=0.0, strict=True)
         shape = broadcast_shape(**{self.of(name): array for name, array in arrays.items()})
         if broadcast_shape(**{name: arrays[name] for name in self.PLACES}) != shape:
             raise ParameterError(self.of(self.KINDS[0]), f"of shape {shape}", "a value a place")
         if 0 in shape:
             raise ParameterError(self.of(self.PLACES[0]), "empty", "at least one place")
-        vars(self).update({name: np.broadcast_to(array, shape) for name, array in arrays.items()}, labels=labels)
-        vars(self).update(sigma=self._sigmas(shape))
+        whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
+        sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
+        vars(self).update(whole, labels=labels, sigma=sigmas)
         for name, low in _NUMBERS.items():
             value = getattr(self, name, None)
-            if value is not None and not (name == "omega0" and isinstance(value, str)):
+            if value is not None and not (name == "omega0" and isinstance(value, str) and value == ROLLING):
                 vars(self)[name] = number(self.of(name), value, low=low, strict=True)
 
     @staticmethod
@@ -75,23 +81,16 @@ class Record:
         """What a message calls a part of it."""
         return f"{self.name or self.KIND}: {name}"
 
-    def _sigmas(self, shape: tuple[int, ...]) -> dict[str, NDArray[np.float64] | None]:
-        """Standard deviation of each quantity, None where it is to be estimated; of a plan it says what is measured."""
-        among, given = self.measured or self.KINDS, self.sigma
-        if given is not None and not isinstance(given, Mapping):
+    def _sigmas(self) -> dict[str, Any]:
+        """Standard deviations that are given, by quantity; a single one is of what is measured, or planned first."""
+        among, given = self.measured or self.KINDS, {} if self.sigma is None else self.sigma
+        if not isinstance(given, Mapping):
             if len(self.measured) > 1:
                 allowed = f"one a quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
                 raise ParameterError(self.of("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
-        found: dict[str, NDArray[np.float64] | None] = dict.fromkeys(self.measured)
-        for name, value in (given or {}).items():
-            if name not in among:
-                raise unknown(self.of("sigma"), name, among, "a quantity of it")
-            sigma = checked(self.of(f"sigma of {name}"), value, low=0.0, strict=True)
-            if sigma.shape not in ((), shape):
-                raise ParameterError(self.of("sigma"), f"of shape {sigma.shape}", f"a number, or of shape {shape}")
-            found[name] = np.broadcast_to(sigma, shape)
-        return found
+        refuse_unknown(self.of("sigma"), given, among, "a quantity of it")
+        return dict(given)
 
     @property
     def measured(self) -> tuple[str, ...]:
@@ -99,16 +98,11 @@ class Record:
         return tuple(name for name in self.KINDS if getattr(self, name) is not None)
 
     @property
-    def shape(self) -> tuple[int, ...]:
-        """Of its places."""
-        return np.shape(getattr(self, self.PLACES[0]))
-
-    @property
     def own(self) -> dict[str, float]:
         """What it has in place of the cylinder's."""
         return {name: value for name in ("load", "m") if (value := getattr(self, name, None)) is not None}
 
-    def starts(self, R: float) -> dict[str, tuple[float, tuple[float, float] | None]]:
+    def starts(self, R: float) -> Starts:
         """What it may have unknown: where that starts, and the range of what is unknown without being asked for."""
         return {}
 
@@ -125,7 +119,7 @@ class Resistance(Record):
     ----------
     V : speeds, m/s.
     M : moments that rolling takes, N m per m of length, with that of the bearing: what a drum's shaft bears.
-    F : in its place the forces that pull, M/R, N/m.  Neither: a plan.
+    F : or the forces that pull, M/R, N/m.  Neither: a plan.
     sigma : their standard deviation, a number or one a point; default: estimated.
     load : of this record, N/m, in place of the cylinder's.
     temperature : of this record, degrees Celsius, see ``shift`` of :func:`viscoroll.identify`.
@@ -134,7 +128,7 @@ class Resistance(Record):
     Raises
     ------
     ParameterError
-        Values that are not finite, with their row, or of another unit (``attrs["units"]``), both M and F, sigma <= 0.
+        Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0.
     """
 
     PLACES, KINDS, KIND = ("V",), ("M", "F"), "resistance"
@@ -144,15 +138,9 @@ class Resistance(Record):
     _: KW_ONLY
     F: Numbers | None = None
 
-    def __post_init__(self) -> None:
-        if self.M is not None and self.F is not None:
-            raise one_of("M", "F", both=True)
-        super().__post_init__()
-
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, NDArray]:
-        V = np.asarray(self.V)
-        M = cylinder.contact(V, delta=0.0, fields="M").M
-        M = M + np.sign(V) * values.get("brake", 0.0) + values.get("drag", 0.0) * V / cylinder.R
+        V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
+        M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
         return {"M": M, "F": M / cylinder.R}
 
 
@@ -220,57 +208,44 @@ class Coastdown(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        t = np.asarray(self.t)
-        if t.ndim > 1:
-            raise ParameterError(self.of("t"), f"of shape {t.shape}", "a vector")
-        if (back := np.flatnonzero(np.diff(t) < 0.0)).size:
-            n = int(back[0])
-            raise ParameterError(self.of("t"), f"{t[n]:g}, {t[n + 1]:g} at rows {n}, {n + 1}", "in ascending order")
-        if isinstance(self.omega0, str) and self.omega0 != ROLLING:
-            raise ParameterError(self.of("omega0"), repr(self.omega0), f"a number, {ROLLING!r} or None")
-        ends = checked(self.of("t0"), self.t0)
-        if ends.shape not in ((), (2,)) or (ends.ndim and not ends[0] < ends[1]):
+        t: Any = self.t
+        if t.ndim > 1 or (np.diff(t) < 0.0).any():
+            n = int(np.argmax(np.diff(t.ravel()) < 0.0))
+            at = f"{t.flat[n]:g}, {t.flat[n + 1]:g} at rows {n}, {n + 1}"
+            raise ParameterError(self.of("t"), at, "a vector, in ascending order")
+        if np.shape(checked(self.of("t0"), self.t0)) not in ((), (2,)):
             raise ParameterError(self.of("t0"), self.t0, "a number, or (low, high)")
-        vars(self)["t0"] = tuple(ends.tolist()) if ends.ndim else float(ends)
-        if self.V0 is None and not self.measured:
-            sentence = f"{self.of('V0')} is not given: a plan has no data to take it from"
-            raise ParameterError(self.of("V0"), None, "a number", sentence)
 
-    def starts(self, R: float) -> dict[str, tuple[float, tuple[float, float] | None]]:
-        found: dict[str, tuple[float, tuple[float, float] | None]] = {}
-        for name, given in (("V0", self.V0), ("omega0", self.omega0)):
-            if given is None:
-                first, most = self._first(name, R)
-                found[name] = first, (first - most, first + most)
-            elif not isinstance(given, str):
-                found[name] = given, None
-        ranged = isinstance(self.t0, tuple)
-        found["t0"] = (float(np.clip(0.0, *self.t0)), self.t0) if ranged else (self.t0, None)  # type: ignore[misc,assignment]
-        return found
+    def starts(self, R: float) -> Starts:
+        given: dict[str, Any] = {"V0": self.V0} | ({} if self.omega0 == ROLLING else {"omega0": self.omega0})
+        found: Starts = {
+            name: (value, None) if value is not None else self._first(name, R) for name, value in given.items()
+        }
+        ends: Any = np.ravel(self.t0)
+        return found | {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
 
-    def _first(self, name: str, R: float) -> tuple[float, float]:
-        """A speed at the release by the data, and the largest of it."""
+    def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
+        """A speed at the release by the data, and a range about it."""
         given: Any = self.V if name == "V0" else self.omega
-        if given is None and name == "V0" and self.omega0 == ROLLING and self.omega is not None:
+        if given is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
             given = R * np.asarray(self.omega)
         if given is None and name == "V0" and self.x is not None:
             some = slice(0, max(3, np.size(self.t) // 10))
             given = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
         if given is None:
-            sentence = f"{self.of(name)} is not given, and the data do not show it: give a number"
-            raise ParameterError(self.of(name), None, "a number", sentence)
-        return float(given[0]), float(np.max(np.abs(given)))
+            raise ParameterError(self.of(name), None, "a number: the data do not show it")
+        first, most = float(given[0]), float(np.max(np.abs(given)))
+        return first, (first - most, first + most)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, NDArray]:
         """As all do, and which of its points fall into full slip."""
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
-        t, drive = np.asarray(self.t) - t0, {}
-        if brake := values.get("brake", 0.0):
-            drive["brake"] = brake
-        if drag := values.get("drag", 0.0):
-            drive["torque"] = Feedback(0.0, omega=-drag)
-        omega0 = V0 / cylinder.R if omega0 == ROLLING else omega0
-        rtol = _RTOL_DRIVEN if drive else _RTOL
-        motion = cylinder.roll(V0, omega0, np.maximum(t, 0.0), rtol=rtol, **drive)
+        t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0
+        bearing: dict[str, Any] = {
+            "brake": values.get("brake"),
+            "torque": Feedback(0.0, omega=-values.get("drag", 0.0)),
+        }
+        drive = {each: bearing[each] for each, name in (("brake", "brake"), ("torque", "drag")) if values.get(name)}
+        motion = cylinder.roll(V0, omega0, np.maximum(t, 0.0), rtol=_RTOL_DRIVEN if drive else _RTOL, **drive)
         slips = (motion.regime == 0) & (t >= 0.0)
         return {"V": motion.V, "omega": motion.omega, "x": motion.x, "slips": slips}

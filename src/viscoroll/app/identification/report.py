@@ -73,23 +73,26 @@ def _limits(fit: Any) -> Iterator[str]:
 
 
 def _products(found: list[Any]) -> str:
-    texts = []
-    for one in found:
-        powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
-        text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
-        low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
-        texts.append(f"{text} = {one.value:.4g} (95%: {low} to {high})")
-    if not texts:
+    sure, near = (" and ".join(_named(one) for one in found if one.near is where) for where in (False, True))
+    if not found:
         return "no product of their powers is determined"
-    near = ", near these values" * found[0].near
-    return f"only {' and '.join(texts)} {'is' if len(texts) == 1 else 'are'} determined{near}"
+    text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
+    more = f"; near these values alone, more sharply, {near}" if sure else ", near these values"
+    return text + more * bool(near)
+
+
+def _named(one: Any) -> str:
+    powers = sorted(one.powers.items(), key=lambda item: -abs(item[1]))
+    text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
+    low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (one.low, one.high))
+    return f"{text} = {one.value:.4g} (95%: {low} to {high})"
 
 
 def _sides(fit: Any) -> Iterator[str]:
     """What ends of intervals are not of the data."""
     made: dict[str, list[str]] = {}
     problem = fit._problem
-    for i, found in fit._axes().items():
+    for i, found in fit._about.axes(fit._rise()).items():
         name = problem.names[i]
         for side, end, bounds in zip(("lower", "upper"), found.ends, found.made_by, strict=True):
             if end is None:
@@ -101,7 +104,8 @@ def _sides(fit: Any) -> Iterator[str]:
         if found.best.chi2 < fit.chi2 - _BETTER:
             listed = _listed(problem.values(found.best.u))
             yield f"a better fit was met, chi2 {found.best.chi2:.1f}, at {listed}: start there, or with more starts"
-    yield from (f"the best fit has {problem.names[i]} at the end of its range" for i in problem.at_end(fit._best.u))
+    for i in problem.at_end(fit._about.best.u):
+        yield f"the best fit has {problem.names[i]} at the end of its range"
     yield from (f"the range of {bound}, not the data, makes {', '.join(ends)}" for bound, ends in made.items())
 
 
@@ -112,7 +116,7 @@ def _listed(values: dict[str, float]) -> str:
 def _phases(fit: Any) -> Iterator[str]:
     """Motions with too few points in a phase."""
     for called, record in fit.records.items() if "mu" in fit.values else ():
-        slips = int(np.sum(fit._problem.predicted(record, fit._best.u, called).get("slips", 0)))
+        slips = int(np.sum(fit._problem.predicted(record, fit._about.best.u, called).get("slips", 0)))
         if 0 < slips < _FEW:
             yield f"{called} has {slips} points while it slips: mu rests on these; record that phase more densely"
 
@@ -142,18 +146,14 @@ def as_dataset(fit: Any) -> xr.Dataset:
 def as_json(fit: Any) -> dict[str, Any]:
     """What the report says, by name; null where a side is open or nothing acts."""
     told = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
+    sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
     unknowns = {
-        name: {
-            "value": fit.values[name],
-            "stderr": fit.stderr[name] if name not in fit.does_not_act else None,
-            "interval": ends,
-        }
+        name: {"value": fit.values[name], "stderr": sd[name], "interval": ends}
         for name, ends in fit.intervals().items()
-    }
-    return {
-        "source": f"viscoroll {__version__}", "unknowns": unknowns, **{name: getattr(fit, name) for name in told},
+    }  # fmt: skip
+    return {name: getattr(fit, name) for name in told} | {
+        "source": f"viscoroll {__version__}", "unknowns": unknowns, "says": [*_noise(fit), *_limits(fit)],
         "products": [one._asdict() for one in fit.products()], "correlations": fit.correlations.tolist(),
         "noise": {name: noise._asdict() for name, noise in fit.noise.items()},
         "sigma": {name: float(values[0]) for name, values in fit.sigma.items()},
-        "says": [*_noise(fit), *_limits(fit)],
     }  # fmt: skip

@@ -10,13 +10,12 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...core.checks import checked, number
-from ...core.errors import ParameterError, unknown
+from ...core.errors import ParameterError, refuse_unknown
 from ...cylinder import Cylinder
 from ...materials.material import Material
 from ...materials.prony import Prony
@@ -26,11 +25,11 @@ from .records import OF_RECORDS, Record
 Shift = Callable[[float], float]
 _OWN = ("R", "m", "mu", "j", "g", "load")
 _OF_BODY = ("E", "nu", "T_ref")
+_PREFIX = {"material": "", "base": "base_"}
 #: what goes linearly, others go by their logarithm
 _LINEAR = ("brake", "drag", "nu", "base_nu", *OF_RECORDS)
 #: of its range, the least unit of what is counted from 0
 _UNIT = 0.1
-_PREFIX = {"material": "", "base": "base_"}
 
 
 class Unknown(NamedTuple):
@@ -84,46 +83,34 @@ def unknowns_of(
             starts[f"{name}:{called}"] = start
             if span is not None:
                 ranges.setdefault(f"{name}:{called}", span)
-    for asked, among, argument, kind in (
-        (ranges, starts, "unknown", "an input"),
-        (priors, ranges, "prior", "an unknown"),
-    ):
-        for name in asked:
-            if name not in among:
-                raise unknown(argument, name, among, kind)
-    found = {name: _unknown(name, starts[name], span) for name, span in ranges.items()}
-    return [*(found | {name: _known(found[name], pair) for name, pair in priors.items()}).values()]
+    refuse_unknown("unknown", ranges, starts, "an input")
+    refuse_unknown("prior", priors, ranges, "an unknown")
+    return [_unknown(name, starts[name], span, priors.get(name)) for name, span in ranges.items()]
 
 
-def _unknown(name: str, start: float, span: Any) -> Unknown:
-    called, ends = f"unknown {name}", checked(f"unknown {name}", span)
-    if ends.shape != (2,) or not ends[0] < ends[1]:
-        raise ParameterError(called, f"{span!r:.60}", "(low, high), low < high")
-    low, high = ends.tolist()
-    if not low <= start <= high:
-        sentence = f"{called}: its range ({low:g}, {high:g}) must hold the start, here {start:.6g}"
-        raise ParameterError(called, f"({low:g}, {high:g})", f"around {start:g}", sentence)
+def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     linear = name.split(":")[0] in _LINEAR
-    if not (linear or low > 0.0):
-        raise ParameterError(called, f"({low:g}, {high:g})", "above 0: it goes by its logarithm")
-    return Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
-
-
-def _known(one: Unknown, pair: Any) -> Unknown:
-    """With what is known beforehand."""
-    called = f"prior {one.name}"
-    if np.shape(pair) != (2,):
-        raise ParameterError(called, f"{pair!r:.40}", "(value, standard deviation)")
-    mean = number(called, pair[0], low=one.least, strict=True)
-    sd = number(f"standard deviation of {called}", pair[1], low=0.0, strict=True)
+    low, high = _pair(f"unknown {name}", span, "(low, high), low < high", linear)
+    if not low <= start <= high:
+        raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"a range that holds the start, {start:.6g}")
+    one = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
+    if prior is None:
+        return one
+    mean, sd = _pair(f"prior {name}", prior, "(value, standard deviation)", linear)
+    sd = number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
     return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 
+def _pair(called: str, given: Any, allowed: str, linear: bool) -> list[float]:
+    """Two numbers, of a range ascending, above 0 where they go by their logarithm."""
+    pair = checked(called, given, low=-math.inf if linear else 0.0, strict=True)
+    if pair.shape != (2,) or ("<" in allowed and not pair[0] < pair[1]):
+        raise ParameterError(called, f"{given!r:.60}", allowed)
+    return pair.tolist()
+
+
 def cylinder_of(
-    cylinder: Cylinder,
-    values: Mapping[str, float],
-    record: Record | None = None,
-    shifts: Mapping[str, Shift] = MappingProxyType({}),
+    cylinder: Cylinder, values: Mapping[str, float], record: Record | None = None, shifts: Mapping[str, Shift] = {}
 ) -> Cylinder:
     """The cylinder with other ``values``, at the load and the temperature of a record.
 
@@ -133,31 +120,23 @@ def cylinder_of(
         Values that make no cylinder; a temperature without a shift of a body, or that the shift does not allow.
     """
     changes: dict[str, Any] = {name: values[name] for name in _OWN if name in values}
-    bodies = _bodies(cylinder)
-    made = {section: _changed(body, _PREFIX[section], values) for section, body in bodies.items()}
-    if record is not None:
-        changes |= record.own
-        for section, body in made.items() if record.temperature is not None else ():
-            made[section] = _warmed(body, section, record, shifts)
-    if any(made[section] is not body for section, body in bodies.items()):
-        changes |= made
+    changes |= {} if record is None else record.own
+    for section, body in _bodies(cylinder).items():
+        made = _changed(body, _PREFIX[section], values)
+        if record is not None and record.temperature is not None and body.prony.alpha > 1.0:
+            if section not in shifts:
+                allowed = f"given with a shift of the {section}, as vr.WLF(T0=20.0)"
+                raise ParameterError(record.of("temperature"), record.temperature, allowed)
+            made = made.at(record.temperature, shifts[section])
+        if made is not body:
+            changes[section] = made
     return cylinder.replace(**changes) if changes else cylinder
 
 
-def _warmed(body: Material, section: str, record: Record, shifts: Mapping[str, Shift]) -> Material:
-    if body.prony.alpha == 1.0:
-        return body
-    if section not in shifts:
-        sentence = (
-            f"{record.of('temperature')} = {record.temperature:g} needs a shift of the {section}, as vr.WLF(T0=20.0)"
-        )
-        raise ParameterError("temperature", record.temperature, "given with shift", sentence)
-    return body.at(record.temperature, shifts[section])  # type: ignore[arg-type]
-
-
 def _bodies(cylinder: Cylinder) -> dict[str, Material]:
-    pair = cylinder.pair
-    return {"material": pair.cylinder} | ({} if pair.base is None else {"base": pair.base})
+    """Those that deform: nothing of a rigid one may be unknown."""
+    bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base), strict=True)
+    return {section: body for section, body in bodies if not (body is None or body.is_rigid)}
 
 
 def _inputs(body: Material) -> dict[str, float]:
@@ -168,16 +147,15 @@ def _inputs(body: Material) -> dict[str, float]:
 
 
 def _changed(body: Material, prefix: str, values: Mapping[str, float]) -> Material:
-    whole = _inputs(body)
-    own = {name: values[prefix + name] for name in whole if prefix + name in values}
-    if not own:
+    old = _inputs(body)
+    new = {name: values.get(prefix + name, value) for name, value in old.items()}
+    if new == old:
         return body
-    changes: dict[str, Any] = {name: own.pop(name) for name in _OF_BODY if name in own}
-    if own:  # of the modes: it is no longer what was measured
-        whole |= own
-        strengths, times = (tuple(whole[name] for name in whole if name.startswith(of)) for of in ("E_", "tau_"))
-        changes |= {"prony": _series(strengths, times), "measured": None}
-    elif body.measured is not None and "T_ref" in changes:
+    changes: dict[str, Any] = {name: new.pop(name) for name in _OF_BODY}
+    if any(new[name] != old[name] for name in new):  # of the modes: it is no longer what was measured
+        modes, count = tuple(new.values()), body.prony.E.size
+        changes |= {"prony": _series(modes[:count], modes[count:]), "measured": None}
+    elif body.measured is not None:
         changes["measured"] = body.measured.shifted(changes["T_ref"] / body.T_ref)
     return replace(body, **changes)
 
