@@ -136,8 +136,6 @@ BENCH_OWN = 3e-5
 #: Those of the peers at loose tolerances, 1e-4 or 1e-3, relative to speeds down to 1e-8: only that they solve the same
 #: problem; measured 0.07.
 BENCH_PEER = 0.2
-#: LSODA on the saturated law, which steps over the ends of stick, at rtol 1e-6; measured 2.3e-6.
-BENCH_PEER_DRIVEN = 3e-5
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: A number in six digits, and what depends on such a one.

@@ -27,10 +27,9 @@ from ..results import RESULTS, Results, machine, parser, read_sizes, write_resul
 
 #: module -> its functions, each a part
 MODULES = {
-    "motions": ("work_precision", "own_parameters"),
+    "motions": ("work_precision", "own_parameters", "driven"),
     "calls": ("fixed_scene", "agreement", "bound_law", "series"),
     "processes": ("first_calls", "last_release"),
-    "driven": ("driven",),
 }
 PARTS = {part.replace("_", "-"): (module, part) for module, parts in MODULES.items() for part in parts}
 

@@ -24,7 +24,16 @@ from ...runtime import rolled
 from ..peers import lsoda, paper_method
 from ..timing import seconds_of, steady_seconds
 from . import implicit
-from .problem import Outcome, Problem, errors, own_problem, paper_problems, reference, reference_difference
+from .problem import (
+    Outcome,
+    Problem,
+    driven_problems,
+    errors,
+    own_problem,
+    paper_problems,
+    reference,
+    reference_difference,
+)
 
 #: right-hand sides after which a peer gives up: 15 s of the paper's method
 _MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000
@@ -33,8 +42,7 @@ Call = Callable[[], Outcome]
 
 def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
     """This package: :func:`viscoroll.ensemble` on one thread."""
-    given = {"rtol": rtol, "method": method, "fields": ("V", "omega"), "threads": 1}
-    call = partial(vr.ensemble, problem.scene, problem.V0, problem.omega0, problem.t, **given)
+    call = partial(problem.rolled, rtol=rtol, method=method, fields=("V", "omega"), threads=1)
     call()  # compiles, and builds what is built once
     return call
 
@@ -89,7 +97,9 @@ def _scipy(problem: Problem, rtol: float, name: str) -> Call:
 
 
 def _lsoda(problem: Problem, rtol: float) -> Call:
-    scenes = np.array([lsoda.given(vr.Scene(*each)) for each in problem.parameters().tolist()])
+    drive = np.zeros((problem.V0.size, 2)) if problem.drive is None else problem.drive
+    parameters = problem.parameters().tolist()
+    scenes = np.array([lsoda.given(vr.Scene(*each), *by) for each, by in zip(parameters, drive.tolist())])
     starts, t = np.column_stack([problem.V0, problem.omega0]), np.concatenate([[0.0], problem.t])
     lsoda.roll(scenes[:1], starts[:1], t, 1e-2)  # compiles
     return lambda: Outcome(*lsoda.roll(scenes, starts, t, rtol)[:, 1:].transpose(2, 0, 1))
@@ -144,6 +154,11 @@ def own_parameters(sizes: dict[str, Any]) -> dict[str, Any]:
     return compare(own_problem(sizes), sizes)
 
 
+def driven(sizes: dict[str, Any]) -> dict[str, Any]:
+    """Under a force and a torque."""
+    return compare(driven_problems(sizes), sizes)
+
+
 def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, Any]:
     """Every method on every problem: rows in ``results``, what could not run in ``skipped``."""
     best = {name: reference(problem) for name, problem in problems.items()}
@@ -168,9 +183,12 @@ def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, An
         "reference": {
             name: reference_difference(problem, best[name], sizes["reference_motions"])
             for name, problem in problems.items()
+            if problem.drive is None
         },
         "methods": {name: {"label": method.label, "note": method.note} for name, method in chosen.items()},
-        "results": [_row(best[entry["row"]["group"]], **entry) for entry in calls],
+        "results": [
+            _row(best[group := entry["row"]["group"]], problems[group].drive is not None, **entry) for entry in calls
+        ],
         "skipped": skipped,
     }
 
@@ -191,11 +209,13 @@ def _calls(name: str, method: Method, group: str, problem: Problem, settings: di
     return entries
 
 
-def _row(best: Outcome, row: dict[str, Any], outcome: Any, seconds: list[float], **_: Any) -> dict[str, Any]:
+def _row(
+    best: Outcome, driven: bool, row: dict[str, Any], outcome: Any, seconds: list[float], **_: Any
+) -> dict[str, Any]:
     """What is kept of an entry."""
     motions = row["motions"]
     if len(best.V) < motions:
         best = Outcome(np.repeat(best.V, motions, axis=0), np.repeat(best.omega, motions, axis=0))
     us = {"us": 1e6 * float(np.median(seconds)) / motions, "least_us": 1e6 * min(seconds) / motions}
     counted = getattr(outcome, "evaluations", None)
-    return row | us | ({} if counted is None else {"evaluations": counted / motions}) | errors(outcome, best)
+    return row | us | ({} if counted is None else {"evaluations": counted / motions}) | errors(outcome, best, driven)

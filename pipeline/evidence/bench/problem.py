@@ -19,12 +19,16 @@ REFERENCE_RTOL = 1e-12
 
 @dataclass(frozen=True)
 class Problem:
-    """n motions from (V0, omega0) at common output times; fields of ``scene`` are numbers or arrays (n,)."""
+    """n motions from (V0, omega0) at common output times; fields of ``scene`` are numbers or arrays (n,).
+
+    ``drive`` : force and torque of each, (n, 2).
+    """
 
     scene: vr.Scene
     V0: NDArray
     omega0: NDArray
     t: NDArray
+    drive: NDArray | None = None
 
     def parameters(self) -> NDArray:
         """alpha, kappa, mu, gamma, j of each motion, a row each."""
@@ -34,11 +38,17 @@ class Problem:
     def take(self, count: int) -> Problem:
         """The first motions."""
         scene = self.scene if self.scene.shape == () else vr.Scene(*self.parameters()[:count].T)
-        return replace(self, scene=scene, V0=self.V0[:count].copy(), omega0=self.omega0[:count].copy())
+        drive = None if self.drive is None else self.drive[:count]
+        return replace(self, scene=scene, V0=self.V0[:count].copy(), omega0=self.omega0[:count].copy(), drive=drive)
 
     def copies(self, count: int) -> Problem:
         """The first motion many times: a single one would time the call around it."""
         return replace(self, V0=np.repeat(self.V0[:1], count), omega0=np.repeat(self.omega0[:1], count))
+
+    def rolled(self, **how: Any) -> Any:
+        """By the package."""
+        driven = {} if self.drive is None else dict(zip(("force", "torque"), self.drive.T))
+        return vr.ensemble(self.scene, self.V0, self.omega0, self.t, **driven, **how)
 
 
 @dataclass(frozen=True)
@@ -79,9 +89,19 @@ def own_problem(sizes: dict[str, Any]) -> dict[str, Problem]:
     return {"own": Problem(scene, *random.uniform(-2.0, 2.0, (2, n)), _times(sizes, sizes["end"]))}
 
 
+def driven_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
+    """Random scenes under a force and a torque that stay, from any start and from rest."""
+    random, n = np.random.default_rng(sizes["seed"]), sizes["motions"]
+    alpha, kappa, mu = 10.0 ** random.uniform([0.0, 0.4, -1.5], [1.5, 1.7, 0.0], (n, 3)).T
+    scene = vr.Scene(1.0 + alpha, kappa, mu, 1.0, random.uniform(0.3, 1.0, n))
+    starts, drive = random.normal(size=(2, n)), 0.5 * mu[:, None] * random.normal(size=(n, 2))
+    t = _times(sizes, sizes["end"])
+    return {"any start": Problem(scene, *starts, t, drive), "rest": Problem(scene, *(0.0 * starts), t, drive)}
+
+
 def reference(problem: Problem) -> Outcome:
     """The package at its tightest."""
-    best = vr.ensemble(problem.scene, problem.V0, problem.omega0, problem.t, rtol=REFERENCE_RTOL, method="integrate")
+    best = problem.rolled(rtol=REFERENCE_RTOL, method="integrate")
     return Outcome(best.V, best.omega)
 
 
@@ -101,14 +121,18 @@ def speed_error(tried: Any, best: Any) -> NDArray:
     return off / np.maximum(np.abs(best.V[:n]), np.abs(best.omega[:n]))
 
 
-def errors(tried: Outcome, best: Outcome) -> dict[str, Any]:
+def errors(tried: Outcome, best: Outcome, driven: bool = False) -> dict[str, Any]:
     """Relative error of (V, omega), over the larger of the two, worst over time; over the motions that were finished.
+
+    If ``driven`` over the largest so far, as speeds pass through 0.
 
     max, median, p99: all outputs; max_moving, p99_moving: outputs with a speed of at least ``LEAST_SPEED``.
     failed: motions that were given up.
     """
     each = speed_error(tried, best)
     size = np.maximum(np.abs(best.V), np.abs(best.omega))[: len(each)]
+    if driven:
+        each *= size / np.maximum.accumulate(size, axis=1)
     done = np.isfinite(each).all(axis=1)
     found: dict[str, Any] = {"failed": int((~done).sum())}
     for name, counted in (("", each), ("_moving", np.where(size >= LEAST_SPEED, each, 0.0))):

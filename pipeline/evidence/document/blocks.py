@@ -432,14 +432,23 @@ def bench_peers(results: Results) -> str:
     return table(head, lines)
 
 
-@rows("bench", "bench-own-parameters", {
+_RUNS = {
     "method": "{label}", "rtol": "{rtol:.0e}", "a motion": "{us!t} µs (least {least_us!t})", "max error": "{max:.1e}",
     "99th percentile": "{p99:.1e}", "given up": "{failed}",
-})  # fmt: skip
+}  # fmt: skip
+
+
+@rows("bench", "bench-own-parameters", _RUNS)
 def bench_own(found: Any) -> Iterator[Row]:
     """Every tolerance of the motions with scenes of their own."""
     measured = found["measured"]
     return (row | measured["methods"][row["method"]] for row in moving(measured["results"]))
+
+
+@rows("bench", "bench-driven", {"from": "{group}"} | _RUNS)
+def bench_driven(found: Any) -> Iterator[Row]:
+    """Driven motions beside LSODA."""
+    return bench_own(found)
 
 
 @text("bench")
@@ -513,16 +522,6 @@ def bench_series(found: Any) -> Iterator[Row]:
         us = {name: 1e-3 * value for name, value in row["motion"].items()}
         state = cell(_NS, row["contact"]) if "contact" in row else ""
         yield row | {"state": state, "least": cell("{ns:.3g} (least {least_ns:.3g})", us)}
-
-
-@rows("bench", "bench-driven", {
-    "drive": "{kind}", "method": "{method}, rtol {rtol:.0e}", "motions": "{motions}", "median, µs": "{median_us:.3g}",
-    "95th percentile, µs": "{p95_us:.3g}", "mean, µs": "{mean_us:.3g}", "error, median": "{median_error!n}",
-    "max": "{max_error!n}", "given up": "{failed}",
-})  # fmt: skip
-def bench_driven(found: Any) -> list[Row]:
-    """Driven motions beside LSODA."""
-    return found["measured"]["rows"]
 
 
 @rows("bench", "bench-first-calls", {

@@ -42,17 +42,17 @@ def _compiled():
     lsoda = driver.lsoda
 
     @numba.cfunc(driver.lsoda_sig)
-    def rates(t, u, du, p):
-        """At f = par[4] + par[6] t and q = par[5] + par[7] t; addresses and sizes of rows and marks behind."""
-        y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 12)
-        rows, marks = doubles(int(par[8]), int(par[9])), integers(int(par[10]), int(par[11]))
+    def rates(_, u, du, p):
+        """At the force par[4] and the torque par[5]; addresses and sizes of rows and marks behind."""
+        y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 10)
+        rows, marks = doubles(int(par[6]), int(par[7])), integers(int(par[8]), int(par[9]))
         law, state = Law(rows, marks, rows[:0], 0, 0, 0), State(par[0], par[1], y[0], y[1], True)
         u = state.kappa * abs(y[0])
         at = place(u, law)
         of = speed(at, u, law)
         Q, M = traction_of(u, of.L, state, law), way_of(at, u, of.scale, state) * of.m
-        found[0] = par[2] * (Q - 0.5 * M + par[4] + par[6] * t)
-        found[1] = par[2] / par[3] * (par[5] + par[7] * t - Q - 0.5 * M)
+        found[0] = par[2] * (Q - 0.5 * M + par[4])
+        found[1] = par[2] / par[3] * (par[5] - Q - 0.5 * M)
 
     @numba.njit(nogil=True)
     def loop(address, given, starts, t, rtol, atol, found):
@@ -70,11 +70,11 @@ def _law(alpha: float) -> Law:
     return law_table(alpha).record
 
 
-def given(scene: vr.Scene, drive: NDArray | None = None) -> NDArray:
-    """What the rates ask of a scene; ``drive``: first values of force and torque, and their slopes."""
-    drive, law = np.zeros((2, 2)) if drive is None else drive, _law(float(scene.alpha))
+def given(scene: vr.Scene, force: float, torque: float) -> NDArray:
+    """What the rates ask of a scene and its drive."""
+    law = _law(float(scene.alpha))
     rows = [each for part in (law.rows, law.marks) for each in (part.ctypes.data, part.size)]
-    return np.array([scene.kappa, scene.mu, scene.gamma, scene.j, *drive.ravel(), *rows])
+    return np.array([scene.kappa, scene.mu, scene.gamma, scene.j, force, torque, *rows])
 
 
 def roll(scenes: NDArray, starts: NDArray, t: NDArray, rtol: float) -> NDArray:
