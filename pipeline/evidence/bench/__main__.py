@@ -2,7 +2,7 @@
 
     python -m pipeline.evidence.bench [PART ...] [--config FILE] [--quick] [-o FOLDER] [--figures FOLDER]
 
-Parts: work-precision, own-parameters, fixed-scene, agreement, bound-law, series, first-calls, driven, last-release;
+Parts: work-precision, own-parameters, fixed-scene, bound-law, series, first-calls, driven, last-release;
 default: all.  Sizes are in [bench] of the configuration, those of --quick in
 [bench.PART.quick].
 Times are of this machine at this moment, medians of alternating runs on one core: run it with nothing else running.
@@ -28,7 +28,7 @@ from ..results import RESULTS, Results, machine, parser, read_sizes, write_resul
 #: module -> its functions, each a part
 MODULES = {
     "motions": ("work_precision", "own_parameters", "driven"),
-    "calls": ("fixed_scene", "agreement", "bound_law", "series"),
+    "calls": ("fixed_scene", "bound_law", "series"),
     "processes": ("first_calls", "last_release"),
 }
 PARTS = {part.replace("_", "-"): (module, part) for module, parts in MODULES.items() for part in parts}

@@ -9,7 +9,6 @@ from typing import Any
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 import viscoroll as vr
 from viscoroll.materials.law_table import made
@@ -19,8 +18,6 @@ from ..timing import seconds_of, timed
 from .problem import speed_error
 
 PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
-#: error of the integrator that is allowed for, in rtol: see the docstring of viscoroll.roll
-_INTEGRATOR = 30
 
 
 def speeds_and_creep(random: np.random.Generator, count: int) -> tuple[NDArray, NDArray]:
@@ -166,27 +163,4 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
         "compared": by_map.size, "not_in_map": int((~by_map).sum()),
         "stated_error": table.error, "stated_path_error": table.path_error,
         "build_s": once["build"]["ns"], "load_s": once["load"]["ns"], "bytes": int(table.table.nbytes),
-    }  # fmt: skip
-
-
-def agreement(sizes: dict[str, Any]) -> dict[str, Any]:
-    """Flow and integrator on the same random starts of random scenes: how much of the stated error is used."""
-    random, rows = np.random.default_rng(sizes["seed"]), []
-    for _ in tqdm(range(sizes["scenes"]), desc="scenes", leave=False, disable=None):
-        alpha, kappa, mu = np.exp(random.uniform(*np.log([[1.001, 0.5, 0.01], [1e4, 200.0, 3.0]]))).tolist()
-        scene = vr.Scene(alpha, kappa, mu, 1.0, random.uniform(0.1, 2.0))
-        start = starts(random, sizes["starts"])
-        t = np.geomspace(1e-3, 5.0, sizes["times"]) * (1.0 + scene.j) * alpha / (alpha - 1.0)
-        quick = ensemble(scene, start, t, method="flow", rtol=1e-3, threads=sizes["threads"])()
-        slow = ensemble(scene, start, t, rtol=sizes["rtol"], threads=sizes["threads"])()
-        worst = float(speed_error(quick, slow)[quick.flow].max(initial=0.0))
-        rows.append(
-            {name: getattr(scene, name) for name in ("alpha", "kappa", "mu", "j")}
-            | {"by_map": float(quick.flow.mean()), "why_not": quick.flow_problem, "stated": quick.flow_error}
-            | {"worst": worst, "failed": int((quick.status > 1).sum())}
-        )
-    shares = [row["worst"] / (row["stated"] + _INTEGRATOR * sizes["rtol"]) for row in rows if row["by_map"] > 0.0]
-    return {
-        "rows": rows, "starts": sizes["starts"] * len(rows), "scenes_with_map": len(shares),
-        "within_stated": sum(share <= 1.0 for share in shares), "worst_share": max(shares, default=0),
     }  # fmt: skip

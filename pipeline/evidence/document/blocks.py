@@ -260,7 +260,7 @@ _PROOFS = {
     "ratios": "Bessel ratios", "contact": "contact states", "direct": "root solves of the printed equations",
     "states": "states of rows, 60 digits", "shape": "shape", "slopes": "slopes and stress", "motion": "motion",
     "check_motions": "motion, extended precision", "series": "series and pairs", "boundary": "boundary elements",
-    "driven": "driven motion", "check_driven": "driven motion, extended precision",
+    "driven": "driven motion", "flow": "flow maps", "check_driven": "driven motion, extended precision",
 }  # fmt: skip
 
 
@@ -469,24 +469,6 @@ def bench_fixed_scene(results: Results) -> str:
     }
     lines += [(cell(what, m), cell(how_much, m)) for what, how_much in more.items()]
     return table(("one scene, flow map, one core", "measured"), lines)
-
-
-def _agreement(results: Results) -> dict[str, Any]:
-    found = results["bench-agreement"]
-    each = found["measured"]["rows"]
-    own = {"scenes": len(each), "failed": sum(row["failed"] for row in each), "rtol": found["sizes"]["rtol"]}
-    return found["measured"] | own
-
-
-stated(
-    "bench_agreement", "bench", ("flow map against integrator", "found"), {
-        "random scenes; with a map": "{scenes}; {scenes_with_map}",
-        "starts in all": "{starts}",
-        "scenes within the error stated (and 30 times the integrator's rtol {rtol:.0e})": "{within_stated}",
-        "worst difference, as a share of that": "{worst_share:.2g}",
-        "motions that failed": "{failed}",
-    }, _agreement,
-)  # fmt: skip
 
 
 def named(found: Any) -> Iterator[dict[str, Any]]:

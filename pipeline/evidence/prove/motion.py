@@ -36,6 +36,8 @@ _CHANGE, _CHANGED_RTOL = 1e-6, 1e-10
 _GONE = 1e-290
 #: durations of very long lives, in decay times; a change of the unit of time that is no power of 2
 _LIVES, _TIME_SCALE = 10.0 ** np.arange(-12.0, 13.0), 7.3
+#: of a scene with a map
+_STARTS = 4000
 _INPUTS = ("alpha", "kappa", "mu", "j")
 TOLERANCES = tuple(10.0 ** -np.arange(4.0, 12.0))
 DRIVEN_TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -199,6 +201,23 @@ def driven(random: np.random.Generator, count: int, draw: Callable[[np.random.Ge
             yield str(case), {("speed", rtol): error, "many": error > MOST, "energy": balance(best)}
 
 
+def mapped(random: np.random.Generator, count: int) -> Found:
+    """By its flow map and integrated, over what the map states and 30 rtol, of the starts that the map answers."""
+    for _ in range(count):
+        alpha, kappa, mu = draws.powers(random, (0.0, 4.0), (-0.3, 2.3), (-2.0, 0.5))
+        scene = vr.Scene(max(alpha, 1.001), kappa, mu, 1.0, random.uniform(0.1, 2.0))
+        starts = random.uniform(-2.0, 2.0, (2, _STARTS))
+        t = np.geomspace(1e-3, 5.0, 8) * (1.0 + scene.j) * scene.alpha / (scene.alpha - 1.0)
+        quick, slow = (
+            vr.ensemble(scene, *starts, t, method=method, rtol=rtol, fields=("V", "omega"))
+            for method, rtol in (("flow", 1e-3), ("integrate", TIGHT))
+        )
+        yield repr(scene), {"given up": quick.status > vr.MotionStatus.RESTED}
+        if quick.flow.any():
+            error = speed_error(quick, slow)[quick.flow].max() / (quick.flow_error + FACTOR * TIGHT)
+            yield repr(scene), {"speed": error}
+
+
 def balance(m: vr.Motion) -> float:
     """What is missing in the balance of energy, over the largest of its terms."""
     energy, work = 0.5 * (m.V**2 + m.scene.j * m.omega**2), m.work_force + m.work_torque
@@ -308,5 +327,12 @@ PROOFS = [
             CHECKED_TOLERANCES, FACTOR, speed=_SO_FAR, paths="x, angle, works and losses over the largest",
             times="times of switches and reversals over the last output time",
         ), checked_driven,
+    ),
+    Proof(
+        "flow", "mapped_scenes", "alpha in [1.001, 1e4], kappa in [0.5, 200], mu in [0.01, 3], j in [0.1, 2], starts "
+        "in [-2, 2]^2, 1e-3 to 5 decay times", {
+            "speed": (f"V and omega against the integrator, over the error stated and {FACTOR:g} rtol", 1.0),
+            "given up": ("share of motions that stop before their end", 0.0),
+        }, mapped,
     ),
 ]  # fmt: skip
