@@ -30,7 +30,6 @@ def test_damage_is_done(quick: list[dict]) -> None:
     rows = {row["done"]: row for row in quick}
     for name in ("one bit flipped", "1-16 bytes of headers and B-trees replaced"):
         assert rows[name]["refused"] >= 0.9 * rows[name]["tried"]
-    assert rows["save on a full disk"]["refused"] == rows["save on a full disk"]["tried"]
 
 
 def test_committed_results_are_of_the_long_run() -> None:

@@ -11,19 +11,17 @@ import shutil
 import signal
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from tqdm import tqdm
 
 from viscoroll import ViscorollError
 from viscoroll.core.errors import FileError
-from viscoroll.io.runs import Run, export_netcdf, read_run, run_ensemble, verify
+from viscoroll.io.runs import Run, read_run, run_ensemble, verify
 
 from .damage import enlarge, flip, row, small_disk, truncate
 
@@ -62,7 +60,6 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         return [
             row("SIGKILL of an ensemble", ensemble.kills(sizes["ensembles"], seconds)),
             row("ensemble on a full disk", ensemble.full_disks(sizes["full_ensembles"])),
-            row("export of a store to a full disk", ensemble.full_exports(sizes["full_ensembles"])),
             row("one bit of a file of a store flipped", ensemble.damage(sizes["stores"], flip)),
             row("a file of a store truncated", ensemble.damage(sizes["stores"], truncate)),
         ]
@@ -115,28 +112,6 @@ class Ensemble:
             enlarge(self.store)
         return self.outcome() if code == 2 else f"exit code {code}"
 
-    def full_exports(self, count: int) -> Iterator[str]:
-        """To a tmpfs that is too small: refused, and the file that is there stays; then it is large enough."""
-        restore(self.store, self.expected)
-        disk, whole = self.folder / "disk", self.folder / "whole.nc"
-        disk.mkdir()
-        export_netcdf(self.store, whole)
-        for _ in tqdm(range(count), desc="full exports", delay=1.0, leave=False):
-            with small_disk(disk, int(self.rng.uniform(0.01, 0.9) * whole.stat().st_size)) as mounted:
-                outcome = self.exported(disk / "all.nc", whole) if mounted else NO_TMPFS
-            yield outcome
-
-    def exported(self, path: Path, whole: Path) -> str:
-        """To a full disk, then to one that is large enough."""
-        path.write_bytes(b"as it was")
-        code = exit_code(export_netcdf, self.store, path)
-        kept = path.read_bytes() == b"as it was" and len(list(path.parent.iterdir())) == 1
-        enlarge(path.parent)
-        again = exit_code(export_netcdf, self.store, path)
-        if code == 2 and kept and again == 0 and all(map(xr.Dataset.identical, datasets(path), datasets(whole))):
-            return "unharmed"
-        return f"exit code {code}, " + (f"then {again}" if kept else "the file damaged")
-
     def damage(self, count: int, change: Any) -> Iterator[str]:
         """Of any file that is not empty, as the lock is: it must be found, and the same command must put it right."""
         names = sorted(name for name, data in self.expected.items() if data)
@@ -158,16 +133,11 @@ class Ensemble:
 
 
 def child(run: Run, store: Path) -> int:
-    """Exit code of a run in a process of its own."""
-    return exit_code(partial(run_ensemble, threads=THREADS), run, store)
-
-
-def exit_code(do: Callable, *arguments: Any) -> int:
-    """Of a call in a process of its own: 2 for an error of the package, 1 for any other."""
+    """Exit code of a run in a process of its own: 2 for an error of the package, 1 for any other."""
 
     def work() -> None:
         try:
-            do(*arguments)
+            run_ensemble(run, store, threads=THREADS)
         except FileError:
             os._exit(2)
 
@@ -180,11 +150,6 @@ def exit_code(do: Callable, *arguments: Any) -> int:
 def content(store: Path) -> dict[str, bytes]:
     """Every file of a store."""
     return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
-
-
-def datasets(path: Path) -> list[xr.Dataset]:
-    """The summaries and the motions of an exported file."""
-    return [xr.load_dataset(path, group=group, engine="h5netcdf") for group in (None, "motions")]
 
 
 def restore(store: Path, files: dict[str, bytes]) -> None:

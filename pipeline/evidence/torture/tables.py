@@ -1,16 +1,14 @@
-"""Tables under torture: killed builds, two writers at once, a full disk, and damage to files that are there."""
+"""Tables under torture: killed builds, two writers at once, and damage to files that are there."""
 
 from __future__ import annotations
 
 import os
-import resource
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import partial
@@ -27,8 +25,7 @@ from viscoroll.core.files import seal_holds
 from viscoroll.presets import RUBBER_CYLINDER
 
 from ...stage import ROOT
-from ..timing import forked
-from .damage import Damage, edit, fingerprint, flip, row, small_disk, truncate, unsealed
+from .damage import Damage, edit, fingerprint, flip, row, truncate, unsealed
 
 LAW = ROOT / "data/tables/rubber.nc"
 #: what `make tables` builds while it is killed
@@ -56,7 +53,6 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         found = [
             *kills(sizes["kills"], folder / "kills", rng),
             writers("two processes save the same table at once", sizes["writers"], folder / "both.nc"),
-            full_disk("save on a full disk", sizes["full"], folder, rng),
             damage("one bit flipped", sizes["flips"], content, flip),
             damage("truncated", sizes["truncations"], content, truncate),
             damage("1-16 bytes of headers and B-trees replaced", sizes["edits"], content, edit),
@@ -165,38 +161,3 @@ def writers(done: str, count: int, path: Path) -> dict[str, Any]:
             process.kill()
             process.join()
     return row(done, outcomes if alive else ["a writer failed"])
-
-
-def full_disk(done: str, count: int, folder: Path, rng: np.random.Generator) -> dict[str, Any]:
-    """Saving ends in FileError, the old file stays, nothing is left beside it; on a tmpfs where one can be had."""
-    table = grid()
-    disk = folder / "disk"
-    disk.mkdir()
-    with small_disk(disk, 1 << 18):
-        tables.save(table, disk / "old.nc")
-        size = (disk / "old.nc").stat().st_size
-        return row(done, forked(fill_and_save, table, disk, rng.integers(size, size=count).tolist()))
-
-
-def fill_and_save(table: Any, disk: Path, room: list[int]) -> Iterator[str]:
-    """Save where there is room for so many bytes: left on the disk if it is small, else in a file."""
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    old = disk / "old.nc"
-    before, small = old.read_bytes(), os.path.ismount(disk)
-    for size in room:
-        free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
-        if small:
-            (disk / "filler").write_bytes(bytes(free - size))
-        else:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
-        try:
-            tables.save(table, old)
-            outcome = "saved without room"
-        except FileError:
-            outcome = "refused"
-        except BaseException as error:
-            outcome = f"not the package's own error: {error!r}"
-        (disk / "filler").unlink(missing_ok=True)
-        if old.read_bytes() != before or len(list(disk.iterdir())) > 1:
-            outcome = "damaged"
-        yield outcome
