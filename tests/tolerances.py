@@ -6,6 +6,9 @@
 BESSEL_ULP = 4.0
 #: Q/mu, absolute: K1/K0 <= 1e3 (kappa V = 1e3) magnifies the rounding of Eq. (15)'s bracket; measured 1.1e-13.
 DIRECT_TRACTION = 4e-13
+#: Q itself at |delta| below 1e-4 delta_star, as the difference of M/2 and a force: rounding of M and of omega - V over
+#: Q; measured 4e-13.  A slope in place of a mean one is off by 2e-7 and more.
+SMALL_TRACTION = 1e-11
 #: lam and epsilon from their limits at kappa V <= 1e-12 or >= 1e12: the limits' own error, c kappa V or
 #: alpha/(kappa V) ln; measured 8e-10.
 DIRECT_EXTREME = 1e-8

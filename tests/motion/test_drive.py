@@ -151,6 +151,17 @@ def test_a_prescribed_speed_of_many_motions():
         assert getattr(e, f"{name}0").shape == (3,)
 
 
+@pytest.mark.parametrize("V", [0.05, 0.5, 2.0])
+def test_traction_of_the_smallest_creep(V):
+    """The force that a prescribed V asks for is M/2 - Q, and Q what the contact says of creep that is nearly none."""
+    edge = vr.contact(SCENE, V, delta=0.0).delta_star
+    for share in (-9e-5, 3e-5, 9e-5):
+        omega = V * (1.0 + share * edge)
+        state = vr.contact(SCENE, V, omega=omega)
+        held = vr.roll(SCENE, None, omega, [0.0, 1e-9], V=V)
+        assert close(0.5 * state.M - held.force[0], state.Q, rel=tol.SMALL_TRACTION)
+
+
 def test_small_beginnings():
     """Rest stays while nothing acts, and ends where a ramp begins; a push against friction below its limit moves."""
     still = vr.roll(ROLLER, 0.0, 0.0, T, torque=vr.Schedule([0.0, 4.0, 4.0, 8.0], [0.0, 0.0, 0.0, 0.1]))
