@@ -47,7 +47,8 @@ def work(settings: Ensemble, out: Path) -> stage.Outcome:
     result = vr.ensemble(scene, starts["V0"], starts["omega0"], settings.t, rtol=settings.rtol, progress=True)
     seconds = time.perf_counter() - begun
     thinned = result.to_xarray().isel(motion=slice(0, settings.kept))  # the starts are independent: any will do
-    dataset = xr.merge([result.summary(), thinned], combine_attrs="override", join="exact", compat="equals")
+    summary = result.summary().drop_dims("status").filter_by_attrs(long_name=lambda text: "bin" not in text)
+    dataset = xr.merge([summary, thinned], combine_attrs="override", join="exact", compat="equals")
     dataset.attrs |= {
         "preset": settings.preset, "seed": starts.seed, "design": starts.design, "rtol": settings.rtol,
         "comment": f"V_mean, V_quantiles, ... are over all motions; V, omega, ... are {settings.kept} of them",

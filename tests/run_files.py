@@ -59,7 +59,7 @@ t = [1e-4, 2e-3, 0.03]
 rtol = 1e-10
 keep = "all"
 fields = ["V", "omega", "x", "angle", "delta", "regime", "slip_loss", "rolling_loss"]
-summaries = ["V", "omega", "x", "distance", "angle", "delta", "translation", "lost", "slip_loss", "onset_time"]
+summaries = ["V", "omega", "x", "distance", "angle", "delta", "translation", "lost", "lost_to_slip", "onset_time"]
 """
 NUMBERS = PAPER_ROLLER + PAPER_RUBBER + SLOW
 SERIES = """
@@ -102,7 +102,7 @@ n = 12
 t = [1e-3, 3e-3]
 keep = "all"
 fields = ["V", "force", "torque", "work_torque", "slip_loss"]
-summaries = ["V", "force", "work_force", "work_torque", "brake_loss", "slip_energy", "rolling_energy", "slip_loss"]
+summaries = ["V", "force", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss", "lost_to_slip"]
 """
 )
 OWN_TIMES = (
@@ -144,7 +144,7 @@ n = 8
 t = [0.5, 1.0, 2.0]
 keep = "all"
 fields = ["V", "omega", "x", "force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"]
-summaries = ["force", "torque", "work_force", "slip_energy"]
+summaries = ["force", "torque", "work_force", "slip_loss"]
 """
 SPUN = DRIVEN_ROLLER[: DRIVEN_ROLLER.index("omega0")] + "[drive]\nomega = { times = [0.0, 1.0], values = [0.05, 0.2] }"
 SPUN += "\n" + DRIVEN_ROLLER[DRIVEN_ROLLER.index("[run]") :].replace('"brake_loss", ', "")

@@ -160,3 +160,6 @@ def test_summary():
     assert close(summary.onset_time_quantiles, np.quantile(onset, (0.25, 0.5)), rel=1e-13)
     assert summary.attrs["motions"] == 50
     assert "angle_mean" not in summary
+    assert summary.V_quantiles.attrs["comment"] == "exact"
+    assert summary.V_histogram.sum("V_bin").values.tolist() == summary.V_counted.values.tolist() == [50] * len(T)
+    assert summary.ended.sum() == 50

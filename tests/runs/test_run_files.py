@@ -16,8 +16,8 @@ from run_files import CERTAIN, FILES, PAPER
 
 import viscoroll as vr
 from viscoroll.io.runs import estimate, export_netcdf, open_summaries, read_run, roll_inputs, run_ensemble, verify
+from viscoroll.io.runs.columns import attributes
 from viscoroll.io.runs.evaluate import block_inputs, roll_block
-from viscoroll.io.runs.quantities import attributes
 from viscoroll.io.runs.rollers import roller_of
 from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.runs.store import columns_of
@@ -28,8 +28,8 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the
 of_every_file = pytest.mark.parametrize("text", FILES.values(), ids=FILES)
 SI_UNITS = {
     "V": "m s-1", "omega": "rad s-1", "x": "m", "distance": "m", "angle": "rad", "onset_time": "s", "delta": "1",
-    "translation": "1", "lost": "1", "slip_loss": "1", "force": "N m-1", "torque": "N m m-1", "work_force": "J m-1",
-    "slip_energy": "J m-1", "rolling_loss": "1",
+    "translation": "1", "lost": "1", "lost_to_slip": "1", "force": "N m-1", "torque": "N m m-1", "work_force": "J m-1",
+    "slip_loss": "J m-1", "rolling_loss": "J m-1", "lost_to_rolling": "1",
 }  # fmt: skip
 
 
@@ -174,8 +174,8 @@ def test_a_store_holds_the_run(read, tmp_path, name):
 def test_shares_of_an_energy_that_is_not_there(read, tmp_path):
     run_ensemble(read(FILES["driven"]), tmp_path / "s.zarr", threads=1)
     found = open_summaries(tmp_path / "s.zarr")
-    assert np.isnan(found["slip_loss_mean"].values).all()
-    assert (found["slip_energy_mean"].values > 0.0).all()
+    assert np.isnan(found["lost_to_slip_mean"].values).all()
+    assert (found["slip_loss_mean"].values > 0.0).all()
 
 
 def test_names_of_inputs():
@@ -245,11 +245,11 @@ def test_a_drive_that_ends_goes_with_a_rest(read):
 ])  # fmt: skip
 def test_inputs_have_indices(read, name, inputs):
     """Rolling resistance spreads by the strengths of the modes that it is made of, less by friction and the start."""
-    text = re.sub(r"\[correlation\]\n.*\n", "", FILES[name]).replace('"slip_loss"]', '"torque"]')
+    text = re.sub(r"\[correlation\]\n.*\n", "", FILES[name]).replace('"lost_to_slip"]', '"torque"]')
     found = sobol_indices(read(text), 64, threads=1)
     assert set(found["input"].values) == inputs
     if "base_E_1" in inputs:
-        total = found.rolling_loss_ST.isel(t=-1)
+        total = found.lost_to_rolling_ST.isel(t=-1)
         assert total.sel(input="E_2") > 0.2 > total.sel(input="mu")
         assert min(total.sel(input=["tau_1", "base_E_1"])) > total.sel(input="V0")
 

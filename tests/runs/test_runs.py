@@ -17,8 +17,8 @@ from viscoroll import sampling
 from viscoroll.io.runs import estimate, read_run, store
 from viscoroll.io.runs.evaluate import roll_block
 from viscoroll.io.runs.inputs import Distribution, Inputs
-from viscoroll.io.runs.quantities import QUANTITIES
-from viscoroll.io.runs.summaries import histogram, merged, quantiles, summarise
+from viscoroll.motion.quantities import QUANTITIES
+from viscoroll.motion.summaries import histogram, merged, quantiles, summarise
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -35,7 +35,7 @@ t = { low = 0.0, high = 3e-3, count = 3 }
 rtol = 1e-6
 block = 512
 summaries = [
-  "V", "omega", "x", "distance", "translation", "rotation", "lost", "slip_loss", "rolling_loss", "onset_time",
+  "V", "omega", "x", "distance", "translation", "rotation", "lost", "lost_to_slip", "lost_to_rolling", "onset_time",
 ]
 """
 

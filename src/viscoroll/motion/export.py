@@ -11,12 +11,12 @@ import xarray as xr
 from .. import __version__
 from ..contact_law.parameters import PARAMETERS
 from ..core.drive import Feedback, Schedule
-from ..core.errors import MotionStatus, ParameterError
+from ..core.errors import MotionStatus
 from ..core.results import short
 from ..core.symbols import attributes
 from ..materials.bodies import Bodies
 from ..materials.prony import Prony
-from .driven import ACTING, LOSSES, ROWS, STATES
+from .driven import ROWS, STATES
 from .result import Rolled
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
@@ -44,7 +44,8 @@ def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
     return dict(_OWN[name]) if name in _OWN else dict(attributes(name, si))
 
 
-def _globals(title: str) -> dict[str, str]:
+def provenance(title: str) -> dict[str, str]:
+    """What every dataset says of itself."""
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
 
 
@@ -61,7 +62,7 @@ def _dataset(
             data[name] = dims, values, described(name)
     drives, texts = _drive(result)
     roller, series = result.roller, result.scene.series
-    attrs = _globals(title) | about | texts
+    attrs = provenance(title) | about | texts
     if whole:
         attrs["drive_error"] = result.drive_error
     if series is not None:  # by which it counts time
@@ -157,23 +158,3 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     found = _dataset(result, "Ensemble of motions", ("motion", "t"), more, about)
     own = result.labels.along("motion") if result.labels and result.labels.shape == (len(result),) else {}
     return found.assign_coords({name: values for name, values in own.items() if name not in found})
-
-
-def summary_dataset(result: Any, quantiles: tuple[float, ...]) -> xr.Dataset:
-    """Mean, standard deviation and quantiles over the motions that reached each time."""
-    described = partial(attributes, si=result.scale.si)
-    if not len(result):
-        raise ParameterError("motions", 0, "at least one: a summary is over motions")
-    data: dict[str, Any] = {}
-    for name in ("V", "omega", "x", "angle", *LOSSES, *ACTING):
-        if (values := result[name]) is not None:
-            about = described(name)
-            data[f"{name}_mean"] = "t", np.nanmean(values, axis=0), about
-            data[f"{name}_std"] = "t", np.nanstd(values, axis=0), about
-            data[f"{name}_quantiles"] = ("quantile", "t"), np.nanquantile(values, quantiles, axis=0), about
-    onset = result.onset_time[np.isfinite(result.onset_time)]
-    if onset.size:
-        data["onset_time_quantiles"] = "quantile", np.quantile(onset, quantiles), described("onset_time")
-    coords = {"t": ("t", result.t, described("t")), "quantile": np.array(quantiles)}
-    ends = {f"ended: {text}": n for text, n in result.messages().items()}
-    return xr.Dataset(data, coords, _globals("Summary of an ensemble of motions") | {"motions": len(result)} | ends)

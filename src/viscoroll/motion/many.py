@@ -74,7 +74,7 @@ class Ensemble(Rolled):
         return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
     def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
-        """Mean, standard deviation and quantiles over the motions, per output time.
+        """Moments, quantiles and histograms over the motions, per output time, named as those of a run's store.
 
         Parameters
         ----------
@@ -83,18 +83,19 @@ class Ensemble(Rolled):
         Returns
         -------
         xarray.Dataset
-            Over (quantile, t), of every field kept but delta and regime, and of onset_time; numpy's
-            values (``tests/motion/test_ensemble.py``).  Outputs that a motion did not reach do not count;
-            the attributes say how many motions ended in which way.
+            Of every field kept but the regime, of onset_time and rest_time: ``NAME_counted`` (motions that have a
+            value: outputs that one did not reach do not count), ``_mean``, ``_std``, ``_min``, ``_max``, ``_quantiles``
+            over (quantile, t), which are exact, those of a run to their bin (``comment``), and ``_histogram`` over
+            ``_bin_low``, ``_bin_high``.  ``ended``: how many motions ended in which way.
 
         Raises
         ------
         ParameterError
             If there are no motions.
         """
-        from .export import summary_dataset
+        from .summaries import summary_of
 
-        return summary_dataset(self, tuple(quantiles))
+        return summary_of(self, tuple(quantiles))
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.

@@ -1,7 +1,7 @@
 """Ensembles from a run file: uncertain inputs -> blocks -> a results store that an interrupted run continues.
 
 Read in this order: :mod:`runfile` (with :mod:`uncertain`, :mod:`inputs` and :mod:`rollers`), :mod:`evaluate`,
-:mod:`quantities` and :mod:`summaries`, :mod:`store` (with :mod:`records` and :mod:`zarr_files`), :mod:`engine`, then
+:mod:`columns`, :mod:`store` (with :mod:`records` and :mod:`zarr_files`), :mod:`engine`, then
 :mod:`estimate`, :mod:`verify`, :mod:`results` and :mod:`export`.
 """
 

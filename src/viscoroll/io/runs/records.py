@@ -16,7 +16,7 @@ import numpy as np
 
 from ...core.errors import FileError
 from ...core.files import seal, seal_holds, write_bytes
-from .summaries import Summary
+from ...motion.summaries import Summary
 
 
 class Record(msgspec.Struct):

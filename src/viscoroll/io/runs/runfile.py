@@ -37,11 +37,11 @@ from ...materials.file import as_toml, materials_of
 from ...motion.batch import FIELDS, FLOW_PAYS, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive
+from ...motion.quantities import QUANTITIES
 from ..config import check_sections, located
 from ..sampling import Design
 from ..tables import spread
 from .inputs import Inputs, inputs_in
-from .quantities import QUANTITIES
 from .rollers import Rollers, drive_of, roller_of
 from .uncertain import correlated, inputs_of
 

@@ -14,14 +14,14 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import __version__
 from ...core.blocks import run_blocks
 from ...core.errors import MotionStatus, ParameterError
 from ...core.results import column, unit_of
+from ...motion.export import column_attributes, provenance
+from ...motion.quantities import QUANTITIES
 from ..sampling import points
 from .evaluate import look_at_materials, roll_inputs
 from .inputs import Inputs, inputs_in
-from .quantities import QUANTITIES, attributes
 from .runfile import Run
 
 if TYPE_CHECKING:
@@ -202,16 +202,13 @@ def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float
             shaped = values if len(dims) == 2 else values[0]
             data[f"{name}_{key}"] = xr.Variable(dims, shaped, {"long_name": long_name, "units": "1"})
     coordinates = {
-        "t": xr.Variable("t", run.t, attributes("t", run.si)),
+        "t": xr.Variable("t", run.t, column_attributes("t", run.si)),
         "input": xr.Variable("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
-    provenance = about(run) | {
-        "title": "Sobol indices of motions of a viscoelastic cylinder",
-        "source": f"viscoroll {__version__}",
-        "design": "Saltelli's, on a scrambled Sobol sequence",
-    }
+    own = provenance("Sobol indices of motions of a viscoelastic cylinder")
+    described = about(run) | own | {"design": "Saltelli's, on a scrambled Sobol sequence"}
     cut = ("motions_a_block", "blocks")
-    return xr.Dataset(data, coordinates, {key: value for key, value in provenance.items() if key not in cut})
+    return xr.Dataset(data, coordinates, {key: value for key, value in described.items() if key not in cut})
 
 
 def table(indices: xr.Dataset) -> pd.DataFrame:

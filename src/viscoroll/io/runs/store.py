@@ -24,13 +24,14 @@ from numpy.typing import NDArray
 
 from ... import __version__
 from ...core.errors import FileError
+from ...motion.export import provenance
 from ...motion.many import Ensemble
+from ...motion.summaries import Summary, merged, summarise, summary_dataset
 from . import zarr_files
+from .columns import attributes
 from .evaluate import roll_block, roll_inputs
-from .quantities import attributes
 from .records import Record, damaged, make_folder, put, read_record, write_record
 from .runfile import Run
-from .summaries import Summary, merged, summarise, summary_dataset
 
 RECORDS, MOTIONS = "records", "motions"
 _LOCK = ".lock"
@@ -144,12 +145,9 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     return columns | {"flow": columns["flow"].astype(np.int8)}
 
 
-def about(run: Run) -> dict[str, str | int]:
+def about(run: Run) -> dict[str, Any]:
     """What a store says of itself: run file, seed, versions."""
-    return {
-        "Conventions": "CF-1.11",
-        "title": "Ensemble of motions of a viscoelastic cylinder",
-        "source": f"viscoroll {__version__}",
+    return provenance("Ensemble of motions of a viscoelastic cylinder") | {
         "versions": json.dumps(_software()),
         "motions": run.settings.n,
         "motions_a_block": run.block,
