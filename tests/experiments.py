@@ -85,5 +85,5 @@ def measurements(folder: Path, old: str = "", new: str = "") -> Path:
     rows = [f"{V!r},{M!r}" for V, M in zip(data.V.tolist(), data.M.tolist(), strict=True)]
     drum = "\n".join(["speed [m/s],moment [N m/m]", "# a remark", *rows])
     for name, text in (("drum.csv", drum), ("data.toml", FILE)):
-        (folder / name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
+        (folder / name).write_text(text.replace(old, new) if old else text)
     return folder / "data.toml"

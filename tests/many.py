@@ -47,32 +47,31 @@ def of_alphas() -> vr.Prony:
     return vr.Prony.creep(((alpha - 1.0) / alpha)[:, None], np.ones((alpha.size, 1)), alpha=alpha)
 
 
+ONE, ELASTIC = vr.Prony([2.0, 1.0], [1.0, 1e-2]), vr.Prony.elastic()
+#: of both forms, of one body for all, of rigid and elastic bodies, of like series with a share each
+PAIRS: dict[str, Callable[..., tuple]] = {
+    "each": lambda draw, first, share: (first, rubbers(draw, 3), share),
+    "creep": lambda draw, first, share: (rubbers(draw, 2, True), rubbers(draw, 3), 0.3),
+    "one base": lambda draw, first, share: (first, ONE, 0.6),
+    "a share each": lambda draw, first, share: (ONE, vr.Prony([0.5], [0.1]), share),
+    "elastic base": lambda draw, first, share: (first, ELASTIC, share),
+    "both elastic": lambda draw, first, share: (ELASTIC, ELASTIC, share),
+    "some rigid": lambda draw, first, share: (first, rubbers(draw, 2), 1.0 * (np.arange(COUNT) % 2)),
+    "rigid cylinder": lambda draw, first, share: (ELASTIC, first, 0.0),
+    "of one series": lambda draw, first, share: (first, first, share),
+    "of equal times": lambda draw, first, share: (
+        *(vr.Prony.creep(0.4 * draw.uniform(size=(COUNT, 2)), [1.0, fast]) for fast in (0.1, 1e-3)),
+        share,
+    ),
+}
+
+
 def pairs(kind: str) -> vr.Bodies:
-    """Of both forms, of one body for all, of rigid and elastic bodies, of like series with a share each."""
     draw = np.random.default_rng(len(kind))
-    share, one = draw.uniform(0.0, 1.0, COUNT), vr.Prony([2.0, 1.0], [1.0, 1e-2])
-    first, elastic = rubbers(draw, 3), vr.Prony.elastic()
-    return {
-        "each": lambda: vr.Bodies(first, rubbers(draw, 3), share),
-        "creep": lambda: vr.Bodies(rubbers(draw, 2, True), rubbers(draw, 3), 0.3),
-        "one base": lambda: vr.Bodies(first, one, 0.6),
-        "a share each": lambda: vr.Bodies(one, vr.Prony([0.5], [0.1]), share),
-        "elastic base": lambda: vr.Bodies(first, elastic, share),
-        "both elastic": lambda: vr.Bodies(elastic, elastic, share),
-        "some rigid": lambda: vr.Bodies(first, rubbers(draw, 2), np.where(np.arange(COUNT) % 2, 1.0, 0.0)),
-        "rigid cylinder": lambda: vr.Bodies(elastic, first, 0.0),
-        "of one series": lambda: vr.Bodies(first, first, share),
-        "of equal times": lambda: vr.Bodies(
-            vr.Prony.creep(0.4 * draw.uniform(size=(COUNT, 2)), [1.0, 0.1]),
-            vr.Prony.creep(0.4 * draw.uniform(size=(COUNT, 2)), [1.0, 1e-3]), share,
-        ),
-    }[kind]()  # fmt: skip
+    share = draw.uniform(0.0, 1.0, COUNT)
+    return vr.Bodies(*PAIRS[kind](draw, rubbers(draw, 3), share))
 
 
-PAIRS = (
-    "each", "creep", "one base", "a share each", "elastic base", "both elastic", "some rigid", "rigid cylinder",
-    "of one series", "of equal times",
-)  # fmt: skip
 MATERIALS: dict[str, Callable[[], vr.Prony | vr.Bodies]] = {
     "one mode": of_alphas,
     "3 modes": lambda: rubbers(np.random.default_rng(3), 3),

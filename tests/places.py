@@ -1,7 +1,22 @@
 """Where the repository lies, for tests in any folder."""
 
+import json
+import tomllib
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 PIPELINE, DATA, DOCS = ROOT / "pipeline", ROOT / "data", ROOT / "docs"
 RESULTS = DATA / "results"
+
+
+def kept(name: str) -> Any:
+    """Results that are committed."""
+    return json.loads((RESULTS / name).read_text())
+
+
+def full_sizes(section: str) -> dict[str, Any]:
+    """Those of a stage of the evidence that are not quick."""
+    found = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text())[section]
+    del found["quick"]
+    return found

@@ -5,10 +5,8 @@ Claim, domain, bound and truth stand in pipeline/evidence/prove/, the sizes in [
 
 from __future__ import annotations
 
-import json
-
 import pytest
-from places import RESULTS
+from places import kept
 
 from pipeline.evidence.prove.__main__ import PROOFS, beyond
 from pipeline.evidence.results import SIZES, read_sizes
@@ -21,7 +19,7 @@ def test_claims(proof):
     """And the worst that was found at full size, which is committed, is of the same claims and bounds."""
     rows = PROOFS[proof](read_sizes(SIZES, "prove", quick=True))
     assert [text for row in rows if (text := beyond(row))] == []
-    committed = json.loads((RESULTS / "proofs.json").read_text(encoding="utf-8"))["parts"][proof]["rows"]
+    committed = kept("proofs.json")["parts"][proof]["rows"]
     held = {(row["claim"], row["bound"]) for row in committed}
     assert held >= {(row["claim"], row["bound"]) for row in rows if row["points"]}
     assert [text for row in committed if (text := beyond(row))] == []

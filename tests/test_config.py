@@ -6,13 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from places import PIPELINE
 
 import viscoroll as vr
 from viscoroll.io.config import read_bodies, read_body
 from viscoroll.materials.file import read_materials
 
-PRODUCTION = PIPELINE / "config.toml"
 CYLINDER = "[cylinder]\nR = 0.1\nm = 35.5\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\nmu = 0.2\n"
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 
@@ -49,6 +47,9 @@ SERIES = vr.Prony([2.0, 6.0], [1.0, 1e-4])
 def test_scene_of_a_series(toml):
     prony = SCENE.replace("alpha = 11", "prony = { E = [2.0, 6.0], tau = [1.0, 1e-4] }")
     assert read_body(toml(prony)) == vr.Scene(kappa=2.91, mu=0.2, material=SERIES)
+    rubber = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
+    cylinder = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=rubber, load=500.0)
+    assert read_body(toml(ROLLER + "load = 500\n" + RUBBER)) == cylinder
     creep = SCENE.replace("alpha = 11", "creep = { J = [0.5], T = [1.0], alpha = 2.0 }")
     assert read_body(toml(creep)) == vr.Scene(kappa=2.91, mu=0.2, material=vr.Prony.creep([0.5], [1.0]))
 
@@ -75,22 +76,12 @@ def test_materials(toml):
     assert both == {"material": rubber, "base": vr.Material.elastic(2e11, 0.3)}
 
 
-def test_cylinder_of_a_material(toml):
-    rubber = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
-    cylinder = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=rubber, load=500.0)
-    assert read_body(toml(ROLLER + "load = 500\n" + RUBBER)) == cylinder
-
-
 def test_bodies_of_a_file(toml):
     """What has a law: materials, else a scene or a cylinder."""
-    rubber = "[material]\nE = 3e6\nnu = 0.5\nprony = { E = [1.0], tau = [0.1] }\n"
-    steel = "[base]\nE = 2e11\nnu = 0.3\n"
-    assert read_bodies(toml(rubber)).base is None
-    assert read_bodies(toml(rubber + steel)).base.E == 2e11
-    cylinder = "[cylinder]\nR = 0.1\nm = 1.0\nmu = 0.2\n"
-    assert read_bodies(toml(cylinder + rubber)) == read_bodies(toml(rubber))
-    papers = read_bodies(toml(cylinder + "E = 2e5\nnu = 0.4\nT_epsilon = 10.0\nT_sigma = 1.0\n"))
-    assert papers.cylinder == vr.Material.sls(2e5, 0.4, 10.0, 1.0)
+    assert read_bodies(toml(RUBBER)).base is None
+    assert read_bodies(toml(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n")).base.E == 2e11
+    assert read_bodies(toml(ROLLER + RUBBER)) == read_bodies(toml(RUBBER))
+    assert read_bodies(toml(CYLINDER)).cylinder == vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
     assert read_bodies(toml("[scene]\nalpha = 11\nkappa = 3\nmu = 0.2")) == 11.0
     series = "[scene]\nprony = { E = [1.0], tau = [0.1] }\nkappa = 3\nmu = 0.2"
     assert read_bodies(toml(series)) == vr.Prony([1.0], [0.1])

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -27,12 +28,12 @@ n = 200
 t = [1e-4]
 rtol = 1e-6
 """
-MISSING = {"zarr": "zarr", "distributed": "distributed", "pyarrow": "pyarrow"}
+MISSING = "zarr", "distributed", "pyarrow"
 
 
 @pytest.fixture
 def run_file(tmp_path: Path) -> Path:
-    (tmp_path / "run.toml").write_text(RUN, encoding="utf-8")
+    (tmp_path / "run.toml").write_text(RUN)
     return tmp_path / "run.toml"
 
 
@@ -55,13 +56,9 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def test_a_missing_extra_is_named(bare, run_file, tmp_path):
     run, store = read_run(run_file), tmp_path / "store.zarr"
-    calls = {
-        "zarr": [lambda: run_ensemble(run, store), lambda: open_summaries(store), lambda: export_netcdf(store, "x.nc")],
-    }
-    for package, each in calls.items():
-        for call in each:
-            with pytest.raises(vr.MissingDependencyError, match=rf"{package} is not .*pip install 'viscoroll\[runs\]'"):
-                call()
+    for call in (partial(run_ensemble, run, store), partial(open_summaries, store), partial(export_netcdf, store, "x")):
+        with pytest.raises(vr.MissingDependencyError, match=r"zarr is not .*pip install 'viscoroll\[runs\]'"):
+            call()
     assert not store.exists()
 
 
@@ -132,8 +129,8 @@ def test_an_older_python_is_told_in_one_line(tmp_path):
     old = tmp_path / "python"
     old.write_text(f"#!/bin/sh\nshift\nexec {sys.executable} -c 'import sys; sys.version_info = (3, 10, 13)\n'\"$1\"")
     old.chmod(0o755)
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    (tmp_path / "Makefile").write_text(makefile, encoding="utf-8")
+    makefile = (ROOT / "Makefile").read_text()
+    (tmp_path / "Makefile").write_text(makefile)
     for name in ("pyproject.toml", "constraints.txt"):
         (tmp_path / name).touch()
     (tmp_path / "src").mkdir()
@@ -144,7 +141,7 @@ def test_an_older_python_is_told_in_one_line(tmp_path):
 
 def test_one_version():
     """The metadata are made from it; the citation says the same."""
-    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    citation = (ROOT / "CITATION.cff").read_text()
     assert f"\nversion: {vr.__version__}\n" in citation
     assert "doi: 10.1007/s00707-020-02643-5" in citation
     if Path(vr.__file__).is_relative_to(Path(os.__file__).parent):  # installed, not a tree on PYTHONPATH

@@ -22,13 +22,11 @@ def test_contact_states(body):
     found = own(V, delta=creep)
     assert found.M.dims == found.to_xarray()["M"].dims == ("run", "creep")
     assert np.array_equal(found.M.sel(run="b"), own(0.2, delta=creep.values).M)
-    assert list(found.to_xarray()["run"]) == ["a", "b"]
     found = own(TABLE["V"], delta=TABLE["delta"])
     assert found.M["y"] == own(0.2, delta=0.01).M
     assert found.to_pandas().index.name == "roller"
     assert found.to_pandas()["M [N m m-1]" if body is ROLLER else "M"]["y"] == found.M["y"]
-    over_itself = own(V.rename(run="V").assign_coords(V=V.values), delta=0.0).to_xarray()
-    assert over_itself["M"].dims == ("V",)
+    assert own(V.rename(run="V").assign_coords(V=V.values), delta=0.0).to_xarray()["M"].dims == ("V",)
 
 
 @pytest.mark.parametrize("body", [SCENE, ROLLER], ids=["scene", "cylinder"])
@@ -38,12 +36,9 @@ def test_equilibria(body):
     found, plain = own(slope=slope), own(slope=slope.values)
     assert found.V.dims == ("place", "equilibrium")
     assert np.array_equal(found.V.sel(place="b"), plain.V[1], equal_nan=True)
-    assert found.loss.slip.dims == found.V.dims
-    assert found.eigenvalues.dims == ("place", "equilibrium", "rate")
+    assert found.eigenvalues.dims == (*found.loss.slip.dims, "rate")
     assert found.count.sel(place="c") == 0
     assert list(found.to_xarray()["place"]) == ["a", "b", "c"]
-    assert "3 loads" in repr(found)
-    assert found.to_xarray()["V"].identical(found.to_xarray()["V"])
     series = pd.Series(slope.values, index=["a", "b", "c"])
     assert own(slope=series).V.loc["b", 0] == plain.V[1, 0]
     force = xr.DataArray([0.001, 0.002], dims="force", coords={"force": [0.001, 0.002]})
@@ -62,6 +57,5 @@ def test_ensembles(body):
     assert found.to_pandas().loc[("y", 2e-3), "V [m s-1]" if body is ROLLER else "V"] == plain.V[1, 1]
     by_array = own(V, 0.0, [1e-3], slope=0.01 * V, force=vr.Schedule([0.0, 1.0], [0.0, 0.0])).to_xarray()
     assert list(by_array["motion"]) == ["a", "b"]
-    assert "motion" not in plain.to_xarray().coords
     levels = pd.MultiIndex.from_tuples([("p", 1), ("q", 2)], names=["maker", "batch"])
     assert list(own(TABLE["V"].set_axis(levels), 0.0, 1e-3).to_xarray()["maker"]) == ["p", "q"]

@@ -69,7 +69,7 @@ def test_import_is_light(code):
 def test_kernels_import_numpy_and_numba_only():
     for path in (PACKAGE / "kernels").rglob("*.py"):
         names = set()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Import):
                 names |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:

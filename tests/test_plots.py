@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
-from matplotlib.figure import Figure
 
-from viscoroll.core.errors import FileError
 from viscoroll.core.plots import draw
 from viscoroll.core.plots.style import save
 from viscoroll.io.runs import open_summaries, read_run, run_ensemble
@@ -26,28 +23,9 @@ def test_a_run_without_values(tmp_path):
         )
     ):
         text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
-        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+        (tmp_path / "run.toml").write_text(text)
         run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / f"{n}.zarr", threads=1)
         figure = draw(open_summaries(tmp_path / f"{n}.zarr"))
         titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
         assert {name for name, title in titles.items() if title == "no values"} == empty
         save(figure, tmp_path / "run.png")
-
-
-def test_save_is_whole_or_not_at_all(tmp_path):
-    path = tmp_path / "picture.png"
-    path.write_text("as it was")
-
-    class Broken(Figure):
-        def savefig(self, target, *arguments, **options):
-            Path(target).write_bytes(b"half")
-            raise OSError(28, "No space left on device")
-
-    with pytest.raises(FileError, match="No space left"):
-        save(Broken(), path)
-    assert path.read_text() == "as it was"
-    assert [item.name for item in tmp_path.iterdir()] == [path.name]
-    with pytest.raises(FileError, match=r"suffix '\.xyz'"):
-        save(Figure(), tmp_path / "picture.xyz")
-    with pytest.raises(FileError, match="cannot be written"):
-        save(Figure(), tmp_path / "nowhere" / "picture.png")

@@ -20,13 +20,17 @@ import viscoroll as vr
 from pipeline.validation import validate
 from viscoroll import fmu
 from viscoroll.app.identification.file import read_measurements
+from viscoroll.contact_law.steadiness import Steadiness
 from viscoroll.core import errors
+from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_bodies, read_body
 from viscoroll.io.runs import read_run
 from viscoroll.io.sampling import sample
 from viscoroll.materials.file import read_materials
+from viscoroll.materials.law_file import table_of
+from viscoroll.materials.law_table import law_table
 
-TABLE = Path(__file__).with_name("refusals.txt").read_text(encoding="utf-8")
+TABLE = Path(__file__).with_name("refusals.txt").read_text()
 LINES = [line for line in TABLE.splitlines() if line.strip() and not line.startswith("#")]
 V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
@@ -49,6 +53,8 @@ NAMES = vars(experiments) | {
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,
     "CYLINDER_FILE": ROLLER + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n",
     "read_body": read_body, "read_bodies": read_bodies, "read_materials": read_materials, "sample": sample,
+    "Steadiness": Steadiness, "Scale": Scale,
+    "law_table": law_table, "table_of": table_of,
     "SOFT": vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0),
     "STEEL": vr.Material.elastic(2e11, 0.3),
     "PAIR": lambda material, base: vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base).validity(1.0),

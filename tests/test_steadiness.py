@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import warnings
 from itertools import pairwise
 
@@ -14,8 +13,6 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from viscoroll.contact_law.steadiness import Steadiness
-from viscoroll.core.scale import Scale
 from viscoroll.motion import warned
 
 #: a fit of docs/examples/dma.csv, and a roller on it as of docs/may_i.md: 0.1 m, T_ref 3 s
@@ -61,18 +58,6 @@ def test_by_quadrature_of_N_and_M(scene, V):
     assert close(found.share, found.ten_percent.left / rest, rel=tol.STEADINESS)
 
 
-def test_the_numbers_that_were_measured():
-    """That roller from 1 m/s, as local_steadiness says: right to 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s."""
-    found = Steadiness.of(ROLLER.freely(30.0).scaled(Scale(R=0.1, T=3.0)))
-    assert close(found.value, 2.6e-4, rel=0.02)
-    assert close(found.whole, 14.04, rel=1e-3)
-    assert close(found.one_percent.speed, 0.14, rel=0.03)
-    assert close(found.ten_percent.speed, 0.039, rel=0.03)
-    assert close(found.start.way, 0.062, rel=0.01)
-    words = "14.03 m .* 1 % down to 0.14 m/s, to 10 % down to 0.04 m/s, after 25.5 s .* 0.002 m/s and 0.062 m of way"
-    assert re.search(words, found.sentence)
-
-
 @pytest.mark.parametrize("V", [30.0, 5.0])
 def test_a_start_from_rest_costs_an_energy(V):
     """W in closed form; the speed that is left, and the way from it."""
@@ -86,15 +71,12 @@ def test_a_start_from_rest_costs_an_energy(V):
 
 
 def test_slow_starts():
-    """Caught in its imprint from long rest; too slow at all, with the speed from which on it is not; at rest."""
-    found = ROLLER.validity(1.3).steady  # 0.043 m/s
-    assert "would hold it in its imprint" in found.sentence
+    """Too slow at all, with the speed from which on it is not; at rest."""
     slow = ROLLER.validity(1.0).steady
     assert not slow.holds
     assert slow.ten_percent.way == slow.ten_percent.time == 0.0
     assert slow.share == 1.0
     assert close(slow.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, rel=tol.STEADINESS)
-    assert "faster than 1.2 V is right to 10 %" in slow.sentence
     assert ROLLER.validity([0.0, 0.0]).steady[:2] == (None, None)
     assert ROLLER.validity([0.0, 30.0]).steady.value[0] == 0.0
 
@@ -113,7 +95,7 @@ def test_no_relaxation_time_bounds_it():
 
 
 def test_each_of_many_is_as_alone():
-    """Speeds, gammas, alphas, a material each, some of them elastic; a million speeds."""
+    """Speeds, gammas, alphas, a material each, some of them elastic."""
     V, gamma = np.array([3.0, 0.3, 30.0]), np.array([10.0, 500.0, 2.0])
     series = vr.Prony(np.array([[1.0, 2.0], [3.0, 0.5], [0.0, 0.0]]), [1.0, 1e-2])
     pairs = vr.Bodies(series, DMA, np.array([0.2, 0.5, 0.5]))
@@ -128,9 +110,6 @@ def test_each_of_many_is_as_alone():
             for name in ("one_percent", "ten_percent", "start"):
                 for some, alone in zip(getattr(found.steady, name), getattr(one.steady, name), strict=True):
                     assert close(some[n], alone, rel=tol.STEADINESS) or some[n] == alone == np.inf
-    V = np.geomspace(1.0, 1e3, 100_000)
-    many = ROLLER.validity(V).steady
-    assert np.array_equal(many.holds, many.ten_percent.speed[0] <= V)
 
 
 def test_beyond_all_bounds():
@@ -139,8 +118,6 @@ def test_beyond_all_bounds():
     for each in (found.value, found.whole, found.share, *found.one_percent, *found.ten_percent, *found.start):
         assert not np.isnan(each).any()
     assert found.share[-1] == 0.0
-    assert vr.Scene(1.0, 29.1, 0.2, 1e9).validity(0.1).steady.value == 0.0
-    assert "rolls for ever" in vr.Scene(1.0, 29.1, 0.2, 1e9).validity(0.1).steady.sentence
 
 
 def test_along_a_motion():
@@ -151,15 +128,11 @@ def test_along_a_motion():
     assert close(found.value, np.maximum.accumulate(abs(law(ROLLER, m.V)[0])), rel=tol.STEADINESS)
     assert close(found.share, ROLLER.validity(30.0).steady.share, rel=0.02)
     assert close(found.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, rel=tol.STEADINESS)
-    assert vr.roll(ROLLER, 30.0, 30.0, t[:200]).validity().steady.holds.all()
-    slides = thrown.validity().steady.value[t < thrown.onset_time]
-    assert slides.size
-    assert not slides.any()
+    assert not thrown.validity().steady.value[t < thrown.onset_time].any()
     many = vr.ensemble(ROLLER, [30.0, 30.0], [30.0, 0.0], t).validity().steady
     alone = [each.validity().steady for each in (m, thrown)]
     assert close(many.value, [each.value[-1] for each in alone], rel=tol.STEADINESS)
     assert close(many.share, [each.share for each in alone], rel=1e-3, scale=1.0)
-    assert "0.12 % of the way lies below" in found.sentence
 
 
 # --- warnings of roll and ensemble ---

@@ -11,7 +11,7 @@ import viscoroll as vr
 
 def test_checkers_and_python_see_the_same_names():
     """``__init__.pyi`` names for the one what ``__init__.py`` loads for the other."""
-    stub = ast.parse((ROOT / "src/viscoroll/__init__.pyi").read_text(encoding="utf-8"))
+    stub = ast.parse((ROOT / "src/viscoroll/__init__.pyi").read_text())
     homes = {}
     for node in stub.body:
         if isinstance(node, ast.ImportFrom):

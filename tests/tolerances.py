@@ -9,9 +9,6 @@ DIRECT_TRACTION = 4e-13
 #: Q itself at |delta| below 1e-4 delta_star, as the difference of M/2 and a force: rounding of M and of omega - V over
 #: Q; measured 4e-13.  A slope in place of a mean one is off by 2e-7 and more.
 SMALL_TRACTION = 1e-11
-#: lam and epsilon from their limits at kappa V <= 1e-12 or >= 1e12: the limits' own error, c kappa V or
-#: alpha/(kappa V) ln; measured 8e-10.
-DIRECT_EXTREME = 1e-8
 
 # --- contact_law/stress.py (test_stress.py) ---
 #: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
@@ -50,9 +47,6 @@ RATIO_COMPLEMENT_ULP = 4.0
 # --- contact_law/contact.py (test_contact.py) ---
 #: A state by the rows of its law against 50 digits, relative: delta_star, Q and M; measured 3e-15 over 900 states.
 CONTACT = 5e-15
-#: lam and zeta, and beta times 1/(1 - s), and epsilon: 24 powers leave so much of lam and epsilon in one octave for
-#: alpha from 20 to 35; measured 1.0e-14 and 2.0e-14 there, 2e-15 and 5e-15 elsewhere.
-CONTACT_LENGTH, CONTACT_SHIFT = 1.5e-14, 3e-14
 #: Carter's closed forms at alpha = 1: two or three roundings.
 CARTER = 1e-15
 #: Values at kappa V = 1e-12 and V = 1e14 from their limits: the limits' own error, kappa V and alpha^2/V; measured
@@ -90,8 +84,6 @@ CLI_EDGE = 1e-7
 #: Added to a field of a table so that ``tables validate`` must find it: beyond every interpolation error of the
 #: small tables of the test.
 CLI_WRONG = 0.1
-
-# --- documentation and the measuring stage (test_readme.py) ---
 
 # --- motion (test_motion.py) ---
 #: section5.csv: V and omega, as measured against rtol 1e-11 here. The file's own error: late in a motion it carries
@@ -143,8 +135,6 @@ BENCH_PEER = 0.2
 BENCH_REFERENCE = 1e-9
 #: A number in six digits, and what depends on such a one.
 SIX_DIGITS = 1e-5
-#: Share of random starts that the paper's flow map does not hold: those that stick at hardly any speed.
-BENCH_NOT_IN_MAP = 0.01
 
 # --- flow map (test_flow.py) ---
 #: V and omega of a scene, over the larger of the two: four times the worst of 100 motions; measured 5.8e-10.
@@ -168,7 +158,7 @@ ROUNDING_MODE_MOTION = 1e-8
 #: Bytes that a call may take whatever its size: blocks, threads, the allocator; measured 4e6.
 MEMORY_SLACK = 8_000_000
 
-# --- proofs and check values (test_prove.py) ---
+# --- nasty starts (test_nasty_starts.py) ---
 #: What the last subnormals cannot hold: a few of their spacings.
 PROVEN_SUBNORMAL = 4e-323
 
@@ -195,8 +185,6 @@ HALF_SPACE_CODE_P = 1.15e-4
 #: tau of the half-space code relative to mu p_max, worst cell (the one that holds the edge): 3.7e-3 by the README,
 #: 3.71e-3 measured.
 HALF_SPACE_CODE_TAU = 3.8e-3
-#: the same, root mean square; measured 4.16e-4.
-HALF_SPACE_CODE_TAU_RMS = 4.2e-4
 #: numbers that the paper prints, in units of their last digit; measured 1.1 in kappa, which is 2.921 by the paper's
 #: own list in SI units and printed 2.91.
 PAPER_DIGITS = 1.2
@@ -252,8 +240,6 @@ UNIT = 1e-12
 SERIES_SLOPE = 2e-11
 #: States and stresses by the modes against those by rows; the equation of the length.
 SERIES_STATES = 1e-12
-#: Integrals of stresses by 2,000 points; the layer at the front of a broad material is what they see least of.
-SERIES_STRESS = 1e-6
 #: Speeds at which slip returns, known to three digits from another program.
 SERIES_BANDS = 1e-3
 #: Moments of two bodies: sums over modes of positive terms, and one table.
@@ -279,12 +265,6 @@ STEADY_BETA = 1e-9
 STEADY_DETERMINANT = 1e-11
 #: Where motions from rest end at rtol 1e-10: measured 6e-14.
 STEADY_SETTLED = 1e-9
-#: Growth beside a saddle in a linearisation, 1e-6 aside.
-STEADY_REPELLED = 1e-4
-#: Slow rolling at a load of 1e-6, and a slope of 1e-6, from their limits: the next term, of kappa V.
-STEADY_SLOW_RATE = STEADY_FAINT = 1e-4
-#: V on a curve tilted so that it meets the load at a small angle, 1 % of M'.
-STEADY_CONTROLLED = 1e-9
 #: Residuals of equilibria with feedback on omega, by the contact law at a rounded omega; measured below 1e-12.
 STEADY_SCAN = 1e-10
 #: grip = 1 - |Q|/mu: rounding of Q/mu.
@@ -335,8 +315,6 @@ DMA_SHIFT_NOISY = 0.02
 SI_MOTION = 1e-12
 #: The same on a slope, where kappa is rounded by another way and brake and reversals magnify it; measured 3e-12.
 SI_TILTED = 3e-11
-#: Work against kinetic energy and losses, over the largest work, at rtol 1e-8; measured 4.7e-10.
-SI_ENERGY = 1e-8
 #: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8; measured 5e-14.
 SI_TERMINAL = 1e-11
 #: Trapezoids over 2e4 points, square roots at both ends of the contact: (2/2e4)^1.5.
@@ -344,7 +322,7 @@ SI_INTEGRAL = 1e-5
 #: Motions of an ensemble against roll at rtol 1e-8: equal steps, other rounding of inputs.
 SI_ENSEMBLE = 1e-9
 
-# --- driven runs in SI units (test_run_drives.py) ---
+# --- runs in SI units (test_run_files.py) ---
 #: A motion of a run, in seconds, against that of its roller, in T_epsilon, at rtol 1e-8, over the largest value: other
 #: units of time round otherwise, and may step otherwise; measured 1.4e-10.
 RUN_SI = 1e-8
@@ -352,8 +330,6 @@ RUN_SI = 1e-8
 # --- driven motions (motion/test_drive.py) ---
 #: The general method against that of free motions, both at 1e-10.
 DRIVE_FREE = 3e-9
-#: Q next to V = 0, a share of 1e-9 of the time away from it.
-DRIVE_TURN = 1e-6
 
 # --- examples of the bound law (docs/test_examples.py) ---
 #: V and omega by SciPy's Radau at rtol 1e-8 against roll; measured 3.7e-10.

@@ -6,10 +6,9 @@ import json
 import subprocess
 import sys
 import time
-import tomllib
 
 import pytest
-from places import DOCS, PIPELINE, RESULTS
+from places import DOCS, full_sizes, kept
 from processes import made
 
 from viscoroll.io.runs import read_run, run_ensemble
@@ -20,8 +19,8 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     pytest.importorskip("distributed")
     import psutil
 
-    text = (DOCS / "examples/ensemble.toml").read_text(encoding="utf-8").replace("20_000", "1_200\nblock = 100")
-    (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+    text = (DOCS / "examples/ensemble.toml").read_text().replace("20_000", "1_200\nblock = 100")
+    (tmp_path / "run.toml").write_text(text)
     alone, store = tmp_path / "alone.zarr", tmp_path / "store.zarr"
     run_ensemble(read_run(tmp_path / "run.toml"), alone)
     options = ["--cluster", "local", "--threads", "2"]
@@ -41,15 +40,13 @@ def test_a_cluster_gives_the_same_files(tmp_path):
 def test_stages_run(tmp_path, name, key):
     options = ["--only", "ensembles"] if name == "evidence.torture" else []
     made(name, *options, "--quick", "-o", tmp_path / "results.json")
-    assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))[key]
+    assert json.loads((tmp_path / "results.json").read_text())[key]
 
 
 def test_committed_figures():
     """10^8 motions of a scene, and 10^6 with seven uncertain inputs, in a minute of two free cores and 1 GB."""
-    committed = json.loads((RESULTS / "ensembles.json").read_text(encoding="utf-8"))
-    section = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8"))["ensembles"]
-    del section["quick"]
-    assert committed["sizes"] == section
+    committed = kept("ensembles.json")
+    assert committed["sizes"] == full_sizes("ensembles")
     for name in ("100000000 motions of a scene", "1000000 motions, seven uncertain inputs"):
         assert committed["rows"][name]["cpu_s"] / committed["threads"] < 60.0
         assert committed["rows"][name]["peak_mb"] < 1000.0

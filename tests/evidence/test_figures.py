@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import runpy
 from html import escape
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +22,6 @@ from viscoroll.core.plots.style import save
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-PNG = b"\x89PNG\r\n\x1a\n"
-NAMES = {
-    "figure-2", "figure-3", "figure-5", "figure-6", "figure-7", "phase-portrait", "ensemble",
-    "rolling-resistance", "rolling-equilibria", "law-of-modes", "law-of-pairs", "broad-stresses",
-    "wheel-spin", "reversal", "slope", "geometry",
-}  # fmt: skip
-
 
 @pytest.fixture(scope="module")
 def drawn() -> dict[str, Figure]:
@@ -38,14 +31,15 @@ def drawn() -> dict[str, Figure]:
     return {name: draw(*given.get(name, ())) for name, draw in FIGURES.items()}
 
 
-def test_titled_and_labelled(drawn):
-    assert set(drawn) == NAMES
+def test_labelled_and_saved_without_a_warning(drawn, tmp_path):
+    assert drawn.keys() == {name for figures in SECTIONS.values() for name in figures}
     for name, figure in drawn.items():
         panels = [axes for axes in figure.axes if axes.get_label() != "<colorbar>" and axes.axison]
         assert any(axes.get_xlabel() for axes in panels), name
         for axes in panels:
-            shared_below = axes.get_shared_x_axes().get_siblings(axes) != [axes]
-            assert axes.get_xlabel() or shared_below, name
+            assert axes.get_xlabel() or axes.get_shared_x_axes().get_siblings(axes) != [axes], name
+        save(figure, tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
 
 
 def test_the_separatrix_parts_what_settles_from_what_runs_away():
@@ -54,13 +48,6 @@ def test_the_separatrix_parts_what_settles_from_what_runs_away():
     for side in (-1e-4, 1e-4):
         end = vr.ensemble(scene, V + side, omega, 1000.0 / scene.gamma, slope=slope).V[:, 0]
         assert (side * (end - page["saddle"]) > 0.1 * abs(side)).all()
-
-
-def test_saved_without_a_warning(drawn, tmp_path):
-    for name, figure in drawn.items():
-        save(figure, tmp_path / f"{name}.png")
-        assert (tmp_path / f"{name}.png").read_bytes().startswith(PNG), name
-    assert {item.stem for item in tmp_path.iterdir()} == NAMES
 
 
 # --- pipeline: motions, ensemble, figures, summary ---
@@ -115,33 +102,12 @@ for name in ("offline", "runtime", "ensemble", "validate", "benchmark", "figures
 """
 
 
-class Page(HTMLParser):
-    """Tags that are open, and where links and pictures point."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.links: list[str] = []
-        self.pictures = 0
-
-    def handle_starttag(self, tag, attrs):
-        if tag == "img":
-            self.pictures += dict(attrs)["src"].startswith("data:image/png;base64,")
-        elif tag != "meta":
-            self.open.append(tag)
-        if tag == "a":
-            self.links.append(dict(attrs)["href"])
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory) -> tuple[Path, Path]:
     """Configuration and output folder of a small run of every stage."""
     folder = tmp_path_factory.mktemp("demo")
     config, out = folder / "small.toml", folder / "out"
-    config.write_text(_SMALL.format(law=folder / "paper.nc"), encoding="utf-8")
+    config.write_text(_SMALL.format(law=folder / "paper.nc"))
     printed(_STAGES, folder, "--config", config, "-o", out)
     return config, out
 
@@ -149,10 +115,8 @@ def demo(tmp_path_factory) -> tuple[Path, Path]:
 def test_stages_leave_records(demo):
     _, out = demo
     for name in ("offline", "runtime", "ensemble", "validate", "benchmark", "figures"):
-        record = json.loads((out / f"stages/{name}.json").read_text(encoding="utf-8"))
-        assert record["stage"] == name
-        assert record["seconds"] >= 0.0
-        assert not record["failed"]
+        record = json.loads((out / f"stages/{name}.json").read_text())
+        assert (record["stage"], bool(record["failed"])) == (name, False)
         assert all((out / file).exists() for file in record["files"])
 
 
@@ -161,22 +125,20 @@ def test_motions_from_the_file_are_those_of_root_solves(demo):
     errors = [float(row["error"]) for row in rows]
     assert [row["law by"].split()[0] for row in rows] == ["roll", "the", "vr.law,", "splines"]
     assert 0.0 < max(errors[:3]) < tol.DEMO_FILE < errors[3]
-    page = (demo[1] / "index.html").read_text(encoding="utf-8")
+    page = (demo[1] / "index.html").read_text()
     assert all(f"<td>{escape(row['law by'])}</td>" in page for row in rows)
 
 
 def test_summary_page(demo):
     config, out = demo
-    page, text = Page(), (out / "index.html").read_text(encoding="utf-8")
-    page.feed(text)
-    assert {name for figures in SECTIONS.values() for name in figures} == NAMES
+    text = (out / "index.html").read_text()
+    links = set(re.findall('href="([^"]+)"', text))
     assert all(escape(caption) in text for figures in SECTIONS.values() for caption in figures.values())
     assert text.index("preset paper-section-5") < text.index("Three throws") < text.index("How long it took")
     assert "too slow for the law of steady rolling to drive a motion" in text
-    assert page.open == []
-    assert page.pictures == len(NAMES) + 1  # and the benchmark's
-    assert {"ensemble.nc", "validation.nc", "validation.txt"} <= set(page.links)
-    assert all((out / target).exists() for target in page.links)
+    assert text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1  # and the benchmark's
+    assert {"ensemble.nc", "validation.nc", "validation.txt"} <= links
+    assert all((out / target).exists() for target in links)
     before = (out / "index.html").stat().st_mtime_ns
     shown = made("report", "--config", config, "-o", out, "--show")
     assert (out / "index.html").stat().st_mtime_ns == before
@@ -185,12 +147,12 @@ def test_summary_page(demo):
 
 
 def test_stage_refuses_in_one_line(demo, tmp_path):
-    config, small = tmp_path / "bad.toml", demo[0].read_text(encoding="utf-8")
+    config, small = tmp_path / "bad.toml", demo[0].read_text()
     for name, old, new, words in (
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
         ("ensemble", '"paper-section-5-rounded"', '"paper"', "preset: 'paper' is not"),
         ("report", "[report]", "[report", "is not TOML"),
     ):
-        config.write_text(small.replace(old, new), encoding="utf-8")
+        config.write_text(small.replace(old, new))
         assert words in stage_refused(name, "--config", config, "-o", tmp_path / "out")

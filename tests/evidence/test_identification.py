@@ -8,17 +8,17 @@ import numpy as np
 import tolerances as tol
 from closeness import close
 from experiments import TRUTH, ranges, roller, traction
-from places import RESULTS
+from places import kept
 from processes import made
 
 import viscoroll as vr
-from pipeline.evidence.measure.identification import COVERAGE, PARTS, complaint
+from pipeline.evidence.measure.identification import PARTS, complaint
 from pipeline.evidence.results import rows_of
 
 
 def test_stage_plans_an_experiment(tmp_path):
     made("evidence.measure.identification", "--quick", "--only", "learn", "-o", tmp_path / "identification.json")
-    (row, *_) = json.loads((tmp_path / "identification.json").read_text(encoding="utf-8"))["parts"]["learn"]["rows"]
+    (row, *_) = json.loads((tmp_path / "identification.json").read_text())["parts"]["learn"]["rows"]
     committed = committed_rows("learn")[0]
     found, known = row.pop("unknowns"), committed.pop("unknowns")
     assert row == committed
@@ -28,24 +28,14 @@ def test_stage_plans_an_experiment(tmp_path):
 
 
 def committed_rows(part: str) -> list[dict]:
-    return json.loads((RESULTS / "identification.json").read_text(encoding="utf-8"))["parts"][part]["rows"]
+    return kept("identification.json")["parts"][part]["rows"]
 
 
 def test_committed_numbers_hold():
-    parts = json.loads((RESULTS / "identification.json").read_text(encoding="utf-8"))["parts"]
+    parts = kept("identification.json")["parts"]
     assert parts.keys() <= PARTS.keys()
     assert [text for row in rows_of(parts) if (text := complaint(row))] == []
     assert len(committed_rows("said")) == 6
-
-
-def test_a_row_beyond_its_bound_is_told():
-    low, high = COVERAGE
-    row = {"experiment": "M over the hump", "sets": 200, "held": {"E": 0.95, "T_ref": high + 0.01}}
-    assert complaint(row) == "M over the hump: T_ref held by 99.0%"
-    assert complaint(row | {"held": {"E": low}}) is None
-    assert "90% of starts" in complaint({"experiment": "M over the hump", "reached": 0.9})
-    assert "3.0% of the width" in complaint({"experiment": "thrown", "off": 0.03})
-    assert "0.6 s a fit" in complaint({"case": "thrown", "fit_s": 0.6, "profiles_s": 2.0})
 
 
 # --- profiles of wide ranges take minutes ---

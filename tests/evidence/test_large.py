@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import importlib
-import json
 from pathlib import Path
 
 import pytest
 import tolerances as tol
-from places import RESULTS
+from places import kept
 from processes import printed
 
 
@@ -25,7 +24,7 @@ def test_large_arrays_in_bounded_memory(name):
 
 def test_committed_memory_is_bounded():
     """As measured at full size."""
-    rows = json.loads((RESULTS / "large.json").read_text(encoding="utf-8"))["rows"]
+    rows = kept("large.json")["rows"]
     assert max(row["elements"] for row in rows) == 100_000_000
     assert all(row["extra_bytes"] <= tol.MEMORY_SLACK for row in rows)
 

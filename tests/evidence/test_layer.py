@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from places import DOCS, RESULTS
+from places import DOCS, kept
 
 from pipeline.evidence.prove import layer
 from viscoroll.contact_law.assumptions import THICK_LIMIT
@@ -38,9 +37,9 @@ def test_a_thin_layer_is_a_foundation(nu):
 
 def test_the_page_states_what_is_kept():
     """And what is kept is what is computed; validity takes the least of the limits, rounded down."""
-    rows = json.loads((RESULTS / "layer.json").read_text(encoding="utf-8"))["rows"]
+    rows = kept("layer.json")["rows"]
     assert [row["nu"] for row in rows] == list(layer.RATIOS)
-    page = (DOCS / "may_i.md").read_text(encoding="utf-8")
+    page = (DOCS / "may_i.md").read_text()
     cells = [re.findall(r"[\d.]+", line) for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)]
     stated = [list(map(float, line)) for line in cells if len(line) == 2 + len(layer.LENGTHS)]
     assert stated == [[row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))] for row in rows]

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
-
 import tolerances as tol
-from places import RESULTS
+from places import kept
 
 from pipeline.evidence.mutate.mutants import MUTANTS
 
 
 def test_results_are_of_known_defects():
-    results = json.loads((RESULTS / "mutants.json").read_text(encoding="utf-8"))
+    results = kept("mutants.json")
     assert set(results) == {f"{mutant.file}: {mutant.old.strip()} -> {mutant.new.strip()}" for mutant in MUTANTS}
     survived = sum(result["outcome"] == "survived" for result in results.values())
     assert survived <= (1.0 - tol.MUTANTS_KILLED) * len(results)

@@ -7,7 +7,7 @@ import shutil
 
 import pytest
 import tolerances as tol
-from places import RESULTS
+from places import kept
 from processes import made, stage_refused
 
 MISSING = [name for name in ("chromium", "node", "cc") if shutil.which(name) is None]
@@ -16,14 +16,14 @@ MISSING = [name for name in ("chromium", "node", "cc") if shutil.which(name) is 
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed (make interop site-tools): {', '.join(MISSING)}")
 def test_stage_finds_the_law_in_every_program(tmp_path):
     made("evidence.measure.outside", "--quick", "-o", tmp_path / "outside.json")
-    found = json.loads((tmp_path / "outside.json").read_text(encoding="utf-8"))
+    found = json.loads((tmp_path / "outside.json").read_text())
     holds(found)
-    committed = json.loads((RESULTS / "outside.json").read_text(encoding="utf-8"))
+    committed = kept("outside.json")
     assert all(found[key].keys() == committed[key].keys() for key in ("page", "states"))
 
 
 def test_committed_numbers_hold():
-    committed = json.loads((RESULTS / "outside.json").read_text(encoding="utf-8"))
+    committed = kept("outside.json")
     holds(committed)
     assert committed["page"]["median_ms"] < 20.0
 

@@ -29,7 +29,7 @@ def test_the_packages_of_this_tree_pass(packages):
 def test_numbers_of_other_kernels_are_told(packages, tmp_path, monkeypatch):
     monkeypatch.setattr(release, "RESULTS", tmp_path)
     assert problems("measured numbers", packages) == ""
-    (tmp_path / "law.json").write_text('{"machine": {"kernels": "0123456789abcdef"}}', encoding="utf-8")
+    (tmp_path / "law.json").write_text('{"machine": {"kernels": "0123456789abcdef"}}')
     assert "law.json (01234567)" in problems("measured numbers", packages)
 
 

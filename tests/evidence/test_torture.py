@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import tomllib
 
 import pytest
-from places import PIPELINE, RESULTS
+from places import full_sizes, kept
 from processes import made
 
-COMMITTED = json.loads((RESULTS / "torture.json").read_text(encoding="utf-8"))
+COMMITTED = kept("torture.json")
 #: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
 SLOWEST, MOST_MEMORY = 5.0, 1000.0
 
@@ -18,7 +17,7 @@ SLOWEST, MOST_MEMORY = 5.0, 1000.0
 def quick(tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
     output = tmp_path_factory.mktemp("torture") / "torture.json"
     made("evidence.torture", "--quick", "--only", "tables", "-o", output)
-    return json.loads(output.read_text(encoding="utf-8"))["parts"]["tables"]["rows"]
+    return json.loads(output.read_text())["parts"]["tables"]["rows"]
 
 
 def test_nothing_goes_unnoticed(quick: list[dict]) -> None:
@@ -33,8 +32,7 @@ def test_damage_is_done(quick: list[dict]) -> None:
 
 
 def test_committed_results_are_of_the_long_run() -> None:
-    section = tomllib.loads((PIPELINE / "evidence/sizes.toml").read_text(encoding="utf-8"))["torture"]
-    del section["quick"]
+    section = full_sizes("torture")
     parts = COMMITTED["parts"]
     assert set(parts) == {"tables", "ensembles"}
     for name, part in parts.items():

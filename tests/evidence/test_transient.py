@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from places import kept
 
 import viscoroll as vr
 from pipeline.evidence.prove import unsteady
 from pipeline.evidence.prove.transient import BEHIND, Contact, grid
-from pipeline.evidence.results import RESULTS
 
 CELLS = grid(0.04)
 
@@ -49,7 +47,7 @@ def test_errors_and_ways_are_those_of_finer_cells(which, steady, rest):
 
 def test_the_added_mass_cuts_the_error():
     """Within 2 % of V up to an unsteadiness of 0.03, but while a start from rest lasts; a quarter of it up to 0.1."""
-    rows = json.loads((RESULTS / "transient.json").read_text())["rows"]
+    rows = kept("transient.json")["rows"]
     for start, lasts in (("steady", 0.0), ("rest", 0.3)):
         found = [e for row in rows for e in row[start]["e"]]
         assert all(abs(added) < 0.02 for level, _, added, time in found if level <= 0.03 and time >= lasts)

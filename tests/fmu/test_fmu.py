@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import shutil
+import sys
 from contextlib import contextmanager
 
 import numpy as np
@@ -140,11 +142,6 @@ def test_slopes_of_the_element_are_those_of_its_forces(built, v):
             assert close(column, quotient, rel=tol.FMU_QUOTIENTS, scale=np.abs(quotient).max()), name
 
 
-def test_no_contact_no_force(built):
-    with opened(built("alike", "ContactElement", 3), load=-5.0, v=1.0) as element:
-        assert not element.get(*OUTPUTS, "contact_length").any()
-
-
 #: thrown, and thrown the other way with a drive: V0, omega0, force on the axis, torque, over the weight
 THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
 
@@ -176,11 +173,10 @@ def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
     assert close(pulled["v"][1:], exact.V, rel=tol.FMU_FROM_REST)
 
 
-@pytest.mark.parametrize("version", [2, 3])
-def test_roller_by_an_integrator_of_the_tool(built, version):
+def test_roller_by_an_integrator_of_the_tool(built):
     cylinder, t = CYLINDERS["unlike"], np.linspace(0.0, 0.3, 4)
     found = fmpy.simulate_fmu(
-        built("unlike", "Roller", version), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
+        built("unlike", "Roller", 3), stop_time=t[-1], output_interval=t[1], fmi_type="ModelExchange",
         relative_tolerance=1e-8, output=["v", "omega"],
     )  # fmt: skip
     exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
@@ -211,8 +207,6 @@ def test_slopes_of_the_roller_are_those_of_its_rates(built):
 
 
 def _pointer(values):
-    import ctypes
-
     array = np.ascontiguousarray(values)
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), array.size
 
@@ -229,6 +223,8 @@ def test_adjoint_slopes_are_the_same(built):
 @pytest.mark.parametrize("version", [2, 3])
 def test_what_is_out_of_range_is_refused_in_words(built, version):
     with opened(built("alike", "ContactElement", version)) as element:
+        element.set(load=-5.0, v=1.0)
+        assert not element.get(*OUTPUTS, "contact_length").any()
         for given, said in (({"R": -1.0}, "R = -1: must be > 0"), ({"v": np.nan}, "v = nan: must be finite")):
             element.set(**given)
             with pytest.raises(fmpy.fmi1.FMICallException):
@@ -241,10 +237,13 @@ def test_what_is_out_of_range_is_refused_in_words(built, version):
         element.get("force")
 
 
-def test_program(tmp_path, capsys):
+def test_program(tmp_path):
+    """The same bytes for the same cylinder, so that they can be kept."""
     law, roller = tmp_path / "law.nc", tmp_path / "roller.fmu"
     vr.tables.save(vr.tables.law(CYLINDERS["unlike"].pair), law)
     assert main(["fmu", str(law), "-o", str(roller), "--fmi", "3"]) == 0
+    assert main(["fmu", str(law), "-o", str(tmp_path / "again.fmu"), "--fmi", "3"]) == 0
+    assert (tmp_path / "again.fmu").read_bytes() == roller.read_bytes()
     about = fmpy.read_model_description(str(roller))
     starts = {v.name: v.start for v in about.modelVariables}
     assert float(starts["E_prime"]) == CYLINDERS["unlike"].E_prime
@@ -252,13 +251,6 @@ def test_program(tmp_path, capsys):
     toml = "docs/examples/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
     assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"
-    assert "roller.fmu" in capsys.readouterr().out
-
-
-def test_same_cylinder_same_bytes(tmp_path):
-    for name in ("one.fmu", "other.fmu"):
-        fmu.build(CYLINDERS["alike"], tmp_path / name)
-    assert (tmp_path / "one.fmu").read_bytes() == (tmp_path / "other.fmu").read_bytes()
 
 
 @pytest.mark.parametrize("missing", ["fmpy", "cc"])
@@ -266,7 +258,7 @@ def test_what_is_missing_is_told(tmp_path, monkeypatch, capsys, missing):
     if missing == "cc":
         monkeypatch.setenv("PATH", str(tmp_path))
     else:
-        monkeypatch.setitem(__import__("sys").modules, "fmpy", None)
+        monkeypatch.setitem(sys.modules, "fmpy", None)
     with pytest.raises(MissingDependencyError, match=f"{missing}.* is not installed"):
         fmu.build(11.0, tmp_path / "a.fmu")
     assert main(["fmu", "docs/examples/rubber.toml", "-o", str(tmp_path / "a.fmu")]) == 2

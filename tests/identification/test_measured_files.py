@@ -42,7 +42,7 @@ def test_the_program_reports(folder, capsys):
     assert cli.main([*given, "-o", out[0], "--plot", out[1]]) == 0
     report = capsys.readouterr().out
     assert report.startswith("2 unknowns, 40 points; chi2 ")
-    found = json.loads((folder / "fit.json").read_text(encoding="utf-8"))
+    found = json.loads((folder / "fit.json").read_text())
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
     assert (folder / "fit.png").exists()
@@ -52,7 +52,7 @@ def test_the_program_reports(folder, capsys):
 
 def test_a_files_temperature_is_where_its_shift_is_one(folder):
     path = folder / "data.toml"
-    path.write_text(FILE.replace("temperature = 20.0\nwlf", "temperature = 60.0\nwlf"), encoding="utf-8")
+    path.write_text(FILE.replace("temperature = 20.0\nwlf", "temperature = 60.0\nwlf"))
     shift = read_measurements(path)["shift"]["material"]
     assert shift(60.0) == 1.0
     assert shift(20.0) == 1.0 / vr.WLF(T0=20.0)(60.0)

@@ -92,28 +92,18 @@ def test_an_array_is_its_members(name):
 
 
 def test_one_of_the_two_may_be_shared():
-    shared = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
-    assert (len(shared), shared.shape) == (2, (2,))
-    assert shared == vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
-    assert hash(shared) == hash(vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]))
+    """And an array of materials is a material."""
+    shared, again = (vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]) for _ in range(2))
+    assert (len(shared), shared.shape, vr.Prony([1.0], [1.0]).shape) == (2, (2,), ())
+    assert (shared, hash(shared)) == (again, hash(again))
+    assert isinstance(shared[:1], vr.Prony)
+    with pytest.raises(TypeError):
+        len(shared[0])
     assert vr.Prony([1.0, 2.0], [[1.0, 0.1], [2.0, 0.1]])[1] == vr.Prony([1.0, 2.0], [2.0, 0.1])
     near = vr.Prony.creep([[0.3, 0.6], [0.2, 0.7]], [1.0, 0.1], alpha=[10.0, 1.0 / (1.0 - 0.9)])
     assert near.alpha.tolist() == [10.0, 1.0 / (1.0 - 0.9)]
-    assert np.array_equal(shared.slower(2.0).alpha, shared.alpha)
     assert vr.Scene(material=shared, kappa=[[1.0], [2.0], [3.0]], mu=0.1).shape == (3, 2)
-    assert "2 series of 2 modes" in repr(shared)
-
-
-def test_arrays_of_materials_are_materials():
-    """They once were classes of their own, whose names nobody had given."""
-    many = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
-    pairs = vr.Bodies(many, vr.Prony.elastic())
-    assert isinstance(many, vr.Prony)
-    assert isinstance(many[:1], vr.Prony)
-    assert isinstance(pairs, vr.Bodies)
-    assert (vr.Prony([1.0], [1.0]).shape, many.shape, pairs.shape) == ((), (2,), (2,))
-    with pytest.raises(TypeError):
-        len(many[0])
+    assert vr.Bodies(shared, vr.Prony.elastic()).shape == (2,)
 
 
 def test_both_forms_of_many_are_those_of_each():

@@ -10,14 +10,6 @@ from viscoroll.materials.law_table import law_table
 SOFT = vr.Prony([2.0, 5.0], [1.0, 1e-3])
 
 
-def test_an_elastic_contact_is_closed_form():
-    for given in (1.0, vr.Prony.elastic(), vr.Bodies(vr.Prony.elastic(), vr.Prony.elastic(), 0.3)):
-        table = law_table(given)
-        assert table.coefficients.shape == (1, 24, 7)
-        assert table.coefficients[0, 0].tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]
-        assert not table.coefficients[0, 1:].any()
-
-
 def test_a_table_is_made_once_and_shared():
     with ThreadPoolExecutor(4) as pool:
         tables = [*pool.map(law_table, [vr.Prony([1.5, 0.25], [1.0, 0.125])] * 4)]

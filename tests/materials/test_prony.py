@@ -28,10 +28,9 @@ def random_series(modes: int, decades: float, size: float, seed: int) -> vr.Pron
 
 
 def test_one_mode_is_the_standard_linear_solid():
-    p = vr.Prony(E=[10.0], tau=[1.0 / 11.0])
-    assert close((p.alpha, p.J.item(), p.T.item()), (11.0, 10.0 / 11.0, 1.0), rel=tol.SERIES_FORMS)
-    back = vr.Prony.creep(J=[10.0 / 11.0], T=[1.0], alpha=11.0)
-    assert close((back.E.item(), back.tau.item()), (10.0, 1.0 / 11.0), rel=tol.SERIES_FORMS)
+    for p in vr.Prony(E=[10.0], tau=[1.0 / 11.0]), vr.Prony.creep(J=[10.0 / 11.0], T=[1.0], alpha=11.0):
+        found = p.alpha, *p.E, *p.tau, *p.J, *p.T
+        assert close(found, (11.0, 10.0, 1.0 / 11.0, 10.0 / 11.0, 1.0), rel=tol.SERIES_FORMS)
 
 
 @settings(max_examples=60, deadline=None)
@@ -59,14 +58,8 @@ def test_nothing_given_is_rescaled():
     assert vr.Prony.elastic().alpha == 1.0
 
 
-# --- the functions of z ---
-
-
 def scene(material: vr.Prony, **changes: float) -> vr.Scene:
     return vr.Scene(material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes))
-
-
-# --- contact and stress ---
 
 
 @pytest.mark.parametrize("unit", [2.0**40, 3.7e-9])
@@ -84,49 +77,17 @@ def test_the_unit_of_time_is_free(unit):
     assert close(there.dQ_dV / unit, here.dQ_dV, rel=tol.SERIES_SLOPE, scale=0.3 / V)
 
 
-@pytest.mark.parametrize("V", [1e-3, 3.0])
-def test_stresses_close(V):
-    """Int p = P, Int tau = Q, and 0 <= tau <= mu p."""
-    state = vr.contact(scene(WIDE), V, delta=2e-3)
-    rear, front = 0.5 * state.lam * (state.epsilon - 1.0), 0.5 * state.lam * (state.epsilon + 1.0)
-    x, weight = np.polynomial.legendre.leggauss(1000)
-    load = traction = 0.0
-    for low, high in ((rear, front - state.beta * state.lam), (front - state.beta * state.lam, front)):
-        # stresses go as a root at the ends of the zones
-        at = 0.5 * (low + high) + 0.5 * (high - low) * np.sin(0.5 * np.pi * x)
-        per = 0.25 * np.pi * (high - low) * np.cos(0.5 * np.pi * x) * weight
-        found = vr.stress(scene(WIDE), at, V, delta=2e-3)
-        load, traction = load + (found.p * per).sum(), traction + (found.tau * per).sum()
-        assert (found.tau >= 0.0).all()
-        assert (found.tau <= 0.3 * found.p * (1.0 + 1e-14)).all()
-    assert close(load, 1.0 / 320.0, rel=tol.SERIES_STRESS)  # P/(E' l0) = l0/(32 R)
-    assert close(traction / load, state.Q, rel=tol.SERIES_STRESS)
-
-
 # --- two bodies ---
 
 
-def shares(scene: vr.Scene, V: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    found = vr.contact(scene, V, delta=0.0, fields=("M_half_space", "M_cylinder", "M"))
-    return found.M_half_space, found.M_cylinder, found.M
-
-
-SPEEDS = np.geomspace(1e-6, 1e8, 60)
-
-
 def test_like_bodies_are_one_material():
-    p = vr.Prony([2.0, 5.0], [1.0, 1e-3])
-    assert scene(vr.Bodies(p, p)).like_bodies
-    half, other, M = shares(scene(vr.Bodies(p, p)), SPEEDS)
-    assert np.array_equal(half, other)
-    assert np.array_equal(M, vr.contact(scene(p), SPEEDS, delta=0.0, fields="M").M)
-    t = np.linspace(0.0, 1e-3, 5)
-    assert np.array_equal(vr.roll(scene(vr.Bodies(p, p)), 0.5, 0.4, t).V, vr.roll(scene(p), 0.5, 0.4, t).V)
-
-
-def test_two_elastic_bodies_take_nothing():
-    stiff = vr.Prony.elastic()
-    assert shares(scene(vr.Bodies(stiff, stiff, 0.3)), np.array([0.1])) == (0.0, 0.0, 0.0)
+    p, t = vr.Prony([2.0, 5.0], [1.0, 1e-3]), np.linspace(0.0, 1e-3, 5)
+    like, V = scene(vr.Bodies(p, p)), np.geomspace(1e-6, 1e8, 60)
+    assert like.like_bodies
+    found = vr.contact(like, V, delta=0.0, fields=("M_half_space", "M_cylinder", "M"))
+    assert np.array_equal(found.M_half_space, found.M_cylinder)
+    assert np.array_equal(found.M, vr.contact(scene(p), V, delta=0.0, fields="M").M)
+    assert np.array_equal(vr.roll(like, 0.5, 0.4, t).V, vr.roll(scene(p), 0.5, 0.4, t).V)
 
 
 PARTS = ("M_half_space", "M_cylinder")
@@ -142,15 +103,11 @@ def test_slopes_of_the_parts_of_M():
         size = abs(getattr(slopes, name)) / V
         difference = (getattr(above, name) - getattr(below, name)) / (2.0 * step)
         assert (abs(getattr(slopes, f"d{name}_dV") - difference) <= tol.BODIES_DIFFERENCE * size).all()
-    whole = slopes.dM_half_space_dV + slopes.dM_cylinder_dV
-    assert (abs(whole - slopes.dM_dV) <= tol.BODIES * slopes.M / V).all()
     rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
     half_space, cylinder = 0.7 * UNLIKE.base.T_mean, 0.3 * UNLIKE.cylinder.T_mean
     assert close((rest.dM_half_space_dV, rest.dM_cylinder_dV), (half_space, cylinder), rel=tol.BODIES)
     like = vr.contact(scene(WIDE), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV"))
     assert like.dM_cylinder_dV == 0.5 * like.dM_dV
-    with pytest.raises(AttributeError, match="not computed"):
-        vr.contact(scene(WIDE), 0.3, delta=0.0, slopes=True).dM_cylinder_dV  # noqa: B018
 
 
 @pytest.mark.parametrize("V", [1e130, 1e150, 1e200, 1e290])

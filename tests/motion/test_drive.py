@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from scipy.optimize import brentq
 
 import viscoroll as vr
 from pipeline.evidence.prove.motion import balance, speed_error
@@ -22,54 +21,16 @@ PAIR = vr.Bodies(cylinder=BROAD, base=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), s
 
 def test_how_a_schedule_is_written():
     """A number is a schedule of one piece; one cut in pieces, and a callable, are the same drive."""
-    m = vr.roll(ROLLER, 0.2, 0.2, T, torque=0.05)
-    piece = vr.roll(ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0], [0.05]))
-    assert np.array_equal(m.V, piece.V)
-    ramp = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=vr.Schedule([0.0, 8.0], [0.0, 0.08]))
-    cut = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=vr.Schedule([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08]))
-    called = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=lambda t: 0.01 * t)
-    assert speed_error(cut, ramp, so_far=True).max() <= 30e-9
-    assert speed_error(called, ramp, so_far=True).max() <= 30e-9
-    twice = vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
-    begun = T[T <= 2.0]
-    first = vr.roll(ROLLER, 0.2, 0.2, begun, rtol=1e-9, torque=0.01)
-    jumps = vr.roll(ROLLER, 0.2, 0.2, begun, rtol=1e-9, torque=vr.Schedule([0.0, 2.0, 2.0], [0.01, 0.01, 0.03]))
-    assert speed_error(first, jumps, so_far=True).max() <= 1e-9
-    assert twice.torque[T == 2.0] == 0.03  # the later side
-
-
-def test_jump_of_traction_where_V_passes_0_in_stick():
-    """Q jumps by -2 j |g| d/(1 + j)^2 to leading order (Q algebraic at V = 0); speeds only kink."""
-    q, j, kappa, mu = -0.28, SCENE.j, SCENE.kappa, SCENE.mu
-    m = vr.roll(SCENE, 0.5, 0.5, 8.0, rtol=1e-11, torque=q)
-    (turn,) = m.reversals
-    near = m.at([turn * (1.0 - 1e-9), turn * (1.0 + 1e-9)])
-    c = near.contact(fields=("Q",))
-
-    def traction(side):
-        """(1 + j) Q + j s d (Q + f) = q - j f, Q = 4 kappa d (1 - kappa |d|/mu)."""
-        law = lambda d: 4.0 * kappa * d * (1.0 - kappa * abs(d) / mu)  # noqa: E731
-        return law(brentq(lambda d: (1.0 + j) * law(d) + j * side * d * law(d) - q, -mu / 2 / kappa, mu / 2 / kappa))
-
-    assert close(c.Q, [traction(1.0), traction(-1.0)], rel=tol.DRIVE_TURN)
-
-
-def test_brake_holds_slips_and_lets_go():
-    """Locked while |Q + M/2| <= B, held at rest while |f| <= mu and |f + q| <= B, and away when the force is more."""
-    m = vr.roll(ROLLER, 0.5, 0.5, np.linspace(0.0, 10.0, 41), brake=0.5)
-    assert [s.regime for s in m.switches] == ["full slip", "locked", "held"]
-    assert not m.omega[m.regime == 3].any()
-    assert (m.V[m.regime == 3] > 0.0).all()
-    assert m.V[-1] == m.omega[-1] == 0.0
-    assert balance(m) <= 1e-7
-    slides = m.switches[1].t
-    c = m.at([slides * 1.01]).contact(fields=("Q", "M"))
-    assert abs(c.Q[0] + 0.5 * c.M[0]) <= 0.5
-    force = vr.Schedule([0.0, 10.0], [0.0, 0.2])
-    away = vr.roll(ROLLER, 0.0, 0.0, np.linspace(0.0, 10.0, 41), force=force, brake=0.1)
-    assert close(away.switches[0].t, 5.0, rel=1e-6)  # where the force exceeds the brake
-    assert not away.V[away.t < 5.0].any()
-    assert away.V[-1] > 0.0
+    number, piece = (vr.roll(ROLLER, 0.2, 0.2, T, torque=q).V for q in (0.05, vr.Schedule([0.0], [0.05])))
+    assert np.array_equal(number, piece)
+    cut = vr.Schedule([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08])
+    ramp, *others = (
+        vr.roll(ROLLER, 0.2, 0.2, T, rtol=1e-9, torque=q)
+        for q in (vr.Schedule([0.0, 8.0], [0.0, 0.08]), cut, lambda t: 0.01 * t)
+    )
+    assert all(speed_error(other, ramp, so_far=True).max() <= 30e-9 for other in others)
+    jumps = vr.roll(ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
+    assert jumps.torque[T == 2.0] == 0.03  # the later side
 
 
 @pytest.mark.parametrize("share", [0.7, 1.3])
@@ -116,14 +77,6 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
     assert m.V[-1] == 0.0
 
 
-def test_ten_humps_run_to_the_end():
-    modes = vr.Prony(E=[0.5 * 2.0**n for n in range(10)], tau=[100.0**-n for n in range(10)])
-    scene = vr.Scene(material=modes, kappa=10.0, mu=0.2, gamma=1.0, j=0.5)
-    m = vr.roll(scene, 1e6, 1e6, np.geomspace(1.0, 1e8, 30), rtol=1e-8, force=1e-3)
-    assert m.status == vr.MotionStatus.DONE
-    assert np.isfinite(m.V).all()
-
-
 def test_nothing_is_no_drive():
     """Zeros, however they are written: the integrator of free motions, and its bits; arrays of them count motions."""
     free = vr.roll(ROLLER, 1.5, 0.5, T)
@@ -132,9 +85,7 @@ def test_nothing_is_no_drive():
         assert np.array_equal(m.V, free.V)
         assert m.steps == free.steps
         assert not m.drive.given
-    many = vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields=("V", "force", "brake_loss"))
-    assert many.force.shape == many.V.shape
-    assert not many.force.any()
+    assert not vr.ensemble(ROLLER, [0.1, 0.2], 0.1, T, fields="force").force.any()
     for nothing in ({"force": np.zeros(3)}, {"slope": [0.0, 0.0, 0.0]}, {"brake": np.zeros(3)}):
         e = vr.ensemble(ROLLER, 1.5, 0.5, T, **nothing)
         assert len(e) == 3
@@ -175,26 +126,13 @@ def test_small_beginnings():
     assert (balanced.regime == 2).all()
 
 
-def test_a_ramp_whose_start_is_rounding():
-    """A start of 1e-18 of what the ramp reaches is 0: the motion does not set out the other way and turn at once."""
-    plain = vr.roll(vr.presets.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=vr.Schedule([0.0, 1e-3], [0.0, 0.2]))
-    for first in (-1e-18, 1e-18, -1e-15):
-        m = vr.roll(vr.presets.PAPER_SECTION_5, 0.0, 0.0, [1e-3], torque=lambda t, first=first: first + 200.0 * t)
-        assert m.status == vr.MotionStatus.DONE
-        assert m.steps <= 2 * plain.steps
-        assert close(m.V[-1], plain.V[-1], rel=30e-8)
-
-
 def test_a_drag_is_a_torque_that_grows_with_omega():
     """The same bits as by feedback, of a scene, of a cylinder in its units, and of one motion in each of many."""
     scene, c = vr.presets.RUBBER_ROLLER, 3e-4
     by_drag = vr.roll(scene, 2.0, 0.5, [1.0, 5.0], torque=0.01, drag=c)
     by_feedback = vr.roll(scene, 2.0, 0.5, [1.0, 5.0], torque=vr.Feedback(0.01, omega=-c))
     assert np.array_equal(by_drag.omega, by_feedback.omega)
-    assert np.array_equal(by_drag.torque, by_feedback.torque)
-    cylinder = vr.presets.RUBBER_CYLINDER
-    coast = cylinder.roll(2.0, 20.0, 3.0, drag=0.05)
-    assert coast.omega[-1] < cylinder.roll(2.0, 20.0, 3.0).omega[-1]
+    coast = vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, 3.0, drag=0.05)
     assert close(coast.torque[-1], -0.05 * coast.omega[-1], rel=tol.SCENE)
     many = vr.ensemble(scene, 2.0, 0.5, [1.0, 5.0], torque=0.01, drag=[0.0, c])
     assert np.array_equal(many.V[1], by_drag.V)

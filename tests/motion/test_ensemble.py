@@ -38,6 +38,7 @@ def equal(a, b) -> bool:
 RUBBER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=18.0, j=0.5)
 SOFT = vr.Prony(np.stack([np.ones(40), np.linspace(2.0, 4.0, 40)], axis=1), [1.0, 0.1])
 TORQUE = np.linspace(-0.2, 0.2, 40)
+THROWN = (np.linspace(1.0, 1.5, 40), np.zeros(40)), np.linspace(0.0, 3.5, 8), {"unsteady": True}
 #: scenes, starts, times, and what acts; what is an array is of each
 MANY = {
     "one scene": (SCENE, starts(40), T, {}),
@@ -47,15 +48,9 @@ MANY = {
         {"torque": vr.Schedule([0.0, 8.0], np.stack([TORQUE, 0.5 * TORQUE], axis=1)), "force": 0.01},
     ),
     "tilted": (RUBBER, (np.zeros(40), np.zeros(40)), np.linspace(0.0, 8.0, 9), {"slope": 0.1 * TORQUE}),
-    "unsteady": (RUBBER, (np.linspace(1.0, 1.5, 40), np.zeros(40)), np.linspace(0.0, 3.5, 8), {"unsteady": True}),
-    "unsteady, an alpha each": (
-        RUBBER.replace(alpha=np.linspace(5.0, 9.0, 40)), (np.linspace(1.0, 1.5, 40), np.zeros(40)),
-        np.linspace(0.0, 3.5, 8), {"unsteady": True},
-    ),
-    "unsteady, a series each": (
-        RUBBER.replace(material=SOFT), (np.linspace(1.0, 1.5, 40), np.zeros(40)), np.linspace(0.0, 3.5, 8),
-        {"unsteady": True},
-    ),
+    "unsteady": (RUBBER, *THROWN),
+    "unsteady, an alpha each": (RUBBER.replace(alpha=np.linspace(5.0, 9.0, 40)), *THROWN),
+    "unsteady, a series each": (RUBBER.replace(material=SOFT), *THROWN),
 }  # fmt: skip
 
 
@@ -104,9 +99,6 @@ def test_progress_bar_only_when_it_takes_long(capsys, monkeypatch):
     assert "motions" in capsys.readouterr().err
 
 
-# --- energy ---
-
-
 # --- what a result holds ---
 
 
@@ -115,14 +107,11 @@ def test_shapes_and_fields():
     result = vr.ensemble(SCENE, V0, omega0, T)
     assert result.V.shape == result.omega.shape == result.x.shape == (5, 7)
     assert result.angle is result.delta is result.regime is None
-    assert result.onset_time.shape == result.status.shape == (5,)
-    assert len(result) == 5
+    assert len(result) == result.onset_time.size == 5
     only = vr.ensemble(SCENE, V0, omega0, T, fields="angle")
     assert only.V is None
     assert equal(only.angle, vr.ensemble(SCENE, V0, omega0, T, fields=FIELDS).angle)
-    final = vr.ensemble(SCENE, V0, omega0, 3e-3)
-    assert final.t.tolist() == [3e-3]
-    assert equal(final.V[:, 0], result.V[:, -1])
+    assert equal(vr.ensemble(SCENE, V0, omega0, 3e-3).V[:, 0], result.V[:, -1])
 
 
 def test_a_regime_that_was_not_reached_is_no_full_slip():
@@ -137,17 +126,11 @@ def test_a_regime_that_was_not_reached_is_no_full_slip():
 def test_status_and_messages():
     V0, omega0 = starts(20)
     tiny = vr.ensemble(SCENE, V0, omega0, T, max_steps=8)
-    assert set(tiny.status) == {vr.MotionStatus.DONE, vr.MotionStatus.STEP_LIMIT}
-    words = tiny.messages()
-    assert sum(words.values()) == 20
-    assert words[vr.MotionStatus.STEP_LIMIT.message] == 19  # all but the one at rest
-    limited = tiny.status == vr.MotionStatus.STEP_LIMIT
-    assert np.all(np.isnan(tiny.V[limited, -1]))
-    assert np.all(np.isfinite(tiny.V[limited, 0]))
+    assert tiny.messages()[vr.MotionStatus.STEP_LIMIT.message] == 19  # all but the one at rest
+    assert np.isnan(tiny.V[:, -1]).sum() == 19
     resting = vr.ensemble(SCENE, V0, omega0, [1e-2], rest=1e-3)
     assert resting.messages() == {vr.MotionStatus.RESTED.message: 20}
-    assert np.all(resting.rest_time < 1e-2)
-    assert np.all(resting.V == 0.0)
+    assert not resting.V.any()
 
 
 def test_summary():

@@ -19,20 +19,15 @@ END = 20.0
 CALLABLES: dict[str, Any] = {
     "tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 0.02)),
     "steep tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 1e-6)),
-    "erf": lambda t: 0.05 * (1.0 + math.erf((t - 1.0) / 0.02)),
     "Gauss pulse": lambda t: 0.1 * math.exp(-(((t - 3.0) / 0.1) ** 2)),
-    "short Gauss pulse": lambda t: 0.1 * math.exp(-(((t - 3.0) / 0.01) ** 2)),
     "exp(-1/t)": lambda t: 0.05 * math.exp(-1.0 / t) if t > 0.0 else 0.0,
-    "eighth power": lambda t: 0.1 * (t / END) ** 8,
     "sine": lambda t: 0.1 * math.sin(2.0 * math.pi * t),
     "half waves": lambda t: 0.1 * max(0.0, math.sin(t)),
     "cubes": lambda t: max(0.0, math.sin(t) - 0.5) ** 3,
     "chain": lambda t: float(np.interp(t, [0.0, 1.0, 2.0, 7.0], [0.0, 0.1, -0.02, 0.05])),
     "root": lambda t: 0.02 * math.sqrt(t),
     "jump": lambda t: 0.1 * (t > 0.3),
-    "jump at 0": lambda t: 0.1 * (t > 0.0),
     "square wave": lambda t: 0.1 * math.copysign(1.0, math.sin(3.0 * t)),
-    "stairs": lambda t: 0.01 * math.floor(t),
 }
 RTOLS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-12)
 
@@ -92,7 +87,7 @@ def course(m: Any) -> np.ndarray:
 
 def table(name: str) -> vr.Schedule:
     """A callable as values at times that lie close where it is steep."""
-    near = {"tanh": (1.0, 0.4), "erf": (1.0, 0.15), "Gauss pulse": (3.0, 0.6)}.get(name)
+    near = {"tanh": (1.0, 0.4), "Gauss pulse": (3.0, 0.6)}.get(name)
     t = np.linspace(0.0, END, 4001)
     if near:
         t = np.unique(np.r_[t, np.linspace(near[0] - near[1], near[0] + near[1], 6001)])
@@ -100,7 +95,7 @@ def table(name: str) -> vr.Schedule:
 
 
 @pytest.mark.parametrize("start", [0.0, 0.5])
-@pytest.mark.parametrize("name", ["tanh", "erf", "Gauss pulse", "exp(-1/t)", "cubes"])
+@pytest.mark.parametrize("name", ["tanh", "Gauss pulse", "exp(-1/t)", "cubes"])
 def test_motions_under_callables_are_those_under_tables(name, start):
     """At every tolerance, from rest and not."""
     t = np.linspace(0.0, END, 41)
@@ -113,7 +108,7 @@ def test_motions_under_callables_are_those_under_tables(name, start):
         assert close(course(m), course(best), rel=max(30.0 * rtol, tol.CALLABLE_TABLE), scale=fastest)
 
 
-@pytest.mark.parametrize("name", ["tanh", "erf", "Gauss pulse", "exp(-1/t)", "eighth power", "half waves"])
+@pytest.mark.parametrize("name", ["tanh", "Gauss pulse", "exp(-1/t)", "half waves"])
 def test_speeds_prescribed_by_callables(name):
     """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""
     t = np.linspace(0.0, END, 41)

@@ -17,7 +17,7 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore:roll"),
 ]
 #: scene, start, drive, times; tolerances, and how many of each the error may be; steps at most
-MOTIONS = json.loads(Path(__file__).with_name("hard_motions.json").read_text(encoding="utf-8"))
+MOTIONS = json.loads(Path(__file__).with_name("hard_motions.json").read_text())
 TIGHT = 1e-12
 
 

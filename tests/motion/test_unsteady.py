@@ -61,7 +61,6 @@ def test_works_and_losses_add_up():
     m = vr.roll(GENTLE, 0.2, 0.1, T, force=-0.05, torque=0.01, unsteady=True)
     assert m.status == vr.MotionStatus.DONE
     assert m.V[-1] < 0.0 < m.V[0]
-    assert "rest" not in {s.regime for s in m.switches}
     energy = 0.5 * (m.V**2 + GENTLE.j * m.omega**2)
     lost = m.slip_loss + m.rolling_loss + m.brake_loss
     assert close(energy - energy[0] + lost, m.work_force + m.work_torque, rel=tol.ENERGY, scale=energy.max())
@@ -90,11 +89,10 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     reached = m.regime >= 0
     assert reached.tolist() == [True] * (m.t.size - 1) + [False]
     assert close(share(scene, m.V[reached][-1]), level, rel=1e-6)
-    assert f"it stood at t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
     with pytest.warns(RuntimeWarning, match="too slow for the added mass"):
-        slower = vr.roll(scene, 0.9 * m.V[reached][-1], 0.9 * m.V[reached][-1], T, unsteady=True)
-    assert slower.status == vr.MotionStatus.UNSTEADY
-    assert (slower.regime[0], slower.regime[1]) == (1, -1)
+        slower = vr.roll(scene, 0.9 * m.V[-2], 0.9 * m.V[-2], T, unsteady=True)
+    assert (slower.status, *slower.regime[:2]) == (vr.MotionStatus.UNSTEADY, 1, -1)
+    assert f"it stood at t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
 
 
 def test_it_ends_there_at_any_tolerance():
@@ -121,7 +119,6 @@ def test_a_rest_costs_speed():
     assert V[0] == V0
     assert (np.diff(V) < 0.0).all()
     assert close(V[-1], V0 - start, rel=1e-6)
-    assert vr.roll(ROLLER, 0.0, 0.0, T, rested=True).V[-1] == 0.0
 
 
 def test_caught_in_the_imprint():
@@ -129,12 +126,10 @@ def test_caught_in_the_imprint():
     with pytest.warns(RuntimeWarning, match="caught in the imprint of its rest"):
         m = vr.roll(ROLLER, 1.3, 1.3, T, rested=True, unsteady=True)
     assert m.status == vr.MotionStatus.CAUGHT
-    assert m.message.endswith("seven tenths of its energy")
     assert np.isnan(m.V).all()
     V0 = np.array([1.3, 30.0, -1.3])
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, unsteady=True, method="auto")
     assert e.status.tolist() == [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE, vr.MotionStatus.CAUGHT]
     assert np.isnan([e.V[::2, 0], e.onset_time[::2]]).all()
-    assert not e.flow.any()
     one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
     assert np.array_equal(e.V[1], one.V)

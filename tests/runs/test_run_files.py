@@ -36,7 +36,7 @@ SI_UNITS = {
 @pytest.fixture
 def read(tmp_path):
     def read(text: str):
-        (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+        (tmp_path / "run.toml").write_text(text)
         return read_run(tmp_path / "run.toml")
 
     return read
@@ -142,10 +142,10 @@ def test_a_material_of_a_file_is_in_the_digest(read, tmp_path):
     assert len(digests) == 2
 
 
-@pytest.mark.parametrize("name", ["a preset", "numbers", "known rubber", "driven", "a driven roller"])
-def test_a_store_holds_the_run(read, tmp_path, name):
+@pytest.mark.parametrize("file", ["a preset", "numbers", "known rubber", "driven", "a driven roller"])
+def test_a_store_holds_the_run(read, tmp_path, file):
     """And what is exported of it: columns, what drove them, their units, their summaries."""
-    run = read(FILES[name].replace("[run]", "[run]\nquantiles = [0.5]"))
+    run = read(FILES[file].replace("[run]", "[run]\nquantiles = [0.5]"))
     run_ensemble(run, tmp_path / "s.zarr", threads=2)
     assert verify(tmp_path / "s.zarr").ok
     export_netcdf(tmp_path / "s.zarr", tmp_path / "s.nc")
@@ -166,16 +166,10 @@ def test_a_store_holds_the_run(read, tmp_path, name):
             assert told["units"] == units[name], name
             assert "T_epsilon" not in told["long_name"]
         if name in columns and name != "onset_time" and not name.endswith("_loss"):
-            for kind in ("mean", "max"):
-                exact = getattr(np, kind)(columns[name], axis=0)
-                assert close(found[f"{name}_{kind}"].values, exact, rel=tol.MOMENT, scale=np.abs(exact).max())
-
-
-def test_shares_of_an_energy_that_is_not_there(read, tmp_path):
-    run_ensemble(read(FILES["driven"]), tmp_path / "s.zarr", threads=1)
-    found = open_summaries(tmp_path / "s.zarr")
-    assert np.isnan(found["lost_to_slip_mean"].values).all()
-    assert (found["slip_loss_mean"].values > 0.0).all()
+            assert np.array_equal(found[f"{name}_max"].values, columns[name].max(axis=0)), name
+    if file == "driven":  # shares of an energy that is not there
+        assert np.isnan(found["lost_to_slip_mean"].values).all()
+        assert (found["slip_loss_mean"].values > 0.0).all()
 
 
 def test_names_of_inputs():
@@ -195,7 +189,6 @@ def test_a_cylinder_from_its_flow_map(read):
     run = read(text.replace(', "slip_loss", "rolling_loss"]', "]"))
     values, motions = roll_block(run, 0)
     assert motions.flow.mean() > 0.5
-    assert np.isfinite(motions.rest_time).sum() > 100
     columns = columns_of(run, values, motions)
     for i in range(5):
         one = alone(run, values, i)
@@ -212,7 +205,6 @@ def test_the_flow_map_where_many_start_in_one_scene(read):
     values, motions = roll_block(run, 0)
     few = {name: value[3:4] for name, value in values.items()}
     assert roll_inputs(run, few, 2).V[0, 1] == motions.V[3, 1]
-    assert read(FILES["driven"].replace("n = 12", "n = 100000")).method == "integrate"
     still = read(PAPER + '[start]\nV0 = 0.0\nomega0 = 0.0\n[run]\nn = 2\nt = 1e-3\nmethod = "flow"')
     assert roll_block(still, 0)[1].V.tolist() == [[0.0], [0.0]]
 
@@ -221,16 +213,9 @@ def test_nothing_is_uncertain(read):
     """The same motion n times; scenes are those of presets and series."""
     start = "[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3"
     _, motions = roll_block(read(PAPER + start), 0)
-    assert np.array_equal(motions.V[:, 0], [vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3)
-    rubber, series = 'preset = "rubber-roller"\n', "prony = { E = [0.5, 2.0], tau = [1.0, 1e-2] }\n"
-    two = vr.Prony([0.5, 2.0], [1.0, 1e-2])
-    for head, scene in (
-        (rubber, vr.presets.RUBBER_ROLLER),
-        (rubber + "[scene]\nalpha = 3.0\n", vr.presets.RUBBER_ROLLER.replace(alpha=3.0)),
-        (PAPER + "[scene]\n" + series, vr.presets.PAPER_SECTION_5.replace(material=two)),
-    ):
-        run = read(head + start)
-        assert roller_of(run.path, run.inputs.content) == scene
+    assert motions.V[:, 0].tolist() == [vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3
+    run = read('preset = "rubber-roller"\n[scene]\nalpha = 3.0\n' + start)
+    assert roller_of(run.path, run.inputs.content) == vr.presets.RUBBER_ROLLER.replace(alpha=3.0)
 
 
 def test_a_drive_that_ends_goes_with_a_rest(read):
@@ -254,12 +239,9 @@ def test_inputs_have_indices(read, name, inputs):
         assert min(total.sel(input=["tau_1", "base_E_1"])) > total.sel(input="V0")
 
 
-def test_size_and_time_of_a_run(read):
+def test_size_of_a_run(read):
     run = read(FILES["a preset"].replace("n = 30", "n = 3_000_000_000").replace("block = 12", "block = 512"))
-    found = estimate(run, threads=2)
-    assert found.blocks == run.blocks == -(-3_000_000_000 // 512)
-    assert found.seconds > 60.0
-    assert "MB" in str(found)
+    assert estimate(run, threads=2).blocks == run.blocks == -(-3_000_000_000 // 512)
     assert read(FILES["a preset"].replace("count = 3", "count = 3_000_000").replace("block = 12", "")).block == 1
 
 

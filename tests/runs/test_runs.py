@@ -42,7 +42,7 @@ summaries = [
 
 @pytest.fixture
 def run(tmp_path):
-    (tmp_path / "run.toml").write_text(RUN, encoding="utf-8")
+    (tmp_path / "run.toml").write_text(RUN)
     return read_run(tmp_path / "run.toml")
 
 

@@ -79,13 +79,6 @@ def test_a_file_has_the_bits_of_its_material(tmp_path, name):
         assert np.array_equal(first, second, equal_nan=True), field
 
 
-def test_a_law_is_made_once_and_taken_as_it_is():
-    table = law_table(SERIES)
-    assert law_table(SERIES) is table
-    assert table_of(table) is table
-    assert vr.Scene(kappa=20.0, mu=0.3, material=table).table is table
-
-
 @pytest.mark.parametrize("name", ["alpha", "series", "on steel"])
 def test_stated_errors_are_those_of_other_places(name):
     law = vr.tables.law(*GIVEN[name])
@@ -105,16 +98,12 @@ def test_wrong_numbers_are_found(function):
 def test_attributes_are_complete(saved):
     law = vr.tables.load(saved)
     assert all(variable.attrs["long_name"] for variable in law.variables.values())
-    assert [name for name, variable in law.variables.items() if "units" in variable.attrs] == ["T_ref"]
     for key in ("Conventions", "title", "summary", "comment", "references", "source", "history", "license"):
         assert law.attrs[key], key
-    with h5py.File(saved) as file:
-        assert np.issubdtype(
-            file.attrs["law_schema"].dtype, np.integer
-        )  # netCDF's C library reads text of one kind only
+    with h5py.File(saved) as file:  # netCDF's C library reads text of one kind only
+        assert np.issubdtype(file.attrs["law_schema"].dtype, np.integer)
     told = vr.tables.info(saved)
-    for words in ("law", 'name = "a \\"rubber\\""', "largest relative error", "sha256_of_numbers"):
-        assert words in told
+    assert all(words in told for words in ('name = "a \\"rubber\\""', "largest relative error", "sha256_of_numbers"))
 
 
 # --- wherever a material stands ---
@@ -128,10 +117,7 @@ def test_a_cylinder_of_a_law(tmp_path, name):
     by_law = vr.Cylinder(R=0.1, m=30.0, mu=0.3, material=law, plane=pair.plane)
     own = by_law.replace(material=pair.cylinder, base=pair.base)
     assert by_law.scene() == own.scene()
-    assert by_law.scene().table is law
     assert (by_law.T_ref, by_law.E_prime, by_law.l0) == (own.T_ref, own.E_prime, own.l0)
-    for field, value in by_law.contact(0.3, delta=1e-3).as_dict().items():
-        assert value == getattr(own.contact(0.3, delta=1e-3), field), field
     assert by_law.roll(0.2, 0.0, [1e-2]).V[-1] == own.roll(0.2, 0.0, [1e-2]).V[-1]
     assert by_law.replace(mu=0.2).scene().table is law
 
@@ -139,9 +125,8 @@ def test_a_cylinder_of_a_law(tmp_path, name):
 def test_a_scene_keeps_its_law():
     table = law_table(SERIES)
     scene = vr.Scene(kappa=20.0, mu=0.3, material=table)
-    assert scene.replace(mu=0.2).table is table
+    assert scene.table is scene.replace(mu=0.2).table is table_of(table) is table
     assert scene.replace(alpha=3.0).table is not table
-    assert scene.replace(material=vr.Prony([1.0], [1.0])).table is not table
     assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
 
 
@@ -158,18 +143,6 @@ def test_scene_files_and_material_files(saved, tmp_path):
     refused(partial(read_body, path), "line 2", "without units", error=vr.FileError)
 
 
-def test_refused():
-    law, roller = law_table(SERIES), {"R": 0.1, "m": 30.0, "mu": 0.3}
-    in_si = table_of(RUBBER, STEEL)
-    for call, words in (
-        (partial(vr.Scene, kappa=20.0, mu=0.3, alpha=3.0, material=law), "alpha and material are both given"),
-        (partial(vr.Cylinder, **roller, material=law), "material = a law without units"),
-        (partial(vr.Cylinder, **roller, material=in_si, base=STEEL), "base = given: must be left out"),
-        (partial(vr.Cylinder, **roller, material=in_si, plane="stress"), "plane = 'stress'"),
-    ):
-        refused(call, words)
-
-
 # --- files that are refused ---
 
 
@@ -181,13 +154,9 @@ def error_of(path: Path) -> str:
     ("change", "words"),
     [
         (lambda file: file.attrs.__setitem__("law_schema", 2), "schema 2, and this viscoroll"),
-        (lambda file: file.attrs.__setitem__("law_schema", "1"), "schema 1, and this viscoroll"),
-        (lambda file: file.attrs.__delitem__("law_schema"), "schema None"),
         (lambda file: file["press"].__setitem__((3, 5), 0.125), "its numbers are not those of its sha256_of_numbers"),
-        (lambda file: file["e0"].__setitem__((), 7), "its numbers are not those"),
         (lambda file: file.attrs.__setitem__("sha256_of_numbers", "0" * 64), "its numbers are not those"),
         (lambda file: file.__delitem__("share"), "variable 'share' is missing"),
-        (lambda file: file.attrs.__setitem__("material", "[material]\nE = 3.0"), "is no whole law file"),
         (lambda file: file.attrs.__setitem__("material", "not TOML"), "is no whole law file"),
         (lambda file: file.attrs.__delitem__("material"), "is no whole law file"),
     ],

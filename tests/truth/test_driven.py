@@ -10,7 +10,7 @@ from places import ROOT
 
 import viscoroll as vr
 
-MOTIONS = json.loads((ROOT / "data/reference/check_driven.json").read_text(encoding="utf-8"))["motions"]
+MOTIONS = json.loads((ROOT / "data/reference/check_driven.json").read_text())["motions"]
 
 
 def inputs(row: dict) -> tuple[tuple, dict]:

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import csv
-import sys
-from functools import partial
 from typing import Any
 
 import flint
 import numpy as np
-import pytest
 import xarray as xr
 from places import DATA
-from refusals import refused
 
-import viscoroll as vr
 from pipeline.evidence.truth.enclosures import contact_enclosure, ratio_k, ratio_r
 
 CHECK_VALUES = DATA / "reference/check_values.csv"
@@ -65,14 +60,6 @@ def test_enclosures_hold_the_printed_law():
             for name, (left, size) in printed(state, *exact).items():
                 assert left.contains(0), (name, given)
                 assert left.abs_upper() < 1e-30 * size, (name, given)
-
-
-def test_bad_input_and_what_is_not_installed(monkeypatch):
-    for bad in ((0.5, 1, 1, 1, 0), (2, 1, 1, 0.0, 0), (2, 1, 1, 1, float("nan")), (2, 1, 1, [1.0, 2.0], 0)):
-        refused(partial(contact_enclosure, *bad))
-    monkeypatch.setitem(sys.modules, "flint", None)
-    with pytest.raises(vr.MissingDependencyError, match="flint"):
-        contact_enclosure(11.0, 2.91, 0.2, 0.5, 0.01)
 
 
 def test_creep_of_exactly_delta_star():

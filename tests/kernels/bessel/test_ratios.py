@@ -55,13 +55,6 @@ def test_ends():
     assert np.isnan(ratio_i2(nan, nan))
 
 
-def test_monotone():
-    """Never falls by more than rounding, from any double to its neighbour and across every seam."""
-    x = np.sort(np.concatenate([places(), np.geomspace(1e-12, 1e12, 4000)]))
-    values = np.array([(r := ratio_r(at)[0], ratio_k(at)[0], ratio_i2(at, r)) for at in x])
-    assert np.all(np.diff(values, axis=0) >= -tol.RATIO_ULP * np.spacing(values[1:]))
-
-
 # --- the table ---
 
 RATIOS = series.of_mpmath(mp)

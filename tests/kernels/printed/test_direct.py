@@ -5,7 +5,6 @@ from __future__ import annotations
 import flint
 import numpy as np
 import tolerances as tol
-from closeness import close
 
 import viscoroll as vr
 from pipeline.evidence.prove.ratios import points, ulps
@@ -31,14 +30,6 @@ def test_bessel_ratios():
 
 def test_as_the_table():
     assert [check for check in random_state_checks(2000, 3) if not check.passed] == []
-
-
-def test_extreme_speeds():
-    slow, fast, alpha = np.array([5e-324, 1e-300, 1e-12]), np.array([1e12, 1e300]), np.array([1.0, 11.0, 1e4])[:, None]
-    for kappa_V, limit in ((slow, np.ones_like(alpha)), (fast, alpha**-0.5)):
-        state = vr.contact(vr.Scene(alpha, 1.0, MU), kappa_V, delta=0.0, fields=("lam", "epsilon"), method="direct")
-        assert close(state.lam, np.broadcast_to(limit, state.lam.shape), rel=tol.DIRECT_EXTREME)
-        assert np.all(abs(state.epsilon) < tol.DIRECT_EXTREME)
 
 
 def test_roots_are_found_far_around():
