@@ -4,8 +4,6 @@
 absolute unless they are told otherwise; the linter forbids the three.  Here nothing is allowed that is not said.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Fixtures that tests of several folders share, and an environment of the suite's own."""
 
-from __future__ import annotations
-
 import os
 import re
 

@@ -1,7 +1,5 @@
 """Drives that data files hold: numbers, schedules and gains in plain words."""
 
-from __future__ import annotations
-
 import viscoroll as vr
 
 

@@ -1,7 +1,5 @@
 """A roller of known truth, and experiments on it: a standard linear solid whose M has its hump at 0.64 m/s."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Arrays of materials, one for each state or motion: of both forms, with modes that fall away, and of two bodies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

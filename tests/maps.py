@@ -1,7 +1,5 @@
 """Motions by the flow map beside those of the integrator."""
 
-from __future__ import annotations
-
 import numpy as np
 from closeness import close
 

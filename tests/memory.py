@@ -1,7 +1,5 @@
 """What a process keeps of earlier calls, in one place for the tests that need it gone; and what a call takes."""
 
-from __future__ import annotations
-
 import tracemalloc
 from collections.abc import Callable
 

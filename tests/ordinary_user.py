@@ -1,7 +1,5 @@
 """Work done as a user who may not write everywhere, as the superuser may."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Bad input: an error of the package's own, in one line that names the thing, its value and what is allowed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

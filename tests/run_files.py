@@ -1,10 +1,12 @@
 """Run files of every kind: presets, series, SI units, materials, drives and prescribed speeds."""
 
-from __future__ import annotations
-
 import re
+from pathlib import Path
 
 from places import DOCS
+
+from viscoroll.io.runs import read_run
+from viscoroll.io.runs.runfile import Run
 
 PAPER = 'preset = "paper-section-5"\n'
 FULL = (
@@ -184,3 +186,10 @@ FILES = {
     name: re.sub(r"U\(([^ ]*), ([^ ]*)\)", r'{ distribution = "uniform", loc = \1, scale = \2 }', text)
     for name, text in FILES.items()
 }
+
+
+def run_of(text: str, folder: Path | str = ".") -> Run:
+    """A run file of this text, read."""
+    path = Path(folder) / "run.toml"
+    path.write_text(text)
+    return read_run(path)

@@ -1,7 +1,5 @@
 """Elements of broadcast arrays by blocks, and blocks on threads (core/blocks.py)."""
 
-from __future__ import annotations
-
 import threading
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The bound law: the digits of contact() to Python, to jitted code and to C, in all regimes and from many threads."""
 
-from __future__ import annotations
-
 import ctypes
 import pickle
 

@@ -3,8 +3,6 @@
 Claim, domain, bound and truth stand in pipeline/evidence/prove/, the sizes in [prove.quick] of sizes.toml beside it.
 """
 
-from __future__ import annotations
-
 import pytest
 from places import kept
 

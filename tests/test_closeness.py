@@ -1,7 +1,5 @@
 """The suite's one comparison allows what it is told, and nothing else."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from closeness import close

@@ -1,7 +1,5 @@
 """TOML files (io/config.py): what is read, and what is refused in which words."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """From storage and loss modulus to a Prony series: what is recovered, what is said, what is refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is not there everywhere: packages of an extra, what only POSIX has, a newer Python, the name of the version."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import os
 import shutil

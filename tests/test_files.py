@@ -1,7 +1,5 @@
 """Files that are whole or not there, whatever stands in the way; and the seal behind them."""
 
-from __future__ import annotations
-
 import ast
 import os
 import stat

@@ -1,8 +1,6 @@
 """What changes no bit: company, order, threads, processes, kinds of arrays; and a hostile host: other rounding modes,
 flushed subnormals, little memory."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import platform

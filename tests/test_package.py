@@ -1,7 +1,5 @@
 """The public interface, light imports (layers: `make check`), and the wheel."""
 
-from __future__ import annotations
-
 import ast
 import pkgutil
 import re

@@ -1,14 +1,13 @@
 """Pictures: whole or not at all, of runs without values too, and loaded when drawn."""
 
-from __future__ import annotations
-
 import json
 
 import pytest
+from run_files import run_of
 
 from viscoroll.core.plots import draw
 from viscoroll.core.plots.style import save
-from viscoroll.io.runs import open_summaries, read_run, run_ensemble
+from viscoroll.io.runs import open_summaries, run_ensemble
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -23,8 +22,7 @@ def test_a_run_without_values(tmp_path):
         )
     ):
         text = f'preset = "paper-section-5"\n[start]\n{start}\n[run]\nn = 50\nt = [0.0]\nsummaries = {wanted}\n'
-        (tmp_path / "run.toml").write_text(text)
-        run_ensemble(read_run(tmp_path / "run.toml"), tmp_path / f"{n}.zarr", threads=1)
+        run_ensemble(run_of(text, tmp_path), tmp_path / f"{n}.zarr", threads=1)
         figure = draw(open_summaries(tmp_path / f"{n}.zarr"))
         titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
         assert {name for name, title in titles.items() if title == "no values"} == empty

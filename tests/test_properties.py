@@ -3,8 +3,6 @@
 Short here; ``make fuzz`` runs it for ten minutes (``FUZZ_SECONDS``).
 """
 
-from __future__ import annotations
-
 import os
 import time
 

@@ -1,7 +1,5 @@
 """The table refusals.txt: bad input is answered by an error of the package's own, doubtful input by one warning."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import warnings

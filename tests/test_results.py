@@ -1,7 +1,5 @@
 """What results say of themselves: short text, HTML, xarray, pandas, figures."""
 
-from __future__ import annotations
-
 import dataclasses
 import sys
 from functools import partial

@@ -1,7 +1,5 @@
 """Random inputs (io/sampling.py): designs, distributions, and what is refused."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scene, Cylinder and the paper's presets."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Steady rolling under load: humps, all equilibria, stability, feedback, limits of existence."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath as mp

@@ -1,7 +1,5 @@
 """What takes long to make, on disk: the numbers that were made, or made anew."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Pressure and shear along the contact: closed forms, and nothing outside; integrals are in ``test_claims.py``."""
 
-from __future__ import annotations
-
 import numpy as np
 import tolerances as tol
 from closeness import close

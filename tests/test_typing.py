@@ -1,7 +1,5 @@
 """What type checkers see of the public interface; what mypy says of a user's script: tests/typing, `make check`."""
 
-from __future__ import annotations
-
 import ast
 
 from places import ROOT

@@ -1,7 +1,5 @@
 """Scene.validity and Cylinder.validity: which assumptions a state strains."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The program ``viscoroll``: every command on good and on bad input."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

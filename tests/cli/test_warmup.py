@@ -1,7 +1,5 @@
 """``viscoroll warmup``: what it compiles is all that calls need."""
 
-from __future__ import annotations
-
 import re
 
 import numba

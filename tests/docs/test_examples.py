@@ -1,7 +1,5 @@
 """The examples of the bound law run, and their physics is that of the package."""
 
-from __future__ import annotations
-
 import runpy
 
 import numba

@@ -1,7 +1,5 @@
 """The readers of docs/loading in their own programs, and the headers of C, against the package."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

@@ -10,10 +10,10 @@ import tolerances as tol
 from closeness import close
 from places import ROOT
 from processes import made
+from run_files import run_of
 
 import viscoroll as vr
 from viscoroll.app import cli
-from viscoroll.io.runs import read_run
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
@@ -109,8 +109,7 @@ def test_forms_of_an_input_are_read(tmp_path):
     (tmp_path / "measured.csv").write_text("friction\n0.1\n0.2\n")
     for form in re.findall(r"^mu = .*$", page, re.M):
         text = f'preset = "paper-section-5"\n[scene]\n{form}\n[start]\nV0 = 1.0\nomega0 = 0.0\n[run]\nn = 1\nt = 1.0'
-        (tmp_path / "run.toml").write_text(text)
-        inputs = read_run(tmp_path / "run.toml").inputs
+        inputs = run_of(text, tmp_path).inputs
         assert inputs.uncertain == (() if form == "mu = 0.2" else ("mu",))
 
 

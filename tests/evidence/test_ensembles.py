@@ -1,7 +1,5 @@
 """Runs on a cluster, and the stages that docs/ensembles.md has its numbers of."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

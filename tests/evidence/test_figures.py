@@ -1,7 +1,5 @@
 """Every figure draws without a warning, is labelled, and is saved whole or not at all; the stages behind them."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

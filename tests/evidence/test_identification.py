@@ -1,7 +1,5 @@
 """What measurements tell: the stage at its quick size, and what the committed numbers promise."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

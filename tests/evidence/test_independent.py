@@ -1,7 +1,5 @@
 """Against implementations that nobody here wrote; each deviation as large as its own error explains."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """What takes long: memory at full size, and a flow map filled with numba's check of every index."""
 
-from __future__ import annotations
-
 import importlib
 from pathlib import Path
 

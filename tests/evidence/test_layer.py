@@ -1,7 +1,5 @@
 """How thick a layer has to be: its kernel by elasticity, both ends of thickness, and what the page says."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

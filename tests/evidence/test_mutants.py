@@ -1,7 +1,5 @@
 """The results of the planted defects (pipeline/evidence/mutate/) are of all of them; stages that want more say so."""
 
-from __future__ import annotations
-
 import tolerances as tol
 from places import kept
 

@@ -1,7 +1,5 @@
 """The law outside Python at its quick size, and what the committed numbers promise."""
 
-from __future__ import annotations
-
 import json
 import shutil
 

@@ -1,7 +1,5 @@
 """Motions in extended precision: the integrator, and the check motions made again by it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

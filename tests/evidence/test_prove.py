@@ -1,7 +1,5 @@
 """What the proofs are made of; the claims themselves are in tests/test_claims.py."""
 
-from __future__ import annotations
-
 import csv
 import json
 

@@ -1,7 +1,5 @@
 """`make release-check`: sound packages pass, and each planted fault is told."""
 
-from __future__ import annotations
-
 import pytest
 
 from pipeline.evidence import release

@@ -1,7 +1,5 @@
 """The site as a reader meets it: built without a warning, and open in a real browser, which reaches nothing else."""
 
-from __future__ import annotations
-
 import functools
 import html
 import importlib.util

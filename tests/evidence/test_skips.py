@@ -1,7 +1,5 @@
 """What a scene does not need is not done; how much time that saves is the part "skips" of the benchmark."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from processes import printed

@@ -1,7 +1,5 @@
 """Results say of which kernels they are, and pages where those are not this tree's."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

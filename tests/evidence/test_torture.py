@@ -1,7 +1,5 @@
 """A short sample of `make torture`, and the results that are kept of the long one."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

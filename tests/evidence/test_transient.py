@@ -1,7 +1,5 @@
 """The transient solver behind "may I use this law?": contact at rest and run in, and motions of finer cells."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

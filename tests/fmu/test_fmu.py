@@ -1,7 +1,5 @@
 """FMUs as a tool drives them: the rules of the standard, forces and motions of the package, refusals in words."""
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import sys

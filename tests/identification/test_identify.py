@@ -1,7 +1,5 @@
 """From synthetic measurements back to the parameters, and what is said where they do not hold them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

@@ -1,7 +1,5 @@
 """Measurements from a TOML file and its CSV files, and ``viscoroll identify``."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

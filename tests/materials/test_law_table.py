@@ -1,7 +1,5 @@
 """Tables of the law: how they are shared, and elastic contacts."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 
 import viscoroll as vr

@@ -1,7 +1,5 @@
 """Material: SI moduli, shifts with temperature, and the conventions of other programs with their arithmetic."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from functools import partial

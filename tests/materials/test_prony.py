@@ -1,7 +1,5 @@
 """Materials of several relaxation times: both forms of a series, its functions, and what rolls on it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

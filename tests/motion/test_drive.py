@@ -1,7 +1,5 @@
 """Motions under force, torque, slope, brake and prescribed speeds; motions of bodies that differ."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

@@ -1,7 +1,5 @@
 """Where regimes of driven motions end: two events at nearly one time, soon behind the start, at bends of the law."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from closeness import close

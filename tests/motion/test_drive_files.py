@@ -1,7 +1,5 @@
 """Driven motions as datasets, and at other times."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

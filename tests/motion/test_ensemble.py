@@ -1,7 +1,5 @@
 """Many motions at once: the same as one at a time, for any number of threads."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tqdm

@@ -1,7 +1,5 @@
 """Callables of time as polynomials: how near, in how many values; and the motions that they drive."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

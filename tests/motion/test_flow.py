@@ -1,7 +1,5 @@
 """The flow map against the integrator, to the error that it states; what it leaves to the integrator; its files."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

@@ -1,7 +1,5 @@
 """Motions of every regime, and that once went wrong: as at the tightest tolerance, in few steps (hard_motions.json)."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """One motion: the paper's numbers, accuracy against rtol, invariants, all regimes and nasty starts."""
 
-from __future__ import annotations
-
 import math
 import re
 

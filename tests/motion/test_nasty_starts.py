@@ -1,7 +1,5 @@
 """Starts and scenes on the edges of everything, for both ways of rolling: the flow map and the integrator."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The threshold ``rest`` under drives: it counts once nothing drives any more."""
 
-from __future__ import annotations
-
 import numpy as np
 from closeness import close
 

@@ -1,7 +1,5 @@
 """From rest, or from next to it: faint drives, what a start that counts for nothing does, where friction is strong."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

@@ -1,7 +1,5 @@
 """Motions with the added mass, ``unsteady=True``, and from a contact that rested, ``rested=``."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

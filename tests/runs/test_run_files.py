@@ -1,9 +1,8 @@
 """Run files: each motion is the one that a user would call for, and what a file says is in its digest and its store."""
 
-from __future__ import annotations
-
 import re
 import tomllib
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -12,10 +11,10 @@ import tolerances as tol
 import xarray as xr
 from closeness import close
 from refusals import refused
-from run_files import CERTAIN, FILES, PAPER
+from run_files import CERTAIN, FILES, PAPER, run_of
 
 import viscoroll as vr
-from viscoroll.io.runs import estimate, export_netcdf, open_summaries, read_run, roll_inputs, run_ensemble, verify
+from viscoroll.io.runs import estimate, export_netcdf, open_summaries, roll_inputs, run_ensemble, verify
 from viscoroll.io.runs.columns import attributes
 from viscoroll.io.runs.evaluate import block_inputs, roll_block
 from viscoroll.io.runs.rollers import roller_of
@@ -35,11 +34,7 @@ SI_UNITS = {
 
 @pytest.fixture
 def read(tmp_path):
-    def read(text: str):
-        (tmp_path / "run.toml").write_text(text)
-        return read_run(tmp_path / "run.toml")
-
-    return read
+    return partial(run_of, folder=tmp_path)
 
 
 # --- what the inputs of a motion mean ---

@@ -1,13 +1,12 @@
 """A finished run as a result: text, HTML, datasets, a table, a figure."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from refusals import refused
+from run_files import run_of
 
 import viscoroll as vr
-from viscoroll.io.runs import open_run, open_summaries, read_run, run_ensemble
+from viscoroll.io.runs import open_run, open_summaries, run_ensemble
 
 RUN = """
 [cylinder]
@@ -34,8 +33,7 @@ quantiles = [0.1, 0.5, 0.9]
 @pytest.fixture(scope="module", params=["all", "summaries"])
 def store(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
-    (folder / "run.toml").write_text(RUN.replace("KEEP", request.param))
-    run_ensemble(read_run(folder / "run.toml"), folder / "s.zarr", threads=1)
+    run_ensemble(run_of(RUN.replace("KEEP", request.param), folder), folder / "s.zarr", threads=1)
     return request.param, folder / "s.zarr"
 
 

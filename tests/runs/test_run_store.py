@@ -1,7 +1,5 @@
 """Results stores: the same files by any engine and after any end; damage is found, and put right."""
 
-from __future__ import annotations
-
 import errno
 import os
 import signal

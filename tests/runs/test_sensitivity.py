@@ -1,7 +1,5 @@
 """Sobol indices: closed forms of sliding motions, what has none, the command and its documentation."""
 
-from __future__ import annotations
-
 import csv
 import re
 from pathlib import Path
@@ -12,12 +10,12 @@ import tolerances as tol
 import xarray as xr
 from closeness import close
 from refusals import refused
+from run_files import run_of
 from scipy import stats
 
 import viscoroll as vr
 from viscoroll.app.cli import main
 from viscoroll.core.plots import draw
-from viscoroll.io.runs import read_run
 from viscoroll.io.runs.sensitivity import sobol_indices
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -81,16 +79,9 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def run_of(text: str):
-    Path("run.toml").write_text(text)
-    return read_run("run.toml")
-
-
 @pytest.fixture(scope="module")
 def sliding(tmp_path_factory) -> xr.Dataset:
-    path = tmp_path_factory.mktemp("sliding") / "run.toml"
-    path.write_text(SLIDING)
-    return sobol_indices(read_run(path), N)
+    return sobol_indices(run_of(SLIDING, tmp_path_factory.mktemp("sliding")), N)
 
 
 def inside(indices: xr.Dataset, name: str, key: str, name_of_input: str, exact: float, k: int | None = None) -> bool:

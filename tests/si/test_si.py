@@ -1,7 +1,5 @@
 """A cylinder in SI units: every call is the dimensionless one in other units, of one cylinder and of many."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

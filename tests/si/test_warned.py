@@ -1,7 +1,5 @@
 """Contacts that ask a material for more than was measured of it: a word, once a material, and a mark in figures."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 
@@ -10,11 +8,12 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
+from run_files import run_of
 
 import viscoroll as vr
 from viscoroll.contact_law import known
 from viscoroll.core.plots import draw
-from viscoroll.io.runs import estimate, read_run
+from viscoroll.io.runs import estimate
 
 DATA = vr.Measured(0.06, 628.0, 0.01, "dma.csv")
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
@@ -109,10 +108,9 @@ UNSURE = '{ distribution = "lognorm", s = 0.1, scale = 2.0e6 }'
 def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
     """Of materials that are known and of uncertain ones, by the fastest start."""
     monkeypatch.setattr(known, "_told", set())
-    (tmp_path / "run.toml").write_text(RUN.format(E=E, spread=spread))
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
-        estimate(read_run(tmp_path / "run.toml"), 1)
+        estimate(run_of(RUN.format(E=E, spread=spread), tmp_path), 1)
     said = [str(each.message) for each in found if "as measured" in str(each.message)]
     assert len(said) == (spread == 9.0)
     assert not said or "the base was measured from 0.06 to 628" in said[0]

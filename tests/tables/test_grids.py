@@ -1,7 +1,5 @@
 """The contact on grids for other programs: nodes, stated errors, formats, and files of every version."""
 
-from __future__ import annotations
-
 import csv
 import gzip
 import re

@@ -1,7 +1,5 @@
 """Laws as files: the bits of their material, wherever a material stands, and damage that is told."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import fields
 from functools import partial

@@ -1,7 +1,5 @@
 """The law of every alpha as a file, and a single alpha out of it."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Driven motions against those in extended precision."""
 
-from __future__ import annotations
-
 import json
 
 import tolerances as tol

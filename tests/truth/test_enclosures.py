@@ -1,7 +1,5 @@
 """Certified enclosures, and the digits of contact against check values made of them."""
 
-from __future__ import annotations
-
 import csv
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Motions against those in extended precision."""
 
-from __future__ import annotations
-
 import csv
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The validation finds what is right and what is wrong; its integrator; the stage around it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

@@ -3,8 +3,6 @@
 Slopes, and points over all doubles, are claims of ``test_claims.py``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import flint

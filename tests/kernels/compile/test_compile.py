@@ -1,7 +1,5 @@
 """Compiling: deferred to the call from Python, cached on disk, plain where numba's inner names fail."""
 
-from __future__ import annotations
-
 import grp
 import hashlib
 import importlib

@@ -1,7 +1,5 @@
 """Full slip as quadratures: closed forms, its end, and what it spares."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

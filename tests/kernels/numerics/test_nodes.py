@@ -1,7 +1,5 @@
 """Nodes, weights and matrices of polynomials; what is computed with them is claimed in ``test_claims.py``."""
 
-from __future__ import annotations
-
 import decimal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Method "direct" of contact(): as the table where ``validate`` compares them; its Bessel ratios, limits and roots."""
 
-from __future__ import annotations
-
 import flint
 import numpy as np
 import tolerances as tol

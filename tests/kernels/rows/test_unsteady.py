@@ -1,7 +1,5 @@
 """N of M = M(V) + N V': against its definition in many digits, its limits, and what is known of its shape."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import mpmath as mp
