@@ -103,6 +103,19 @@ class Validity(NamedTuple):
         return as_html(*self._card())
 
 
+#: where no number can tell
+UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
+    "", "",
+    "inertia of the deformed bodies is neglected; give a density to see whether it may",
+    "whether the law of steady rolling may drive a motion needs gamma",
+    "both bodies pass the contact at about one speed; give omega to see whether",
+    "of the bodies' elastic constants Dundurs' constant must be 0, as of like bodies",
+    "nothing is known of the frequencies that the material was measured at",
+    "thickness not known: the law is that of a half-space",
+    "the cylinder is long or held between walls (plane strain), or a thin disc",
+)))  # fmt: skip
+
+
 def passage(V: Any, length: Any) -> Any:
     """What a contact asks of its material: the rate at which a point passes it, 1/s, of a speed and a length.
 
@@ -123,7 +136,7 @@ def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
 def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:
     """Whether both bodies pass the contact at about one speed; None where the creep is not known."""
     if delta is None:
-        return Assumption(None, None, "both bodies pass the contact at about one speed; give omega to see whether")
+        return UNKNOWN.creep
     size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
     most = float(np.max(size, initial=0.0, where=full_slip))
     return Assumption(
@@ -138,9 +151,7 @@ def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:
 def inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
     """Speed over that of shear waves, None where it is not known; ``unknown``: bodies without a density."""
     if wave_ratio is None:
-        return Assumption(
-            None, None, "inertia of the deformed bodies is neglected; give a density to see whether it may"
-        )
+        return UNKNOWN.quasistatic
     return Assumption(
         wave_ratio <= WAVE_LIMIT, wave_ratio,
         f"the speed is {100.0 * float(np.max(wave_ratio, initial=0.0)):.2g} % of that of shear waves; up to "
@@ -149,28 +160,25 @@ def inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
     )  # fmt: skip
 
 
-def coupling(long: float | None = None, instant: float | None = None, *, like: bool = False) -> Assumption:
-    """Dundurs' constant of long times and at once, None where it is not known; ``like``: it is 0 at all times."""
-    if long is None or instant is None:
-        return Assumption(None, None, "of the bodies' elastic constants Dundurs' constant must be 0, as of like bodies")
-    if like:
-        return Assumption(True, 0.0, "cylinder and half-space are alike: Dundurs' constant is 0")
+def coupling(long: float, instant: float, *, like: bool) -> Assumption:
+    """Dundurs' constant of long times and at once; ``like``: it is 0 at all times."""
     worst = max(long, instant, key=abs)
-    sizes = f"{long:.2g} for long times, {instant:.2g} at once"
-    if worst == 0.0:
-        return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not move the pressure")
-    within = abs(worst) <= DUNDURS_LIMIT
+    if like or worst == 0.0:
+        words = "cylinder and half-space are alike: " if like else ""
+        end = "" if like else ": shear does not move the pressure"
+        return Assumption(True, 0.0, f"{words}Dundurs' constant is 0{end}")
     return Assumption(
-        within, worst,
-        f"Dundurs' constant is {sizes}, where the theory asks for 0: shear bends the surface by up to mu times as much "
-        f"as the pressure does; up to {DUNDURS_LIMIT} counts as small",
+        abs(worst) <= DUNDURS_LIMIT, worst,
+        f"Dundurs' constant is {long:.2g} for long times, {instant:.2g} at once, where the theory asks for 0: shear "
+        "bends the surface by up to mu times as much as the pressure does; "
+        f"up to {DUNDURS_LIMIT} counts as small",
     )  # fmt: skip
 
 
 def measurement(seen: Any, records: Mapping[str, Measured]) -> Assumption:
     """Whether the data of each body hold the rate at which its contact is passed; None where there are none."""
     if not records:
-        return Assumption(None, None, "nothing is known of the frequencies that the material was measured at")
+        return UNKNOWN.measured
     ends = dict.fromkeys(f"{end:.2g}" for end in (np.min(seen, initial=np.inf), np.max(seen, initial=0.0)))
     sentence = f"the contact is passed at {' to '.join(ends)} 1/s, the layer at its front edge faster"
     holds = np.full(np.shape(seen), True)[()]
@@ -184,7 +192,7 @@ def thickness(length: Any, layers: Mapping[str, float | None]) -> Assumption:
     """Contact length over the thickness of the thinnest of the layers; None where none is known."""
     thin = min((given for given in layers.values() if given is not None), default=None)
     if thin is None:
-        return Assumption(None, None, "thickness not known: the law is that of a half-space")
+        return UNKNOWN.thick
     unknown = [f"the thickness of {body} is not known" for body, given in layers.items() if given is None]
     ratio = length / thin
     return Assumption(
@@ -208,7 +216,4 @@ def judge(found: Strained, steady: Assumption, creep: Assumption) -> Validity:
         f"epsilon = {ahead:.2g}: the contact "
         + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
     )  # fmt: skip
-    plane = Assumption(None, None, "the cylinder is long or held between walls (plane strain), or a thin disc")
-    return Validity(
-        small, under, inertia(None), steady, creep, coupling(), measurement(None, {}), thickness(None, {}), plane
-    )
+    return UNKNOWN._replace(small_contact=small, under_axis=under, steady=steady, creep=creep)

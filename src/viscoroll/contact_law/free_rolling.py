@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -194,10 +195,10 @@ class Free:
             yield self.materials[0], slice(None)
             return
         order = np.argsort(self.which, axis=None, kind="stable")
-        ordered = self.which.ravel()[order]
-        for part in np.split(order, np.flatnonzero(np.diff(ordered)) + 1):
-            if part.size:
-                yield self.materials[self.which.flat[part[0]]], part
+        ends = np.searchsorted(self.which.ravel()[order], np.arange(len(self.materials) + 1))
+        for material, (first, last) in zip(self.materials, pairwise(ends), strict=True):
+            if last > first:
+                yield material, order[first:last]
 
     def strained(self, kappa: Any) -> Strained:
         """Lengths of the contact."""

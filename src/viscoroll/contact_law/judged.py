@@ -6,7 +6,7 @@ import numpy as np
 
 from ..core.checks import broadcast_shape, checked
 from ..core.typed import Numbers
-from .assumptions import Assumption, Validity, judge, unlike_speeds
+from .assumptions import UNKNOWN, Validity, judge, unlike_speeds
 from .parameters import Rolls, framed
 from .steadiness import Steadiness
 
@@ -42,9 +42,7 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
     free = scene.freely(speed)
     found = free.strained(scene.kappa)
-    steady = Assumption(None, None, "whether the law of steady rolling may drive a motion needs gamma")
-    if scene.gamma is not None:
-        steady = Steadiness.of(free.scaled(scale))
+    steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
     delta, full_slip = None, None
     if spin is not None:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

@@ -39,26 +39,18 @@ def slowness(pair: Pair | None, G: Any, speed: NDArray[np.float64], density: flo
 
     ``G`` : that of both bodies where there is no pair.
     """
-    ratios, unknown = [], []
-    for name, own, weight in _weighed(pair, G, density):
-        if weight is None:
-            unknown.append(name)
-        else:  # in this order V = 0 gives 0 at any density
-            with np.errstate(over="ignore"):
-                ratios.append(speed * np.sqrt(1.0 / own) * math.sqrt(weight))
+    bodies: list[tuple[str, Any, float | None]] = [("the material", G, density)]
+    if pair is not None:
+        first, second = pair.cylinder, pair.half_space
+        own = first.density if density is None else density
+        bodies = [("the cylinder", first.G, own), ("the base", second.G, second.density)]
+        if pair.like:
+            bodies = [("the material", first.G, second.density if own is None else own)]
+    # in this order V = 0 gives 0 at any density
+    with np.errstate(over="ignore"):
+        ratios = [speed * np.sqrt(1.0 / own) * math.sqrt(weight) for _, own, weight in bodies if weight is not None]
+    unknown = [name for name, own, weight in bodies if weight is None and not np.all(np.isinf(own))]
     return (np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None), unknown
-
-
-def _weighed(pair: Pair | None, G: Any, density: float | None) -> list[tuple[str, Any, float | None]]:
-    """The different bodies that deform, their shear moduli and densities."""
-    if pair is None:
-        return [("the material", G, density)]
-    first, second = pair.cylinder, pair.half_space
-    own = first.density if density is None else density
-    if pair.like:
-        return [("the material", first.G, second.density if own is None else own)]
-    bodies = [("the cylinder", first, own), ("the base", second, second.density)]
-    return [(name, body.G, weight) for name, body, weight in bodies if weight is not None or not body.is_rigid]
 
 
 def held(records: Mapping[str, Measured], series: Prony, T_ref: float) -> tuple[float, float]:

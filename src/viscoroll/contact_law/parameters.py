@@ -13,7 +13,7 @@ from ..core.drive import slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.results import short
 from ..core.scale import DIMENSIONLESS, Scale
-from ..materials.bodies import Bodies
+from ..materials.bodies import Bodies, one_series
 from ..materials.law_table import LawTable, law_table
 from ..materials.prony import Prony
 from ..materials.prony_forms import HIGHEST_ALPHA
@@ -100,26 +100,26 @@ class Parameters(Rolls):
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
     def __post_init__(self) -> None:
-        if self.material is not None:
-            if self.alpha is not None:
-                raise one_of("alpha", "material", both=True)
-            if isinstance(self.material, LawTable):
-                object.__setattr__(self, "_law", self.material)
-                material = self.material.material
-                of_alpha = not isinstance(material, Prony | Bodies)
-                object.__setattr__(self, "alpha", material if of_alpha else None)
-                object.__setattr__(self, "material", None if of_alpha else material)
-        if self.material is not None:
-            if not isinstance(self.material, Prony | Bodies):
-                raise ParameterError("material", f"{self.material!r:.60}", "a Prony series, or Bodies of two")
-            object.__setattr__(self, "alpha", self.material.alpha)
-        if self.alpha is None:
-            raise one_of("alpha", "material", both=False)
-        arrays = {"alpha": checked("alpha", self.alpha, low=1.0, high=HIGHEST_ALPHA)}
+        given: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
+        material: Any = self.material
+        if (material is None) == (given["alpha"] is None):
+            raise one_of("alpha", "material", both=material is not None)
+        if isinstance(material, LawTable):
+            object.__setattr__(self, "_law", material)
+            material = material.material
+            if not isinstance(material, Prony | Bodies):
+                given["alpha"], material = material, None
+        if material is not None:
+            if not isinstance(material, Prony | Bodies):
+                raise ParameterError("material", f"{material!r:.60}", "a Prony series, or Bodies of two")
+            given["alpha"] = material.alpha
+        arrays = {"alpha": checked("alpha", given.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
-        for name in ("kappa", "mu", "gamma", "j") if self.gamma is not None else ("kappa", "mu", "j"):
-            arrays[name], extents[name] = checked_extent(name, getattr(self, name), low=0.0, strict=True)
+        for name, value in given.items():
+            if name != "gamma" or value is not None:
+                arrays[name], extents[name] = checked_extent(name, value, low=0.0, strict=True)
         object.__setattr__(self, "shape", broadcast_shape(**arrays))
+        object.__setattr__(self, "material", material)
         if arrays["mu"].size and arrays["kappa"].size:
             low, high = RATIO_RANGE
             (least_mu, most_mu), (least_kappa, most_kappa) = extents["mu"], extents["kappa"]
@@ -133,11 +133,11 @@ class Parameters(Rolls):
         """The law of its one material: the one that was given, or made; None of an alpha or a material each."""
         if self._law is not None:
             return self._law
-        if self.material is None:
-            if type(self.alpha) is float:
-                return law_table(self.alpha)
-            return law_table(self.alpha.item()) if self.alpha.size == 1 else None
-        return law_table(self.material) if self.each is None else None
+        if self.material is not None:
+            return law_table(self.material) if self.each is None else None
+        if type(self.alpha) is float:
+            return law_table(self.alpha)
+        return law_table(self.alpha.item()) if self.alpha.size == 1 else None
 
     @property
     def numbers(self) -> dict[str, Any]:
@@ -150,15 +150,12 @@ class Parameters(Rolls):
 
     def replace(self, **changes: Any) -> Self:
         """A copy with some parameters changed; an alpha takes the place of a material, and the reverse."""
-        if self._law is not None and not changes.keys() & {"alpha", "material"}:
-            changes["material"] = self._law
-        if "material" in changes and "alpha" not in changes:
-            changes["alpha"] = None
-        elif "alpha" in changes and "material" not in changes:
-            changes["material"] = None
-        elif self.material is not None and "alpha" not in changes:
-            changes["alpha"] = None
-        return replace(self, **changes)
+        given: dict[str, Any] = {}
+        if changes.keys() & {"alpha", "material"}:
+            given = {"alpha": None, "material": None}
+        elif self._law is not None or self.material is not None:
+            given = {"alpha": None, "material": self._law or self.material}
+        return replace(self, **(given | changes))
 
     @property
     def series(self) -> Prony | None:
@@ -198,22 +195,20 @@ class Parameters(Rolls):
 
     def freely(self, V: Any) -> Free:
         """What rolls at V, let go."""
-        materials: Any
+        given: Any
         unit: Any
-        if self.each is not None:
-            each = [_in_own_time(one.total if isinstance(one, Bodies) else one) for one in self.each]
-            materials, unit = [one for one, _ in each], np.array([unit for _, unit in each], np.float64)
-            which = np.arange(unit.size)
-        else:
+        if self.each is None:
             given, unit = self.in_own_time()
             materials, which = np.unique(given, return_inverse=True) if np.ndim(given) else ([given], np.zeros((), int))
-            which = which.reshape(np.shape(given))
+        else:
+            given, unit = zip(*(_in_own_time(one_series(one)) for one in self.each), strict=True)
+            unit = np.array(unit, np.float64)
+            materials, which = given, np.arange(unit.size)
         gamma = np.nan if self.gamma is None else self.gamma
         with np.errstate(over="ignore"):
             u = np.asarray(self.kappa * np.abs(V) * unit + 0.0 * which)
             g = gamma * unit * unit / (1.0 + np.asarray(self.j))
-        shape = np.broadcast_shapes(u.shape, np.shape(g))
-        u, which = np.broadcast_to(u, shape), np.broadcast_to(which, shape)
+        u, which = np.broadcast_arrays(u, which, g)[:2]
         return Free(materials, which, u, g, 1.0 / (self.kappa * unit), unit, 1.0 / self.kappa)
 
     def __eq__(self, other: object) -> bool:

@@ -65,7 +65,7 @@ def loads_of(
     """The loads of a call of ``steady`` on the scene of a slope; errors as there."""
     if type(scene.alpha) is not float:
         raise ParameterError("alpha", f"an array of shape {np.shape(scene.alpha)}", "a single number")
-    given = None if V is None else _given(force, torque, slope)
+    given = None if V is None else _given(slope, force=force, torque=torque)
     tangent = slope_factor(slope)[0]
     push, *of_force = _parts("force", force)
     turn, *of_torque = _parts("torque", torque)
@@ -92,12 +92,12 @@ def _parts(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, f
     return value.value, value.V, value.omega
 
 
-def _given(force: ArrayLike | Feedback | None, torque: ArrayLike | Feedback | None, slope: ArrayLike | None) -> str:
+def _given(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
     """Which of force and torque is given beside V."""
-    for name, value in (("force", force), ("torque", torque)):
-        if isinstance(value, Feedback):
+    names = [name for name, value in loads.items() if value is not None]
+    for name in names:
+        if isinstance(loads[name], Feedback):
             raise ParameterError(name, "a feedback", "a number or an array where V is given")
-    names = [name for name, value in (("force", force), ("torque", torque)) if value is not None]
     if len(names) == 2:
         sentence = "V, force and torque are all given: give two of them, the third is found"
         raise ParameterError("V, force, torque", "all", "two of them", sentence)
