@@ -196,6 +196,7 @@ class Parameters(Rolls):
     def freely(self, V: Any) -> Free:
         """What rolls at V, let go."""
         given: Any
+        materials: Any
         unit: Any
         if self.each is None:
             given, unit = self.in_own_time()

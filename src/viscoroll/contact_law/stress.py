@@ -14,11 +14,10 @@ from ..core.errors import one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
 from ..core.typed import Numbers
-from ..materials.bodies import Bodies
+from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
-from ..materials.prony import Prony
 from .contact import shaped, states
-from .parameters import Rolls, framed
+from .parameters import Parameters, Rolls, framed
 
 Array = NDArray[np.float64]
 
@@ -87,11 +86,7 @@ def stress(
         mirrored = mirror_of(start, stop) * x_of(start, stop)
         mirrored.flags.writeable = False  # as all that a kernel reads, see elements
         points = Points(mirrored, *(part(start, stop) for part in others))
-        numbers, out = alpha_of(start, stop), (p[start:stop], tau[start:stop])
-        if many is not None:
-            _of_each(many, numbers, points, out)
-        else:
-            _of_one(numbers if scene.series is None else scene.series, points, out)
+        _fill(scene, alpha_of(start, stop), points, p[start:stop], tau[start:stop])
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
@@ -99,18 +94,15 @@ def stress(
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 
-def _of_one(given: Any, points: Any, out: tuple[Array, Array]) -> None:
-    """The stresses at points of one series, or with an alpha each."""
+def _fill(scene: Parameters, numbers: Array, points: Any, p: Array, tau: Array) -> None:
+    """The stresses at points; ``numbers``: alphas, or of the materials, which lie together where they share one."""
     from ..kernels.rows.stress import memories, stress_loop
 
-    series, alpha = kernel_series(given)
-    stress_loop(series, alpha, memories(series), memories(series), points, *out)
-
-
-def _of_each(materials: Prony | Bodies, numbers: Array, points: Any, out: tuple[Array, Array]) -> None:
-    """The stresses at points with a material each, which lie together where they share one."""
-    for first, last in pairwise([0, *(1 + np.flatnonzero(np.diff(numbers))), out[0].size]):
-        own = materials[int(numbers[min(first, numbers.size - 1)])]
-        own = own.total if isinstance(own, Bodies) else own
+    ends: Any = [] if scene.each is None else 1 + np.flatnonzero(np.diff(numbers))
+    for first, last in pairwise([0, *ends, p.size]):
+        given: Any = numbers if scene.series is None else scene.series
+        if scene.each is not None:
+            given = one_series(scene.each[int(numbers[min(first, numbers.size - 1)])])
+        series, alpha = kernel_series(given)
         some = points._make(part[first:last] if part.size > 1 else part for part in points)
-        _of_one(own, some, (out[0][first:last], out[1][first:last]))
+        stress_loop(series, alpha, memories(series), memories(series), some, p[first:last], tau[first:last])

@@ -85,10 +85,8 @@ class Bodies(OneOrMany):
         return np.broadcast_to(found, self.shape) if self.shape else found
 
     def __getitem__(self, which: Any) -> Bodies:
-        cylinder, base, share = (
-            each[which] if np.shape(each) else each for each in (self.cylinder, self.base, self.share)
-        )
-        return Bodies(cylinder, base, share)
+        parts = (self.cylinder, self.base, self.share)
+        return Bodies(*(each[which] if np.shape(each) else each for each in parts))
 
     @cached_property
     def _both(self) -> tuple[NDArray, ...]:

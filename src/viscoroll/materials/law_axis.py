@@ -11,6 +11,7 @@ import numpy as np
 from ..core.checks import number
 from ..core.errors import ParameterError
 from .law_table import Floats, LawTable, law_table, made
+from .prony import read_only
 from .prony_forms import HIGHEST_ALPHA
 
 #: functions of an axis in their order, some of them over c = (alpha - 1)/alpha, whose limits as alpha -> 1 are finite
@@ -89,10 +90,8 @@ def law_axis(low: float, high: float) -> LawAxis:
         values[..., _OVER_C] /= np.array([table.T_mean for table in tables])[:, None, None, None]
         pieces.append(to_chebyshev(values))
     rows = tuple(piece.shape[1] for piece in pieces)
-    whole = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
-    for n, piece in enumerate(pieces):
-        whole[n, :, : rows[n]] = piece
-    whole.flags.writeable = False
+    behind = ((0, max(rows) - count) for count in rows)
+    whole = read_only([np.pad(piece, ((0, 0), pad, (0, 0), (0, 0))) for piece, pad in zip(pieces, behind, strict=True)])
     return LawAxis(whole, rows, octaves[0], tables[0].e0)
 
 

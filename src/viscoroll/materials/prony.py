@@ -86,7 +86,7 @@ class Prony(OneOrMany):
     by_creep: bool
 
     def __init__(self, E: ArrayLike = (), tau: ArrayLike = ()) -> None:
-        strengths, times = self._given(False, E, tau)
+        strengths, times = _given(("E", "tau"), E, tau)
         alpha = 1.0 + _sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
             raise ParameterError("E", f"of a sum of {np.max(alpha) - 1.0:g}", f"of a sum up to {HIGHEST_ALPHA:g}")
@@ -109,8 +109,7 @@ class Prony(OneOrMany):
         ParameterError
             As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
         """
-        made = cls.__new__(cls)
-        strengths, times = made._given(True, J, T)
+        strengths, times = _given(("J", "T"), J, T)
         rest = np.asarray(1.0 - _sums(strengths))
         if not (rest > 0.0).all():
             found = f"of a sum of {1.0 - rest.min()!s}"
@@ -125,16 +124,15 @@ class Prony(OneOrMany):
             raise ParameterError("alpha", given[off].flat[0], here)
         if (given > HIGHEST_ALPHA).any():
             raise ParameterError("J", strengths.tolist(), f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}")
-        made._keep(True, strengths, times, given if given.ndim else float(given))
-        return made
+        return cls._of(True, strengths, times, given if given.ndim else float(given))
 
     @classmethod
     def sls(cls, alpha: float) -> Prony:
         """The paper's material: its times in T_epsilon, exact to the last digit; elastic of alpha = 1."""
-        made, c, one = cls.__new__(cls), np.array([(alpha - 1.0) / alpha]), np.ones(1)
+        c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
         if alpha == 1.0:
             c, one = c[:0], one[:0]
-        made._keep(True, c, one, alpha)
+        made = cls._of(True, c, one, alpha)
         made.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
         return made
 
@@ -143,27 +141,11 @@ class Prony(OneOrMany):
         """No modes: alpha = 1."""
         return cls([], [])
 
-    def _given(self, by_creep: bool, strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
-        """Strengths and times as they are kept, refused by name."""
-        names = ("J", "T") if by_creep else ("E", "tau")
-        values, each = checked(names[0], strengths, low=0.0), checked(names[1], times, low=0.0, strict=True)
-        if values.ndim == each.ndim == 1 and values.shape != each.shape:
-            allowed = f"one time for each {names[0]}, of shape {values.shape}"
-            raise ParameterError(names[1], f"of shape {each.shape}", allowed)
-        shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
-        if len(shape) not in (1, 2):
-            raise ParameterError(", ".join(names), f"of shape {shape}", "(modes,) or (materials, modes)")
-        values, each = descending(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
-        there = values > 0.0
-        most = int(there.sum(axis=-1).max(initial=0))
-        if most > MOST_MODES:
-            raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
-        longest, shortest = each.max(axis=-1, initial=0.0, where=there), each.min(axis=-1, initial=np.inf, where=there)
-        wide = longest > WIDEST * shortest
-        if wide.any():
-            ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
-            raise ParameterError(names[1], ends, f"within a factor of {WIDEST:g}")
-        return values[..., :most], each[..., :most]
+    @classmethod
+    def _of(cls, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> Prony:
+        made = cls.__new__(cls)
+        made._keep(by_creep, strengths, times, alpha)
+        return made
 
     def _keep(self, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> None:
         self.by_creep, self.alpha, self.shape = by_creep, alpha, strengths.shape[:-1]
@@ -176,16 +158,12 @@ class Prony(OneOrMany):
         if strengths.ndim == 1:
             count = np.count_nonzero(strengths)
             strengths, times, alpha = strengths[:count], times[:count], float(alpha)
-        made = Prony.__new__(Prony)
-        made._keep(self.by_creep, strengths, times, alpha)
-        return made
+        return Prony._of(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
         """A single one as ``count`` that are alike."""
-        made = Prony.__new__(Prony)
         strengths, times = (np.broadcast_to(each, (count, each.size)) for each in (self._strengths, self._times))
-        made._keep(self.by_creep, strengths, times, np.full(count, self.alpha))
-        return made
+        return Prony._of(self.by_creep, strengths, times, np.full(count, self.alpha))
 
     @cached_property
     def modes(self) -> Modes:
@@ -288,6 +266,28 @@ class Prony(OneOrMany):
         if self.by_creep:
             return f"Prony.creep(J={strengths}, T={times}, alpha={self.alpha!r})"
         return f"Prony(E={strengths}, tau={times})"
+
+
+def _given(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
+    """Strengths and times as they are kept, refused by these names."""
+    values, each = checked(names[0], strengths, low=0.0), checked(names[1], times, low=0.0, strict=True)
+    if values.ndim == each.ndim == 1 and values.shape != each.shape:
+        allowed = f"one time for each {names[0]}, of shape {values.shape}"
+        raise ParameterError(names[1], f"of shape {each.shape}", allowed)
+    shape = broadcast_shape(**dict(zip(names, (values, each), strict=True)))
+    if len(shape) not in (1, 2):
+        raise ParameterError(", ".join(names), f"of shape {shape}", "(modes,) or (materials, modes)")
+    values, each = descending(np.broadcast_to(values, shape), np.broadcast_to(each, shape))
+    there = values > 0.0
+    most = int(there.sum(axis=-1).max(initial=0))
+    if most > MOST_MODES:
+        raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
+    longest, shortest = each.max(axis=-1, initial=0.0, where=there), each.min(axis=-1, initial=np.inf, where=there)
+    wide = longest > WIDEST * shortest
+    if wide.any():
+        ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
+        raise ParameterError(names[1], ends, f"within a factor of {WIDEST:g}")
+    return values[..., :most], each[..., :most]
 
 
 def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[NDArray[np.float64]]:
