@@ -38,7 +38,7 @@ def test_equilibria(body):
     assert found.count.sel(place="c") == 0
     assert own(slope=slope.to_series()).V.loc["b", 0] == plain.V[1, 0]
     force = xr.DataArray([0.001, 0.002], dims="force", coords={"force": [0.001, 0.002]})
-    assert own(force=force).to_xarray()["V"].dims == ("load_force", "equilibrium")
+    assert own(force=force).to_xarray()["V"].dims == ("given_force", "equilibrium")
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model

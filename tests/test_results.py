@@ -74,7 +74,7 @@ def test_axes_are_named_after_what_varies(results):
     data = results["contact"].to_xarray()
     assert data["Q"].dims == ("V", "delta")
     assert data.Q.sel(V=1.0, method="nearest").size == 4
-    assert results["steady"].to_xarray()["V"].dims == ("load", "equilibrium")
+    assert results["steady"].to_xarray()["V"].dims == ("state", "equilibrium")
     table = results["motion"].to_pandas()
     assert table.index.name == "t"
     assert table["V"].iloc[0] == 1.5

@@ -10,20 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .contact_law import known
-from .contact_law.assumptions import (
-    WAVE_LIMIT,
-    Assumption,
-    Validity,
-    coupling,
-    inertia,
-    measurement,
-    passage,
-    thickness,
-)
-from .contact_law.free_rolling import rolling
+from .contact_law.assumptions import WAVE_LIMIT, Validity
+from .contact_law.known import Known
 from .contact_law.parameters import same
-from .core.checks import broadcast_shape, checked, frozen, number
+from .core.checks import broadcast_shape, checked, frozen
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
 from .core.results import Row, Shown, short
@@ -31,7 +21,6 @@ from .core.scale import Scale
 from .core.symbols import MEASURED
 from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
-from .materials.measured import Measured
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
 from .motion.warned import say
@@ -250,83 +239,30 @@ class Cylinder(Methods):
             self.R, self.m, self.load, self.E_prime, self.T_ref, self.pair.law if law is None else law, self.mu, self.j
         )
 
+    @cached_property
+    def _known(self) -> Known:
+        pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._papers else (self.pair, None)
+        return Known(pair, G, self.R, self.l0, self.T_ref, self._scene)
+
     def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
-        if density is not None:
-            density = number("density", density, low=0.0, strict=True)
-        fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
-        length, like = lam * self.l0, self._papers or self.pair.like
-        long = "a long cylinder, or one held between walls (plane strain)"
-        return found._replace(
-            quasistatic=inertia(*self._slowness(fastest, density)),
-            bodies=coupling(*((0.0, 0.0) if self._papers else self.pair.dundurs), like=like),
-            measured=measurement(passage(V, length), self._measured),
-            thick=thickness(length, {name: body.thickness for name, body in self._bodies.items()}),
-            plane=Assumption(None, None, long if self.plane == "strain" else "a thin disc (plane stress)"),
-        )
+        return self._known.judge(found, lam, V, omega, density, self.plane)
 
     def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where the contact at a speed of V, m/s, asks for frequencies that the data of a body do not hold.
-
-        Only extremes are looked at, and rest is passed over: M is 0 there.
-        """
-        if V is None or self._known_speeds is None:
-            return
-        extent = known.extent_of(V) if extent is None else extent
-        if not known.beyond(extent, self._known_speeds) or known.told(self._measured):
-            return
-        # the extremes of V and of l0 may be of different cylinders
-        l0 = np.reshape(self.l0, np.shape(self.l0) + (1,) * (np.ndim(V) - np.ndim(self.l0)))
-        rates = known.extent_of(np.abs(V) / l0)
-        assert self._held is not None
-        if self._known_speeds == (math.inf, 0.0) or known.beyond(rates, self._held):
-            material, unit = self.scene().in_own_time()
-            lam = rolling(material, np.array(rates) * unit * self.T_ref, ("lam",))[0]
-            known.tell(self._measured, passage(np.array(rates), lam))
+        """Warn where the contact at a speed of V, m/s, asks for frequencies that the data of a body do not hold."""
+        if V is not None and self._known.speeds is not None:
+            self._known.look(V, extent)
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
         """Warn of starts beyond what was measured, and beyond the speed of shear waves where a density is known."""
         self.look(V0)
-        if self._wave_speed is None:
+        if self._known.wave_speed is None:
             return
         V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
-        if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._wave_speed:
+        if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._known.wave_speed:
             say([f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"])
-
-    def _slowness(self, speed: Any, density: float | None) -> tuple[Any, list[str]]:
-        G = self.E / (2.0 * (1.0 + self.nu)) if self._papers else None
-        return known.slowness(None if self._papers else self.pair, G, speed, density)
-
-    @cached_property
-    def _wave_speed(self) -> float | None:
-        """That of the slowest shear wave in any of the cylinders, m/s; None where no density is known."""
-        per_speed = self._slowness(np.ones(()), None)[0]
-        return None if per_speed is None else 1.0 / float(np.max(per_speed))
-
-    @cached_property
-    def _bodies(self) -> dict[str, Material]:
-        return known.deforming(None if self._papers else self.pair)
-
-    @cached_property
-    def _measured(self) -> dict[str, Measured]:
-        """What the bodies were measured by, where they tell."""
-        return {name: body.measured for name, body in self._bodies.items() if body.measured is not None}
-
-    @cached_property
-    def _held(self) -> tuple[float, float] | None:
-        """|V|/l0 between which the contact asks for what all bodies' data hold, 1/s; None where nothing is known."""
-        series = self.scene().series
-        return known.held(self._measured, series, self.T_ref) if self._measured and series is not None else None
-
-    @cached_property
-    def _known_speeds(self) -> tuple[float, float] | None:
-        """|V| between which every one of the cylinders is held by data, m/s; (inf, 0) of a fit that misses them."""
-        if self._held is None:
-            return None
-        if known.misses(self._measured):
-            return math.inf, 0.0
-        return self._held[0] * float(np.max(self.l0)), self._held[1] * float(np.min(self.l0))
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]
         """Between which speeds the materials were measured, for datasets."""
-        return {} if self._held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in self._held]}
+        held = self._known.held
+        return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}

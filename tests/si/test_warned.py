@@ -41,12 +41,12 @@ def told(monkeypatch):
 
 def test_where_the_data_end():
     """Of the same contact, by the law itself: the two ends are passed at the frequencies of the data."""
-    for at, end in zip(BELT._held, (DATA.low, DATA.high), strict=True):
+    for at, end in zip(BELT._known.held, (DATA.low, DATA.high), strict=True):
         speed = at * BELT.l0
         assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, rel=tol.CONTACT)
     found = BELT.validity(np.array([0.99, 1.01]) * LAST).measured
     assert found.holds.tolist() == [True, False]
-    assert close(BELT._held[1] * BELT.l0, LAST, rel=1e-3)
+    assert close(BELT._known.held[1] * BELT.l0, LAST, rel=1e-3)
 
 
 def test_a_word_once_a_material(told):

@@ -115,10 +115,9 @@ class Steady(Values):
 
     def _card(self) -> tuple[str, list[Row]]:
         if np.ndim(self.count):
-            loads = f"{np.size(self.count)} loads"
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
             speeds = Row("V", short(np.asarray(self.V)), self._unit("V"))
-            return f"Steady rolling under {loads}", [Row("equilibria", found), speeds]
+            return f"Steady rolling, {np.size(self.count)} states", [Row("equilibria", found), speeds]
         if not self.count:
             return "Steady rolling: no equilibrium", [Row("reason", str(self.reason))]
         rows = []
@@ -132,12 +131,12 @@ class Steady(Values):
         return unit_of(attributes(name, self.scale.si))
 
     def to_xarray(self) -> xr.Dataset:
-        """Dataset over loads and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
+        """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
         import xarray as xr
 
         shape = np.shape(self.count)
-        dims = ("load",) if len(shape) == 1 else tuple(f"load_{n}" for n in range(len(shape)))
-        dims, coords = self._labels.beside((*_FIELDS, "count"), "load") if self._labels else (dims, {})
+        dims = ("state",) if len(shape) == 1 else tuple(f"state_{n}" for n in range(len(shape)))
+        dims, coords = self._labels.beside((*_FIELDS, "count"), "given") if self._labels else (dims, {})
         found = {name: self[name] for name in _FIELDS} | {"stable": np.asarray(self.stable).astype(np.int8)}
         rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
         found |= dict(zip(("rate_fast", "rate_slow"), rates, strict=True))
