@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..core.checks import broadcast_shape, checked, frozen
 from ..core.errors import ParameterError
-from .prony import Block, OneOrMany, Prony, descending
+from .prony import Block, OneOrMany, Prony, descending, series_of_alpha
 from .prony_forms import MOST_MODES
 
 
@@ -143,4 +143,4 @@ def one_series(given: float | Prony | Bodies) -> Prony:
     """The series of a material by its alpha, of a series, or of both bodies together."""
     if isinstance(given, Bodies):
         return given.total
-    return given if isinstance(given, Prony) else Prony.sls(given)
+    return given if isinstance(given, Prony) else series_of_alpha(given)

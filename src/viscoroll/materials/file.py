@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
@@ -119,31 +119,30 @@ def _relative(shift: WLF | Arrhenius, own: float | None, temperature: float) -> 
 
 def as_toml(material: Material, section: str = "material") -> str:
     """The section of a TOML file that reads back as this material, to the bit."""
-    first = {name: getattr(material, name) for name in ("name", "E", "nu")}
-    last = {name: getattr(material, name) for name in ("T_ref", "density", "thickness")}
-    return toml_of(section, first | keys_of(material.prony) | last | {"measured": material.measured})
-
-
-def keys_of(series: Prony) -> dict[str, Any]:
-    """The key ``prony`` or ``creep`` of a section that reads back as this series, to the bit."""
-    form, names = ("creep", ("J", "T", "alpha")) if series.by_creep else ("prony", ("E", "tau"))
-    return {form: {name: getattr(series, name) for name in names}}
-
-
-def toml_of(section: str, content: Mapping[str, Any]) -> str:
-    """A section of TOML, without what is None."""
-    lines = (f"{name} = {_value(value)}" for name, value in content.items() if value is not None)
+    measured = material.measured and (
+        f"{{ low = {material.measured.low}, high = {material.measured.high}, misfit = {material.measured.misfit}, "
+        f"source = {_text(material.measured.source)} }}"
+    )
+    first: dict[str, Any] = {"name": _text(material.name), "E": material.E, "nu": material.nu}
+    more: dict[str, Any] = {
+        "T_ref": material.T_ref, "density": material.density, "thickness": material.thickness, "measured": measured,
+    }  # fmt: skip
+    lines = [f"{name} = {value}" for name, value in first.items()]
+    lines += [series_as_toml(material.prony)]
+    lines += [f"{name} = {value}" for name, value in more.items() if value is not None]
     return "\n".join([f"[{section}]", *lines, ""])
 
 
-def _value(given: Any) -> str:
-    if isinstance(given, Measured):
-        given = asdict(given)
-    if isinstance(given, dict):
-        return f"{{ {', '.join(f'{name} = {_value(value)}' for name, value in given.items())} }}"
-    if isinstance(given, str):  # TOML knows no surrogates, and DEL only escaped
-        return json.dumps(given, ensure_ascii=False).replace("\x7f", r"\u007f")
-    return repr(given.tolist() if isinstance(given, np.ndarray) else given)
+def series_as_toml(series: Prony) -> str:
+    """The key ``prony`` or ``creep`` that reads back as this series, to the bit."""
+    if series.by_creep:
+        return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
+    return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
+
+
+def _text(given: str) -> str:
+    # TOML knows no surrogates, and DEL only escaped
+    return json.dumps(given, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 
 def _section(path: Any, name: str, content: Any) -> Any:

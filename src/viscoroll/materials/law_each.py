@@ -36,7 +36,9 @@ def law_of_alphas(alpha: Floats) -> Any:
     met = np.flatnonzero(np.bincount(np.frexp(alpha)[1] - 1))
     for octave in met[_known[met, 1] == 0].tolist():
         with _lock:
-            _meet(octave)
+            if not _known[octave, 1]:  # else another thread just has
+                _octaves[octave], count = _octave(octave)
+                _known[octave] = _octaves[octave].ctypes.data, count
     rows, marks = _room(int(_known[met, 1].max()))
     marks[E0] = E0_OF_ALPHA
     return _record(hold, make, SOURCE, rows=rows, marks=marks, alpha=alpha, count=alpha.size, octaves=_known)
@@ -71,13 +73,6 @@ def _record(hold: Any, make: Any, kind: Any, **known: Any) -> Any:
     addresses = address_of(hold, kind), address_of(make, kind), int(source.ctypes.data)
     rows, marks, added = map(read_only, (known["rows"].view(), np.asarray(held), np.empty(0)))
     return Law(rows, marks, added, *addresses)
-
-
-def _meet(octave: int) -> None:
-    """Make an octave of alpha as kernels take it, unless another thread just has."""
-    if _known[octave, 1] == 0:
-        _octaves[octave], count = _octave(octave)
-        _known[octave] = _octaves[octave].ctypes.data, count
 
 
 def _octave(octave: int) -> tuple[Floats, int]:

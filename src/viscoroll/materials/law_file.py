@@ -15,7 +15,7 @@ import numpy as np
 from ..core.checks import checked, number
 from ..core.errors import FileError, ParameterError
 from .bodies import Bodies
-from .file import as_toml, keys_of, materials_of, series_of, toml_of
+from .file import as_toml, materials_of, series_as_toml, series_of
 from .law_axis import LawAxis
 from .law_store import AXIS, KIND, KINDS, LAW, REMEDY, Content, dataset_of, read_law
 from .law_table import Floats, LawTable, law_table
@@ -141,10 +141,9 @@ def described(given: Any) -> str:
         text += "" if given.base is None else f"\n{as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
     if isinstance(given, Bodies):
-        return toml_of("bodies", {
-            "cylinder": keys_of(given.cylinder), "base": keys_of(given.base), "share": given.share,
-        })  # fmt: skip
-    return toml_of("scene", keys_of(given) if isinstance(given, Prony) else {"alpha": given})
+        parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
+        return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
+    return f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
 
 
 def _material_of(text: str, path: Any) -> Any:

@@ -127,16 +127,6 @@ class Prony(OneOrMany):
         return cls._of(True, strengths, times, given if given.ndim else float(given))
 
     @classmethod
-    def sls(cls, alpha: float) -> Prony:
-        """The paper's material: its times in T_epsilon, exact to the last digit; elastic of alpha = 1."""
-        c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
-        if alpha == 1.0:
-            c, one = c[:0], one[:0]
-        made = cls._of(True, c, one, alpha)
-        made.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
-        return made
-
-    @classmethod
     def elastic(cls) -> Prony:
         """No modes: alpha = 1."""
         return cls([], [])
@@ -288,6 +278,16 @@ def _given(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tu
         ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
         raise ParameterError(names[1], ends, f"within a factor of {WIDEST:g}")
     return values[..., :most], each[..., :most]
+
+
+def series_of_alpha(alpha: float) -> Prony:
+    """The paper's material, its times in T_epsilon, with both forms exact to the last digit; elastic of alpha = 1."""
+    c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
+    if alpha == 1.0:
+        c, one = c[:0], one[:0]
+    made = Prony._of(True, c, one, alpha)
+    made.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
+    return made
 
 
 def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[NDArray[np.float64]]:
