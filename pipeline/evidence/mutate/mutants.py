@@ -123,7 +123,6 @@ DRIVE = [
     ("motion/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/motion/test_drive_events.py"),
     ("motion/phase.py", "if missed != NO_EVENT or (found == NO_EVENT and behind and not frame.slips):", "if found == NO_EVENT and behind and not frame.slips:", _EVENTS),
     ("motion/phase.py", "kinked = behind and (not frame.slips or found == EDGE or found == SLOW)", "kinked = behind and not frame.slips", "tests/motion/test_drive_events.py"),
-    ("motion/solve.py", "slowest = min(slowest, abs(nodes[SLOPE + i]))", "slowest = abs(nodes[SLOPE])", _EVENTS),
 ]  # fmt: skip
 #: coefficients of ratios.npy, by their number: of every power, in several bins of every segment
 COEFFICIENTS = [

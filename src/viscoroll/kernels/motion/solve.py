@@ -228,10 +228,7 @@ def panel_error(panel, frame, case):
         weight = 1.0 if frame.slips else nodes[V]
         off = _mismatch(SECOND, SECOND_SLOPE, nodes[RATE] / weight * half if smooth else 0.0, nodes)
         # near the edge of the stick zone relaxation comes to an end
-        slowest = abs(nodes[SLOPE])
-        for i in range(1, WIDE):
-            slowest = min(slowest, abs(nodes[SLOPE + i]))
-        error = max(error, off / ((1.0 + panel.length * slowest) * of_second))
+        error = max(error, off / ((1.0 + panel.length * abs(nodes[SLOPE])) * of_second))
     if not frame.slips:  # between the nodes
         error = max(error, _LAST * abs(case.work.powers[OF_SECOND + N - 1]) / of_second)
     return _OVERSTATED * error / (SHARE * case.limits.rtol)
