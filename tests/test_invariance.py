@@ -13,7 +13,6 @@ from functools import partial
 from pathlib import Path
 from threading import Barrier
 
-import numba
 import numpy as np
 import pytest
 import tolerances as tol
@@ -353,21 +352,3 @@ def test_arrays_of_any_kind(kind):
         lambda _, f: vr.tables.interpolate(vr.tables.build(**GRID), V=f(V0[:1]), delta=0, alpha=f(V0[:1])).lam,
     )
     assert all(np.array_equal(call(scenes[0], np.array), call(scenes[1], make)) for call in calls)
-
-
-def test_no_kernel_is_compiled_again_for_another_kind_of_array():
-    """Not by any signature of any kernel that is loaded."""
-    speeds = np.array([0.5, 1.0, 1.5])
-
-    def call(V0, omega0, t) -> int:
-        vr.stress(SCENE, V0, omega0, delta=0.0)
-        for method in ("integrate", "flow"):
-            vr.ensemble(SCENE, V0, omega0, t, method=method)
-        modules = [module for name, module in sys.modules.items() if name.startswith("viscoroll.kernels.")]
-        loaded = {id(each): each for module in modules for each in vars(module).values()}
-        return sum(len(getattr(each, "signatures", ())) for each in loaded.values())
-
-    once = call(speeds, speeds, speeds)
-    assert once > 0 or numba.config.DISABLE_JIT
-    for make in KINDS.values():
-        assert call(make(speeds), 1.0, make(speeds)) == call(0.5, make(speeds), 1.0) == once

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from drives import DMA, ON_DMA
 from refusals import refused
 from run_files import FILES
 from scipy import stats
@@ -34,9 +35,6 @@ V = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"]})
 SCENE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 RUBBER = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1e-4] }\nT_ref = 0.3\n"
-#: fits of docs/examples/dma.csv on a roller of 0.1 m, of a T_ref of 3 s: V = 30 is 1 m/s
-DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
-SLOW = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
 MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
@@ -44,8 +42,8 @@ NAMES = vars(experiments) | {
     "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate, "xr": xr, "fmu": fmu,
     "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
     "LABELLED": V, "FRAME": pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"]),
-    "DMA_ROLLER": SLOW, "ONE": vr.Scene(11.0, 10.0, 0.5, 120.0), "dataclasses": dataclasses,
-    "UNSURE": SLOW.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA.E), DMA.tau)),
+    "DMA_ROLLER": ON_DMA, "ONE": vr.Scene(11.0, 10.0, 0.5, 120.0), "dataclasses": dataclasses,
+    "UNSURE": ON_DMA.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA.E), DMA.tau)),
     "BELT": vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5),
     "SERIES": vr.Prony([2.0, 6.0], [1.0, 1e-4]), "MANY": vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
     "SCENE_FILE": SCENE, "ROLLER_FILE": ROLLER, "RUBBER_FILE": RUBBER,

@@ -7,16 +7,14 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import DMA
+from drives import ON_DMA as ROLLER
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import viscoroll as vr
 from viscoroll.motion import warned
 
-#: a fit of docs/examples/dma.csv, and a roller on it as of docs/may_i.md: 0.1 m, T_ref 3 s
-DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
-#: 1 m/s is 30 R/T_ref
-ROLLER = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=9.81 * 3.0**2 / 0.1, j=0.5)
 ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
 UNLIKE = ROLLER.replace(material=vr.Bodies(DMA, vr.Prony([4.0], [3e-3]), 0.3))
 
@@ -123,8 +121,9 @@ def test_along_a_motion():
     m, thrown = (vr.roll(ROLLER, 30.0, omega0, t) for omega0 in (30.0, 0.0))
     found = m.validity().steady
     assert close(found.value, np.maximum.accumulate(abs(law(ROLLER, m.V)[0])), rel=tol.STEADINESS)
-    assert close(found.share, ROLLER.validity(30.0).steady.share, rel=0.02)
-    assert close(found.ten_percent.speed, ROLLER.validity(30.0).steady.ten_percent.speed, rel=tol.STEADINESS)
+    alone = ROLLER.validity(30.0).steady
+    assert close(found.share, alone.share, rel=0.02)
+    assert close(found.ten_percent.speed, alone.ten_percent.speed, rel=tol.STEADINESS)
     assert not thrown.validity().steady.value[t < thrown.onset_time].any()
     many = vr.ensemble(ROLLER, [30.0, 30.0], [30.0, 0.0], t).validity().steady
     alone = [each.validity().steady for each in (m, thrown)]

@@ -79,14 +79,6 @@ def test_creep_has_its_traction():
         assert close(state.beta, s.beta, rel=tol.STEADY / s.grip)
 
 
-def test_signs():
-    """Force and torque turned around turn V, omega, Q and M around."""
-    one, other = vr.steady(SCENE, force=0.02, torque=0.03), vr.steady(SCENE, force=-0.02, torque=-0.03)
-    for name in ("V", "omega", "Q", "M", "delta", "beta", "eigenvalues", "stable"):
-        sign = -1.0 if name in ("V", "omega", "Q", "M") else 1.0
-        np.testing.assert_array_equal(getattr(other, name), sign * getattr(one, name))
-
-
 # --- several modes, two bodies ---
 
 
@@ -328,19 +320,12 @@ def test_losses_are_what_the_loads_put_in():
 # --- arrays ---
 
 
-def test_shapes_broadcast():
-    s = vr.steady(SCENE.replace(mu=np.array([0.01, 0.2])), force=np.array([[0.01], [0.05], [0.2]]))
-    assert s.count.tolist() == [[2, 2], [0, 2], [0, 0]]
-    assert s.eigenvalues.shape == (3, 2, 2, 2)
-    assert s.reason.shape == (3, 2)
-    assert vr.steady(SCENE, force=np.empty(0)).V.shape == (0, 0)
-
-
 def test_many_loads_are_single_calls_bit_for_bit():
     scene = series_scene(TEN)
     f = np.random.default_rng(5).uniform(-0.011, 0.011, 20_000)
     s = vr.steady(scene, force=f)
     assert s.V.shape == (20_000, s.count.max())
+    assert vr.steady(scene, force=f[:0]).V.shape == (0, 0)
     assert (np.isfinite(s.V).sum(axis=1) == s.count).all()
     for n in range(0, f.size, 997):
         one, held = vr.steady(scene, force=f[n]), slice(0, s.count[n])

@@ -39,7 +39,6 @@ def test_wave_speed():
     wave = math.sqrt(cylinder.E / (2.0 * (1.0 + cylinder.nu)) / density)
     share = np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT
     found = cylinder.validity(share * wave, density=density).quasistatic
-    assert close(found.value, abs(share), rel=tol.SCENE)
     assert found.holds.tolist() == [True, False, False]
 
 

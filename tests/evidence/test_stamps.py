@@ -59,14 +59,6 @@ def test_a_block_says_where_it_is_of_other_kernels(name, results):
     assert said.replace(f"\n{SENTENCE}", "") == block(name, results(stamps.kernels_digest()))
 
 
-def test_parts_of_other_kernels_are_named(results):
-    folder = results(stamps.kernels_digest())
-    proofs = json.loads((folder / "proofs.json").read_text())
-    proofs["parts"]["driven"]["machine"]["kernels"] = OTHER
-    (folder / "proofs.json").write_text(json.dumps(proofs))
-    assert "Measured at kernels `01234567` (proofs driven), not those of this version.\n" in block("proofs", folder)
-
-
 def test_results_of_other_kernels_are_found(results):
     folder = results(stamps.kernels_digest())
     assert stamps.outdated(folder) == {}

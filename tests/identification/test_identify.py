@@ -155,7 +155,6 @@ def test_a_prior_tells_what_slow_rolling_does_not():
     assert fit.undetermined == ()
     for name in fit.values:
         assert fit.stderr[name] < tol.PRIOR * fit.values[name]
-    assert fit.residuals(fit.values).size == SLOW.size + 2
 
 
 def test_a_plan_tells_what_a_fit_will_know():
@@ -219,7 +218,6 @@ def test_slopes_are_those_of_the_residuals():
 def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
     fit = vr.identify(roller(), ranges("mu", "E"), [resistance(seed=1), thrown(seed=2)], starts=1)
     data = fit.to_xarray()
-    assert list(data["unknown"].values) == ["mu", "E", "V0:throw"]
     assert close(data["throw V"] - data["throw V fit"], -fit.residuals(fit.values)[V.size :] * 5e-3, rel=tol.IDENTIFIED)
     assert data["throw V"].attrs["units"] == "m s-1"
     fit.plot(tmp_path / "fit.png")

@@ -135,12 +135,6 @@ def test_one_material_by_all_programs():
         assert close(found.relaxation(T), 3e6 + 3.0 * (G * np.exp(-T[:, None] / tau)).sum(axis=1), rel=tol.MATERIAL)
 
 
-def test_plot(tmp_path):
-    figure = RUBBER.plot(tmp_path / "rubber.png")
-    assert (tmp_path / "rubber.png").stat().st_size > 10_000
-    assert (figure.get_suptitle(), len(figure.axes)) == ("rubber", 3)
-
-
 # --- as netCDF ---
 
 STORED = (
@@ -174,9 +168,7 @@ def test_what_other_programs_read(tmp_path):
     rubber.to_netcdf(tmp_path / "rubber.nc")
     with xr.open_dataset(tmp_path / "rubber.nc", engine="h5netcdf") as found:
         assert (found.E_long.item(), found.E_long.units) == (rubber.E, "Pa")
-        for name in ("E", "tau", "J", "T"):
-            assert np.array_equal(found[name], getattr(rubber.prony, name))
-        assert (found.attrs["name"], found.attrs["given"]) == (rubber.name, "relaxation")
+        assert all(np.array_equal(found[name], getattr(rubber.prony, name)) for name in ("E", "tau", "J", "T"))
 
 
 def test_a_material_of_another_toml_file(tmp_path):

@@ -48,8 +48,7 @@ def test_forms_belong_together(drawn):
 def test_nothing_given_is_rescaled():
     p = vr.Prony(E=[6.0, 0.0, 2.0, 1.0], tau=[1e-5, 3.0, 1.0, 1.0])
     assert (p.E.tolist(), p.tau.tolist()) == ([3.0, 6.0], [1.0, 1e-5])  # equal times added up, zeros dropped
-    assert p == vr.Prony([3.0, 6.0], [1.0, 1e-5])
-    assert hash(p) == hash(vr.Prony([3.0, 6.0], [1.0, 1e-5]))
+    assert {p: 1}[vr.Prony([3.0, 6.0], [1.0, 1e-5])] == 1
     assert eval(repr(p), {"Prony": vr.Prony}) == p
     with pytest.raises(ValueError, match="read-only"):
         p.E[0] = 1.0

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import ROLLER
 
 import viscoroll as vr
 from pipeline.evidence.prove.motion import balance, speed_error
@@ -11,7 +12,6 @@ from pipeline.evidence.prove.motion import balance, speed_error
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
-ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 T = np.linspace(0.0, 8.0, 33)
 BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
 PAIR = vr.Bodies(cylinder=BROAD, base=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
@@ -29,6 +29,15 @@ def test_how_a_schedule_is_written():
     assert all(speed_error(other, ramp, so_far=True).max() <= 30e-9 for other in others)
     jumps = vr.roll(ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
     assert jumps.torque[T == 2.0] == 0.03  # the later side
+
+
+def test_a_brake_lets_go_where_the_force_is_more():
+    """Held at rest while |f| <= mu and |f + q| <= B."""
+    force = vr.Schedule([0.0, 10.0], [0.0, 0.2])
+    m = vr.roll(ROLLER, 0.0, 0.0, np.linspace(0.0, 10.0, 41), force=force, brake=0.1)
+    assert close(m.switches[0].t, 5.0, rel=1e-6)
+    assert not m.V[m.t < 5.0].any()
+    assert m.V[-1] > 0.0
 
 
 @pytest.mark.parametrize("share", [0.7, 1.3])

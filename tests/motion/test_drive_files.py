@@ -2,18 +2,18 @@
 
 import numpy as np
 import xarray as xr
+from drives import ROLLER
 
 import viscoroll as vr
 
-SCENE = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 RAMP = vr.Schedule([0.0, 1.0, 1.0], [0.0, 0.2, 0.0])
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
 def test_other_times_keep_the_drive():
     t = np.linspace(0.0, 4.0, 9)
-    m = vr.roll(SCENE, 0.0, 0.0, t, force=np.sin, torque=RAMP, slope=0.01, brake=0.02)
-    same = vr.roll(SCENE, 0.0, 0.0, 4.0, force=np.sin, torque=RAMP, slope=0.01, brake=0.02).at(t)
+    m = vr.roll(ROLLER, 0.0, 0.0, t, force=np.sin, torque=RAMP, slope=0.01, brake=0.02)
+    same = vr.roll(ROLLER, 0.0, 0.0, 4.0, force=np.sin, torque=RAMP, slope=0.01, brake=0.02).at(t)
     for name in ("V", "omega", *ACTING):
         assert np.array_equal(getattr(m, name), getattr(same, name)), name
 
@@ -21,7 +21,7 @@ def test_other_times_keep_the_drive():
 def test_a_motion_carries_its_drive(tmp_path):
     """Whatever kind it is: a number, times and values, a callable, gains; what was not given is not there."""
     torque = vr.Feedback(RAMP, omega=-0.1)
-    m = vr.roll(SCENE, 0.2, 0.0, np.linspace(0.0, 4.0, 9), force=np.cos, torque=torque, slope=-0.5)
+    m = vr.roll(ROLLER, 0.2, 0.0, np.linspace(0.0, 4.0, 9), force=np.cos, torque=torque, slope=-0.5)
     m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
         for name in ACTING:
@@ -33,7 +33,7 @@ def test_a_motion_carries_its_drive(tmp_path):
         assert data["drive_torque_time"].values.tolist() == RAMP.times.tolist()
         assert data["drive_torque"].attrs["gain_omega"] == -0.1
         assert data["drive_slope"].item() == -0.5
-        assert data.attrs["kappa"] == m.scene.kappa > SCENE.kappa
+        assert data.attrs["kappa"] == m.scene.kappa > ROLLER.kappa
         assert np.array_equal(data["reversals"].values, m.reversals)
         assert m.reversals.size > 0
         assert "drive_brake" not in data
@@ -42,7 +42,7 @@ def test_a_motion_carries_its_drive(tmp_path):
 def test_a_callable_that_starts_at_rest_does():
     """Its polynomials begin with rounding of either sign, which would be a start in full slip the wrong way."""
     for speed in ({"V": lambda t: 0.1 * np.sin(t), "omega0": 0.0}, {"omega": lambda t: 0.1 * np.sin(t), "V0": 0.0}):
-        m = vr.roll(SCENE, **{"V0": None, "omega0": None, "t": [0.0, 0.5, 1.0]} | speed)
+        m = vr.roll(ROLLER, **{"V0": None, "omega0": None, "t": [0.0, 0.5, 1.0]} | speed)
         assert m.V[0] == m.omega[0] == 0.0
         assert (m.switches, m.reversals.size) == ((), 0)
 
@@ -50,17 +50,16 @@ def test_a_callable_that_starts_at_rest_does():
 def test_traction_at_rest_has_the_sign_of_what_follows():
     """V = -0 at the start of a motion backward: contact() takes the limit from that side."""
     for torque in (0.1, 0.8):
-        Q, other = (vr.roll(SCENE, 0.0, 0.0, [0.0, 1e-9, 1.0], torque=q).contact("Q").Q for q in (torque, -torque))
+        Q, other = (vr.roll(ROLLER, 0.0, 0.0, [0.0, 1e-9, 1.0], torque=q).contact("Q").Q for q in (torque, -torque))
         assert np.array_equal(Q, -other)
         assert Q[0] > 0.0
 
 
 def test_an_ensemble_carries_its_drives():
     steps = vr.Schedule([0.0, 1.0, 1.0], [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
-    e = vr.ensemble(SCENE, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING))
+    e = vr.ensemble(ROLLER, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING))
     data = e.to_xarray()
     assert data["drive_torque"].dims == ("motion", "drive_torque_time")
     assert data["drive_slope"].values.tolist() == [0.01, 0.02]
     for name in ACTING:
         assert np.array_equal(data[name].values, getattr(e, name))
-        assert np.array_equal(e.summary()[f"{name}_mean"].values, getattr(e, name).mean(axis=0))

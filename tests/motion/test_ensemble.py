@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import tqdm
 from closeness import close
+from drives import RUBBER
 
 import viscoroll as vr
 from viscoroll.motion.batch import FIELDS, STATES
@@ -33,7 +34,6 @@ def equal(a, b) -> bool:
     return np.array_equal(a, b, equal_nan=True)
 
 
-RUBBER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=18.0, j=0.5)
 SOFT = vr.Prony(np.stack([np.ones(40), np.linspace(2.0, 4.0, 40)], axis=1), [1.0, 0.1])
 TORQUE = np.linspace(-0.2, 0.2, 40)
 THROWN = (np.linspace(1.0, 1.5, 40), np.zeros(40)), np.linspace(0.0, 3.5, 8), {"unsteady": True}

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import ROLLER
 
 import viscoroll as vr
 from viscoroll.motion import fitted, schedule
 
-ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 END = 20.0
 #: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a slope without bounds
 CALLABLES: dict[str, Any] = {

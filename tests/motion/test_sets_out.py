@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import ROLLER
 
 import viscoroll as vr
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-ROLLER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
 T = np.linspace(0.0, 2.0, 9)
 
 
@@ -56,18 +56,11 @@ def test_to_and_fro_where_friction_is_strong():
     scene, draw, n, jumps = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8), np.random.default_rng(5), 60, 20
     times, t = np.repeat(np.arange(jumps + 1.0), 2)[1:-1], np.linspace(0.0, jumps, 61)
     sign = (-1.0) ** np.arange(jumps)
-    force, torque = (np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1) for _ in range(2))
+    force, torque = (
+        vr.Schedule(times, np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1)) for _ in range(2)
+    )
     found, best = (
-        vr.ensemble(
-            scene,
-            0.0,
-            0.0,
-            t,
-            rtol=rtol,
-            force=vr.Schedule(times, force),
-            torque=vr.Schedule(times, torque),
-            fields=("V", "omega"),
-        )
+        vr.ensemble(scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque, fields=("V", "omega"))
         for rtol in (1e-6, 1e-10)
     )
     # where the law leaves two ways on it is said so

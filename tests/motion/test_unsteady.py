@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
+from drives import ON_DMA as ROLLER
+from drives import RUBBER
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
 
-DMA = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
-#: a roller of 0.1 m, T_ref 3 s: V = 30 is 1 m/s
-ROLLER = vr.Scene(material=DMA, kappa=10.6, mu=0.5, gamma=882.9, j=0.5)
-RUBBER = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3, gamma=18.0, j=0.5)
 #: nowhere more unsteady than 0.22: it may pass V = 0
 GENTLE = vr.Scene(alpha=3.0, kappa=5.0, mu=0.5, gamma=1.5, j=0.8)
 T = np.linspace(0.0, 8.0, 17)

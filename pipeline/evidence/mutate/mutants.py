@@ -31,7 +31,7 @@ _STATES, _SLOPES, _MOTION, _DRIVEN = (
     claims("check_driven"),
 )
 _DIRECT, _STEADY, _BOUND = "tests/kernels/printed/test_direct.py", "tests/test_steady.py", "tests/test_bound_law.py"
-_EVENTS = "tests/motion/test_hard_motions.py"
+_DRIVE, _EVENTS = "tests/motion/test_drive.py", "tests/motion/test_hard_motions.py"
 
 LAW = [
     ("rows/series.py", "times(jets, X, load(work.i2, at))", "times(jets, ey, load(work.i2, at))", _STATES),
@@ -81,7 +81,7 @@ MOTION = [
     ("flow/read.py", "(E + layer_value(table, layout.LAYER_ANGLE", "(E - layer_value(table, layout.LAYER_ANGLE", "tests/motion/test_flow.py"),
     ("motion/rates.py", "left = max(1.0 - sign * d, 0.0)", "left = max(1.0 - 0.999 * sign * d, 0.0)", _MOTION),
     ("motion/rates.py", "spread = L + u * dL\n", "spread = L\n", _MOTION),
-    ("motion/rates.py", "press_secants(at, place(2.0 * u / L, law), v, D / w, law)", "press_secants(at, at, v, D / w, law)", "tests/truth/test_motions.py"),
+    ("motion/rates.py", "press_secants(at, place(2.0 * u / L, law), v, D / w, law)", "press_secants(at, at, v, D / w, law)", _DRIVE),
     ("motion/rates.py", "- creep_limit(V, scene) * abs(V)", "- 0.98 * creep_limit(V, scene) * abs(V)", _MOTION),
     ("motion/collocation.py", "total = fma(t, total, powers[row + k])", "total = fma(t, total, powers[row + k] * (1.0 + 1e-7))", _MOTION),
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _MOTION),
@@ -117,7 +117,7 @@ DRIVE = [
     ("motion/load.py", "if by_omega or frame.locked else 1.0 / case.scene.j", "if by_omega else 1.0 / case.scene.j", _DRIVEN),
     ("motion/nodes.py", "weight * (force * speed), weight * (torque * omega)", "weight * (force * speed), weight * (torque * speed)", _DRIVEN),
     ("motion/nodes.py", "weight * ((omega - speed) * rates.Q)", "weight * (omega * rates.Q)", _DRIVEN),
-    ("motion/switch.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVEN),
+    ("motion/switch.py", "return abs(excess) <= most", "return abs(excess) <= 2.0 * most", _DRIVE),
     ("motion/switch.py", "Frame(slips, -direction, -sigma, -spin, locked)", "Frame(slips, -direction, sigma, -spin, locked)", _EVENTS),
     ("motion/origin.py", "* per - d * V_rate, slope, V_rate", "* per, slope, V_rate", _DRIVEN),
     ("motion/events.py", "if event == NO_EVENT or node < last or here < v:", "if event == NO_EVENT or node < last:", "tests/motion/test_drive_events.py"),
