@@ -15,8 +15,6 @@ the same bits, and nothing outside the block is held in memory.
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal, get_args
 
@@ -34,22 +32,11 @@ _ROUNDS = 6
 _BITS = 52
 
 
-@dataclass(frozen=True)
-class Sample(Mapping[str, NDArray]):
+class Sample(dict[str, NDArray[np.float64]]):
     """Named columns of n draws, with what is needed to draw them again."""
 
-    columns: dict[str, NDArray[np.float64]]
     seed: int
     design: str
-
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
-        return self.columns[name]
-
-    def __iter__(self) -> Any:
-        return iter(self.columns)
-
-    def __len__(self) -> int:
-        return len(self.columns)
 
 
 def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: Any = None, **quantities: Any) -> Sample:
@@ -93,8 +80,11 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     rows = points(design, int(seed), int(n), len(random), 0, int(n), 0)
     with np.errstate(all="ignore"):  # what overflows is infinite, and refused
         drawn = {name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)}
-    columns = {name: drawn[name] if name in drawn else np.full(n, float(value)) for name, value in quantities.items()}
-    return Sample(columns, int(seed), design)
+    found = Sample()
+    for name, value in quantities.items():
+        found[name] = drawn[name] if name in drawn else np.full(n, float(value))
+    found.seed, found.design = int(seed), design
+    return found
 
 
 @np.errstate(all="ignore")  # scipy may overflow on what is refused here

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ... import __version__
 from .variables import MODELS, UNITS, Model, Variable
@@ -17,7 +17,7 @@ _DERIVATIVES = {
 def described(version: int, name: str, starts: dict[str, float], token: str, title: str) -> str:
     """modelDescription.xml of a model; ``starts``: values of what may be set."""
     model = MODELS[name]
-    root = ElementTree.Element(
+    root = Element(
         "fmiModelDescription",
         {
             "fmiVersion": f"{version}.0", "modelName": f"viscoroll.{name}", "description": f"{model.text}: {title}",
@@ -26,36 +26,40 @@ def described(version: int, name: str, starts: dict[str, float], token: str, tit
         },
     )  # fmt: skip
     _add_kinds(root, version, name, model)
-    units = ElementTree.SubElement(root, "UnitDefinitions")
+    units = SubElement(root, "UnitDefinitions")
     for unit, exponents in UNITS.items():
-        one = ElementTree.SubElement(units, "Unit", name=unit)
-        ElementTree.SubElement(one, "BaseUnit", {base: str(power) for base, power in exponents.items()})
-    ElementTree.SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", stepSize="0.01")
-    variables = ElementTree.SubElement(root, "ModelVariables")
+        one = SubElement(units, "Unit", name=unit)
+        SubElement(one, "BaseUnit", {base: str(power) for base, power in exponents.items()})
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", stepSize="0.01")
+    variables = SubElement(root, "ModelVariables")
     references = {each.name: str(n) for n, each in enumerate(model.variables, start=1)}
     if version == 3:
         time = {"causality": "independent", "variability": "continuous", "unit": "s"}
-        ElementTree.SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
+        SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
     for each in model.variables:
         _add_variable(variables, version, each, references, starts)
-    _add_structure(ElementTree.SubElement(root, "ModelStructure"), version, model, references)
-    ElementTree.indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+    _add_structure(SubElement(root, "ModelStructure"), version, model, references)
+    return _text(root)
 
 
-def _add_kinds(root: ElementTree.Element, version: int, name: str, model: Model) -> None:
+def _text(root: Element) -> str:
+    indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+
+
+def _add_kinds(root: Element, version: int, name: str, model: Model) -> None:
     steps = {2: {"completedIntegratorStepNotNeeded": "true"}, 3: {"needsCompletedIntegratorStep": "false"}}
     kinds = {"ModelExchange": steps[version]}
     if model.states:
         kinds["CoSimulation"] = {"canHandleVariableCommunicationStepSize": "true"}
     for kind, can in kinds.items():
-        one = ElementTree.SubElement(root, kind, {"modelIdentifier": name} | _DERIVATIVES[version] | can)
+        one = SubElement(root, kind, {"modelIdentifier": name} | _DERIVATIVES[version] | can)
         if version == 2:
-            ElementTree.SubElement(ElementTree.SubElement(one, "SourceFiles"), "File", name="fmu.c")
+            SubElement(SubElement(one, "SourceFiles"), "File", name="fmu.c")
 
 
 def _add_variable(
-    parent: ElementTree.Element, version: int, each: Variable, references: dict[str, str], starts: dict[str, float]
+    parent: Element, version: int, each: Variable, references: dict[str, str], starts: dict[str, float]
 ) -> None:
     varies = "continuous" if each.causality != "parameter" else "tunable" if each.above_0 else "fixed"
     about = {
@@ -68,12 +72,12 @@ def _add_variable(
     if each.name.startswith("der_"):
         value["derivative"] = references[each.name.removeprefix("der_")]
     if version == 3:
-        ElementTree.SubElement(parent, "Float64", about | value)
+        SubElement(parent, "Float64", about | value)
     else:
-        ElementTree.SubElement(ElementTree.SubElement(parent, "ScalarVariable", about), "Real", value)
+        SubElement(SubElement(parent, "ScalarVariable", about), "Real", value)
 
 
-def _add_structure(parent: ElementTree.Element, version: int, model: Model, references: dict[str, str]) -> None:
+def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
     outputs = [references[each.name] for each in model.variables if each.causality == "output"]
     rates = [references[f"der_{state}"] for state in model.states]
     unknowns = sorted((*outputs, *rates), key=int)
@@ -81,18 +85,17 @@ def _add_structure(parent: ElementTree.Element, version: int, model: Model, refe
         kinds = {"Output": outputs, "ContinuousStateDerivative": rates, "InitialUnknown": unknowns}
         for kind, found in kinds.items():
             for reference in found:
-                ElementTree.SubElement(parent, kind, valueReference=reference)
+                SubElement(parent, kind, valueReference=reference)
         return
     for kind, found in {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}.items():
-        group = ElementTree.SubElement(parent, kind) if found else parent
+        group = SubElement(parent, kind) if found else parent
         for reference in found:
-            ElementTree.SubElement(group, "Unknown", index=reference)
+            SubElement(group, "Unknown", index=reference)
 
 
 def sources_described(name: str) -> str:
     """sources/buildDescription.xml of FMI 3.0."""
-    root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
-    how = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)
-    ElementTree.SubElement(ElementTree.SubElement(how, "SourceFileSet", language="C99"), "SourceFile", name="fmu.c")
-    ElementTree.indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    how = SubElement(root, "BuildConfiguration", modelIdentifier=name)
+    SubElement(SubElement(how, "SourceFileSet", language="C99"), "SourceFile", name="fmu.c")
+    return _text(root)

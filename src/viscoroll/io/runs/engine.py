@@ -7,16 +7,14 @@ nor a scheduler holds more than a few, however many blocks there are.
 from __future__ import annotations
 
 import logging
-import sys
+import re
 import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
-from urllib.parse import urlsplit
 
 from ...core.blocks import heed, thread_count
 from ...core.errors import FileError, Interrupted, ParameterError, ViscorollError
@@ -163,11 +161,7 @@ def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Execut
 
 def _is_address(text: str) -> bool:
     """Whether it is tcp://host:port, or the same with tls."""
-    try:
-        parts = urlsplit(text)
-        return parts.scheme in ("tcp", "tls") and bool(parts.hostname) and bool(parts.port)
-    except ValueError:  # a port that is no number
-        return False
+    return re.fullmatch(r"(tcp|tls)://([^/:[\]]+|\[[^/[\]]+\]):\d+", text) is not None
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
@@ -198,12 +192,14 @@ def _silent(*names: str) -> Iterator[None]:
 @contextmanager
 def _bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
     """A function to call with numbers of motions; those found done (``old``) do not count in the rate."""
-    if progress == "lines":
-        yield _Lines(run.settings.n).advance
-        return
     from tqdm import tqdm
 
-    with tqdm(total=run.settings.n, unit=" motions", unit_scale=True, disable=not progress, smoothing=0.05) as bar:
+    lines: dict[str, Any] = {}
+    if progress == "lines":
+        told = "viscoroll: {n_fmt} of {total_fmt} motions, {percentage:.0f} %, {remaining} left\n"
+        lines = {"delay": LINE_EVERY, "mininterval": LINE_EVERY, "bar_format": told}
+    settings = {"unit": " motions", "unit_scale": True, "smoothing": 0.05} | lines
+    with tqdm(total=run.settings.n, disable=not progress, **settings) as bar:
 
         def advance(motions: int, old: bool = False) -> None:
             if old and progress:  # a bar that is not drawn has no start
@@ -211,23 +207,3 @@ def _bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., 
             bar.update(motions)
 
         yield advance
-
-
-class _Lines:
-    """Progress for a log: a line on standard error every half minute."""
-
-    def __init__(self, count: int) -> None:
-        self._count, self._done, self._made = count, 0, 0
-        self._began = self._told = time.monotonic()
-
-    def advance(self, motions: int, old: bool = False) -> None:
-        """Count motions; say so if half a minute has passed."""
-        self._done += motions
-        self._made += 0 if old else motions
-        now = time.monotonic()
-        if old or now - self._told < LINE_EVERY or sys.stderr is None:
-            return
-        self._told = now
-        left = (self._count - self._done) * (now - self._began) / max(self._made, 1)
-        share = f"{self._done} of {self._count} motions, {100.0 * self._done / self._count:.0f} %"
-        print(f"viscoroll: {share}, {left / 60.0:.1f} min left", file=sys.stderr, flush=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from os import PathLike
 from pathlib import Path
@@ -75,9 +76,7 @@ def _append_motions(store: Path, path: Path) -> None:
 
 def _room(array: Any) -> int:
     """Bytes that an array takes at most, whatever its values."""
-    chunk = array.dtype.itemsize
-    for length in array.chunks:
-        chunk *= length
+    chunk = array.dtype.itemsize * math.prod(array.chunks)
     return array.nchunks * int(_LARGER * chunk + _ENTRY) + _HEAD
 
 

@@ -20,7 +20,6 @@ All dimensionless, or all in SI units with [cylinder], and perhaps [material] an
 from __future__ import annotations
 
 import hashlib
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -306,14 +305,5 @@ def _digest(settings: RunSection, times: NDArray, content: dict[str, Any], mater
         for sample in inputs.joint.values()
         for name, values in sample.columns.items()
     ]
-    described = [msgspec.to_builtins(settings), times.tolist(), _plain(sections), materials, samples]
-    return hashlib.sha256(msgspec.json.encode(described, order="deterministic")).hexdigest()
-
-
-def _plain(value: Any) -> Any:
-    """Infinite bounds as text: JSON has none."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+    described = [msgspec.to_builtins(settings), times.tolist(), sections, materials, samples]
+    return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()

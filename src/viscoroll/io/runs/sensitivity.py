@@ -8,7 +8,7 @@ for every uncertain input and two more.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
@@ -85,14 +85,16 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     look_at_materials(whole)
     outcomes, status = _outcomes(whole, _points(len(names), base, run.settings.seed), threads, progress)
     refused: list[str] = []
-    found = {
-        name: _indices(whole, name, values.reshape(-1, len(names) + 2, base), refused)
-        for name, values in outcomes.items()
-    }
-    kept = {name: indices for name, indices in found.items() if np.isfinite(indices).any()}
-    if not kept:
+    data: dict[str, Any] = {}
+    for name, values in outcomes.items():
+        found = _indices(whole, name, values.reshape(-1, len(names) + 2, base), refused)
+        over, about = ("t",) * QUANTITIES[name].over_time, QUANTITIES[name].about(run.si)["long_name"]
+        for (key, text), each in zip(_INDICES.items(), found if np.isfinite(found).any() else (), strict=False):
+            told = {"long_name": f"{text} of: {about}", "units": "1"}
+            data[f"{name}_{key}"] = (*over, "input"), each if over else each[0], told
+    if not data:
         raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
-    return _dataset(whole, names, kept).assign_attrs(
+    return _dataset(whole, names, data).assign_attrs(
         asked_base_points=n, base_points=base, resamples=_RESAMPLES, confidence=CONFIDENCE,
         refused="\n".join(refused), **_ended(status),
     )  # fmt: skip
@@ -189,21 +191,14 @@ def _reason_against(values: NDArray[np.float64], noise: float) -> str:
     return "" if values.std() > noise else "it varies by no more than rtol of its largest value"
 
 
-def _dataset(run: Run, names: tuple[str, ...], found: dict[str, NDArray[np.float64]]) -> xr.Dataset:
+def _dataset(run: Run, names: tuple[str, ...], data: dict[str, Any]) -> xr.Dataset:
     import xarray as xr
 
     from .store import about
 
-    data: dict[str, xr.Variable] = {}
-    for name, indices in found.items():
-        dims = ("t", "input") if QUANTITIES[name].over_time else ("input",)
-        for (key, text), values in zip(_INDICES.items(), indices, strict=True):
-            long_name = f"{text} of: {QUANTITIES[name].about(run.si)['long_name']}"
-            shaped = values if len(dims) == 2 else values[0]
-            data[f"{name}_{key}"] = xr.Variable(dims, shaped, {"long_name": long_name, "units": "1"})
     coordinates = {
-        "t": xr.Variable("t", run.t, column_attributes("t", run.si)),
-        "input": xr.Variable("input", np.array(names, object), {"long_name": "uncertain input"}),
+        "t": ("t", run.t, column_attributes("t", run.si)),
+        "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
     own = provenance("Sobol indices of motions of a viscoelastic cylinder")
     described = about(run) | own | {"design": "Saltelli's, on a scrambled Sobol sequence"}
@@ -217,10 +212,9 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
 
     tables = []
     for name in (str(each).removesuffix("_S1") for each in indices if str(each).endswith("_S1")):
-        own = indices[[f"{name}_{key}" for key in _INDICES]].rename({f"{name}_{key}": key for key in _INDICES})
-        over = [dim for dim in ("t",) if dim in own.dims]
-        frame = own.to_dataframe().reset_index().dropna()
+        frame = pd.DataFrame({key: indices[f"{name}_{key}"].to_series() for key in _INDICES}).dropna().reset_index()
         frame.insert(0, "quantity", name)
+        over = ["t"] * ("t" in frame)
         tables.append(frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable"))
     return pd.concat(tables).rename(columns={"t": column("t", unit_of(indices["t"].attrs))})
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import FileError
 from ...core.extras import imported
-from .records import read_record
+from .records import Record, read_record
 from .store import RECORDS, problems
 
 if TYPE_CHECKING:
@@ -60,10 +60,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     -----
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
     """
-    root = Path(path)
-    start = read_record(root / RECORDS / "start")
-    if start is None:
-        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
+    root, start = Path(path), _start(path)
     damaged, missing = [*problems(root, "start", start.run)], []
     blocks = int(start.about["blocks"])
     for block in range(blocks):
@@ -74,6 +71,14 @@ def verify(path: str | PathLike[str]) -> Verdict:
     end = problems(root, "end", start.run)
     damaged += [name for name in end if (root / name).exists()]
     return Verdict(blocks, tuple(missing), tuple(damaged), not end)
+
+
+def _start(path: str | PathLike[str]) -> Record:
+    """The record of its start; raises FileError."""
+    start = read_record(Path(path) / RECORDS / "start")
+    if start is None:
+        raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
+    return start
 
 
 def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
@@ -88,9 +93,6 @@ def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
 
     imported("zarr", "zarr", "runs")
     root = Path(path)
-    start = read_record(root / RECORDS / "start")
-    if start is None:
-        raise FileError(path, "is no results store, or its record `start` is damaged")
-    if found := problems(root, "end", start.run):
+    if found := problems(root, "end", _start(path).run):
         raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
     return xr.open_zarr(root, chunks=None)

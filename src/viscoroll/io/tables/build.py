@@ -8,11 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...contact_law.contact import contact
-from ...contact_law.contact_fields import OF_BODIES
 from ...core.checks import checked, number
 from ...core.errors import ParameterError
-from ...core.scale import si_unit
 from ...cylinder import Cylinder
 from ...materials.law_file import described, law_of
 from ...materials.law_store import content_of
@@ -104,13 +101,13 @@ def build(
     fields = _fields(what, grid, schema.VOLUME) | {
         name: np.take(values, 0, axis=1) for name, values in _fields(what, plane, schema.PLANE).items()
     }
-    units = _units(what)
+    si = isinstance(what, Cylinder)
     flat = tuple(name for name in axes if name != "delta")
     data = {
-        name: schema.variable(name, flat if name in schema.PLANE else tuple(axes), values, units.get(name, "1"))
+        name: schema.variable(name, flat if name in schema.PLANE else tuple(axes), values, si)
         for name, values in fields.items()
     }
-    coordinates = {name: schema.variable(name, (name,), nodes, units.get(name, "1")) for name, nodes in axes.items()}
+    coordinates = {name: schema.variable(name, (name,), nodes, si) for name, nodes in axes.items()}
     table = xr.Dataset(data, coordinates, schema.global_attributes(_title(what), _shape(axes), command))
     table.attrs |= {name: value for name, value in _constants(what).items() if name not in axes}
     _state_errors(table, what)
@@ -141,35 +138,20 @@ def _single(what: Any) -> Scene | Cylinder:
 
 def _fields(what: Scene | Cylinder, at: dict[str, NDArray], names: tuple[str, ...]) -> dict[str, NDArray]:
     """Fields at V, perhaps delta, and perhaps an alpha each."""
-    creep = at.get("delta", np.zeros(1))
-    V = at["V"]
-    if isinstance(what, Cylinder):
-        return what.contact(V, delta=creep, fields=names).as_dict()
-    scene = what.replace(alpha=at["alpha"]) if "alpha" in at else what
-    return contact(scene, V, delta=creep, fields=names).as_dict()
+    one = what.replace(alpha=at["alpha"]) if "alpha" in at else what
+    return one.contact(at["V"], delta=at.get("delta", np.zeros(1)), fields=names).as_dict()
 
 
 def _state_errors(table: xr.Dataset, what: Scene | Cylinder) -> None:
     """Put the errors of both ways to interpolate into the attributes of the fields."""
-    from scipy.interpolate import RegularGridInterpolator
-
     random = np.random.default_rng(SEED)
     points = {name: _between(table[name].values, random) for name in schema.axes_of(table)}
     exact = _fields(what, points, schema.VOLUME + schema.PLANE)
-    look_up = Interpolant(table)
+    ways = {"spline_error": Interpolant(table), "linear_error": Interpolant(table, linear=True)}
     for name in schema.fields_of(table):
-        field = table[name].squeeze()
-        dims = [str(dim) for dim in field.dims]
-        linear = field.values
-        if dims:
-            linear = RegularGridInterpolator([table[dim].values for dim in dims], field.values)(
-                np.column_stack([points[dim] for dim in dims])
-            )
-        smooth = getattr(look_up(name, **{str(dim): points[str(dim)] for dim in table[name].dims}), name)
-        table[name].attrs |= {
-            "spline_error": float(np.abs(smooth - exact[name]).max()),
-            "linear_error": float(np.abs(linear - exact[name]).max()),
-        }
+        own = {str(dim): points[str(dim)] for dim in table[name].dims}
+        for key, look_up in ways.items():
+            table[name].attrs[key] = float(np.abs(look_up(name, **own)[name] - exact[name]).max())
 
 
 def _between(nodes: NDArray, random: np.random.Generator) -> NDArray[np.float64]:
@@ -178,12 +160,6 @@ def _between(nodes: NDArray, random: np.random.Generator) -> NDArray[np.float64]
         return np.full(SAMPLE, nodes[0])
     cell = random.integers(nodes.size - 1, size=SAMPLE)
     return nodes[cell] + random.random(SAMPLE) * (nodes[cell + 1] - nodes[cell])
-
-
-def _units(what: Scene | Cylinder) -> dict[str, str]:
-    if isinstance(what, Scene):
-        return {}
-    return {name: si_unit(name) for name in ("V", "Q", "M", *OF_BODIES)}
 
 
 def _title(what: Scene | Cylinder) -> str:

@@ -27,6 +27,7 @@ class Interpolant:
     ----------
     table : a Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
         Splines are made once a field, at its first use, from the values of that time.
+    linear : in the axes as they stand, as look-up blocks do.
 
     Raises
     ------
@@ -34,11 +35,11 @@ class Interpolant:
         If it is not a table.
     """
 
-    def __init__(self, table: xr.Dataset) -> None:
+    def __init__(self, table: xr.Dataset, linear: bool = False) -> None:
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
         # files before 1.2 state the errors of linear interpolation in V, delta and alpha
-        self._linear = table.attrs[schema.KIND] in ("literal", "material")
+        self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")
         self._evaluators: dict[str, Any] = {}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ... import __version__
 from ...core.errors import FileError
+from ...core.scale import si_unit
 from ...core.symbols import PAPER, SYMBOLS, meaning
 
 if TYPE_CHECKING:
@@ -51,16 +52,16 @@ def fields_of(table: xr.Dataset) -> tuple[str, ...]:
     return _ATLAS_FIELDS if table.attrs[KIND] == "atlas" else (*VOLUME, *(name for name in PLANE if name in table))
 
 
-def variable(name: str, dims: tuple[str, ...], values: Any, units: str = "1", **extra: Any) -> xr.Variable:
+def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
     """``values`` over ``dims`` with long_name, units, symbol, range, equation and reference."""
     import xarray as xr
 
     symbol = SYMBOLS[name]
     attributes = {
-        "long_name": meaning(name, units != "1"), "units": units, "symbol": symbol.latex, "range": symbol.range,
-        "equation": symbol.equation, "reference": PAPER,
+        "long_name": meaning(name, si), "units": si_unit(name) if si else "1", "symbol": symbol.latex,
+        "range": symbol.range, "equation": symbol.equation, "reference": PAPER,
     }  # fmt: skip
-    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes | extra)
+    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes)
 
 
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
