@@ -7,6 +7,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from .. import __version__
 from ..core.errors import FileError, ParameterError
 from ..core.files import seal_holds, write_dataset
@@ -44,24 +46,22 @@ def as_dataset(material: Any) -> xr.Dataset:
     """Both forms of the series over "mode", slowest first, and the constants; ``given`` names the form to trust."""
     import xarray as xr
 
-    series = material.prony
-    constants = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
-    more = {"density": material.density, "thickness": material.thickness}
-    more |= {f"measured_{name}": getattr(material.measured, name, None) for name in _BAND}
-    constants |= {name: value for name, value in more.items() if value is not None}
-    data: dict[str, tuple[Any, Any]] = {name: ((), value) for name, value in constants.items()}
-    data |= {name: ("mode", getattr(series, name)) for names in _FORMS.values() for name in names}
-    described = {
-        name: (*variable, dict(zip(("long_name", "units"), _MEANING[name], strict=True)))
-        for name, variable in data.items()
-    }
+    series, band = material.prony, material.measured
+    held = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
+    held |= {name: getattr(material, name) for name in ("density", "thickness")}
+    held |= {f"measured_{name}": getattr(band, name, None) for name in _BAND}
+    held |= {name: getattr(series, name) for names in _FORMS.values() for name in names}
+    data = {
+        name: (("mode",) * np.ndim(value), value, dict(zip(("long_name", "units"), _MEANING[name], strict=True)))
+        for name, value in held.items() if value is not None
+    }  # fmt: skip
     return xr.Dataset(
-        described,
+        data,
         attrs={
             "Conventions": "CF-1.11", "schema": _SCHEMA, "title": material.name or "linear viscoelastic material",
             "name": material.name, "given": "creep" if series.by_creep else "relaxation",
             "law": "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T T_ref)))/E_long",
-            "source": f"viscoroll {__version__}", "measured": getattr(material.measured, "source", ""),
+            "source": f"viscoroll {__version__}", "measured": getattr(band, "source", ""),
         },
     )  # fmt: skip
 
