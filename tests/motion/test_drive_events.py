@@ -102,3 +102,16 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
         m = vr.roll(ELASTIC, 1.0, 0.0, t, rtol=rtol, **drive)
         assert m.switches[0].regime == "full slip"
         assert close(m.switches[0].t, 0.25 / 0.45, rel=BOUND * rtol)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-11])
+@pytest.mark.parametrize("then", [1.0, -1.0])
+def test_a_prescribed_speed_stands_at_0(rtol, then):
+    """What its integration leaves of it is 0: the other speed comes to rest too; then it sets out either way."""
+    scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.05, gamma=1.0, j=0.5), np.linspace(0.0, 4.0, 17)
+    stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
+    turning = vr.roll(scene, None, -0.1, t, rtol=rtol, V=stands)
+    # sliding at V = 0 it spins down by 0.1 a unit of time
+    assert close(turning.V, np.interp(t, stands.times, stands.values), rel=BOUND * rtol, scale=1.0)
+    assert turning.status == vr.MotionStatus.DONE
+    assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
