@@ -201,7 +201,7 @@ COPULA = 1e-3
 #: Mean and variance against numpy's: other orders of summation of up to 1e5 numbers of size 1.
 MOMENT = 1e-12
 
-# --- motions in extended precision (truth/test_motions.py, evidence/test_precise.py) ---
+# --- motions in extended precision (tests of truth, evidence/test_precise.py) ---
 #: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20.
 PRECISE_MOTION = 1e-17
 

@@ -5,21 +5,15 @@ import math
 import numpy as np
 import pytest
 from truth.test_driven import MOTIONS as DRIVEN
-from truth.test_driven import inputs as driven_inputs
 from truth.test_motions import check_motions, inputs
 
 from pipeline.evidence.truth import roll_precise
 from pipeline.evidence.truth.motion import PATHS
+from pipeline.evidence.truth.reference import driven_motion
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
 OUTPUTS = ("V", "omega", "x", "angle")
-
-
-# --- the integrator ---
-
-
-# --- the check motions ---
 
 
 @pytest.mark.parametrize("number", [0, 9, 10, 37])
@@ -37,7 +31,7 @@ def test_check_motions_are_found_again(number):
 def test_driven_ones_are_found_again(name):
     """The same doubles by fewer nodes and a larger tolerance."""
     row = next(row for row in DRIVEN if row["name"] == name)
-    case, drive = driven_inputs(row)
-    found = roll_precise(*case, **drive, nodes=18, tolerance=1e-19)
+    case = driven_motion(row)
+    found = roll_precise(*case[:3], row["t"], **case.drive, nodes=18, tolerance=1e-19)
     for field in ("V", "omega", *PATHS):
         assert [float(value) for value in getattr(found, field)] == row[field], field

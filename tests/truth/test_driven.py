@@ -3,22 +3,9 @@
 import json
 
 import tolerances as tol
-from drives import given
 from places import ROOT
 
-import viscoroll as vr
-
 MOTIONS = json.loads((ROOT / "data/reference/check_driven.json").read_text())["motions"]
-
-
-def inputs(row: dict) -> tuple[tuple, dict]:
-    """Scene, start and times of a motion, and what drives it."""
-    scene = {"alpha": None} | row["scene"]
-    bodies = {name: vr.Prony(**scene.pop(name)) for name in ("prony", "cylinder", "half_space") if name in scene}
-    if bodies:
-        scene["material"] = bodies["prony"] if "prony" in bodies else vr.Bodies(**bodies, share=scene.pop("share"))
-    drive = {name: given(value) for name, value in row["drive"].items()}
-    return (vr.Scene(**scene), row["V0"], row["omega0"], row["t"]), drive
 
 
 def test_check_motions_hold_together():

@@ -5,7 +5,6 @@ from typing import Any
 
 import flint
 import numpy as np
-import xarray as xr
 from places import DATA
 
 from pipeline.evidence.truth.enclosures import contact_enclosure, ratio_k, ratio_r
@@ -75,13 +74,9 @@ def check_rows() -> list[dict[str, float]]:
 
 
 def test_check_values_sample_is_enclosed():
-    """A sample of the file, each value the double nearest to its enclosure, and netCDF as CSV."""
+    """A sample of the file, each value the double nearest to its enclosure."""
     rows = check_rows()
     for row in rows[:: len(rows) // 60]:
         exact = contact_enclosure(*(row[name] for name in ("alpha", "kappa", "mu", "V", "delta")))
         for name, ball in exact.items():
             assert row[name] == float(ball), name
-    with xr.open_dataset(CHECK_VALUES.with_suffix(".nc"), engine="h5netcdf") as data:
-        assert set(data.data_vars) == set(rows[0])
-        for name in rows[0]:
-            assert np.array_equal(data[name], [row[name] for row in rows]), name

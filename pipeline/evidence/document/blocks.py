@@ -54,7 +54,6 @@ def stated(name: str, stage: str, head: tuple[str, str], lines: Mapping[str, str
 
 # --- measure ---
 
-_IMPORT = {"`import viscoroll`, over a bare Python": "{time[import_s]!m} ms"}
 _ROLL = "{time[roll_1e-06_us]!n} µs; {time[roll_1e-08_us]!n} µs"
 _ENSEMBLE = "{time[ensemble_1e-06_us]!n} µs; {time[ensemble_1e-08_us]!n} µs"
 _STATE = "Q and M of a contact state against enclosures, worst of {states}, condition below 225"
@@ -63,13 +62,6 @@ _HEADLINE = {
     "pressure and shear: closures with load, Q and M, relative to the load": "{closure!n}",
     "motions in extended precision, the paper's among them, at rtol 1e-8: V and ω over their condition": "{speed!n}",
     "the same: onset of stick": "{onset!n}",
-    "`contact()`, Q and M in arrays at one alpha, a state": "{time[contact_one_alpha_ns]!n} ns",
-    "the same by root solves of the printed equations": "{time[contact_direct_ns]!n} ns",
-    "`contact()`, Q and M in arrays with an alpha each, a state": "{time[contact_an_alpha_each_ns]!n} ns",
-    "`roll()`, one motion (rtol 1e-6; 1e-8)": _ROLL,
-    "`ensemble()`, a motion, integrated (rtol 1e-6; 1e-8)": _ENSEMBLE,
-    "`ensemble()` of one scene, a motion, from the flow map": "{time[flow_us]!n} µs",
-    **_IMPORT,
 }
 _THREE = {
     _STATE: "{contact!n}",
@@ -86,7 +78,7 @@ _TIMES = {
         f"{_ENSEMBLE} a motion"
     ),
     "the same of 50 times as many, from the flow map": "{time[flow_us]!n} µs a motion",
-    **_IMPORT,
+    "`import viscoroll`, over a bare Python": "{time[import_s]!m} ms",
     "`viscoroll roll`, the whole process, kernels cached": "{time[cli_roll_s]!n} s",
 }
 _MACHINE = (
@@ -105,10 +97,9 @@ def _worst(results: Results, part: str, *words: str) -> float:
 
 
 def _state(results: Results) -> dict[str, Any]:
-    """The times, and errors of states."""
+    """Errors of states."""
     found = [row for name in ("Q, ", "M, ") for row in _claims(results, "contact", "relative", name)]
-    worst = max(row["worst"] for row in found)
-    return results["measured"] | {"contact": worst, "states": sum(row["points"] for row in found) // 2}
+    return {"contact": max(row["worst"] for row in found), "states": sum(row["points"] for row in found) // 2}
 
 
 def _most(results: Results) -> dict[str, Any]:
@@ -117,8 +108,10 @@ def _most(results: Results) -> dict[str, Any]:
     return _state(results) | {"closure": _worst(results, "slopes", "Int"), "speed": speed, "onset": onset}
 
 
-stated("headline", "measure", ("what", "measured"), _HEADLINE, _most, _MACHINE)
-stated("three", "measure", ("what", "measured"), _THREE, _state, _MACHINE)
+stated("headline", "prove", ("what", "measured"), _HEADLINE, _most)
+stated(
+    "three", "measure", ("what", "measured"), _THREE, lambda results: results["measured"] | _state(results), _MACHINE
+)
 stated("times", "measure", ("what", "median time on one core"), _TIMES, lambda results: results["measured"], _MACHINE)
 stated(
     "page", "measure.outside", ("what", "measured"), {
@@ -214,54 +207,23 @@ def ensembles_plan(results: Results) -> str:
 
 # --- prove ---
 
-_WORST = {"mean": "{mean!n}", "worst": "{worst!n}"}
-
-
-@text("prove")
-def contact(results: Results) -> str:
-    """Every field of a state, by its axis and by its rows."""
-    return listed({"relative error": "{claim}"} | _WORST, _claims(results, "contact", "relative"))
-
-
-@text("prove")
-def direct(results: Results) -> str:
-    return listed({"difference": "{claim}", "allowed": "{bound!n}", "worst": "{worst!n}"}, _claims(results, "direct"))
-
-
-@text("prove")
-def stress(results: Results) -> str:
-    return listed({"closure": "{claim}"} | _WORST, _claims(results, "slopes", "Int"))
-
-
-@text("prove")
-def motion(results: Results) -> str:
-    """Errors over rtol by rtol, of both proofs."""
-    columns = {
-        "rtol": "{rtol}", "V, ω": "{speed!n}", "x": "{x!n}", "onset": "{onset!n}", "V, ω, mean": "{mean!n}",
-    }  # fmt: skip
-    parts = []
-    for part, title in (("check_motions", "In extended precision, 50 motions"), ("motion", "Random motions")):
-        shown = []
-        for row in _claims(results, part, "V", "rtol 1e-", "over rtol"):
-            if "over condition" in row["claim"] or "error" in row["claim"]:
-                continue
-            rtol = row["claim"].split("rtol ")[1].split(",")[0]
-            (x,), (onset,) = (
-                _claims(results, part, begin, f"rtol {rtol}, over rtol") for begin in ("x", "time of onset")
-            )
-            shown.append(
-                {"rtol": rtol, "speed": row["worst"], "mean": row["mean"], "x": x["worst"], "onset": onset["worst"]}
-            )
-        parts.append(f"{title}, errors over rtol:\n\n{listed(columns, shown)}")
-    return "\n".join(parts)
-
-
-_PROOFS = {
-    "ratios": "Bessel ratios", "contact": "contact states", "direct": "root solves of the printed equations",
-    "states": "states of rows, 60 digits", "shape": "shape", "slopes": "slopes and stress", "motion": "motion",
-    "check_motions": "motion, extended precision", "series": "series and pairs", "boundary": "boundary elements",
-    "driven": "driven motion", "flow": "flow maps", "check_driven": "driven motion, extended precision",
+#: block -> head, and parts of the proofs with words that their claims hold
+_CLAIMS = {
+    "contact": ("relative error", {"contact": "relative"}), "direct": ("difference", {"direct": ""}),
+    "stress": ("closure", {"slopes": "Int"}),
+    "motion": ("error at the default tolerance", dict.fromkeys(("check_motions", "motion"), "rtol 1e-08, over")),
 }  # fmt: skip
+_FOUND = {"allowed": "{bound!n}", "mean": "{mean!n}", "worst": "{worst!n}"}
+
+
+def _claimed(results: Results, head: str, parts: dict[str, str]) -> str:
+    return listed(
+        {head: "{claim}"} | _FOUND, [row for part, words in parts.items() for row in _claims(results, part, words)]
+    )
+
+
+for _name, _which in _CLAIMS.items():
+    BLOCKS[_name] = "prove", lambda results, which=_which: _claimed(results, *which)
 
 
 @rows("prove", "proofs", {
@@ -270,12 +232,12 @@ _PROOFS = {
 })  # fmt: skip
 def proofs(found: Any) -> Iterator[Row]:
     """A row a proof, with the claim that comes closest to its bound; data/results/proofs.json has all of them."""
-    for name, title in _PROOFS.items():
-        claims = found["parts"][name]["rows"]
+    for name, part in found["parts"].items():
+        claims = part["rows"]
         closest = max(claims, key=lambda row: row["worst"] / row["bound"] if row["bound"] else row["worst"])
         points = sum(row["points"] for row in claims)
         claim = closest["claim"].replace("|", "\\|")
-        yield closest | {"title": title, "claims": len(claims), "points": points, "claim": claim}
+        yield closest | {"title": name.replace("_", " "), "claims": len(claims), "points": points, "claim": claim}
 
 
 @rows("prove.independent", "independent", {

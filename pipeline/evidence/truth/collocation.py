@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,9 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from viscoroll.core.extras import imported
-
-#: a zero is found to this share of a step on its polynomial
-_LOCATED, _MOST_BISECTIONS = 1e-25, 200
 
 
 @dataclass(frozen=True)
@@ -108,22 +105,3 @@ def _integral_of_node(flint: Any, nodes: list[Any], i: int) -> Any:
         if m != i:
             poly *= flint.arb_poly([-node, 1]) * (1 / (nodes[i] - node))
     return poly.integral()(flint.arb(1))
-
-
-def zero_between(function: Callable[[Any], Any], low: Any, at_low: Any, high: Any, at_high: Any) -> Any:
-    """Where a function that is not negative at ``low`` and negative at ``high`` is zero (Illinois)."""
-    side = 0
-    for _ in range(_MOST_BISECTIONS):
-        if high - low < _LOCATED:
-            break
-        middle = ((at_low * high - at_high * low) / (at_low - at_high)).mid()
-        if not low < middle < high:
-            middle = ((low + high) / 2).mid()
-        value = function(middle)
-        if value > 0:
-            low, at_low, at_high, side = middle, value, at_high / 2 if side == 1 else at_high, 1
-        else:
-            high, at_high, at_low, side = middle, value, at_low / 2 if side == -1 else at_low, -1
-        if abs(value) < _LOCATED * abs(at_low - at_high):
-            return middle
-    return high

@@ -14,12 +14,8 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
-from viscoroll.core.checks import checked
-from viscoroll.core.errors import ConvergenceError, ParameterError
+from viscoroll.core.errors import ConvergenceError
 from viscoroll.core.extras import imported
-from viscoroll.scene import Scene
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14
@@ -44,38 +40,20 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
     dict
         lam, zeta, epsilon, delta_star, beta, Q, M as ``flint.arb``; full_slip as bool.
 
-    Raises
-    ------
-    ParameterError
-        A value out of its range, NaN or infinite, or not a single number.
-    MissingDependencyError
-        If python-flint is not installed.
-    ConvergenceError
-        If 16384 bits do not suffice.
-
     Notes
     -----
     Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
     most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
     """
-    given, sign_V, sign_delta = _single_numbers("contact_enclosure", alpha, kappa, mu, V, delta)
     flint = _flint()
-    state = enclosed({name: flint.arb(value) for name, value in zip(INPUTS, given, strict=True)}, bits)
+    given = (alpha, kappa, mu, abs(V), abs(delta))
+    state = enclosed({name: flint.arb(float(value)) for name, value in zip(INPUTS, given, strict=True)}, bits)
     with flint.ctx.workprec(_MOST_BITS):  # a change of sign shall not round
-        state["Q"], state["M"] = state["Q"] * (sign_V * sign_delta or 1), state["M"] * sign_V
+        if V < 0.0:
+            state["M"] = -state["M"]
+        if delta != 0.0 and (V < 0.0) != (delta < 0.0):
+            state["Q"] = -state["Q"]
     return state
-
-
-def _single_numbers(caller: str, alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> tuple[list[float], int, int]:
-    """(alpha, kappa, mu, |V| and |delta| as floats, signs of V and of delta), of one state with V other than 0."""
-    scene = Scene(alpha=alpha, kappa=kappa, mu=mu)
-    speed, creep = checked("V", V), checked("delta", delta)
-    if scene.shape or speed.ndim or creep.ndim:
-        raise ParameterError(caller, "arrays", "called with single numbers")
-    if speed == 0.0:
-        raise ParameterError("V", 0.0, "different from 0")
-    given = [float(value) for value in (scene.alpha, scene.kappa, scene.mu, abs(speed), abs(creep))]
-    return given, int(np.sign(speed)), int(np.sign(creep))
 
 
 def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
     python -m pipeline.evidence.truth.ratios [-o FILE]
 
-r = I1/I0, k = K0/K1 and i2 = I2/I0 are evaluated with 60 digits (mpmath) at the Chebyshev
+r = I1/I0, k = K0/K1 and i2 = I2/I0 are evaluated with 60 digits at the Chebyshev
 points of every bin of the layout, interpolated there, and rounded to double once, as
 monomials about the centre of the bin.
 """
@@ -19,24 +19,19 @@ from tqdm import tqdm
 from viscoroll.core.files import replacing
 from viscoroll.kernels.bessel import layout as layout
 
+from .series import of_mpmath
+
 TARGET = Path(__file__).parents[3] / "src/viscoroll/kernels/bessel/ratios.npy"
 NODES = layout.COEFFICIENTS + 1
 
 
-def r(x: mp.mpf) -> mp.mpf:
-    return mp.besseli(1, x) / mp.besseli(0, x)
-
-
-def k(z: mp.mpf) -> mp.mpf:
-    return mp.besselk(0, z) / mp.besselk(1, z)
-
-
+OF = of_mpmath(mp)
 EVALUATE = {
-    "r(x)/x": lambda x: r(x) / x,
-    "x (1 - r(x))": lambda x: x * (1 - r(x)),
-    "k(z)/z": lambda z: k(z) / z,
-    "z (1 - k(z))": lambda z: z * (1 - k(z)),
-    "i2(x)/x^2": lambda x: mp.besseli(2, x) / mp.besseli(0, x) / x**2,
+    "r(x)/x": lambda x: OF.r(x) / x,
+    "x (1 - r(x))": lambda x: x * (1 - OF.r(x)),
+    "k(z)/z": lambda z: OF.k(z) / z,
+    "z (1 - k(z))": lambda z: z * (1 - OF.k(z)),
+    "i2(x)/x^2": lambda x: OF.i2(x) / x**2,
 }
 
 

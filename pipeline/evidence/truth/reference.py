@@ -22,12 +22,11 @@ from typing import Any, NamedTuple
 
 import flint
 import numpy as np
-import xarray as xr
 from flint import arb
 from tqdm import tqdm
 
 import viscoroll as vr
-from viscoroll.core.files import write_dataset, write_text
+from viscoroll.core.files import write_text
 
 from ... import stage
 from .enclosures import INPUTS, condition_numbers, contact_enclosure
@@ -141,30 +140,20 @@ def driven_row(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def values(folder: Path, count: int | None) -> None:
-    _tabled(folder, VALUES, [value_row(row) for row in tqdm(stage.read_rows(VALUES)[:count], "states", leave=False)])
+    rows = [value_row(row) for row in tqdm(stage.read_rows(VALUES)[:count], "states", leave=False)]
+    stage.write_rows(folder / VALUES.name, rows)
 
 
 def motions(folder: Path, count: int | None) -> None:
     old = [list(rows) for _, rows in groupby(stage.read_rows(FREE), itemgetter("motion"))]
-    _tabled(folder, FREE, [row for rows in tqdm(old[:count], "motions", leave=False) for row in free_rows(rows)])
+    rows = [row for rows in tqdm(old[:count], "motions", leave=False) for row in free_rows(rows)]
+    stage.write_rows(folder / FREE.name, rows)
 
 
 def driven(folder: Path, count: int | None) -> None:
     content = json.loads(DRIVEN.read_text(encoding="utf-8"))
     content["motions"] = [driven_row(row) for row in tqdm(content["motions"][:count], "driven motions", leave=False)]
     write_text(folder / DRIVEN.name, json.dumps(content, indent=1) + "\n")
-
-
-def _tabled(folder: Path, path: Path, rows: list[dict[str, Any]]) -> None:
-    """As CSV, and as netCDF with the words of the one that is there."""
-    stage.write_rows(folder / path.name, rows)
-    data = xr.load_dataset(path.with_suffix(".nc"), engine="h5netcdf")
-    first, *more = data.dims
-    data = data.isel({first: slice(len(rows) // math.prod(data.sizes[name] for name in more))})
-    for name in rows[0].keys() - data.dims:
-        column = np.array([row[name] for row in rows])
-        data[name][:] = column if data[name].ndim > len(more) else column.reshape(data.sizes[first], -1)[:, 0]
-    write_dataset(data, folder / path.with_suffix(".nc").name)
 
 
 FILES = {"values": values, "motions": motions, "driven": driven}

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from viscoroll.core.extras import imported
 
-from .collocation import Radau, zero_between
+from .collocation import Radau
 from .phases import Phase
 
 #: iterations of a step, of which the first take a new matrix, and steps that look for an event
 _MOST_ITERATIONS, _MATRICES, _CUTS = 14, 3, 12
+#: by which an event is found between two nodes before steps are cut
+_HALVINGS = 24
 #: a correction below this share of the unknowns leaves nothing to be corrected
 _LAST_CORRECTION = 1e-24
 #: an event is met to this share of its function's largest value, and its slope taken over this share of a step
@@ -111,8 +113,10 @@ def _first(
         def along(theta: Any, function: Any = function) -> Any:
             return function(method.at(start, values, theta), tau + h * theta)
 
-        before = (method.nodes[beyond - 1], at_nodes[beyond - 1]) if beyond else (0 * h, function(start, tau))
-        theta = zero_between(along, *before, method.nodes[beyond], at_nodes[beyond])
-        if theta < least:
-            soonest, least = event, theta
+        low, high = method.nodes[beyond - 1] if beyond else 0 * h, method.nodes[beyond]
+        for _ in range(_HALVINGS):
+            middle = ((low + high) / 2).mid()
+            low, high = (middle, high) if along(middle) > 0 else (low, middle)
+        if middle < least:
+            soonest, least = event, middle
     return soonest, least
