@@ -182,10 +182,9 @@ def packed(loads: Loads, states: States, reasons: Reasons, scale: Scale, labels:
         padded[:, number * most + place] = rows
         rows = padded
     rows = rows.reshape(len(rows), *loads.shape, most)
-    found: dict[str, Any] = {
-        name: values * behind(scale[name]) if name in DIMENSIONS else values
-        for name, values in zip(_FIELDS, rows, strict=False)
-    }
+    found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
+    if scale.si:
+        found |= {name: found[name] * behind(scale[name]) for name in found if name in DIMENSIONS}
     fast, slow, imaginary = rows[-3:] * behind(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
     eigenvalues.real[..., 0], eigenvalues.real[..., 1] = fast, slow
