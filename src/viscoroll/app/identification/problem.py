@@ -167,7 +167,8 @@ class Problem:
         powers = np.zeros_like(u) if held is None else held
         fixed = np.count_nonzero(powers) == 1
         free = [i for i in self.live if not (fixed and powers[i])]
-        rule, whole = _STIFF * powers[free], np.clip(u, self.low, self.high)
+        rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
+        whole = np.clip(u, self.low, self.high)
 
         def at(v: Vector) -> Vector:
             inside = whole.copy()

@@ -90,7 +90,7 @@ class Record:
                 raise ParameterError(self.of("sigma"), f"{given!r:.40}", allowed)
             given = {among[0]: given}
         refuse_unknown(self.of("sigma"), given, among, "a quantity of it")
-        return dict(given)
+        return {name: value for name, value in given.items() if value is not None}
 
     @property
     def measured(self) -> tuple[str, ...]:
