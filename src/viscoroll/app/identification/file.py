@@ -9,11 +9,12 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from ...core.errors import FileError, ParameterError
 from ...core.scale import refuse_other_unit
-from ...core.sections import fault, hint, read, refuse_unknown
+from ...core.sections import as_struct, fault, hint, read, refuse_unknown
 from ...cylinder import Cylinder
 from ...io.config import read_body
 from ...materials.file import shifts_of
@@ -21,6 +22,8 @@ from .records import Coastdown, Record, Resistance, Traction
 
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}
+#: keys of [[data]] beside those that its kind of record has
+_SECTION = [("kind", str), ("file", str), ("columns", dict[str, str], msgspec.field(default_factory=dict))]
 #: in place of a start speed, what Python gives None for
 _UNKNOWN = "unknown"
 _HEADING = re.compile(r"(.*?)\s*(?:[\[(](.*)[\])])?$")
@@ -47,20 +50,20 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def _record(path: Path, given: Any) -> Record:
-    kind = _KINDS.get(given.get("kind", "")) if isinstance(given, dict) else None
+    named = given.get("kind") if isinstance(given, dict) else None
+    kind = next((kind for name, kind in _KINDS.items() if name == named), None)
     if kind is None:
         raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
-    own = {field.name for field in dataclasses.fields(kind) if field.init} - {*kind.PLACES, *kind.KINDS}
-    refuse_unknown(path, "data", given, ("kind", "file", "columns", *sorted(own)))
-    columns = given.get("columns", {})
-    refuse_unknown(path, "data.columns", columns, (*kind.PLACES, *kind.KINDS))
-    if not isinstance(given.get("file"), str):
-        raise FileError(path, "[[data]] file: must name a CSV file")
-    more: Any = {name: None if value == _UNKNOWN else value for name, value in given.items() if name in own}
+    columns = (*kind.PLACES, *kind.KINDS)
+    own = [(one.name, Any, one.default) for one in dataclasses.fields(kind) if one.init and one.name not in columns]
+    section: Any = as_struct(path, "data", given, msgspec.defstruct("Data", [*_SECTION, *own]))
+    refuse_unknown(path, "data.columns", section.columns, columns)
+    values = {name: getattr(section, name) for name, *_ in own}
+    more: Any = {name: None if value == _UNKNOWN else value for name, value in values.items()}
     try:
-        return kind(**more, **_columns(path.parent / given["file"], kind, columns))
+        return kind(**more, **_columns(path.parent / section.file, kind, section.columns))
     except ParameterError as error:
-        raise FileError(path, f"[[data]] {given['file']}: {error}") from error
+        raise FileError(path, f"[[data]] {section.file}: {error}") from error
 
 
 def _columns(path: Path, kind: type[Record], called: dict[str, str]) -> dict[str, Any]:

@@ -217,12 +217,12 @@ class Coastdown(Record):
             raise ParameterError(self.of("t0"), self.t0, "a number, or (low, high)")
 
     def starts(self, R: float) -> Starts:
-        given: dict[str, Any] = {"V0": self.V0} | ({} if self.omega0 == ROLLING else {"omega0": self.omega0})
-        found: Starts = {
-            name: (value, None) if value is not None else self._first(name, R) for name, value in given.items()
-        }
         ends: Any = np.ravel(self.t0)
-        return found | {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
+        found: Starts = {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
+        for name, value in (("V0", self.V0), ("omega0", self.omega0)):
+            if not isinstance(value, str):
+                found[name] = self._first(name, R) if value is None else (value, None)
+        return found
 
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
         """A speed at the release by the data, and a range about it."""
@@ -241,11 +241,9 @@ class Coastdown(Record):
         """As all do, and which of its points fall into full slip."""
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0
-        bearing: dict[str, Any] = {
-            "brake": values.get("brake"),
-            "torque": Feedback(0.0, omega=-values.get("drag", 0.0)),
-        }
-        drive = {each: bearing[each] for each, name in (("brake", "brake"), ("torque", "drag")) if values.get(name)}
+        drive: dict[str, Any] = {"brake": brake} if (brake := values.get("brake")) else {}
+        if drag := values.get("drag"):
+            drive["torque"] = Feedback(0.0, omega=-drag)
         motion = cylinder.roll(V0, omega0, np.maximum(t, 0.0), rtol=_RTOL_DRIVEN if drive else _RTOL, **drive)
         slips = (motion.regime == 0) & (t >= 0.0)
         return {"V": motion.V, "omega": motion.omega, "x": motion.x, "slips": slips}
