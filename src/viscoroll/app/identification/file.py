@@ -23,7 +23,7 @@ from .records import Coastdown, Record, Resistance, Traction
 _SECTIONS = {"unknown": dict, "prior": dict, "data": list}
 _KINDS: dict[str, type[Record]] = {"resistance": Resistance, "traction": Traction, "coastdown": Coastdown}
 #: keys of [[data]] beside those that its kind of record has
-_SECTION = [("kind", str), ("file", str), ("columns", dict[str, str], msgspec.field(default_factory=dict))]
+_SECTION: list[Any] = [("kind", str), ("file", str), ("columns", dict[str, str], msgspec.field(default_factory=dict))]
 #: in place of a start speed, what Python gives None for
 _UNKNOWN = "unknown"
 _HEADING = re.compile(r"(.*?)\s*(?:[\[(](.*)[\])])?$")
