@@ -35,6 +35,6 @@ for kappa in (1e250, 1e300, 1e-250, 2.9):
     for octave in (-16, 0, 14):
         made = build((11.0, kappa, 0.2, 0.5), octave)
         assert (made.problem == "") == (kappa == 2.9), (kappa, octave, made.problem)
-        assert made.problem or 0.0 < made.error < 1e-8, (octave, made.error)
+        assert made.problem or 0.0 < made.errors[0] < 1e-8, (octave, made.errors)
 """
     printed(script, NUMBA_BOUNDSCHECK="1")

@@ -71,7 +71,7 @@ def test_as_the_integrator_to_its_stated_error(name):
     if not by.any():
         return
     built = flow.flow_map(scene, max(np.abs(V0).max(), np.abs(omega0).max()))
-    stated = {"speed": built.error, "path": built.path_error, "loss": built.loss_error}
+    stated = dict(zip(("speed", "path", "loss"), built.errors, strict=True))
     allowed = {"speed": tol.FLOW_SPEED, "path": tol.FLOW_PATH, "loss": tol.FLOW_LOSS}
     assert not sure or all(stated[kind] < allowed[kind] for kind in stated), stated
     speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
@@ -200,7 +200,7 @@ def test_kept_on_disk_and_built_once(monkeypatch):
     again = flow.flow_map(SCENE, 2.0)
     assert len(calls) == 1
     assert np.array_equal(again.table, first.table)
-    assert again.error == first.error
+    assert again.errors == first.errors
     (path,) = flow_store.folder().iterdir()
     assert path.stat().st_size < 3_000_000
 
@@ -208,8 +208,8 @@ def test_kept_on_disk_and_built_once(monkeypatch):
 def test_fields_that_are_not_asked_for_do_not_enter_the_decision():
     """The speeds' error alone counts."""
     built = flow.flow_map(SCENE, 2.0)
-    assert built.stated_error(path=False, loss=False) == built.error
-    assert built.stated_error(path=True, loss=True) == max(built.error, built.path_error, built.loss_error)
+    assert built.stated_error(path=False, loss=False) == built.errors[0]
+    assert built.stated_error(path=True, loss=True) == max(built.errors)
 
 
 def test_hardly_any_speed_left_at_onset():

@@ -161,6 +161,6 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
             "with_integrated": float(off.max()),
         },
         "compared": by_map.size, "not_in_map": int((~by_map).sum()),
-        "stated_error": table.error, "stated_path_error": table.path_error,
+        "stated_error": table.errors[0], "stated_path_error": table.errors[1],
         "build_s": once["build"]["ns"], "load_s": once["load"]["ns"], "bytes": int(table.table.nbytes),
     }  # fmt: skip

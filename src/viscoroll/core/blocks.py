@@ -20,12 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import ParameterError
+from .typed import Floats
 
 #: blocks in hand, a worker
 _WAITING = 8
 
 
-def elements(array: NDArray[np.float64], shape: tuple[int, ...]) -> Callable[[int, int], NDArray[np.float64]]:
+def elements(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
     """(start, stop) -> those elements of ``array`` broadcast to ``shape``, as a vector; a single value stays one.
 
     A view where they lie so in memory, else a copy of these elements alone.  Read-only whatever was
@@ -37,7 +38,7 @@ def elements(array: NDArray[np.float64], shape: tuple[int, ...]) -> Callable[[in
         return (lambda start, stop: vector) if array.size == 1 else (lambda start, stop: vector[start:stop])
     whole = np.broadcast_to(array, shape)
 
-    def gathered(start: int, stop: int) -> NDArray[np.float64]:
+    def gathered(start: int, stop: int) -> Floats:
         iterator: Any = np.nditer  # its stubs do not know "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
+from .typed import Floats
 
 
 def checked(
     name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
-) -> NDArray[np.float64]:
+) -> Floats:
     """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``.
 
     Raises
@@ -26,7 +27,7 @@ def checked(
 
 def checked_extent(
     name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
-) -> tuple[NDArray[np.float64], tuple[float, float]]:
+) -> tuple[Floats, tuple[float, float]]:
     """As :func:`checked`, with the least and the largest element; (0, 0) of an empty array."""
     if type(value) is float and low < value < high:
         return np.asarray(value), (value, value)
@@ -50,7 +51,7 @@ def checked_extent(
     return array, (smallest, largest)
 
 
-def _listed(array: NDArray[np.float64], bad: NDArray[np.bool_]) -> str:
+def _listed(array: Floats, bad: NDArray[np.bool_]) -> str:
     """The first bad value, its place, and how many more there are."""
     if array.size == 1:
         return str(array.item())
@@ -60,7 +61,7 @@ def _listed(array: NDArray[np.float64], bad: NDArray[np.bool_]) -> str:
     return f"{array[first]} {place}" + (f", and {more} more" if more else "")
 
 
-def extent(array: NDArray[np.float64]) -> tuple[float, float]:
+def extent(array: Floats) -> tuple[float, float]:
     """Least and largest element, both NaN if there is one."""
     if array.ndim == 0:
         return float(array), float(array)
@@ -101,7 +102,7 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
         raise ParameterError("shapes", shapes, "broadcastable against each other") from None
 
 
-def frozen(array: NDArray[np.float64]) -> float | NDArray[np.float64]:
+def frozen(array: Floats) -> float | Floats:
     """A number, or a copy that nobody can write to."""
     if array.ndim == 0:
         return float(array)

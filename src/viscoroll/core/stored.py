@@ -12,16 +12,16 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..kernels.compile.folder import cache_root, read_own, write_own
 from .files import seal, seal_holds
+from .typed import Floats
 
 #: files kept of each kind; the one that was used longest ago goes first
 KEPT = 64
 
 Made = TypeVar("Made")
-Numbers = Sequence[float] | NDArray[np.float64]
+Numbers = Sequence[float] | Floats
 
 
 def folder(kind: str) -> Path:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..core.checks import broadcast_shape, checked, extent, number
+from ..core.checks import broadcast_shape, checked, extent, number, whole
 from ..core.errors import ParameterError
 from ..core.scale import Scale
+from ..core.typed import Floats
 
 RTOL_RANGE = (1e-12, 1e-2)
 SPEED_RANGE = (1e-300, 1e100)
@@ -17,7 +18,7 @@ SPEED_RANGE = (1e-300, 1e100)
 MOST_STEPS = 10_000_000
 
 
-def output_times(t: ArrayLike) -> NDArray[np.float64]:
+def output_times(t: ArrayLike) -> Floats:
     """Output times as a vector: finite, >= 0, ascending, at least one.
 
     Raises
@@ -58,10 +59,8 @@ def controls(rtol: float, rest: float | None, max_steps: int) -> tuple[float, fl
     low, high = RTOL_RANGE
     if not low <= number("rtol", rtol) <= high:
         raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
-    if not (isinstance(max_steps, (int, np.integer)) and 1 <= max_steps <= MOST_STEPS):
-        raise ParameterError("max_steps", max_steps, f"a whole number >= 1, <= {MOST_STEPS}")
     threshold = 0.0 if rest is None else number("rest", rest, low=0.0, strict=True)
-    return float(rtol), threshold, int(max_steps)
+    return float(rtol), threshold, whole("max_steps", max_steps, 1, MOST_STEPS)
 
 
 def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:

@@ -13,6 +13,7 @@ from ..core.drive import Feedback, Schedule, over, slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.labels import Labels, unlabelled
 from ..core.scale import Scale
+from ..core.typed import Floats
 from .checks import start_speeds
 from .schedule import Curve, curve, pieces_of, slope_of, start_value
 
@@ -49,7 +50,7 @@ class Drive(NamedTuple):
         return {name: each for name, each in zip(self._fields, self, strict=True) if each is not None}
 
     @property
-    def numbers(self) -> dict[str, NDArray[np.float64]]:
+    def numbers(self) -> dict[str, Floats]:
         """What is given as a number, or as one a motion, by name."""
         return {name: checked(name, each) for name, each in self.given.items() if _is_number(each)}
 
@@ -89,8 +90,8 @@ class Prepared(NamedTuple):
     """A drive for the kernel, in T_ref: pieces (m, k, columns), gains (4, m), which speed is prescribed; start speeds,
     and the largest difference between a callable and its fit."""
 
-    pieces: NDArray[np.float64]
-    gains: NDArray[np.float64]
+    pieces: Floats
+    gains: Floats
     prescribed: int
     V0: Any
     omega0: Any
@@ -104,7 +105,7 @@ class Prepared(NamedTuple):
 
 
 @cache
-def undriven() -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+def undriven() -> tuple[Floats, Floats, int]:
     """Pieces and gains of nothing that drives, and which speed is prescribed."""
     from ..kernels.motion.load import FIRST, FUNCTIONS
     from ..kernels.motion.records import NEITHER
@@ -168,7 +169,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
     return Prepared(pieces, _gains(drive), prescribed, *start_speeds(V0, omega0), error)
 
 
-def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.float64]) -> Any:
+def _prescribed_start(name: str, given: Any, speed: Curve, start: Floats) -> Any:
     """The start that a schedule prescribes, a number where it is one for all, of as many motions as were given one."""
     scale = float(np.abs(speed.terms).sum(axis=-1).max(initial=0.0))
     if given is not None and not (np.abs(checked(name, given) - start) <= _START * scale).all():
@@ -178,7 +179,7 @@ def _prescribed_start(name: str, given: Any, speed: Curve, start: NDArray[np.flo
     return float(start[0]) if np.ndim(given) == 0 else np.full(np.shape(given), start[0])
 
 
-def _gains(drive: Drive) -> NDArray[np.float64]:
+def _gains(drive: Drive) -> Floats:
     """Of force over V, force over omega, torque over V, torque over omega."""
     pairs = [(each.V, each.omega) if isinstance(each, Feedback) else (0.0, 0.0) for each in (drive.force, drive.torque)]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]

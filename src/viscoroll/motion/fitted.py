@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..core.checks import checked
 from ..core.errors import ParameterError
+from ..core.typed import Floats
 from ..kernels.numerics.nodes import powers_of_chebyshev
 
 #: terms of a polynomial, looks at a callable, values taken of it at most
@@ -51,7 +52,7 @@ class Piece(NamedTuple):
 
     start: float
     stop: float
-    terms: NDArray[np.float64]
+    terms: Floats
     largest: float
     off: float
     so_far: float
@@ -74,7 +75,7 @@ class _Given:
         self.seen = self.values(self.looks)
         self.largest = float(np.abs(self.seen).max())
 
-    def values(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
+    def values(self, at: Floats) -> Floats:
         """Its values, checked."""
         self.taken += at.size
         found = checked(f"{self.name}(t)", [self.function(t) for t in at.tolist()], low=self.low)
@@ -143,7 +144,7 @@ class _Given:
 
 def fitted(
     name: str, function: Callable[[float], Any], end: float, rtol: float, low: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+) -> tuple[Floats, Floats, float]:
     """(Starts, terms (k, TERMS), largest difference seen) of a callable up to ``end``.
 
     Raises
@@ -217,7 +218,7 @@ def _meeting(before: Piece, behind: Piece, between: Piece) -> float:
     return high
 
 
-def _product(one: NDArray[Any], other: NDArray[Any]) -> NDArray[np.float64]:
+def _product(one: NDArray[Any], other: NDArray[Any]) -> Floats:
     """The product of two matrices, of the same bits whatever library of linear algebra numpy has."""
-    found: NDArray[np.float64] = np.einsum("ij,jk->ik", one, other)
+    found: Floats = np.einsum("ij,jk->ik", one, other)
     return found

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters
 from ..core.blocks import flattened, run_blocks
+from ..core.typed import Floats
 from .flow_motions import motions
 from .flow_store import FlowMap, load, path_of, save
 
@@ -73,12 +74,11 @@ def build(parameters: tuple[Any, ...], octave: int, threads: int | None = None) 
     from ..kernels.flow.layout import OCTAVES, SIZE
     from .flow_fill import fill
 
-    made = FlowMap(parameters, octave - OCTAVES, np.zeros(SIZE), math.inf, math.inf, math.inf, "")
+    made = FlowMap(parameters, octave - OCTAVES, np.zeros(SIZE), (math.inf,) * 3, "")
     problem = fill(made, threads)
     if problem:
         return replace(made, problem=problem)
-    error, path_error, loss_error = _measure(made, octave, threads)
-    return replace(made, error=error, path_error=path_error, loss_error=loss_error)
+    return replace(made, errors=_measure(made, octave, threads))
 
 
 def kernel_map(made: FlowMap) -> Any:
@@ -153,10 +153,10 @@ class Answer(NamedTuple):
     ``status`` < 0 stands for a motion that is not in the map, whose other entries mean nothing.
     """
 
-    out: NDArray[np.float64]
+    out: Floats
     status: NDArray[np.int8]
-    onset: NDArray[np.float64]
-    rest: NDArray[np.float64]
+    onset: Floats
+    rest: Floats
     switches: NDArray[np.int64]
 
     @classmethod

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
 
+from ..core.typed import Floats
 from ..kernels.flow import layout
 from ..kernels.flow.layout import FlowTables
 from ..kernels.flow.states import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, states
@@ -22,8 +22,6 @@ from ..materials.law_table import law_table
 from .flow_motions import motions
 from .flow_rows import NODES, Nodes, Rows, octaves
 from .flow_store import FlowMap
-
-Floats = NDArray[np.float64]
 
 _HELD = "rolling resistance can hold the sliding cylinder at a speed"
 _SLIPS = "full slip returns"

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import flattened, run_blocks
+from ..core.typed import Floats
 from ..materials.law_table import law_table
 from .driven import LOSSES, ROWS, STATES, undriven
 from .rolling import integrate
-
-Floats = NDArray[np.float64]
 
 #: as tight as the integrator goes; with alpha of 1e10 it takes tens of thousands of steps
 _RTOL, _MOST_STEPS = 1e-12, 100_000

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.typed import Floats
 from ..kernels.numerics.nodes import Interpolation, chebyshev, powers_of_chebyshev, to_chebyshev
 from ..kernels.rows.lanes import TERMS
 
-Floats = NDArray[np.float64]
 #: of Newton's iteration; a step after which only the square of its size is left
 _MOST_STEPS, _LAST = 20, 1e-8
 

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..core import stored
+from ..core.typed import Floats
 from ..materials.prony import Prony
 
 
@@ -22,20 +20,17 @@ class FlowMap:
     parameters : alpha or series in its own unit of time, kappa, mu, j.
     first : kappa V of the slowest stick onset in it is 2**first.
     table : all tables, see ``kernels/flow/layout.py``.
-    error : stated error of V and omega relative to the larger of the two: four times the worst
-        of 100 motions that the integrator rolled at rtol 1e-11 when the map was built.
-    path_error : the same of distance and angle, relative to the larger of the two so far (and
-        to 1e-5 of that at rest: they are differences of what is left to it).
-    loss_error : the same of the energy lost in slip and in rolling, relative to that at the start.
+    errors : stated ones, four times the worst of 100 motions that the integrator rolled at rtol 1e-12 when the map was
+        built: of V and omega relative to the larger of the two; of distance and angle, relative to the larger of the
+        two so far (and to 1e-5 of that at rest: they are differences of what is left to it); of the energy lost in
+        slip and in rolling, relative to that at the start.
     problem : why the scene has no map, or "".
     """
 
     parameters: tuple[Any, ...]
     first: int
-    table: NDArray[np.float64]
-    error: float
-    path_error: float
-    loss_error: float
+    table: Floats
+    errors: tuple[float, ...]
     problem: str
 
     @property
@@ -47,7 +42,8 @@ class FlowMap:
 
     def stated_error(self, *, path: bool, loss: bool) -> float:
         """The largest of the errors of the speeds and, where asked for, of the path and the losses."""
-        return max(self.error, self.path_error if path else 0.0, self.loss_error if loss else 0.0)
+        speeds, way, lost = self.errors
+        return max(speeds, way if path else 0.0, lost if loss else 0.0)
 
 
 def folder() -> Path:
@@ -74,8 +70,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 
     def read(data: Any) -> FlowMap:
         found = FlowMap(
-            parameters, int(data["first"]), data["table"],
-            float(data["error"]), float(data["path_error"]), float(data["loss_error"]), str(data["problem"]),
+            parameters, int(data["first"]), data["table"], tuple(data["errors"].tolist()), str(data["problem"]),
         )  # fmt: skip
         if found.table.shape != (SIZE,):
             raise ValueError("its table is of another size")
@@ -87,6 +82,5 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 def save(made: FlowMap, path: Path) -> None:
     """Keep a map; where it cannot be written it is built anew next time."""
     stored.save(
-        path, _numbers(made.parameters), first=made.first, table=made.table,
-        error=made.error, path_error=made.path_error, loss_error=made.loss_error, problem=made.problem,
+        path, _numbers(made.parameters), first=made.first, table=made.table, errors=made.errors, problem=made.problem,
     )  # fmt: skip

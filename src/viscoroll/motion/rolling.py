@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..contact_law.parameters import Parameters, Rolls, framed
 from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
+from ..core.typed import Floats
 from .checks import controls, in_words, refuse_many
 from .driven import ROWS, Drive, Prepared, prepared, refuse_drives, refuse_rest
 from .unsteady import climbed, refuse_unlike, time_of_rest
@@ -69,9 +70,9 @@ def begin(
 
 
 def integrate(
-    count: int, batch: tuple[Any, ...], drive: tuple[NDArray, NDArray, int], times: NDArray[np.float64],
+    count: int, batch: tuple[Any, ...], drive: tuple[NDArray, NDArray, int], times: Floats,
     limits: tuple[float, float, int], rows: NDArray[np.int64], notes: tuple[NDArray, ...] = NO_NOTES,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
+) -> tuple[Floats, Floats]:  # fmt: skip
     """(Rows of :data:`ROWS` of ``count`` motions at the times; status, steps, switches, onset and rest time of each).
 
     ``batch`` : law, whether bodies differ, kappa, mu, gamma, j, V0 and omega0.  ``notes`` : room for the switches and
@@ -84,7 +85,7 @@ def integrate(
     return out, info
 
 
-def rolled(begun: Begun, times: NDArray[np.float64], *notes: NDArray) -> tuple[NDArray[np.float64], list[float]]:
+def rolled(begun: Begun, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """What :func:`integrate` finds, of one motion."""
     scene, ready = begun.scene, begun.ready
     if begun.caught:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..core.checks import checked
 from ..core.drive import Feedback, Schedule, refuse_more_than_t
 from ..core.errors import ParameterError
+from ..core.typed import Floats
 from .fitted import fitted
 
 #: of the values of a piece, its first one where that is rounding
@@ -28,9 +29,9 @@ class Curve(NamedTuple):
     error : the largest difference seen between a callable and its fit.
     """
 
-    starts: NDArray[np.float64]
-    ends: NDArray[np.float64]
-    terms: NDArray[np.float64]
+    starts: Floats
+    ends: Floats
+    terms: Floats
     error: float = 0.0
 
 
@@ -62,7 +63,7 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
     return Curve(np.zeros((1, 1)), np.full((1, 1), np.inf), values.reshape(-1, 1, 1))
 
 
-def _linear(times: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
+def _linear(times: Floats, values: Floats) -> Curve:
     """Linear between times, constant outside; a time given twice is a jump."""
     times, values = np.atleast_2d(times, values)
     first, second, none = values[:, :-1], values[:, 1:], np.zeros((len(times), 1))
@@ -74,7 +75,7 @@ def _linear(times: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
     return Curve(starts[:, kept], ends[:, kept], terms[:, kept])
 
 
-def _flat(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _flat(values: Floats) -> Floats:
     """Terms of pieces with these values."""
     return np.stack([values, np.zeros_like(values)], axis=-1)
 
@@ -99,17 +100,17 @@ def slope_of(name: str, speed: Curve) -> Curve:
     return speed._replace(terms=_from_zero(terms, _ROUNDING_OF_SLOPE) if order.size else np.zeros_like(speed.terms))
 
 
-def _at_start(terms: NDArray[np.float64]) -> NDArray[np.float64]:
+def _at_start(terms: Floats) -> Floats:
     """Values at x = -1."""
     return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
 
 
-def start_value(speed: Curve) -> NDArray[np.float64]:
+def start_value(speed: Curve) -> Floats:
     """Value of a curve at t = 0."""
     return _at_start(speed.terms[:, 0])
 
 
-def _from_zero(terms: NDArray[np.float64], rounding: float = _ROUNDING) -> NDArray[np.float64]:
+def _from_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
     """Pieces that begin at 0 where their first value is rounding: by that a motion from rest would set out."""
     first, size = _at_start(terms), np.abs(terms).sum(axis=-1)
     found = terms.copy()
@@ -117,7 +118,7 @@ def _from_zero(terms: NDArray[np.float64], rounding: float = _ROUNDING) -> NDArr
     return found
 
 
-def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
+def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
     """All curves over common pieces up to ``end``, as the kernel takes them: (m, k, 2 + len(curves) terms).
 
     Where motions have times of their own, pieces between equal times have no length, and are passed over.
@@ -155,9 +156,7 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> NDArray[np.float64]:
     return rows
 
 
-def _moved(
-    terms: NDArray[np.float64], first: NDArray, last: NDArray, starts: NDArray, ends: NDArray
-) -> NDArray[np.float64]:
+def _moved(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray) -> Floats:
     """Terms of pieces from ``first`` to ``last`` as those of the parts from ``starts`` to ``ends``."""
     endless = np.isinf(last) | (last == first)
     whole = np.where(endless, 1.0, last - first)
