@@ -23,6 +23,11 @@ ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
 ROWS = STATES + ACTING + LOSSES
 #: a prescribed start may be off by this share of the largest prescribed speed
 _START = 1e-9
+#: what is not given beside a prescribed speed, and why
+_BESIDE = (
+    ("torque", "omega", "it is what the prescribed omega needs"), ("force", "V", "it is what the prescribed V needs"),
+    ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
+)  # fmt: skip
 #: gains in the order of the kernel's
 _GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
 
@@ -62,11 +67,6 @@ class Drive(NamedTuple):
     def acts(self) -> bool:
         """Whether anything does."""
         return not (self.force is self.torque is self.slope is self.brake is self.drag is self.omega is self.V is None)
-
-    @property
-    def prescribes(self) -> bool:
-        """Whether a speed is prescribed."""
-        return self.V is not None or self.omega is not None
 
 
 def _is_number(given: Any) -> bool:
@@ -138,16 +138,9 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
     tangent = slope_factor(drive.slope)[0]
     if drive.V is not None and drive.omega is not None:
         raise one_of("V", "omega", both=True)
-    for name, found, own in (("omega", "torque", drive.omega), ("V", "force", drive.V)):
-        given = getattr(drive, found)
-        if own is not None and given is not None:
-            sentence = f"{found} is given beside {name}=: leave it out, it is what the prescribed {name} needs"
-            raise ParameterError(found, given, "left out", sentence)
-    for name in ("brake", "drag"):
-        if drive.omega is not None and (held := getattr(drive, name)) is not None:
-            raise ParameterError(
-                name, held, "left out", f"{name} is given beside omega=: leave it out, omega is prescribed"
-            )
+    for name, by, why in _BESIDE:
+        if getattr(drive, by) is not None and (beside := getattr(drive, name)) is not None:
+            raise ParameterError(name, beside, "left out", f"{name} is given beside {by}=: leave it out, {why}")
     force = _added(curve("force", drive.force, end, rtol), tangent)
     torque = curve("torque", drive.torque, end, rtol)
     brake = curve("brake", drive.brake, end, rtol, low=0.0)

@@ -83,16 +83,13 @@ def _flat(values: Floats) -> Floats:
 def slope_of(name: str, speed: Curve) -> Curve:
     """The slope over t of a prescribed speed, which must not jump."""
     lengths = speed.ends - speed.starts
-    right, left = speed.terms[:, :-1].sum(axis=-1), _at_start(speed.terms[:, 1:])
+    first, last = _at_start(speed.terms), speed.terms.sum(axis=-1)
     scale = max(float(np.abs(speed.terms).max(initial=0.0)), 1e-300)
     least = 1e-12 * scale + 4.0 * speed.error
-    jumps = np.flatnonzero((np.abs(right - left) > least).any(axis=0))
-    if jumps.size:
-        at = speed.starts[..., jumps[0] + 1].flat[0]
-        raise ParameterError(name, f"a jump at t = {at:.6g}", "a speed that does not jump")
-    within = (lengths == 0.0) & (np.abs(speed.terms[..., 1:]).sum(axis=-1) > least)  # pieces without length
-    if within.any():
-        at = np.broadcast_to(speed.starts, within.shape)[within][0]
+    jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # of pieces without length
+    jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
+    if jumps.any():
+        at = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
         raise ParameterError(name, f"a jump at t = {at:.6g}", "a speed that does not jump")
     order = np.arange(1, speed.terms.shape[-1])
     per = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)

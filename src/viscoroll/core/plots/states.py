@@ -80,17 +80,16 @@ def stresses(data: xr.Dataset) -> Figure:
 
 
 def equilibria(data: xr.Dataset) -> Figure:
-    """Speeds of all equilibria over the load, stable (filled) and not (open)."""
+    """Speeds of all equilibria over what acts, stable (filled) and not (open)."""
     names = [name for name in ("slope", "force", "torque") if name in data and np.ptp(_finite(data[name])) > 0.0]
     over = names[0] if names else "force"
     figure, box = new_figure("Steady rolling: stable (filled) and not (open)")
-    load = np.broadcast_to(data[over].values.reshape(*data[over].shape, *[1] * (data["V"].ndim - data[over].ndim)),
-                           data["V"].shape)  # fmt: skip
+    acting = data[over].broadcast_like(data["V"]).transpose(*data["V"].dims).values
     V, stable = data["V"].values, data["stable"].values != 0
     colour = LINES[1]["color"]
     for which, face, text in ((stable, colour, "stable"), (~stable, "white", "not stable")):
         held = which & np.isfinite(V)
-        box.plot(load[held], V[held], "o", color=colour, markerfacecolor=face, markersize=4, label=text)
+        box.plot(acting[held], V[held], "o", color=colour, markerfacecolor=face, markersize=4, label=text)
     speeds = _finite(data["V"])
     wide = speeds.min() > 0.0 and speeds.max() > 100.0 * speeds.min()
     box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale="log" if wide else "linear")
