@@ -1,4 +1,4 @@
-"""What a scene does not need is not done; how much time that saves is the part "skips" of the benchmark."""
+"""What a scene does not need is not done: no steps at rest, no file of tables at run time."""
 
 import numpy as np
 import pytest
