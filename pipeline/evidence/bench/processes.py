@@ -47,7 +47,8 @@ def first_calls(sizes: dict[str, Any]) -> dict[str, Any]:
 #: processor's time, which follows less what else the machine does
 _STATES = """
 seed, states, calls, cases = given
-draw, scene = np.random.default_rng(seed), vr.presets.PAPER_SECTION_5_ROUNDED
+draw = np.random.default_rng(seed)
+scene = getattr(vr, "presets", vr).PAPER_SECTION_5_ROUNDED  # in the root of 0.1.0
 found = {}
 for name, case in cases.items():
     count = int(states * case.get("share", 1.0))
