@@ -25,9 +25,10 @@ from . import stage
 
 
 class Tables(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables]: the largest error allowed; lowest and highest alpha of law.nc; the materials by name."""
+    """[tables]: the largest errors allowed; lowest and highest alpha of law.nc; the materials by name."""
 
     allowed: float
+    allowed_N: float
     alpha: tuple[float, float]
     laws: dict[str, dict]
 
@@ -48,27 +49,29 @@ class Law(msgspec.Struct, forbid_unknown_fields=True):
 def build_all(config: Path, folder: Path) -> stage.Outcome:
     """Build, save and report every law of the configuration."""
     outcome, settings = stage.Outcome([]), stage.read_section(config, "tables", Tables)
-    build(outcome, folder / "law.nc", settings.allowed, lambda: vr.tables.law(alpha=settings.alpha))
+    build(outcome, folder / "law.nc", settings, lambda: vr.tables.law(alpha=settings.alpha))
     for name, section in settings.laws.items():
         given = read_law(config, name, section)
         base = None if given.base is None else body(config, given.base, given)
         material = body(config, given.material, given)
-        build(outcome, folder / f"{name}.nc", settings.allowed, partial(vr.tables.law, material, base))
+        build(outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, material, base))
     return outcome
 
 
-def build(outcome: stage.Outcome, path: Path, allowed: float, make: Callable[[], Any]) -> None:
+def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[], Any]) -> None:
     """Build, save and report one."""
     began = time.perf_counter()
     law = make()
     stage.make_folder(path.parent)
     vr.tables.save(law, path)
-    worst = max(errors_of(law).values())
+    errors = errors_of(law)
+    off_N, worst = errors.pop("N"), max(errors.values())
     outcome.files.append(path)
     outcome.headline[f"{path.stem}: build, measure and save, s"] = time.perf_counter() - began
     outcome.headline[f"{path.stem}: size, kB"] = path.stat().st_size / 1e3
-    outcome.headline[f"{path.stem}: largest relative error (allowed {allowed:g})"] = worst
-    outcome.failed |= worst > allowed
+    outcome.headline[f"{path.stem}: largest relative error (allowed {settings.allowed:g})"] = worst
+    outcome.headline[f"{path.stem}: of N, over its largest (allowed {settings.allowed_N:g})"] = off_N
+    outcome.failed |= worst > settings.allowed or off_N > settings.allowed_N
 
 
 def read_law(config: Path, name: str, section: dict[str, Any]) -> Law:

@@ -63,7 +63,7 @@ STRESS = [
 SLICE = [
     ("rows/law.py", "return Speed(L, dL * at.per", "return Speed(L * (1.0 + 1e-9), dL * at.per", _STATES),
     ("rows/contact.py", "part = 1.0 - w * w * value", "part = 1.0 - w * value", _STATES),
-    ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", _SLOPES),
+    ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", claims("contact")),
     ("rows/law.py", "part * here * per + (1.0 - part) * there * other, bend", "here * per, bend", _STATES),
     ("rows/law.py", "bend, shift + part, z,", "bend, shift, z,", _STATES),
     ("rows/lanes.py", "[float(step * k + n) for n in rise]", "[float(step * k + n) * 1.0000001 for n in rise]", _STATES),

@@ -32,6 +32,7 @@ LAW = ROOT / "data/tables/rubber.nc"
 CONFIG = """
 [tables]
 allowed = 1e-12
+allowed_N = 1e-12
 alpha = [8, 16]
 [tables.laws.paper]
 material = { E = 2.3e5, nu = 0.49, T_epsilon = 10.7, T_sigma = 0.97 }
