@@ -103,7 +103,7 @@ SERIES = [
     ("rows/series.py", "+ p1 * q2 + p2 * q1", "+ p1 * q2", _UNSTEADY),
     ("rows/modes.py", "dy_s + T_mean * dg", "dy_s - T_mean * dg", _UNSTEADY),
     ("rows/modes.py", "return 0.25 * strength * z * z", "return 0.5 * strength * z * z", _UNSTEADY),
-    ("rows/law.py", "m, 1.0, m + u * at.per * dm)", "m, 1.0, m + at.per * dm)", _SLOPES),
+    ("rows/law.py", "m, 1.0, m + u * at.per * dm)", "m, 1.0, m + at.per * dm)", _STATES),
     ("rows/bound.py", "out[2] = out[3] = 0.5 * out[1]", "out[2] = out[3] = out[1]", _BOUND),
     ("rows/bound.py", "half_space, cylinder, out[6], out[7] = bodies", "half_space, cylinder, out[7], out[6] = bodies", _BOUND),
     ("rows/steady.py", "step = (load - value) / slope", "step = 0.5 * (load - value) / slope", _STEADY),
