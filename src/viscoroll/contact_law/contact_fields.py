@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..core.errors import ParameterError, unknown
+from ..core.errors import ParameterError, refuse_unknown
 
 FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
 OF_BODIES = ("M_half_space", "M_cylinder")
@@ -35,9 +35,7 @@ def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool
         raise ParameterError("method", repr(method), "'table' or 'direct'")
     names = DEFAULT[like, si] if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
     if fields is not None:
-        for name in names:
-            if name not in KNOWN:
-                raise unknown("fields", name, KNOWN, "a field")
+        refuse_unknown("fields", names, KNOWN, "a field")
     if slopes:
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):

@@ -12,7 +12,7 @@ from ..contact_law.parameters import Parameters, Rolls
 from ..core.blocks import flattened, run_blocks, thread_count
 from ..core.checks import broadcast_shape, extent, number
 from ..core.drive import Feedback, Schedule, over
-from ..core.errors import MotionStatus, ParameterError, unknown
+from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
 from ..core.typed import Floats, Numbers
 from ..materials.bodies import Bodies
@@ -204,9 +204,7 @@ def _keep_caught(answer: Answer, caught: NDArray[np.bool_]) -> None:
 
 def _names(fields: Iterable[str]) -> tuple[str, ...]:
     names = (fields,) if isinstance(fields, str) else tuple(fields)
-    for name in names:
-        if name not in FIELDS:
-            raise unknown("fields", name, FIELDS, "a field")
+    refuse_unknown("fields", names, FIELDS, "a field")
     return names
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...core.blocks import flattened
 from ...core.checks import broadcast_shape, checked
-from ...core.errors import OutOfTableError, ParameterError, unknown
+from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
 from . import schema
 
@@ -60,9 +60,7 @@ class Interpolant:
     def _field_names(self, fields: Iterable[str] | None) -> tuple[str, ...]:
         known = schema.fields_of(self._table)
         names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-        for name in names:
-            if name not in known:
-                raise unknown("fields", name, known, "a field of this table")
+        refuse_unknown("fields", names, known, "a field of this table")
         return names
 
     def _checked_points(
