@@ -53,8 +53,7 @@ class Product(NamedTuple):
     powers : exponents by name; those of brake, drag, V0, omega0 and t0 hold near the values found.
     value : of the product.
     low, high : ends of its interval over ``value``.
-    near : whether this holds near the values found alone, within about a fifth of them, by slopes; elsewhere in the
-        ranges other exponents do.
+    near : whether this holds by slopes, within about a fifth of the values found, and other exponents farther off.
     """
 
     powers: dict[str, float]
