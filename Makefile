@@ -52,6 +52,7 @@ out/index.html: pipeline/report.py out/validation.nc out/benchmark.csv out/ensem
 
 bench: setup peer-tools ## run time against error beside the peers, which it installs (long)
 	$(RUN) -m pipeline.evidence.bench
+	$(RUN) -m pipeline.evidence.bench.figures
 	$(RUN) -m pipeline.evidence.document
 
 numbers: setup figures ## measure again what README and docs state, and put it there (about half an hour)
@@ -129,7 +130,7 @@ fuzz: setup ## look for inputs that break the interface (10 minutes, FUZZ_SECOND
 mutate: setup ## plant defects in the kernels and see which the tests notice (half an hour)
 	$(RUN) -m pipeline.evidence.mutate
 
-torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 25 minutes)
+torture: setup $(TABLES) ## kill, flip, cut and starve files and count what goes unnoticed (about 5 minutes)
 	$(RUN) -m pipeline.evidence.torture
 	$(RUN) -m pipeline.evidence.document
 

@@ -20,6 +20,7 @@ from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
 
 from ..stage import ROOT, make_folder, read_toml, told
+from . import timing
 from .stamps import kernels_digest
 
 #: folder of the results
@@ -27,8 +28,8 @@ RESULTS = ROOT / "data/results"
 SIZES = ROOT / "pipeline/evidence/sizes.toml"
 
 
-#: name -> what measures that part of a stage: rows, from the sizes
-Parts = Mapping[str, Callable[[dict[str, Any]], list[dict[str, Any]]]]
+#: name -> what measures that part of a stage: rows, or a dict that holds them, from the sizes
+Parts = Mapping[str, Callable[[dict[str, Any]], Any]]
 
 
 def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | None = None) -> argparse.ArgumentParser:
@@ -38,7 +39,7 @@ def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | 
         result.add_argument("--config", type=Path, default=SIZES, help="TOML file with the sizes")
         result.add_argument("--quick", action="store_true", help="the sizes of a test: does it run?")
     if parts:
-        result.add_argument("--only", choices=parts, help="renew one part in a file that has the others")
+        result.add_argument("--only", nargs="+", choices=parts, help="renew these parts alone")
     result.add_argument("-o", "--output", type=Path, default=output)
     return result
 
@@ -59,21 +60,28 @@ def run(
 
 
 def run_parts(
-    name: str, parts: Parts, doc: str | None, file: str, complaint: Callable[[dict[str, Any]], str | None]
+    name: str,
+    parts: Parts,
+    doc: str | None,
+    file: str,
+    complaint: Callable[[dict[str, Any]], str | None] = lambda _: None,
 ) -> int:
-    """Run a stage of ``parts``: rows, sizes and machine of each; --only renews one beside those that -o has.
+    """Run a stage of ``parts``: what each finds, its sizes and the machine, beside the parts that -o has already.
 
-    Exit code 1 if there is a ``complaint`` about a row.
+    Sizes are those of the part, [name.part], or of all, [name].  Exit code 1 if there is a ``complaint`` about a row.
     """
     arguments = parser(doc, RESULTS / file, parts=parts).parse_args()
-    only, output = arguments.only, arguments.output
+    output = arguments.output
 
     def measured() -> int:
         sizes = read_sizes(arguments.config, name, arguments.quick)
-        found = json.loads(output.read_text(encoding="utf-8"))["parts"] if only and output.exists() else {}
-        for part in [only] if only else parts:
-            found[part] = {"rows": parts[part](sizes), "sizes": sizes, "machine": machine()}
-        write_results(output, {"parts": found})
+        before = json.loads(output.read_text(encoding="utf-8"))["parts"] if output.exists() else {}
+        found = {part: before[part] for part in parts if part in before}
+        for part in arguments.only or parts:
+            own = sizes[part] if isinstance(sizes.get(part), dict) else sizes
+            made = parts[part](own)
+            found[part] = (made if isinstance(made, dict) else {"rows": made}) | {"sizes": own, "machine": machine()}
+            write_results(output, {"parts": found})
         rows = rows_of(found)
         complaints = [text for row in rows if (text := complaint(row))]
         for text in complaints:
@@ -100,13 +108,6 @@ class Results(dict[str, Any]):
                 return self[name]
         raise KeyError(f"{file}.json")
 
-    def found(self, name: str) -> Any:
-        """None if there is no such file."""
-        try:
-            return self[name]
-        except KeyError:
-            return None
-
 
 def rows_of(parts: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
     """The rows of all parts, one part after the other."""
@@ -120,27 +121,32 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
-    """Section [name] of the configuration ("bench.law" lies in [bench]), with its [quick] over it if asked.
+    """Section [name] of the configuration, with its [quick] over it if asked, and those of its parts over theirs.
 
     Raises
     ------
     FileError
         A file that cannot be read, is not TOML, or lacks the section.
     """
-    section = read_toml(path)
     try:
-        for key in name.split("."):
-            section = section[key]
-        sizes = section | section["quick"] if quick else section
+        section = read_toml(path)[name]
     except KeyError as error:
-        raise FileError(path, f"section [{name}] or its key {error} is missing") from error
-    return {key: value for key, value in sizes.items() if key != "quick"}
+        raise FileError(path, f"section [{name}] is missing") from error
+    if quick:
+        timing.shortest = 0.0
+    return _sized(section, quick)
 
 
-def write_results(path: Path, results: Any, *, ordered: bool = True) -> None:
-    """``results`` as JSON, keys sorted if ``ordered``; floats as :func:`rounded`."""
+def _sized(section: dict[str, Any], quick: bool) -> dict[str, Any]:
+    small = section.get("quick", {}) if quick else {}
+    parts = {key: _sized(each, quick) for key, each in section.items() if isinstance(each, dict) and "quick" in each}
+    return {key: value for key, value in (section | parts | small).items() if key != "quick"}
+
+
+def write_results(path: Path, results: Any) -> None:
+    """``results`` as JSON; floats as :func:`rounded`."""
     make_folder(path.parent)
-    text = json.dumps(rounded(results), indent=1, sort_keys=ordered, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(rounded(results), indent=1, ensure_ascii=False, allow_nan=False)
     write_text(path, f"{text}\n")
 
 

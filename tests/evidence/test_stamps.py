@@ -52,7 +52,7 @@ def test_what_computes_outdates_it(tmp_path, old, new):
     assert digest_of(tmp_path) != before
 
 
-@pytest.mark.parametrize("name", [name for name, (stage, _) in BLOCKS.items() if stage != "document"])
+@pytest.mark.parametrize("name", [name for name, given in BLOCKS.items() if given["stage"] != "document"])
 def test_a_block_says_where_it_is_of_other_kernels(name, results):
     said = block(name, results(OTHER))
     assert said.count("of this version") == said.count(SENTENCE) == 1

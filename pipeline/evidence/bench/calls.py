@@ -50,49 +50,41 @@ def jitted_states(law, V, omega):
     return total
 
 
-def bound_law(sizes: dict[str, Any]) -> dict[str, Any]:
+def bound_law(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """A row for each material and way to call the law of a scene, with that of contact() called alike.
 
     The states are those of one motion: creep from 0 to delta_star, speeds within a factor of 2.
     """
     random, n, few = np.random.default_rng(sizes["seed"]), sizes["states"], sizes["numbers"]
     V, share = random.uniform(0.2, 0.4, n), random.uniform(size=n)
-    series = rubber(3)
-    materials = {
-        "one alpha": {}, "3 modes": {"material": series},
-        "3 modes on an elastic base": {"material": vr.Bodies(series, vr.Prony.elastic(), 0.8)},
-    }  # fmt: skip
-    calls, bound = {}, {}
-    for name, material in materials.items():
-        scene = PAPER.replace(**material)
+    three = PAPER.replace(material=rubber(3))
+    base = PAPER.replace(material=vr.Bodies(rubber(3), vr.Prony.elastic(), 0.8))
+    calls = {}
+    for name, scene in {"one alpha": PAPER, "3 modes": three, "3 modes on an elastic base": base}.items():
         omega = V * (1.0 + creep(scene, V, share))
         contact = partial(vr.contact, scene, fields=("Q", "M", "M_half_space", "M_cylinder"))
         law = vr.law(scene)  # compiled
-        bound[name] = 1e3 * seconds_of(partial(vr.law, scene.replace(mu=0.3)))[0]
         numbers = list(zip(V[:few].tolist(), omega[:few].tolist()))
         (function, data), out = law.ctypes, (ctypes.c_double * 8)()
 
         def each(call, numbers=numbers):
-            return lambda: [call(v, w) for v, w in numbers]
+            return few, lambda: [call(v, w) for v, w in numbers]
 
         for slopes in (False, True):
             one = partial(lambda contact, slopes, v, w: contact(v, omega=w, slopes=slopes), contact, slopes)
-            calls[name, "numbers", slopes] = few, each(partial(law, slopes=slopes))
-            calls[name, "numbers, contact", slopes] = few, each(one)
+            calls[name, "numbers", slopes] = each(partial(law, slopes=slopes))
+            calls[name, "numbers, contact", slopes] = each(one)
             calls[name, "array", slopes] = n, partial(law, V, omega, slopes=slopes)
             calls[name, "array, contact", slopes] = n, partial(contact, V, omega=omega, slopes=slopes)
         calls[name, "jitted", True] = n, partial(jitted_states, law.jitted, V, omega)
-        calls[name, "C by ctypes", True] = (
-            few,
-            each(lambda v, w, call=function, out=out, data=data: call(v, w, out, data)),
-        )
+        called = partial(lambda call, out, data, v, w: call(v, w, out, data), function, out, data)
+        calls[name, "C by ctypes", True] = each(called)
     found = timed(calls, sizes["repeats"])
-    rows = [
+    return [
         {"material": name, "way": way, "slopes": slopes} | ns
         | {"contact": found[name, ("array" if way == "array" else "numbers") + ", contact", slopes]}
         for (name, way, slopes), ns in found.items() if not way.endswith(", contact")
     ]  # fmt: skip
-    return {"rows": rows, "bind_ms": bound}
 
 
 def rubber(modes: int, strength: float = 10.0) -> vr.Prony:
@@ -111,26 +103,23 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         mean, off = rubber(modes), random.standard_normal((2, m, modes))
         return vr.Prony(mean.E * np.exp(0.1 * off[0]), mean.tau * np.exp(0.3 * off[1]))
 
-    materials = {"alpha = 11": None} | {f"{modes} modes": rubber(modes) for modes in (1, 3, 10, 30)}
+    materials = {f"{modes} modes": rubber(modes) for modes in (1, 3, 10, 30)}
     materials["pair of 10 and 3 modes"] = vr.Bodies(rubber(10), rubber(3, 2.0), 0.4)
     many = {f"{modes} modes, a material each": spread(modes) for modes in (1, 3, 10)}
     many["3 and 3 modes, a pair each"] = vr.Bodies(spread(3), spread(3), 0.4)
+    scenes = {name: PAPER.replace(material=material) for name, material in (materials | many).items()}
     calls = {}
-    for name, material in (materials | many).items():
-        scene = PAPER.replace(material=material) if material else PAPER
-        if name in materials:
+    for name, scene in ({"alpha = 11": PAPER} | scenes).items():
+        if name not in many:
             fields = ("Q", "M") if scene.like_bodies else ("Q", "M", "M_half_space")
             calls[name, "contact"] = n, partial(vr.contact, scene, V, delta=creep(scene, V, s), fields=fields)
         calls[name, "motion"] = m, ensemble(scene, start, t, ("V", "omega", "x"), rtol=sizes["rtol"])
-    found = timed(calls, sizes["repeats"])
-    return [
-        {
-            "material": name,
-            "table_ms": 1e3 * seconds_of(partial(made, material))[0] if material and name in materials else None,
-        }
-        | {kind: found[name, kind] for kind in ("contact", "motion") if (name, kind) in found}
-        for name, material in (materials | many).items()
-    ]
+    rows: dict[str, dict[str, Any]] = {}
+    for (name, kind), ns in timed(calls, sizes["repeats"]).items():
+        rows.setdefault(name, {"material": name, "table_ms": None})[kind] = ns
+    for name, material in materials.items():
+        rows[name]["table_ms"] = 1e3 * seconds_of(partial(made, material))[0]
+    return [*rows.values()]
 
 
 def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
@@ -143,19 +132,18 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
         return flow.flow_map(PAPER, 2.0)
 
     table, calls = load(), {}
-    for end, times in (("final ", t[-1:]), ("", t)):
+    for times in (t[-1:], t):
         for fields in (("V", "omega"), ("V", "omega", "x")):
-            name = f"{end}{', '.join(fields)}" + ("" if end else f" at {t.size} times")
+            named = ", ".join(fields)
+            name = f"final {named}" if times.size == 1 else f"{named} at {t.size} times"
             calls[name] = start[0].size, ensemble(PAPER, start, times, fields, method="flow")
-    found = {name: call() for name, (_, call) in calls.items()}
     rows = timed(calls, sizes["repeats"])
     once = timed({"build": (1e9, partial(flow.build, *request, 1)), "load": (1e9, load)}, sizes["repeats"])
-    few = slice(sizes["exact"])
-    best = ensemble(PAPER, start[:, few], t, rtol=1e-11)()
-    mine = found[f"V, omega at {t.size} times"]
-    by_map, off = mine.flow[few], speed_error(mine, best)
+    few = start[:, : sizes["exact"]]
+    mine = ensemble(PAPER, few, t, method="flow")()
+    by_map, off = mine.flow, speed_error(mine, ensemble(PAPER, few, t, rtol=1e-11)())
     return {
-        "rows": {name: row | {"answered": float(found[name].flow.mean())} for name, row in rows.items()},
+        "rows": [{"call": name} | row for name, row in rows.items()],
         "error": {
             "final": float(off[by_map, -1].max()), "all_times": float(off[by_map].max()),
             "with_integrated": float(off.max()),

@@ -1,23 +1,19 @@
-"""Figures of the benchmark, from data/results/bench-*.json -> docs/figures/.
+"""Figures of the benchmark, from data/results/bench.json -> docs/figures/.
 
-    python -m pipeline.evidence.bench.figures
-
-A part without results is left out.
+python -m pipeline.evidence.bench.figures [-o FOLDER]
 """
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
+from viscoroll.core.plots.style import log_ticks, new_figure, save
 
-from viscoroll.core.files import replacing
-from viscoroll.core.plots.style import log_ticks
-
-from ...stage import ROOT
-from ..document.blocks import finished, moving, paper_rows
-from ..results import RESULTS, Results
+from ...stage import ROOT, make_folder, told
+from ..document.blocks import finished, paper_rows
+from ..results import RESULTS, Results, parser
 
 #: line and marker by method: told apart without colour
 _STYLES = {
@@ -28,51 +24,36 @@ _STYLES = {
 _ERRORS = {"max": "max", "p99": "99th percentile"}
 
 
-def _panels(result: dict[str, Any], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Figure:
+def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Any:
     """Error over time of each panel's rows by a key, a line for each method."""
-    figure = Figure((4 * len(shown), 4.2), layout="constrained")
-    panels = figure.subplots(1, len(shown), sharey=True)
-    for axes, (title, (rows, key)) in zip(panels, shown.items(), strict=True):
-        for name, method in result["measured"]["methods"].items():
+    title = "Relative error of V and ω over the time of a motion, down to a speed of 1e-3"
+    figure, drawn = new_figure(title, 1, len(shown), (4 * len(shown), 4.2), sharey=True)
+    for axes, (title, (rows, key)) in zip(drawn, shown.items(), strict=True):
+        for name, label in methods.items():
             points = [(r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r)]
             if points:
-                axes.loglog(*zip(*points), _STYLES[name], label=method["label"], ms=5, lw=1.2)
+                axes.loglog(*zip(*points), _STYLES[name], label=label, ms=5, lw=1.2)
         axes.grid(True, which="major", color="0.9")
         axes.set(xlabel="time of a motion, µs, one core", ylim=(1e-12, 10.0))
-        axes.set_title(title, fontsize=9)
+        axes.set_title(title, fontsize="small")
         log_ticks(axes.xaxis)
-    panels[0].set_ylabel("relative error of V and ω")
-    figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False
-    )
+    drawn[0].set_ylabel("relative error of V and ω")
+    legend = drawn[0].get_legend_handles_labels()
+    figure.legend(*legend, loc="outside lower center", ncols=4, fontsize="small", frameon=False)
     return figure
 
 
-def work_precision(result: dict[str, Any]) -> Figure:
-    """IC1-IC3 with every peer, and the random starts."""
-    rows, count = result["measured"]["results"], result["sizes"]["motions"]
-    random = moving(row for row in rows if row["group"] == "random")
-    few = {"IC1-IC3, down to a speed of 1e-3: max error": (paper_rows(rows), "max")}
-    many = {f"{count} random starts, down to 1e-3: {text}": (random, key) for key, text in _ERRORS.items()}
-    return _panels(result, few | many)
-
-
-def own_parameters(result: dict[str, Any]) -> Figure:
-    """Max and 99th percentile where every motion has its own scene."""
-    rows = moving(result["measured"]["results"])
-    title = "every motion its own scene, down to 1e-3"
-    return _panels(result, {f"{title}: {text}": (rows, key) for key, text in _ERRORS.items()})
-
-
-def draw(results: Path, folder: Path) -> None:
-    """The figures of all parts whose results are there."""
-    folder.mkdir(parents=True, exist_ok=True)
-    found = Results(results)
-    for name, figure_of in {"work-precision": work_precision, "bench-own-parameters": own_parameters}.items():
-        if (result := found.found(f"bench-{name.removeprefix('bench-')}")) is not None:
-            with replacing(folder / f"{name}.png") as temporary:
-                figure_of(result).savefig(temporary, dpi=110, metadata={"Software": None})
+def draw(found: Results, folder: Path) -> None:
+    """IC1-IC3 and random starts with every peer; and motions whose scenes are their own."""
+    work, own = found["bench work-precision"], found["bench own-parameters"]
+    random = [row for row in work["rows"] if row["group"] == "random"]
+    few = {"IC1-IC3: max error": (paper_rows(work["rows"]), "max")}
+    many = {f"{work['sizes']['motions']} random starts: {text}": (random, key) for key, text in _ERRORS.items()}
+    each = {f"every motion its own scene: {text}": (own["rows"], key) for key, text in _ERRORS.items()}
+    save(panels(work["methods"], few | many), folder / "work-precision.png")
+    save(panels(own["methods"], each), folder / "bench-own-parameters.png")
 
 
 if __name__ == "__main__":
-    draw(RESULTS, ROOT / "docs/figures")
+    output = parser(__doc__, ROOT / "docs/figures", sizes=False).parse_args().output
+    sys.exit(told("bench_figures", lambda: draw(Results(RESULTS), make_folder(output))))

@@ -49,37 +49,35 @@ def by_roots(alpha: float, kappa: float, mu: float):
 def by_atlas(alpha: float, kappa: float, mu: float):
     """The law by cubic splines of kappa M, kappa delta_star/mu and Q/mu, not-a-knot; of s = u (2 - u), even steps of u.
 
-    Beyond the table M goes on in proportion to V, the rest is held.
+    Those along alpha are evaluated once.  Beyond the table M goes on in proportion to V, the rest is held.
     """
     axes = [*(np.linspace(*np.log(ends), n) for ends, n in zip(ENDS, NODES)), np.linspace(0.0, 1.0, NODES[2])]
     unit, V, u = vr.Scene(np.exp(axes[0])[:, None, None], 1.0, 1.0), np.exp(axes[1])[:, None], axes[2]
     plane = vr.contact(unit, V, delta=0.0, fields=("M", "delta_star"))
     share = vr.contact(unit, V, delta=u * (2.0 - u) * plane.delta_star, fields="Q").Q
     share[..., -1] = 1.0
-    M_of, star_of, Q_of = (_spline(values, axes) for values in (plane.M[..., 0], plane.delta_star[..., 0], share))
     along, steps = (make_interp_spline(axis, axis).t for axis in axes[1:])
-    of_alpha, lowest = np.empty(4), axes[1][0]
-    i = _basis(make_interp_spline(axes[0], axes[0]).t, np.log(alpha), of_alpha)
+    M_of, star_of, Q_of = (
+        _spline(make_interp_spline(axes[0], values)(np.log(alpha)), axes[1:])
+        for values in (plane.M[..., 0], plane.delta_star[..., 0], share)
+    )
+    lowest = axes[1][0]
 
     @numba.njit
     def law(speed, delta):
         v, w, x = np.empty(4), np.empty(4), np.log(kappa * speed)
         k = _basis(along, x, v)
         M = limit = Q = 0.0
-        for a in range(4):
-            for b in range(4):
-                weight = of_alpha[a] * v[b]
-                M += weight * M_of[i + a, k + b]
-                limit += weight * star_of[i + a, k + b]
+        for b in range(4):
+            M, limit = M + v[b] * M_of[k + b], limit + v[b] * star_of[k + b]
         M *= np.exp(min(x - lowest, 0.0)) / kappa
         s = delta * kappa / (limit * mu)
         if s >= 1.0:
             return mu, M
         n = _basis(steps, s / (1.0 + np.sqrt(1.0 - s)), w)
-        for a in range(4):
-            for b in range(4):
-                for c in range(4):
-                    Q += of_alpha[a] * v[b] * w[c] * Q_of[i + a, k + b, n + c]
+        for b in range(4):
+            for c in range(4):
+                Q += v[b] * w[c] * Q_of[k + b, n + c]
         return mu * Q, M
 
     return law

@@ -6,10 +6,14 @@ configuration; one that the configuration does not name is not run.
 
 from __future__ import annotations
 
+import subprocess
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, partial
+from importlib.metadata import version
+from importlib.util import find_spec
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -113,35 +117,22 @@ class Method(NamedTuple):
 
     label: str
     prepare: Callable[[Problem, float], Call]
-    note: str = ""
     missing: Callable[[], str | None] = lambda: None
 
 
-_GSL = ("Brent-Dekker in each right-hand side, C; time measured inside the program", paper_method.missing)
-_ROSENBROCK = "the Rosenbrock method of pipeline/runtime.py, pipeline/evidence/bench/implicit.py"
 METHODS = {
-    "flow": Method(
-        "viscoroll, flow map", partial(_ensemble, method="flow"),
-        "a fixed scene only; building the map is in setup_s; its error is the map's, whatever rtol",
-    ),
+    # of a fixed scene only; its error is the map's, whatever rtol
+    "flow": Method("viscoroll, flow map", partial(_ensemble, method="flow")),
     "table": Method("viscoroll, integrated", partial(_ensemble, method="integrate")),
-    "direct": Method(
-        "root solves + Rosenbrock", partial(_implicit, law=implicit.by_roots),
-        f"printed equations by Brent-Dekker in numba; {_ROSENBROCK}",
-    ),
-    "atlas": Method(
-        "3-D atlas spline + Rosenbrock", partial(_implicit, law=implicit.by_atlas),
-        f"ends at kappa V = 1e-3: below, its law is held, 1e-3 in M; {_ROSENBROCK}",
-    ),
-    "lsoda": Method(
-        "LSODA on the law, compiled", _lsoda, "by numbalsoda in (V, omega), with the law's saturation, without events",
-        lsoda.missing,
-    ),
-    "gsl-adams": Method("the paper's method (GSL Adams)", partial(_paper_method, name="adams"), *_GSL),
-    "gsl-bdf": Method("GSL BDF, root solves", partial(_paper_method, name="bdf"), *_GSL),
+    "direct": Method("root solves + Rosenbrock", partial(_implicit, law=implicit.by_roots)),
+    # ends at kappa V = 1e-3: below, its law is held, 1e-3 in M
+    "atlas": Method("3-D atlas spline + Rosenbrock", partial(_implicit, law=implicit.by_atlas)),
+    "lsoda": Method("LSODA on the law, compiled", _lsoda, lsoda.missing),
+    "gsl-adams": Method("the paper's method (GSL Adams)", partial(_paper_method, name="adams"), paper_method.missing),
+    "gsl-bdf": Method("GSL BDF, root solves", partial(_paper_method, name="bdf"), paper_method.missing),
     "scipy-lsoda": Method("SciPy's LSODA, root solves", partial(_scipy, name="LSODA")),
     "scipy-radau": Method("SciPy's Radau, root solves", partial(_scipy, name="Radau")),
-}  # fmt: skip
+}
 
 
 def work_precision(sizes: dict[str, Any]) -> dict[str, Any]:
@@ -160,62 +151,42 @@ def driven(sizes: dict[str, Any]) -> dict[str, Any]:
 
 
 def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, Any]:
-    """Every method on every problem: rows in ``results``, what could not run in ``skipped``."""
+    """Every method on every problem at each of its tolerances: rows, and what could not run in ``skipped``."""
     best = {name: reference(problem) for name, problem in problems.items()}
-    chosen = {name: METHODS[name] for name in sizes["methods"]}
-    skipped = {name: reason for name, method in chosen.items() if (reason := method.missing())}
+    skipped = {name: reason for name in sizes["methods"] if (reason := METHODS[name].missing())}
     for name, reason in skipped.items():
         print(f"benchmark: {name} skipped: {reason}")
-    calls = [
-        entry
-        for name, method in chosen.items() if name not in skipped
-        for group, problem in problems.items()
-        for entry in _calls(name, method, group, problem, {"repeats": sizes["repeats"]} | sizes["methods"][name])
-    ]  # fmt: skip
-    with tqdm(total=sum(entry["repeats"] for entry in calls), desc="runs", leave=False, disable=None) as bar:
-        for turn in range(max((entry["repeats"] for entry in calls), default=0)):
-            for entry in (entry for entry in calls if turn < entry["repeats"]):
-                seconds, entry["outcome"] = steady_seconds(entry["call"])
-                own = entry["outcome"].seconds if isinstance(entry["outcome"], Outcome) else None
-                entry["seconds"].append(seconds if own is None else own)
-                bar.update()
+    entries = []
+    for (name, settings), (group, problem) in product(sizes["methods"].items(), problems.items()):
+        count = settings["motions"] if problem.V0.size > 1 else settings.get("copies", 1)
+        if name in skipped or not count:
+            continue
+        for rtol in settings["rtol"]:
+            setup, call = seconds_of(partial(METHODS[name].prepare, problem.take(count), rtol))
+            row = {"method": name, "group": group, "rtol": rtol, "motions": count, "setup_s": setup}
+            entries.append((row, call, settings.get("repeats", sizes["repeats"])))
+    for turn in tqdm(range(max(repeats for *_, repeats in entries)), desc="rounds", leave=False, disable=None):
+        for row, call, repeats in entries:
+            if turn < repeats:
+                took, outcome = steady_seconds(call)
+                row.setdefault("us", []).append(1e6 * (getattr(outcome, "seconds", None) or took) / row["motions"])
+                row.update(errors(outcome, best[row["group"]], problems[row["group"]].drive is not None))
     return {
         "reference": {
             name: reference_difference(problem, best[name], sizes["reference_motions"])
             for name, problem in problems.items()
             if problem.drive is None
         },
-        "methods": {name: {"label": method.label, "note": method.note} for name, method in chosen.items()},
-        "results": [
-            _row(best[group := entry["row"]["group"]], problems[group].drive is not None, **entry) for entry in calls
-        ],
-        "skipped": skipped,
-    }
+        "methods": {name: METHODS[name].label for name in sizes["methods"]},
+        "rows": [row | {"us": float(np.median(row["us"])), "least_us": min(row["us"])} for row, *_ in entries],
+        "skipped": skipped, "tools": tools(),
+    }  # fmt: skip
 
 
-def _calls(name: str, method: Method, group: str, problem: Problem, settings: dict[str, Any]) -> list[dict[str, Any]]:
-    """What is to be timed: one entry for each tolerance of the method."""
-    if problem.V0.size == 1:
-        problem = problem.copies(settings.get("copies", 1))
-    elif settings["motions"] == 0:
-        return []
-    else:
-        problem = problem.take(settings["motions"])
-    entries = []
-    for rtol in settings["rtol"]:
-        setup, call = seconds_of(partial(method.prepare, problem, rtol))
-        row = {"method": name, "group": group, "rtol": rtol, "motions": problem.V0.size, "setup_s": setup}
-        entries.append({"row": row, "call": call, "seconds": [], "repeats": settings["repeats"]})
-    return entries
-
-
-def _row(
-    best: Outcome, driven: bool, row: dict[str, Any], outcome: Any, seconds: list[float], **_: Any
-) -> dict[str, Any]:
-    """What is kept of an entry."""
-    motions = row["motions"]
-    if len(best.V) < motions:
-        best = Outcome(np.repeat(best.V, motions, axis=0), np.repeat(best.omega, motions, axis=0))
-    us = {"us": 1e6 * float(np.median(seconds)) / motions, "least_us": 1e6 * min(seconds) / motions}
-    counted = getattr(outcome, "evaluations", None)
-    return row | us | ({} if counted is None else {"evaluations": counted / motions}) | errors(outcome, best, driven)
+def tools() -> dict[str, str]:
+    """Versions of what the peers are built with; those that are not there are left out."""
+    found = {name: version(name) for name in ("scipy", "numbalsoda") if find_spec(name)}
+    for name, command in {"cc": "cc -dumpfullversion", "gsl": "pkg-config --modversion gsl"}.items():
+        done = subprocess.run(command, shell=True, check=False, capture_output=True, text=True)
+        found |= {} if done.returncode else {name: done.stdout.strip()}
+    return found

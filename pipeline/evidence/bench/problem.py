@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +16,7 @@ LEAST_SPEED = 1e-3
 REFERENCE_RTOL = 1e-12
 
 
-@dataclass(frozen=True)
-class Problem:
+class Problem(NamedTuple):
     """n motions from (V0, omega0) at common output times; fields of ``scene`` are numbers or arrays (n,).
 
     ``drive`` : force and torque of each, (n, 2).
@@ -36,14 +34,10 @@ class Problem:
         return np.array([*columns]).T
 
     def take(self, count: int) -> Problem:
-        """The first motions."""
+        """The first motions, over and over where there are fewer: a single one would time the call around it."""
         scene = self.scene if self.scene.shape == () else vr.Scene(*self.parameters()[:count].T)
-        drive = None if self.drive is None else self.drive[:count]
-        return replace(self, scene=scene, V0=self.V0[:count].copy(), omega0=self.omega0[:count].copy(), drive=drive)
-
-    def copies(self, count: int) -> Problem:
-        """The first motion many times: a single one would time the call around it."""
-        return replace(self, V0=np.repeat(self.V0[:1], count), omega0=np.repeat(self.omega0[:1], count))
+        V0, omega0 = (np.resize(each, count) for each in (self.V0, self.omega0))
+        return Problem(scene, V0, omega0, self.t, None if self.drive is None else self.drive[:count])
 
     def rolled(self, **how: Any) -> Any:
         """By the package."""
@@ -51,17 +45,12 @@ class Problem:
         return vr.ensemble(self.scene, self.V0, self.omega0, self.t, **driven, **how)
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """V, omega of shape (n, times), NaN where a method gave up.
-
-    ``seconds``: time of all motions where the method measured it itself; ``evaluations``: right-hand sides in all.
-    """
+class Outcome(NamedTuple):
+    """V, omega of shape (n, times), NaN where a method gave up; time of all motions where it measured that itself."""
 
     V: NDArray
     omega: NDArray
     seconds: float | None = None
-    evaluations: float | None = None
 
 
 def _times(sizes: dict[str, Any], end: float) -> NDArray:
@@ -115,28 +104,22 @@ def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[
 
 
 def speed_error(tried: Any, best: Any) -> NDArray:
-    """Difference of (V, omega) over the larger of the two, of as many motions as both have."""
-    n = min(len(tried.V), len(best.V))
-    off = np.maximum(np.abs(tried.V[:n] - best.V[:n]), np.abs(tried.omega[:n] - best.omega[:n]))
-    return off / np.maximum(np.abs(best.V[:n]), np.abs(best.omega[:n]))
+    """Difference of (V, omega) over the larger of the two."""
+    off = np.maximum(np.abs(tried.V - best.V), np.abs(tried.omega - best.omega))
+    return off / np.maximum(np.abs(best.V), np.abs(best.omega))
 
 
-def errors(tried: Outcome, best: Outcome, driven: bool = False) -> dict[str, Any]:
-    """Relative error of (V, omega), over the larger of the two, worst over time; over the motions that were finished.
+def errors(tried: Any, best: Outcome, driven: bool = False) -> dict[str, Any]:
+    """Relative error of (V, omega), over the larger of the two, if ``driven`` over the largest so far, as speeds pass
+    through 0: of outputs with a speed of at least ``LEAST_SPEED``, worst over time.
 
-    If ``driven`` over the largest so far, as speeds pass through 0.
-
-    max, median, p99: all outputs; max_moving, p99_moving: outputs with a speed of at least ``LEAST_SPEED``.
-    failed: motions that were given up.
+    max, p99: over the motions that were finished; failed: motions that were given up.
     """
-    each = speed_error(tried, best)
-    size = np.maximum(np.abs(best.V), np.abs(best.omega))[: len(each)]
+    best = Outcome(*(np.resize(each, tried.V.shape) for each in best[:2]))
+    off, size = speed_error(tried, best), np.maximum(np.abs(best.V), np.abs(best.omega))
     if driven:
-        each *= size / np.maximum.accumulate(size, axis=1)
-    done = np.isfinite(each).all(axis=1)
-    found: dict[str, Any] = {"failed": int((~done).sum())}
-    for name, counted in (("", each), ("_moving", np.where(size >= LEAST_SPEED, each, 0.0))):
-        worst = counted[done].max(axis=1)
-        if worst.size:
-            found |= {f"max{name}": float(worst.max()), f"p99{name}": float(np.quantile(worst, 0.99))}
-    return found | ({"median": float(np.median(each[done].max(axis=1)))} if done.any() else {})
+        off *= size / np.maximum.accumulate(size, axis=1)
+    done = np.isfinite(off).all(axis=1)
+    worst = np.where(size >= LEAST_SPEED, off, 0.0)[done].max(axis=1)
+    found = {"max": float(worst.max()), "p99": float(np.quantile(worst, 0.99))} if worst.size else {}
+    return found | {"failed": int((~done).sum())}

@@ -16,7 +16,7 @@ from ..timing import printed
 _FIRST = """
 import os
 from pathlib import Path
-folder, calls, motions = given
+cache, folder, calls, motions = given
 os.environ["VISCOROLL_CACHE_DIR"] = folder
 scene, t = vr.presets.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 30)
 V0 = np.random.default_rng(12).uniform(-2.0, 2.0, motions)
@@ -30,17 +30,18 @@ for name in calls:
     run[name]()
     sizes = [path.stat().st_size for path in Path(folder).glob("kernels-*/*")]
     rows.append({
-        "call": name, "cpu_s": time.process_time(), "wall_s": time.perf_counter() - start,
+        "cache": cache, "call": name, "cpu_s": time.process_time(), "wall_s": time.perf_counter() - start,
         "peak_mb": memory("VmHWM") / 1e6, "files": len(sizes), "cache_mb": sum(sizes) / 1e6,
     })
 print(json.dumps(rows))
 """
 
 
-def first_calls(sizes: dict[str, Any]) -> dict[str, Any]:
+def first_calls(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """Rows of the first calls of a process whose kernel cache is empty, and of one that finds it full."""
     with tempfile.TemporaryDirectory() as folder:
-        return {cache: printed(_FIRST, folder, sizes["calls"], sizes["motions"]) for cache in ("empty", "full")}
+        given = folder, sizes["calls"], sizes["motions"]
+        return [row for cache in ("empty", "full") for row in printed(_FIRST, cache, *given)]
 
 
 #: {case: ns a state} of the package that is found: Q and M at the paper's material, median of some calls; of the
@@ -64,7 +65,7 @@ print(json.dumps(found))
 """
 
 
-def last_release(sizes: dict[str, Any]) -> dict[str, Any]:
+def last_release(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """``contact`` beside that of the last release, checked out into a folder, in processes that take turns.
 
     For each case: ns a state here and there, the median of their ratios over the pairs.  One thread each.  Prints a
@@ -77,11 +78,11 @@ def last_release(sizes: dict[str, Any]) -> dict[str, Any]:
             order = trees[:: 1 - 2 * (turn % 2)]
             pair = {tree: printed(_STATES, *given, PYTHONPATH=str(tree), VISCOROLL_THREADS="1") for tree in order}
             pairs.append([pair[tree] for tree in trees])
-    found, allowed = {}, sizes["allowed"]
+    rows, allowed = [], sizes["allowed"]
     for case in sizes["cases"]:
         ns = np.array([[times[case] for times in pair] for pair in pairs])
         here, before, ratio = np.median([*ns.T, ns[:, 0] / ns[:, 1]], axis=1).tolist()
-        found[case] = {"ns": here, "ns_before": before, "ratio": ratio}
+        rows.append({"case": case, "ns": here, "ns_before": before, "ratio": ratio})
         said = f"{here:.3g} ns a state, {before:.3g} in {sizes['release']}: {ratio:.2f} times"
         print(f"contact, {case}: {said}, {'BEYOND' if ratio > allowed else 'within'} {allowed}", flush=True)
-    return found
+    return rows

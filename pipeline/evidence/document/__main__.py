@@ -21,14 +21,8 @@ from viscoroll.core.files import write_text
 from ...stage import ROOT, told
 from ..results import RESULTS, Results
 from ..stamps import SHORT, kernels_digest, stamps
-from . import house, identification
-from .blocks import BLOCKS
+from .blocks import BLOCKS, block
 
-BLOCKS |= {
-    f"identify_{made.__name__}": ("measure.identification", made)
-    for made in (getattr(identification, name) for name in ("learn", "bearing", "said", "times", "coverage", "reach"))
-}
-BLOCKS |= {made.__name__: ("document", made) for made in (house.rooms, house.commands, house.sections)}
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")
@@ -50,14 +44,12 @@ def filled(text: str, folders: list[Path], name: str) -> str:
     def fill(match: re.Match[str]) -> str:
         if match[2] not in BLOCKS:
             raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}")
-        stage, block = BLOCKS[match[2]]
         results = Results(*folders)
         try:
-            return f"{match[1]}{block(results)}{provenance(results)}{match[3]}"
+            return f"{match[1]}{block(match[2], results)}{provenance(results)}{match[3]}"
         except (KeyError, TypeError) as error:
-            raise DocumentError(
-                f"results lack {error} for block {match[2]!r}: run pipeline.evidence.{stage}"
-            ) from error
+            stage = BLOCKS[match[2]]["stage"]
+            raise DocumentError(f"results lack {error} for {match[2]!r}: run pipeline.evidence.{stage}") from error
 
     result, count = _BLOCK.subn(fill, text)
     if len(_MARK.findall(text)) != 2 * count:

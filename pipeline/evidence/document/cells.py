@@ -20,18 +20,23 @@ def three(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
-#: two digits, two in thousandths, three, three in thousandths, thousands; nothing of None
+#: two digits, in thousandths, in per cent; three digits, likewise; whole; thousands and millions to go on with;
+#: a power of ten; a vertical line that ends no cell
 CONVERSIONS = {
-    "n": lambda value: "" if value is None else two(value), "m": lambda value: two(1e3 * value), "t": three,
-    "u": lambda value: three(1e3 * value), "k": lambda value: f"{1e-3 * value:.0f}",
+    "n": two, "m": lambda value: two(1e3 * value), "c": lambda value: two(100.0 * value),
+    "t": three, "u": lambda value: three(1e3 * value), "h": lambda value: three(100.0 * value), "i": "{:.0f}".format,
+    "k": lambda value: 1e-3 * value, "M": lambda value: 1e-6 * value,
+    "e": lambda value: f"{value:.0e}".replace("e+0", "e"), "p": lambda text: text.replace("|", "\\|"),
 }  # fmt: skip
 
 
 class Cells(string.Formatter):
-    """``str.format`` with the CONVERSIONS."""
+    """``str.format`` with the CONVERSIONS; nothing of None and of empty text."""
 
     def convert_field(self, value: Any, conversion: str | None) -> Any:
-        return CONVERSIONS[conversion](value) if conversion else value
+        if not conversion:
+            return value
+        return "" if value in (None, "") else CONVERSIONS[conversion](value)
 
     def __call__(self, template: str, values: Mapping[str, Any]) -> str:
         return self.vformat(template, (), values)

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
-from ..results import Results, table
-from .cells import listed
+from ..results import Results
 
 _NEVER, _OPEN = "never", "--"
-_HEADS = {"E_1": "E_1 = alpha − 1"}
-
-
-def _rows(results: Results, part: str) -> list[dict[str, Any]]:
-    """Of a part, none of one that was not measured yet."""
-    return results["identification"]["parts"].get(part, {"rows": []})["rows"]
 
 
 def _known(row: dict[str, Any], name: str) -> str:
@@ -37,62 +31,40 @@ def _together(row: dict[str, Any]) -> str:
     for one in row["products"]:
         powers = sorted(one["powers"].items(), key=lambda item: -abs(item[1]))
         named = " ".join(name if power == 1.0 else f"{name}^{power:.2g}" for name, power in powers)
-        named = f"near these values {named}" if one["near"] else named
-        texts.append(f"{named}, {50.0 * (one['high'] - one['low']):.2g} %")
+        near = "near these values " if one["near"] else ""
+        texts.append(f"{near}{named}, {50.0 * (one['high'] - one['low']):.2g} %")
     others = [name for name in row["unknowns"] if name not in (*row["undetermined"], *row["does_not_act"])]
     return "; ".join([*texts, *others]) or "nothing"
 
 
-def _told(results: Results, part: str, names: tuple[str, ...]) -> str:
-    head = ("measured", *(_HEADS.get(name, name) for name in names), "what the data determine")
-    return table(
-        head,
-        ((row["experiment"], *(_known(row, name) for name in names), _together(row)) for row in _rows(results, part)),
-    )
-
-
-def learn(results: Results) -> str:
+def identify_learn(results: Results, part: str = "learn") -> Iterator[dict[str, str]]:
     """One row an experiment."""
-    return _told(results, "learn", ("mu", "E", "E_1", "T_ref"))
+    for row in results[f"identification {part}"]["rows"]:
+        known = {name: _known(row, name) for name in ("mu", "E", "E_1", "T_ref", "brake", "drag")}
+        yield known | {"experiment": row["experiment"], "together": _together(row)}
 
 
-def bearing(results: Results) -> str:
+def identify_bearing(results: Results) -> Iterator[dict[str, str]]:
     """The same of a roller in a bearing."""
-    return _told(results, "bearing", ("E", "E_1", "T_ref", "brake", "drag"))
+    return identify_learn(results, "bearing")
 
 
-def said(results: Results) -> str:
+def identify_said(results: Results) -> str:
     """Six reports."""
-    return "\n".join(
-        f"{row['problem'].capitalize()}:\n\n```text\n{row['report']}\n```\n" for row in _rows(results, "said")
-    )
+    rows = results["identification said"]["rows"]
+    return "\n".join(f"{row['problem'].capitalize()}:\n\n```text\n{row['report']}\n```\n" for row in rows)
 
 
-def times(results: Results) -> str:
+def identify_times(results: Results) -> Iterator[dict[str, Any]]:
     """How long it takes, and how near ends of intervals are."""
-    columns = {
-        "processor": "{case}", "a fit": "{fit_s!n} s", "its profiles": "{profiles_s!n} s",
-        "a fit by 8 starts": "{searches_s!n} s",
-    }  # fmt: skip
-    off = max(row["off"] for row in _rows(results, "width"))
-    text = f"\nEnds of intervals lie within {100.0 * off:.2g} % of their width of a scan of the profile.\n"
-    return listed(columns, _rows(results, "time")) + text
+    off = max(row["off"] for row in results["identification width"]["rows"])
+    return (row | {"off": off} for row in results["identification time"]["rows"])
 
 
-def coverage(results: Results) -> str:
+def identify_coverage(results: Results) -> Iterator[dict[str, Any]]:
     """How often intervals hold the truth."""
-    return listed(
-        {"intervals of 95 % that hold the truth": "{experiment}, {sets} data sets", "share": "{shares}"},
-        (
-            row | {"shares": ", ".join(f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items())}
-            for row in _rows(results, "coverage") + _rows(results, "product")
-        ),
-    )
+    for row in results["identification coverage"]["rows"] + results["identification product"]["rows"]:
+        yield row | {"shares": ", ".join(f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items())}
 
 
-def reach(results: Results) -> str:
-    """How often one search arrives."""
-    return listed(
-        {"one search, up to a factor of ten off": "{experiment}", "arrives": "{share} of {starts}"},
-        (row | {"share": f"{100.0 * row['reached']:.3g} %"} for row in _rows(results, "reach")),
-    )
+MAKERS = identify_learn, identify_bearing, identify_said, identify_times, identify_coverage

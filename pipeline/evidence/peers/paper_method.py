@@ -47,8 +47,8 @@ def run(
     t: NDArray,
     rtol: float,
     most_evaluations: int,
-) -> tuple[NDArray, NDArray, float, float]:
-    """Roll motions: (V, omega) of shape (n, times), seconds and evaluations in all; NaN where it gave up.
+) -> tuple[NDArray, NDArray, float]:
+    """Roll motions: (V, omega) of shape (n, times), seconds of all; NaN where it gave up.
 
     Parameters
     ----------
@@ -64,4 +64,4 @@ def run(
     motions = [table[i : i + t.size + 1] for i in range(0, len(table), t.size + 1)]
     heads = np.array([motion[0].split() for motion in motions], dtype=float)
     speeds = np.array([[line.split() for line in motion[1:]] for motion in motions], dtype=float)
-    return speeds[:, :, 0], speeds[:, :, 1], float(heads[:, 2].sum()), float(heads[:, 1].sum())
+    return speeds[:, :, 0], speeds[:, :, 1], float(heads[:, 2].sum())

@@ -1,6 +1,6 @@
 """Damage files as a bad night does, and count what goes unnoticed -> data/results/torture.json (kept in git).
 
-    python -m pipeline.evidence.torture [--config FILE] [--quick] [--only PART] [-o FILE]
+    python -m pipeline.evidence.torture [--config FILE] [--quick] [--only PART ...] [-o FILE]
 
 Each part holds its sizes, the machine, and rows: what was done, how often, and how often the file was
 refused, was unharmed, or was wrong: other values without a word, an error that is not the package's own,

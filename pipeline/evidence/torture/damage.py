@@ -92,37 +92,32 @@ def enlarge(disk: Path) -> None:
     subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=True)
 
 
-class Damage:
+def damaged(
+    done: str, count: int, path: Path, content: bytes, change: Change, rng: np.random.Generator
+) -> dict[str, Any]:
     """Change a table over and over, load it in processes with bounded memory, and see what comes out."""
+    path.write_bytes(content)
+    expected = fingerprint(tables.load(path))
+    found: list[tuple[str, float, float]] = []
+    with tqdm(total=count, desc=done, delay=1.0, leave=False) as progress:
+        while len(found) < count:
+            seeds = rng.integers(1 << 62, size=min(BATCH, count - len(found))).tolist()
+            for one in forked(loads, path, content, change, seeds, expected):
+                found.append((one, 0.0, 0.0) if isinstance(one, str) else one)
+                progress.update()
+    outcomes, seconds, megabytes = zip(*found, strict=True)
+    return row(done, outcomes, max(seconds), max(megabytes))
 
-    def __init__(self, path: Path, rng: np.random.Generator) -> None:
-        self.path, self.rng = path, rng
 
-    def __call__(self, done: str, count: int, content: bytes, change: Change) -> dict[str, Any]:
-        self.path.write_bytes(content)
-        expected = fingerprint(tables.load(self.path))
-        outcomes: list[str] = []
-        slowest, peak = 0.0, 0.0
-        with tqdm(total=count, desc=done, delay=1.0, leave=False) as progress:
-            while len(outcomes) < count:
-                seeds = self.rng.integers(1 << 62, size=min(BATCH, count - len(outcomes))).tolist()
-                for found in forked(self.load_all, content, change, seeds, expected):
-                    outcome, seconds, megabytes = (found, 0.0, 0.0) if isinstance(found, str) else found
-                    outcomes.append(outcome)
-                    slowest, peak = max(slowest, seconds), max(peak, megabytes)
-                    progress.update()
-        return row(done, outcomes, slowest, peak)
-
-    def load_all(self, content: bytes, change: Change, seeds: list[int], expected: str) -> Iterator[tuple]:
-        """(outcome, seconds of the processor, peak MB) of each seed."""
-        present = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        resource.setrlimit(resource.RLIMIT_AS, (present + MEMORY, present + MEMORY))
-        for seed in seeds:
-            self.path.write_bytes(change(content, np.random.default_rng(seed)))
-            begin = processor_time()
-            outcome = outcome_of(self.path, expected)
-            seconds = processor_time() - begin
-            yield outcome, seconds, peak_mb()
+def loads(path: Path, content: bytes, change: Change, seeds: list[int], expected: str) -> Iterator[tuple]:
+    """(outcome, seconds of the processor, peak MB) of each seed."""
+    present = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (present + MEMORY, present + MEMORY))
+    for seed in seeds:
+        path.write_bytes(change(content, np.random.default_rng(seed)))
+        begin = processor_time()
+        outcome = outcome_of(path, expected)
+        yield outcome, processor_time() - begin, peak_mb()
 
 
 def outcome_of(path: Path, expected: str) -> str:

@@ -25,7 +25,7 @@ from viscoroll.core.files import seal_holds
 from viscoroll.presets import RUBBER_CYLINDER
 
 from ...stage import ROOT
-from .damage import Damage, edit, fingerprint, flip, row, truncate, unsealed
+from .damage import damaged, edit, fingerprint, flip, row, truncate, unsealed
 
 LAW = ROOT / "data/tables/rubber.nc"
 #: what `make tables` builds while it is killed
@@ -50,17 +50,20 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         folder = Path(name)
         tables.save(grid(), folder / "table.nc")
         content = (folder / "table.nc").read_bytes()
-        damage = Damage(folder / "damaged.nc", rng)
         found = [
             *kills(sizes["kills"], folder / "kills", rng),
             writers("two processes save the same table at once", sizes["writers"], folder / "both.nc"),
-            damage("one bit flipped", sizes["flips"], content, flip),
-            damage("truncated", sizes["truncations"], content, truncate),
-            damage("1-16 bytes of headers and B-trees replaced", sizes["edits"], content, edit),
-            damage("truncated, no seal", sizes["unsealed"], unsealed(content), truncate),
         ]
+        ways = {
+            "one bit flipped": (sizes["flips"], content, flip),
+            "truncated": (sizes["truncations"], content, truncate),
+            "1-16 bytes of headers and B-trees replaced": (sizes["edits"], content, edit),
+            "truncated, no seal": (sizes["unsealed"], unsealed(content), truncate),
+        }
         if LAW.exists():
-            found.append(damage("one bit of data/tables/rubber.nc flipped", sizes["large"], LAW.read_bytes(), flip))
+            ways["one bit of data/tables/rubber.nc flipped"] = sizes["large"], LAW.read_bytes(), flip
+        for done, (count, whole, change) in ways.items():
+            found.append(damaged(done, count, folder / "damaged.nc", whole, change, rng))
     return found
 
 
