@@ -7,15 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.held import held
 from ..compile.jit import kernel
-from ..rows.added import added_mass
-from .collocation import WIDE
 from .load import brakes, goes_on, piece_end, threshold, undriven
-from .nodes import INTERPOLANTS, NUMBERS, ONES, PATHS
+from .nodes import PATHS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
 from .output import coast, put_here, put_still, regime_of
 from .phase import creeps, phase
-from .rates import creep_limit, room, speeds
+from .rates import creep_limit, inertia_at, room, speeds
 from .records import (
     DONE,
     EDGE,
@@ -35,9 +34,7 @@ from .records import (
     Case,
     Clock,
     Frame,
-    Notes,
     State,
-    Work,
 )  # fmt: skip
 from .switch import at_new_piece, here, switch, turned
 
@@ -150,7 +147,7 @@ def vanishes(state, frame, clock, case):
 @kernel
 def spent(event, state, frame, case):
     """Whether the added mass is beyond its range, or this event is that it has come to the end of it."""
-    left = room(added_mass(case.scene.law, state.V, case.scene.kappa, case.scene.gamma)[0], case.scene.j)
+    left = room(inertia_at(state.V, case.scene)[0], case.scene.j)
     at_end = event == EDGE and left < 1.0 - frame.sigma * state.second
     return not frame.slips and (left <= 0.0 or at_end)
 
@@ -159,7 +156,7 @@ def spent(event, state, frame, case):
 def settled(state, frame, clock, case):
     """(State, frame) once d has relaxed at a time: p stays as it is."""
     load, rates = here(state, frame, clock, case)
-    n = added_mass(case.scene.law, state.V, case.scene.kappa, case.scene.gamma)[0]
+    n = inertia_at(state.V, case.scene)[0]
     inertia = load.per_omega + load.per_V * load.per_omega * n
     p, d, low, high = inertia * state.V + load.per_V * rates.omega, 0.0, -1.0, 1.0
     while low < d < high:
@@ -240,27 +237,14 @@ def follow(moving, fresh, state, frame, clock, case):
     return DONE, clock, turns, onset_time, np.nan
 
 
-@kernel(allocates=True)
-def integrate(scene, drive, V0, omega0, t, limits, sink):
-    """Roll one motion from t = 0 to t[-1], t ascending: (status, steps, switches, onset time, rest time).
-
-    ``sink`` : room for the outputs, (OUTPUTS, n), how many of what adds up are asked for, and room for the changes of
-    regime and for the ends of panels (Notes).
-    """
-    out, asked, switches, ends = sink
-    tau = np.empty(t.size)
-    for i in range(tau.size):
-        tau[i] = t[i] * scene.gamma
-    nodes = np.zeros(NUMBERS)
-    for i in range(WIDE):
-        nodes[ONES + i] = 1.0
-    work = Work(nodes, np.empty(INTERPOLANTS), np.zeros(WIDE * WIDE), np.zeros(WIDE * WIDE), np.zeros(PATHS))
-    case = Case(scene, drive, limits, tau, out, asked, Notes(switches, ends), work)
+@kernel
+def integrate(scene, drive, V0, omega0, limits, tau, out, asked, notes, work):
+    """Roll one motion from t = 0 to the last of its times: (status, steps, switches, onset time, rest time)."""
+    case = held(Case(scene, drive, limits, tau, out, asked, notes, work))
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
-    state, frame, moving = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), V0 != 0.0 or omega0 != 0.0
-    fresh = False
-    if max(abs(V0), abs(omega0)) < _STILL and not undriven(0, drive):
-        moving = False
+    state, frame, fresh = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), False
+    fastest = max(abs(V0), abs(omega0))
+    moving = fastest >= _STILL or (fastest > 0.0 and undriven(0, case.drive))
     if moving:
         state, frame, fresh = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
         state, frame = at_new_piece(state, frame, clock, case)

@@ -6,13 +6,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compile.held import pointer
 from ..compile.jit import kernel
 from ..numerics.arrays import copy, fill
 from ..rows.record import hold
+from .collocation import WIDE
 from .integrate import integrate
 from .load import FIRST, RATE, SCALE, START, terms_of
+from .nodes import INTERPOLANTS, NUMBERS, ONES, PATHS
 from .output import OUTPUTS, asked_by
-from .records import Batch, Drive, Gains, Limits, Scene
+from .records import Batch, Drive, Gains, Limits, Notes, Scene, Work
 
 #: columns of the per-motion information
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
@@ -53,19 +56,26 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
 
     Records come as plain tuples: it takes numba microseconds to tell the type of a record.
     """
-    switches, ends = notes
     motions, drives, limits, asked = Batch(*batch), Drives(*drives), Limits(*limits), asked_by(rows)
-    one, pieces = np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
+    tau, one, pieces = np.empty(t.size), np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
+    nodes, powers, totals = np.empty(NUMBERS), np.empty(INTERPOLANTS), np.empty(PATHS)
+    matrix, second_matrix = np.empty(WIDE * WIDE), np.empty(WIDE * WIDE)
+    work = Work(pointer(nodes), pointer(powers), pointer(matrix), pointer(second_matrix), pointer(totals))
     for i in range(out.shape[1]):
         for row in one:
             fill(np.nan, row)
+        for array in (nodes, powers, matrix, second_matrix, totals):
+            fill(0.0, array)
+        fill(1.0, nodes[ONES : ONES + WIDE])
         hold(motions.law, i)
         kappa, mu = _own(motions.kappa, i), _own(motions.mu, i)
         gamma, j = _own(motions.gamma, i), _own(motions.j, i)
+        for k in range(t.size):
+            tau[k] = t[k] * gamma
         scene = Scene(motions.law, motions.unlike, kappa, mu, gamma, j)
         drive = Drive(pieces, _drive_of(drives, gamma, i, pieces), drives.prescribed)
         V0, omega0 = _own(motions.V0, i), _own(motions.omega0, i)
-        result = integrate(scene, drive, V0, omega0, t, limits, (one, asked, switches, ends))
+        result = integrate(scene, drive, V0, omega0, limits, tau, one, asked, Notes(*notes), work)
         for n in range(rows.size):
             copy(one[rows[n]], out[n, i])
         info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..compile.held import loaded
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, WIDE, N
 from .load import FUNCTIONS, load_of, needed, values_at, varies
@@ -111,15 +112,15 @@ def acting_at(i, frame, case):
 @kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
-    nodes = case.work.nodes
+    nodes, scene = case.work.nodes, loaded(case.scene)
     for i in range(N + 1):
         speed, second = nodes[V + i], nodes[SECOND + i]
         nodes[EVENT + WIDE * TURN + i] = speed
-        nodes[EVENT + WIDE * EDGE + i] = edge(speed, second, frame, case.scene)
+        nodes[EVENT + WIDE * EDGE + i] = edge(speed, second, frame, scene)
         if not frame.slips:
             nodes[EVENT + WIDE * KINK + i] = frame.sigma * second + FAINT
         if frame.spin != 0.0 or panel.rest > 0.0:
-            omega, delta = speeds(State(speed, second), frame, case.scene)
+            omega, delta = speeds(State(speed, second), frame, scene)
             # in partial slip omega vanishes with V, which is another event, and by its own
             stops = omega if frame.slips else 1.0 + delta if speed > 0.0 else 1.0
             nodes[EVENT + WIDE * STOP + i] = frame.spin * stops

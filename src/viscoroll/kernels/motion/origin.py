@@ -15,8 +15,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..rows.added import added_mass
 from .load import FIRST, FUNCTIONS, brakes, load_at, piece_end, terms_of
+from .rates import inertia_at
 from .records import Frame, Load
 
 STAYS, STICKS, SLIDES, EITHER = range(4)
@@ -53,7 +53,7 @@ def _under_brake(load, spin):
 def _burdened(load, scene):
     """The load that has the same V' and omega' follow from Q at V = 0 without the added mass."""
     force, torque, V_rate, omega_rate, brake, per_V, per_omega, gains = load
-    half = 0.5 * added_mass(scene.law, 0.0, scene.kappa, scene.gamma)[0]
+    half = 0.5 * inertia_at(0.0, scene)[0]
     light = 1.0 / (1.0 + half * per_V)
     share = 1.0 + half * light * per_V
     torque = (torque - half * (light * per_V * force + V_rate)) / share

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..rows.added import added_mass
 from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed
 from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, V, put_path, risen
-from .rates import moments_slopes, rates_of, speeds
+from .rates import inertia_at, moments_slopes, rates_of, speeds
 from .records import FULL, LOCKED, PARTIAL, REST, Asked, Clock, Frame, State
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
@@ -150,7 +149,7 @@ def coast(state, frame, clock, case):
     """Outputs of the last decay, (1 + j + gamma N) V' = -T_mean V with delta/V constant: (clock, time of rest)."""
     scene, out, direction, totals = case.scene, case.out, frame.direction, case.work.totals
     _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, scene)
-    inertia = 1.0 + scene.j + added_mass(scene.law, 0.0, scene.kappa, scene.gamma)[0]
+    inertia = 1.0 + scene.j + inertia_at(0.0, scene)[0]
     # V and omega fall together: Q = 4 kappa delta takes what the moments differ by
     rate, per = (half_space + cylinder) / inertia, 4.0 * scene.kappa * inertia
     creep = state.V * (scene.j * half_space - cylinder) / per

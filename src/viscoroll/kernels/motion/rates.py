@@ -26,6 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compile.held import loaded
 from ..compile.jit import kernel
 from ..compile.rarely import rarely
 from ..rows.added import added_mass
@@ -67,7 +68,8 @@ class Rates(NamedTuple):
 @kernel(inline=True)
 def moments_slopes(u, scene):
     """(L, L', L'', M/V of half-space and cylinder, d(u M/V)/du of these) at u = kappa |V|."""
-    law, at = scene.law, place(u, scene.law)
+    law = loaded(scene.law)
+    at = place(u, law)
     found = speed(at, u, law)
     m, rise = found.scale * found.m, found.rise
     if not scene.unlike:
@@ -80,8 +82,14 @@ def moments_slopes(u, scene):
 @kernel(inline=True)
 def creep_limit(V, scene):
     """delta_star at V."""
-    u = scene.kappa * abs(V)
-    return 0.5 * scene.mu / scene.kappa * speed(place(u, scene.law), u, scene.law).L
+    u, law = scene.kappa * abs(V), loaded(scene.law)
+    return 0.5 * scene.mu / scene.kappa * speed(place(u, law), u, law).L
+
+
+@kernel(inline=True)
+def inertia_at(V, scene):
+    """(gamma N, its slope over V, its integral)."""
+    return added_mass(loaded(scene.law), V, scene.kappa, scene.gamma)
 
 
 @kernel(inline=True)
@@ -104,7 +112,7 @@ def room(n, j):
 def edge(V, second, frame, scene):
     """Of the stick zone: positive within the regime."""
     if not frame.slips:
-        n, _, _ = added_mass(scene.law, V, scene.kappa, scene.gamma)
+        n, _, _ = inertia_at(V, scene)
         return (1.0 - frame.sigma * second) * room(n, scene.j)
     return frame.sigma * (second - V) - creep_limit(V, scene) * abs(V)
 
@@ -148,7 +156,7 @@ def stick_rates(V, d, load, frame, scene):
     V_rate = per_V * (Q - M_half_space + force) + load.V_rate
     V_V, V_d = per_V * (Q_V - half_space_rise + force_V), per_V * (Q_d + gains.force_omega * omega_d)
     torque_d = gains.torque_omega * omega_d
-    n, n_V, whole = added_mass(law, V, scene.kappa, scene.gamma)
+    n, n_V, whole = inertia_at(V, scene)
     if n != 0.0:
         light = 1.0 / (1.0 + 0.5 * per_V * n)
         V_rate *= light
@@ -195,4 +203,4 @@ def rates_at(V, second, load, frame, scene):
 @kernel
 def rates_of(state, load, frame, scene):
     """The same where it is not the innermost loop: compiled once for all."""
-    return rates_at(state.V, state.second, load, frame, scene)
+    return rates_at(state.V, state.second, load, frame, loaded(scene))

@@ -106,8 +106,8 @@ def _parts(typing_context, four):
 
 
 def _pointer(context, builder, kind, array, at):
-    """Where the four numbers of an array begin, the first of them number ``at``."""
-    data = context.make_array(kind)(context, builder, array).data
+    """Where the four numbers of an array or behind a pointer begin, the first of them number ``at``."""
+    data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
 
 
