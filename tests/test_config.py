@@ -69,7 +69,6 @@ def test_materials(toml):
         (f"[material]\nE = 1e5\nnu = 0.4\n{creep}", vr.Material(1e5, 0.4, vr.Prony.creep([0.5], [1.0]))),
     ):
         assert read_materials(toml(content)) == {"material": material}
-    assert read_materials(toml(RUBBER + warm), 40.0)["material"] == rubber.at(40.0, vr.WLF(T0=20.0))
     both = read_materials(toml(RUBBER + "[base]\nE = 2e11\nnu = 0.3\n[other]\nanything = 1"))
     assert both == {"material": rubber, "base": vr.Material.elastic(2e11, 0.3)}
 

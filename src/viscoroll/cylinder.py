@@ -8,11 +8,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .contact_law.assumptions import WAVE_LIMIT, Validity
 from .contact_law.known import Known
-from .contact_law.parameters import same
 from .core.checks import broadcast_shape, checked, frozen
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
@@ -170,23 +169,8 @@ class Cylinder(Methods):
         given = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
         return {name: value for name, value in given.items() if value is not None}
 
-    def some(self, which: NDArray[np.int64], count: int) -> Cylinder:
-        picked = {name: value[which] for name, value in self.numbers.items() if np.shape(value) == (count,)}
-        return self.replace(**picked) if picked else self
-
     def tilted(self, slope: Any) -> Cylinder:
         return self.replace(load=self.load * slope_factor(slope)[1])
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Cylinder):
-            return NotImplemented
-        return all(same(getattr(self, name), getattr(other, name)) for name in (*_NUMBERS, "plane", "material", "base"))
-
-    def __hash__(self) -> int:
-        numbers = (getattr(self, name) for name in _NUMBERS)
-        # + 0.0: -0 and 0 are equal
-        parts = (None if value is None else (np.asarray(value) + 0.0).tobytes() for value in numbers)
-        return hash((*parts, self.plane, self.material, self.base))
 
     def _card(self) -> tuple[str, list[Row]]:
         given = self.numbers | {"load": self.load, "plane": self.plane}

@@ -90,6 +90,11 @@ def states_of(
     return out
 
 
+def rolling(law: LawTable, u: NDArray, *names: str) -> NDArray:
+    """Fields in pure rolling at kappa |V| = u, a row each; kappa = mu = 1."""
+    return states_of(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
+
+
 @lru_cache(maxsize=64)
 def _asked(names: tuple[str, ...], direct: bool) -> tuple[Any, Any, Any]:
     """(The kernel, what it takes, the row of each field)."""

@@ -21,7 +21,7 @@ from ..core.scale import Scale
 from ..materials.bodies import one_series
 from ..materials.law_table import law_table
 from ..materials.prony import Prony
-from .contact_table import states_of
+from .contact_table import rolling
 
 Array = NDArray[np.float64]
 
@@ -37,12 +37,6 @@ _FASTEST = 1e300
 _LITTLE = 1e-7
 
 
-def rolling(material: float | Prony, u: Array, names: tuple[str, ...]) -> Array:
-    """Rows of the law in pure rolling at kappa |V| = u, of one material in its own time; kappa = 1."""
-    one, none = np.ones(1), np.zeros(1)
-    return states_of(law_table(material), [one, one, one, u, none], u.shape, False, names)
-
-
 class Curve:
     """Free rolling of one material over ln u, g = 1: N, time and way."""
 
@@ -56,9 +50,9 @@ class Curve:
         self.s = np.linspace(0.0, octaves * math.log(2.0), octaves * _PER_OCTAVE + 1) - math.log(longest)
         self.s -= _MARGIN * math.log(2.0)
         u = np.exp(self.s)
-        M, self.nodes = rolling(material, u, ("M", "N"))
+        M, N = rolling(law_table(material), u, "M", "N")
         self.low, self.high, self.M_high = float(u[0]), float(u[-1]), float(M[-1])
-        self._N, self._rate = CubicSpline(self.s, self.nodes), CubicSpline(self.s, u * u / M)
+        self._N, self._rate = CubicSpline(self.s, N), CubicSpline(self.s, u * u / M)
         self._time, self._way = CubicSpline(self.s, u / M).antiderivative(), self._rate.antiderivative()
         self._rise = self._N(self.s[0], 1)
         self._first = u[0] ** 2 / M[0]  # the way from u[0] on, where M is proportional to u
@@ -94,18 +88,12 @@ class Curve:
 
         Where it is not, the next u above from which on it is.
         """
-        size = np.abs(self.nodes)
-        falls = np.flatnonzero((size[:-1] >= least) & (size[1:] < least))
-        roots = self.s[falls] + (size[falls] - least) / (size[falls] - size[falls + 1]) * (self.s[1] - self.s[0])
-        for _ in range(3):
-            N = self._N(roots)
-            roots = roots - (np.abs(N) - least) / (np.sign(N) * self._N(roots, 1))
-            roots = np.clip(roots, self.s[falls], self.s[falls + 1])
-        ends = np.concatenate([[0.0], np.exp(roots), [np.inf]])
+        roots = np.sort(np.concatenate([self._N.solve(level, extrapolate=False) for level in (least, -least)]))
+        falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]
+        last = float(np.abs(self._N(self.s[-1])))
+        behind = [self.high * math.sqrt(last / least)] if last >= least else []  # where N falls as u^-2
+        ends = np.concatenate([[0.0], np.exp(falls), behind, [np.inf]])
         below = np.abs(self.N(u)) < least
-        if size[-1] >= least:  # where N falls as u^-2
-            ends[-1] = self.high * math.sqrt(size[-1] / least)
-            ends = np.append(ends, np.inf)
         at = np.searchsorted(ends, u, side="right")
         return ends[np.where(below, at - 1, np.minimum(at, ends.size - 1))], below
 
@@ -204,7 +192,7 @@ class Free:
         """Lengths of the contact."""
         out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
         for material, part in self._groups():
-            out[:, part] = rolling(material, u[part], ("lam", "epsilon"))
+            out[:, part] = rolling(law_table(material), u[part], "lam", "epsilon")
         lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
         return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
 

@@ -12,6 +12,7 @@ import numpy as np
 from ..core.checks import number
 from ..core.errors import ModelWarning, outside
 from ..kernels.compile.notice import is_worker
+from ..materials.law_table import law_table
 from ..materials.material import Material
 from ..materials.measured import Measured
 from ..materials.pair import Pair
@@ -26,7 +27,7 @@ from .assumptions import (
     passage,
     thickness,
 )  # fmt: skip
-from .free_rolling import rolling
+from .contact_table import rolling
 from .parameters import Parameters
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes
@@ -114,7 +115,7 @@ class Known:
         if self.speeds != (math.inf, 0.0) and not beyond(rates, self.held):
             return
         material, unit = self.scene.in_own_time()
-        lam = rolling(material, np.array(rates) * unit * self.T_ref, ("lam",))[0]
+        (lam,) = rolling(law_table(material), np.array(rates) * unit * self.T_ref, "lam")
         _told.update(self.measured.values())
         sentence = measurement(passage(np.array(rates), lam), self.measured).sentence
         text = f"the material is not known here as measured: {sentence}.  M and the contact length are a guess of the "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -23,13 +23,6 @@ from .free_rolling import Free
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 
 
-def same(one: Any, other: Any) -> bool:
-    """Whether two parameters are equal, arrays or not."""
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.array_equal(one, other)
-    return bool(one == other)
-
-
 #: of mu/kappa, in which delta_star is measured
 RATIO_RANGE = (1e-290, 1e290)
 
@@ -39,7 +32,10 @@ def _in_own_time(series: Prony) -> tuple[float | Prony, float]:
 
 
 class Rolls:
-    """What rolls: a scene, or a cylinder.  Functions take its parameters, and answer in the units of its scale."""
+    """What rolls: a scene, or a cylinder.  Functions take its parameters, and answer in the units of its scale.
+
+    A dataclass, whose fields may be arrays.
+    """
 
     scale: Scale
     material: Any
@@ -65,9 +61,31 @@ class Rolls:
         """
         raise NotImplementedError
 
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some parameters changed."""
+        raise NotImplementedError
+
     def some(self, which: NDArray[np.int64], count: int) -> Self:
         """Some of ``count``, by their numbers."""
-        raise NotImplementedError
+        parts = {name: each[which] for name, each in self._given.items() if getattr(each, "shape", ()) == (count,)}
+        return self.replace(**parts) if parts else self
+
+    @property
+    def _given(self) -> dict[str, Any]:
+        """What of it may be of many, by name."""
+        return self.numbers
+
+    def _key(self) -> tuple[Any, ...]:
+        """All of it, to compare and to hash."""
+        parts = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        # + 0.0: -0 and 0 are equal
+        return tuple((each.shape, (each + 0.0).tobytes()) if isinstance(each, np.ndarray) else each for each in parts)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, Rolls) and type(other) is type(self) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
 
     def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         """What it adds of itself to the validity of a state, of which ``lam`` is."""
@@ -186,13 +204,6 @@ class Parameters(Rolls):
             kappa=self.kappa / np.sqrt(cosine), gamma=None if self.gamma is None else self.gamma * cosine
         )
 
-    def some(self, which: NDArray[np.int64], count: int) -> Self:
-        parts = {name: value[which] for name, value in self.numbers.items() if np.shape(value) == (count,)}
-        if self.each is not None:
-            del parts["alpha"]
-            parts["material"] = self.each[which]
-        return self.replace(**parts) if parts else self
-
     def freely(self, V: Any) -> Free:
         """What rolls at V, let go."""
         given: Any
@@ -212,21 +223,15 @@ class Parameters(Rolls):
         u, which = np.broadcast_arrays(u, which, g)[:2]
         return Free(materials, which, u, g, 1.0 / (self.kappa * unit), unit, 1.0 / self.kappa)
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Parameters):
-            return NotImplemented
-        return all(same(getattr(self, name), getattr(other, name)) for name in (*PARAMETERS, "material"))
-
-    def __hash__(self) -> int:
-        parts = [np.asarray(value, np.float64) for value in self.numbers.values()]
-        # + 0.0: -0 and 0 are equal
-        return hash((*((part.shape, (part + 0.0).tobytes()) for part in parts), self.material))
+    @property
+    def _given(self) -> dict[str, Any]:
+        """Its parameters but the alpha of a material."""
+        if self.material is None:
+            return self.numbers
+        return {"material": self.material} | {name: each for name, each in self.numbers.items() if name != "alpha"}
 
     def __repr__(self) -> str:
-        given = self.numbers if self.material is None else {"material": self.material} | self.numbers
-        if self.material is not None:
-            del given["alpha"]
-        return f"Scene({', '.join(f'{name}={short(value)}' for name, value in given.items())})"
+        return f"Scene({', '.join(f'{name}={short(value)}' for name, value in self._given.items())})"
 
 
 def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> tuple[Rolls, Parameters, Scale]:

@@ -73,14 +73,13 @@ class MaterialSection(FileSection, kw_only=True):
     measured: Measured | None = None
 
 
-def read_materials(path: str | PathLike[str], temperature: float | None = None) -> dict[str, Material]:
+def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
     """The materials of a TOML file by section, "material" and "base"; of a netCDF file its one, "material".
 
     Parameters
     ----------
     path : a file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are not
         looked at.  Or one that :meth:`Material.to_netcdf` wrote.
-    temperature : degrees Celsius, in place of those in the file, of the sections that have a shift.
 
     Raises
     ------
@@ -90,21 +89,16 @@ def read_materials(path: str | PathLike[str], temperature: float | None = None) 
         A netCDF file that is missing, damaged, or no material.
     """
     if Path(path).suffix == SUFFIX:
-        if temperature is not None:
-            raise FileError(path, f"temperature = {temperature:g}: needs a TOML file with wlf or arrhenius")
         return {"material": Material.from_netcdf(path)}
-    content = read(path)
-    found = materials_of(path, content, temperature)
+    found = materials_of(path, read(path))
     if not found:
         raise fault(path, "", "material", "section [material] is missing: it needs E and nu")
-    if temperature is not None and not any("wlf" in content[name] or "arrhenius" in content[name] for name in found):
-        raise fault(path, next(iter(found)), "", f"temperature = {temperature:g}: needs wlf or arrhenius in the file")
     return found
 
 
-def materials_of(path: Any, content: Mapping[str, Any], temperature: float | None = None) -> dict[str, Material]:
+def materials_of(path: Any, content: Mapping[str, Any]) -> dict[str, Material]:
     """The materials of a file that was read; arguments and errors as :func:`read_materials`."""
-    return {name: _material(path, name, content[name], temperature) for name in SECTIONS if name in content}
+    return {name: _material(path, name, content[name]) for name in SECTIONS if name in content}
 
 
 def shifts_of(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
@@ -151,17 +145,16 @@ def _section(path: Any, name: str, content: Any) -> Any:
     return as_struct(path, name, content, kind)
 
 
-def _material(path: Any, name: str, content: Any, temperature: float | None) -> Material:
+def _material(path: Any, name: str, content: Any) -> Material:
     given = _section(path, name, content)
     try:
         found = _unshifted(path, name, given) if given.file is None else _stored(path, name, given)
         shift, own = _shift(path, name, given) or (None, given.temperature)
-        at = own if temperature is None or shift is None else temperature
-        if at is None:
+        if own is None:
             return found
         if shift is None:
-            raise fault(path, name, "temperature", f"temperature = {at:g}: needs wlf or arrhenius beside it")
-        return found.at(at, shift)
+            raise fault(path, name, "temperature", f"temperature = {own:g}: needs wlf or arrhenius beside it")
+        return found.at(own, shift)
     except ParameterError as error:
         raise fault(path, name, error.name, str(error)) from error
 
@@ -182,7 +175,7 @@ def _beside(path: Any, name: str, beside: Path) -> Material:
             raise fault(beside, "", "material", "section [material] is missing: it needs E and nu")
         if isinstance(content[section], dict) and "file" in content[section]:
             raise fault(beside, section, "file", "file: must not name a file again")
-        return _material(beside, section, content[section], None)
+        return _material(beside, section, content[section])
     except FileError as error:
         raise fault(path, name, "file", str(error)) from error
 

@@ -1,14 +1,25 @@
-"""Flow maps on disk."""
+"""Flow maps, and what is kept of them on disk beside the compiled kernels: sealed, those used last."""
 
 from __future__ import annotations
 
+import hashlib
+import io
+import warnings
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ..core import stored
+import numpy as np
+
+from ..core.files import seal, seal_holds
 from ..core.typed import Floats
+from ..kernels.compile.folder import cache_root, read_own, write_own
 from ..materials.prony import Prony
+
+#: maps kept; the one that was used longest ago goes first
+KEPT = 64
 
 
 @dataclass(frozen=True)
@@ -47,8 +58,20 @@ class FlowMap:
 
 
 def folder() -> Path:
-    """Where maps are kept."""
-    return stored.folder("flow")
+    """Where maps are kept: they are worth no more than the kernels and modules that fill and read them."""
+    return cache_root() / f"flow-{_digest(Path(__file__).parents[1])}"
+
+
+@lru_cache(maxsize=1)
+def _digest(package: Path) -> str:
+    """Hash of the sources of kernels, materials and motions."""
+    from ..kernels.compile.cache import sources_digest
+
+    digest = hashlib.sha256(sources_digest().encode())
+    for part in ("materials", "motion"):
+        for path in sorted((package / part).rglob("*.py")):
+            digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
@@ -61,26 +84,48 @@ def _numbers(parameters: tuple[Any, ...]) -> tuple[float, ...]:
 
 def path_of(parameters: tuple[Any, ...], octave: int) -> Path:
     """File of the map for kappa V < 2**octave at stick onset."""
-    return folder() / stored.file_name((*_numbers(parameters), octave))
+    numbers = np.array((*_numbers(parameters), octave), np.float64)
+    return folder() / (hashlib.sha256(b"sealed" + numbers.tobytes()).hexdigest()[:20] + ".npz")
 
 
 def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     """The map in a file; None if there is none, or after a warning, none that is whole."""
+    try:
+        content = read_own(path)
+    except OSError:
+        return None
+    try:
+        found = _read(content, parameters)
+    except Exception as error:
+        warnings.warn(f"{path}: flow map is damaged ({error}); it is built anew", RuntimeWarning, stacklevel=2)
+        return None
+    with suppress(OSError):  # a folder that is read-only
+        path.touch()
+    return found
+
+
+def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
     from ..kernels.flow.layout import SIZE
 
-    def read(data: Any) -> FlowMap:
-        found = FlowMap(
-            parameters, int(data["first"]), data["table"], tuple(data["errors"].tolist()), str(data["problem"]),
-        )  # fmt: skip
-        if found.table.shape != (SIZE,):
+    if not seal_holds(content):
+        raise ValueError("its bytes differ from the SHA-256 at their end")
+    with np.load(io.BytesIO(content)) as data:
+        if not np.array_equal(data["parameters"], _numbers(parameters)):
+            raise ValueError("its parameters are others")
+        if data["table"].shape != (SIZE,):
             raise ValueError("its table is of another size")
-        return found
-
-    return stored.load(path, "flow map", _numbers(parameters), read)
+        errors = tuple(data["errors"].tolist())
+        return FlowMap(parameters, int(data["first"]), data["table"], errors, str(data["problem"]))
 
 
 def save(made: FlowMap, path: Path) -> None:
     """Keep a map; where it cannot be written it is built anew next time."""
-    stored.save(
-        path, _numbers(made.parameters), first=made.first, table=made.table, errors=made.errors, problem=made.problem,
-    )  # fmt: skip
+    try:
+        content, numbers = io.BytesIO(), _numbers(made.parameters)
+        np.savez(content, **(vars(made) | {"parameters": numbers}))
+        write_own(path, seal(content.getvalue()))
+        oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
+        for file in oldest[:-KEPT]:
+            file.unlink()
+    except OSError:
+        pass

@@ -40,9 +40,12 @@ def look(begun: Begun) -> None:
 
     Of one motion from two floats it takes a microsecond or two; of many it looks at some, evenly picked.
     """
-    scene, V0, omega0 = begun.scene, begun.ready.V0, begun.ready.omega0
-    one = type(V0) is type(omega0) is float and not scene.shape
-    say((_faults if one else _faults_of_many)(scene, V0, omega0, begun.drive.acts or begun.unsteady))
+    scene, start, driven = begun.scene, (begun.ready.V0, begun.ready.omega0), begun.drive.acts or begun.unsteady
+    if type(start[0]) is type(start[1]) is float and not scene.shape:
+        material = scene.alpha if scene.material is None else scene.material
+        say(_faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, *start, driven))
+    else:
+        say(_faults_of_many(scene, *start, driven))
 
 
 def say(faults: list[str]) -> None:
@@ -53,16 +56,18 @@ def say(faults: list[str]) -> None:
     warnings.warn(text, ModelWarning, stacklevel=outside())
 
 
-def _faults(scene: Parameters, V0: float, omega0: float, driven: bool) -> list[str]:
-    """Of one motion."""
-    alpha, kappa, mu, gamma, j = scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j
+def _faults(
+    material: Any, kappa: float, mu: float, gamma: float, j: float, V0: float, omega0: float, driven: bool
+) -> list[str]:
+    """Of one motion; ``material``: its alpha, series or bodies."""
     found: list[str] = []
-    part = 1.0 - 1.0 / alpha
+    paper = type(material) is float
+    part = 1.0 - 1.0 / (material if paper else material.alpha)
     if kappa < _LEAST_KAPPA:
         found.append("kappa = R/l0 is below 1: the contact at rest is longer than the radius")
     if abs(omega0 - V0) >= _CREEP * abs(V0) and _LARGEST_M * part > _SHARE * mu * kappa:
         fastest = max(abs(V0), abs(omega0))
-        if fastest > 0.0 and (scene.material is not None or part * fastest > _SHARE * mu):
+        if fastest > 0.0 and (not paper or part * fastest > _SHARE * mu):
             found.append(
                 "it starts in full slip at a creep of order 1, where cylinder and half-space pass the contact at "
                 "speeds of their own and the rolling moment takes one for both"
@@ -70,7 +75,7 @@ def _faults(scene: Parameters, V0: float, omega0: float, driven: bool) -> list[s
     # the speed at the start, or that at which it comes to roll
     u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
     if not driven and u > 0.0 and u * u * (1.0 + j) < _PLAIN * gamma * part:
-        places, slow = _slow_starts(alpha if scene.material is None else scene.material, gamma, j)
+        places, slow = _slow_starts(material, gamma, j)
         if slow[max(bisect(places, u) - 1, 0)]:
             found.append(
                 "it is too slow for the law of steady rolling, whose V is off by more than 10 % over a good part of "
@@ -95,11 +100,9 @@ def _faults_of_many(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> li
         slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
     found: list[str] = []
     for worst in {int(np.argmax(strain)) for strain in (-kappa, slips, unsteady)}:
-        material = scene.material if scene.each is None else scene.each[some[worst]]
-        own = dict(zip((*PARAMETERS, "V0", "omega0"), picked[:, worst].tolist(), strict=True))
-        start = own.pop("V0"), own.pop("omega0")
-        one = Parameters(**(own if material is None else own | {"alpha": None, "material": material}))
-        found += _faults(one, *start, driven)
+        material: Any = scene.material if scene.each is None else scene.each[some[worst]]
+        alpha, *own = picked[:, worst].tolist()
+        found += _faults(alpha if material is None else material, *own, driven=driven)
     return list(dict.fromkeys(found))
 
 

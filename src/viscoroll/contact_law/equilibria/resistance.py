@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import ParameterError
 from ...materials.law_table import LawTable
-from ..contact_table import states_of
+from ..contact_table import rolling
 from ..parameters import Rolls, framed
 from .zeros import zeros
 
@@ -161,6 +161,4 @@ def grid(law: LawTable) -> NDArray[np.float64]:
 
 def _curve(law: LawTable, gain: float, u: NDArray[np.float64]) -> NDArray[np.float64]:
     """kappa (M - gain V) and its slope over kappa V."""
-    one = np.ones(1)
-    rows = states_of(law, [one, one, one, u, np.zeros(1)], u.shape, False, ("M", "dM_dV"))
-    return rows - gain * np.stack([u, np.ones(u.size)])
+    return rolling(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
