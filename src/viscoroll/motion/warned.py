@@ -102,7 +102,8 @@ def _faults_of_many(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> li
     for worst in {int(np.argmax(strain)) for strain in (-kappa, slips, unsteady)}:
         material: Any = scene.material if scene.each is None else scene.each[some[worst]]
         alpha, *own = picked[:, worst].tolist()
-        found += _faults(alpha if material is None else material, *own, driven=driven)
+        given: list[Any] = [alpha if material is None else material, *own, driven]
+        found += _faults(*given)
     return list(dict.fromkeys(found))
 
 
