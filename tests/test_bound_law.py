@@ -12,8 +12,6 @@ from processes import printed
 import viscoroll as vr
 from viscoroll.kernels.rows.loads import Loads, LoadsAndSlopes
 
-pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
-
 SERIES = vr.Prony([1.0, 2.0, 3.0], [1.0, 0.1, 0.01])
 MATERIALS = {
     "alpha": {"alpha": 11.0},

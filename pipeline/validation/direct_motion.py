@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from viscoroll import contact
 from viscoroll.core.errors import ConvergenceError
 from viscoroll.scene import Scene
 
@@ -41,13 +42,12 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
     On IC1-IC3 down to |V| = 1e-6 it differs from :func:`viscoroll.roll` at its tightest
     tolerance by less than 1e-9 of the speed (``tests/validation/test_validation.py``).
     """
-    parameters = tuple(float(getattr(scene, name)) for name in ("alpha", "kappa", "mu", "gamma", "j"))
     V, omega = np.full(t.size, np.nan), np.full(t.size, np.nan)
     now, state, onset_time = 0.0, (float(V0), float(omega0)), np.nan
-    sticking = _sticks(*state, parameters)
+    sticking = abs(omega0 - V0) < _limit(scene, float(V0))
     for _ in range(_MOST_PHASES):
         phase = _stick if sticking else _slide
-        solution, speeds = phase(now, t[-1], state, parameters)
+        solution, speeds = phase(now, t[-1], state, scene)
         reached = solution.t[-1]
         inside = (t >= now) & (t <= reached)
         if inside.any():
@@ -62,39 +62,44 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
     raise ConvergenceError(f"direct motion: more than {_MOST_PHASES} changes of regime")
 
 
-def _sticks(V: float, omega: float, parameters: tuple[float, ...]) -> bool:
-    from viscoroll.kernels.printed.motion import direct_sliding
+def _law(scene: Scene, V: float, delta: float) -> tuple[float, float, float]:
+    """(Q, M, delta_star), as printed."""
+    found = contact(scene, V, delta=delta, fields=("Q", "M", "delta_star"), method="direct")
+    return float(found.Q), float(found.M), float(found.delta_star)
 
-    return abs(omega - V) < direct_sliding(V, 1.0, *parameters)[2]
+
+def _limit(scene: Scene, V: float) -> float:
+    """The slip |omega - V| at which stick ends."""
+    return _law(scene, V, 0.0)[2] * abs(V)
 
 
-def _slide(now, end, state, parameters):
+def _slide(now, end, state, scene):
     """Full slip from ``state`` (V, omega) to the onset of stick or the end."""
-    from viscoroll.kernels.printed.motion import direct_sliding
-
     sigma = float(np.sign(state[1] - state[0]))
 
     def rates(_, y):
-        return direct_sliding(y[0], sigma, *parameters)[:2]
+        M = _law(scene, y[0], 0.0)[1]
+        return scene.gamma * (sigma * scene.mu - 0.5 * M), -scene.gamma / scene.j * (sigma * scene.mu + 0.5 * M)
 
     def onset(_, y):
-        return sigma * (y[1] - y[0]) - direct_sliding(y[0], sigma, *parameters)[2]
+        return sigma * (y[1] - y[0]) - _limit(scene, y[0])
 
     return _solve(rates, now, end, state, onset, -1.0, "DOP853", _SLIDING_RTOL, _SLIDING_ATOL), lambda y: (y[0], y[1])
 
 
-def _stick(now, end, state, parameters):
+def _stick(now, end, state, scene):
     """Partial slip from ``state`` (V, omega) to the return of full slip or the end, seen with V > 0."""
-    from viscoroll.kernels.printed.motion import direct_sticking
-
     direction, speed = np.sign(state[0]), abs(state[0])
     start = (np.log(speed), (state[1] - state[0]) / state[0])
 
     def rates(_, y):
-        return direct_sticking(y[0], y[1], *parameters)[:2]
+        V, delta = np.exp(y[0]), y[1]
+        Q, M, _ = _law(scene, V, delta)
+        rate = scene.gamma * (Q - 0.5 * M) / V
+        return rate, -scene.gamma * (Q + 0.5 * M) / (scene.j * V) - (1.0 + delta) * rate
 
     def slip(_, y):
-        return direct_sticking(y[0], y[1], *parameters)[2]
+        return abs(y[1]) - _law(scene, np.exp(y[0]), 0.0)[2]
 
     def speeds(y):
         V = direction * np.exp(y[0])

@@ -2,8 +2,6 @@
 
 import re
 
-import numba
-import pytest
 from processes import printed
 
 #: public calls of all kinds, of other shapes and kinds of input than in the warm-up
@@ -60,7 +58,6 @@ print("anew:", *sorted(name for name, _ in ready() - before))
 """
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
 def test_after_it_no_call_compiles():
     told, anew = printed(CODE).splitlines()
     assert re.fullmatch(r"\d+ entry points are ready in .+, \d+\.\d s", told)

@@ -2,16 +2,12 @@
 
 import runpy
 
-import numba
 import numpy as np
-import pytest
 import tolerances as tol
 from closeness import close
 from places import ROOT
 
 import viscoroll as vr
-
-pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
 
 
 def example(name: str) -> dict:

@@ -42,7 +42,7 @@ LAW = [
     ("rows/states.py", "else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)", "else np.copysign(np.inf, slip)", _LAW),
     ("rows/modes.py", "di2 = r - (2.0 / x + r) * i2", "di2 = r - (1.0 / x + r) * i2", _STATES),
     ("bessel/ratios.py", "_NEAR, _FAR = 0.0625, 64.0\n", "_NEAR, _FAR = 0.0625, 24.0\n", _RATIOS),
-    ("bessel/ratios.py", "else 1.0 - 2.0 * r / x", "else 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
+    ("bessel/ratios.py", "return 1.0 - 2.0 * r / x", "return 1.0 - (2.0 + 1e-10) * r / x", _RATIOS),
     ("bessel/ratios.py", "return k if z < 1.0 else", "return k if z <= 1.0 else", _RATIOS),
     ("bessel/ratios.py", "return complement * (1.0 + r) - r / x", "return complement * (1.0 - r) - r / x", claims("ratios")),
     ("bessel/ratios.py", "_EULER_GAMMA = 0.57721566490153286061", "_EULER_GAMMA = 0.57721566547874852", _RATIOS),
@@ -64,9 +64,9 @@ SLICE = [
     ("rows/law.py", "return Speed(L, dL * at.per", "return Speed(L * (1.0 + 1e-9), dL * at.per", _STATES),
     ("rows/contact.py", "part = 1.0 - w * w * value", "part = 1.0 - w * value", _STATES),
     ("rows/contact.py", "return D * ((2.0 * L - D) * value - v * L * rise)", "return D * (2.0 * L - D) * value", claims("contact")),
-    ("rows/law.py", "part * here * per + (1.0 - part) * there * other, bend", "here * per, bend", _STATES),
+    ("rows/law.py", "rise = part * rise + (1.0 - part) * there * other", "rise = 1.0 * rise", _STATES),
     ("rows/law.py", "bend, shift + part, z,", "bend, shift, z,", _STATES),
-    ("rows/lanes.py", "[float(step * k + n) for n in rise]", "[float(step * k + n) * 1.0000001 for n in rise]", _STATES),
+    ("rows/lanes.py", "_constant([k] * LANES)", "_constant([k * 1.0000001] * LANES)", _STATES),
 ]  # fmt: skip
 ROWS = [
     ("rows/axis.py", "        marks[STAMP] += 1\n", "", _LAW),

@@ -33,10 +33,8 @@ class Law:
     """
 
     def __init__(self, roller: Rolls) -> None:
-        from ..kernels.rows.jitted import SWITCHED_OFF, Jitted, Room
+        from ..kernels.rows.jitted import Jitted, Room
 
-        if SWITCHED_OFF:
-            raise ParameterError("NUMBA_DISABLE_JIT", 1, "0: a bound law is machine code")
         _, scene, scale = framed(roller, "law")
         table = scene.table
         assert table is not None
@@ -139,7 +137,7 @@ def law(roller: Rolls) -> Law:
     Raises
     ------
     ParameterError
-        What is no scene and no cylinder; arrays for alpha, kappa or mu; a material each; numba that is switched off.
+        What is no scene and no cylinder; arrays for alpha, kappa or mu; a material each.
 
     Notes
     -----

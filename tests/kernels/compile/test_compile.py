@@ -23,8 +23,6 @@ from viscoroll.kernels.compile import cache as cache_module
 from viscoroll.kernels.compile import deferred, folder, notice
 from viscoroll.kernels.compile.jit import kernel
 
-pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="compilation is off")
-
 FACTOR = 3.0
 
 
@@ -400,3 +398,12 @@ def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
     notice.tell()
     assert re.fullmatch(NOTICE, capsys.readouterr().err)
+
+
+def test_numba_switched_off_is_one_line():
+    """Vectors of four are machine code alone."""
+    done = python(
+        "-m", "viscoroll", "contact", "docs/examples/rubber.toml", "--V", 0.5, "--delta", 0.01, NUMBA_DISABLE_JIT="1"
+    )
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "NUMBA_DISABLE_JIT = 1: must be 0" in done.stderr

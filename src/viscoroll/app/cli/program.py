@@ -77,7 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         with warnings.catch_warnings():
             warnings.showwarning = _told
             return _run(sys.argv[1:] if argv is None else argv)
-    except ViscorollError as error:
+    except (ViscorollError, ImportError) as error:
         return _failed(error)
     except MemoryError as error:
         return _failed(f"not enough memory ({error})")

@@ -43,7 +43,6 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
 
     ``unsteady=True`` needs nothing more: it is the same engine.
     """
-    from ...kernels.printed import motion as printed
     from ...motion import flow
 
     scene = vr.presets.PAPER_SECTION_5
@@ -68,6 +67,3 @@ def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
     yield "flow map", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "motions by a flow map", lambda: vr.ensemble(scene, **start, method="flow", rest=1e-3)
     yield "law of a material as a file", lambda: vr.tables.law(modes)
-    numbers = (scene.alpha, scene.kappa, scene.mu, scene.gamma, scene.j)
-    yield "printed law, in full slip", lambda: printed.direct_sliding(1.5, 1.0, *numbers)
-    yield "printed law, in partial slip", lambda: printed.direct_sticking(0.1, 0.01, *numbers)

@@ -80,102 +80,46 @@ _LN2 = 0.69314718055994530942
 
 
 @kernel
-def polynomial(row, t):
-    """Polynomial of degree 8 with the coefficients ``row``."""
-    rest = septic(t, (row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8]))
-    return fma(t, rest, row[0])
-
-
-@kernel(inline=True)
-def piece_of(row, t):
+def _polynomial(row, t):
     """Polynomial number ``row`` at t."""
-    return polynomial(_ROWS[row], t)
-
-
-@kernel(inline=True)
-def place_r(x, per_x):
-    """(number, argument) of the polynomial that gives r at x >= 0."""
-    # choices, not branches: those would be mispredicted on scattered arguments
-    near, far = x < _NEAR, not x < _FAR  # a NaN is far: it must not become the number of a bin
-    row = bin_number(x, _BIN_BITS) + (_R_SMALL if x < 2.0 else _R_LARGE)
-    row = _R_NEAR if near else _R_FAR if far else row
-    return row, x * x if near else per_x if far else bin_offset(x, _BIN_BITS)
-
-
-@kernel(inline=True)
-def r_from(piece, x, complement):
-    """r and 1 - r from the value of its polynomial and that over x."""
-    r = x * piece
-    return r if x < 2.0 else 1.0 - complement, 1.0 - r if x < 2.0 else complement
+    c = _ROWS[row]
+    return fma(t, septic(t, c[1:]), c[0])
 
 
 @kernel(inline=True)
 def ratio_r(x):
     """r = I1/I0 and 1 - r at x >= 0, both to full relative accuracy."""
     per_x = 1.0 / x
-    row, t = place_r(x, per_x)
-    piece = piece_of(row, t)
-    return r_from(piece, x, piece * per_x)
-
-
-@kernel(inline=True)
-def small_k_over_z(z):
-    """k/z for 0 < z < 2^-30."""
-    return _LN2 - _EULER_GAMMA - np.log(z)
-
-
-@kernel(inline=True)
-def place_k(z, per_z):
-    """(number, argument) of the polynomial that gives k at z >= ``K_LEAST``; below, one that does not."""
-    inside = K_LEAST <= z < _FAR
-    row = bin_number(z, _BIN_BITS) + (_K_SMALL if z < 1.0 else _K_LARGE)
-    return row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else per_z
-
-
-@kernel(inline=True)
-def k_from(piece, z, complement):
-    """k and 1 - k from the value of its polynomial and that over z."""
-    k = z * piece
-    return k if z < 1.0 else 1.0 - complement, 1.0 - k if z < 1.0 else complement
-
-
-@kernel(inline=True)
-def small_k(z):
-    """k and 1 - k for 0 <= z < ``K_LEAST``."""
-    k = z * small_k_over_z(z) if z > 0.0 else 0.0
-    return k, 1.0 - k
+    # choices, not branches: those would be mispredicted on scattered arguments
+    near, far = x < _NEAR, not x < _FAR  # a NaN is far: it must not become the number of a bin
+    row = bin_number(x, _BIN_BITS) + (_R_SMALL if x < 2.0 else _R_LARGE)
+    row = _R_NEAR if near else _R_FAR if far else row
+    piece = _polynomial(row, x * x if near else per_x if far else bin_offset(x, _BIN_BITS))
+    r, complement = x * piece, piece * per_x
+    return r if x < 2.0 else 1.0 - complement, 1.0 - r if x < 2.0 else complement
 
 
 @kernel(inline=True)
 def ratio_k(z):
     """k = K0/K1 and 1 - k at z >= 0, both to full relative accuracy."""
     if z < K_LEAST:
-        return small_k(z)
-    per_z = 1.0 / z
-    row, t = place_k(z, per_z)
-    piece = piece_of(row, t)
-    return k_from(piece, z, piece * per_z)
-
-
-@kernel(inline=True)
-def place_i2(x):
-    """(number, argument) of the polynomial that gives i2 at 0 <= x < 4; beyond, one that does not."""
-    row = bin_number(x, _BIN_BITS) + _I2
-    inside = _NEAR <= x < 4.0
-    return row if inside else _I2_NEAR, bin_offset(x, _BIN_BITS) if inside else x * x
-
-
-@kernel(inline=True)
-def i2_from(piece, x, r):
-    """i2 from the value of its polynomial, and r(x)."""
-    return x * x * piece if x < 4.0 else 1.0 - 2.0 * r / x
+        k = z * (_LN2 - _EULER_GAMMA - np.log(z)) if z > 0.0 else 0.0
+        return k, 1.0 - k
+    per_z, inside = 1.0 / z, z < _FAR
+    row = bin_number(z, _BIN_BITS) + (_K_SMALL if z < 1.0 else _K_LARGE)
+    piece = _polynomial(row if inside else _K_FAR, bin_offset(z, _BIN_BITS) if inside else per_z)
+    k, complement = z * piece, piece * per_z
+    return k if z < 1.0 else 1.0 - complement, 1.0 - k if z < 1.0 else complement
 
 
 @kernel(inline=True)
 def ratio_i2(x, r):
     """i2 = I2/I0 at x >= 0, given r(x)."""
-    row, t = place_i2(x)
-    return i2_from(piece_of(row, t), x, r)
+    if not x < 4.0:  # or a NaN
+        return 1.0 - 2.0 * r / x
+    near = x < _NEAR
+    row = _I2_NEAR if near else bin_number(x, _BIN_BITS) + _I2
+    return x * x * _polynomial(row, x * x if near else bin_offset(x, _BIN_BITS))
 
 
 @kernel(inline=True)

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable
-
-import numba
-import numpy as np
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic
+
+from .instruction import instruction
 
 
-def _cast(given: Any, found: Any, kind: Any, interpreted: Callable) -> Callable:
-    def typed(typing_context, x):
-        return found(given), lambda context, builder, signature, args: builder.bitcast(args[0], kind)
-
-    return interpreted if numba.config.DISABLE_JIT else intrinsic(typed)
+def _to_bits(context, builder, signature, given):
+    return builder.bitcast(given[0], ir.IntType(64))
 
 
-bits_of = _cast(types.float64, types.int64, ir.IntType(64), lambda x: np.float64(x).view(np.int64))
-from_bits = _cast(types.int64, types.float64, ir.DoubleType(), lambda n: np.int64(n).view(np.float64))
+def _from_bits(context, builder, signature, given):
+    return builder.bitcast(given[0], ir.DoubleType())
+
+
+bits_of = instruction(_to_bits, types.int64, types.float64)
+from_bits = instruction(_from_bits, types.float64, types.int64)

@@ -8,26 +8,19 @@ Here nothing is fused but the polynomials, where most of the time goes and most 
 
 from __future__ import annotations
 
-import numba
 from numba.core import types
-from numba.extending import intrinsic
 
+from .instruction import instruction
 from .jit import kernel
 
 
-@intrinsic
-def _fused(typing_context, a, b, c):
-    """LLVM's fma: an instruction where the processor has one, else a call of the C library's."""
-    double = types.float64
-    return double(double, double, double), lambda context, builder, signature, given: builder.fma(*given)
+def _fma(context, builder, signature, given):
+    """An instruction where the processor has one, else a call of the C library's."""
+    return builder.fma(*given)
 
 
-def _interpreted(a, b, c):
-    return a * b + c
-
-
-#: a b + c, rounded once; where numba is switched off, twice
-fma = _interpreted if numba.config.DISABLE_JIT else _fused
+#: a b + c, rounded once
+fma = instruction(_fma, *[types.float64] * 4)
 
 
 @kernel(inline=True)

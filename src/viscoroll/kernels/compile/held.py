@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 from numba.core import cgutils, types
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import (
@@ -85,16 +84,9 @@ def _pointer(typing_context, array):
     return types.CPointer(array.dtype)(array), lower
 
 
-def _plain(given: Any) -> Any:
-    return given
-
-
-if numba.config.DISABLE_JIT:
-    held = loaded = pointer = _plain
-else:
-    #: a record -> the same, held
-    held = intrinsic(_held)
-    #: and back, for a loop that stores: behind each store all that is held is read anew
-    loaded = intrinsic(_loaded)
-    #: a contiguous vector -> where its numbers begin; read and written by indices from 0 on, while its maker keeps it
-    pointer = intrinsic(_pointer)
+#: a record -> the same, held
+held = intrinsic(_held)
+#: and back, for a loop that stores: behind each store all that is held is read anew
+loaded = intrinsic(_loaded)
+#: a contiguous vector -> where its numbers begin; read and written by indices from 0 on, while its maker keeps it
+pointer = intrinsic(_pointer)

@@ -9,6 +9,9 @@ import numba
 from .cache import DiskCache
 from .deferred import EntryPipeline, defer
 
+if numba.config.DISABLE_JIT:
+    raise ImportError("NUMBA_DISABLE_JIT = 1: must be 0, the kernels of viscoroll are machine code")
+
 
 def kernel(function: Callable | None = None, *, inline: bool = False, allocates: bool = False) -> Callable:
     """Compile ``function`` with numba, lazily, cached on disk.
@@ -24,8 +27,6 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)
     options = {"error_model": "numpy", "nogil": True, "forceinline": inline, "_nrt": allocates}
-    if numba.config.DISABLE_JIT:
-        return numba.njit(function, **options)
     whole = numba.njit(function, pipeline_class=EntryPipeline, **options)
     whole._cache = DiskCache(function)
     defer(whole, options)

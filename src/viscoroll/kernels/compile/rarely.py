@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import numba
 from llvmlite import ir
-from numba.core import cgutils, types
-from numba.extending import intrinsic
+from numba.core import types
+
+from .instruction import called, instruction
 
 
-@intrinsic
-def _rarely(typing_context, condition):
-    bit = ir.IntType(1)
-
-    def lower(context, builder, signature, given):
-        expect = cgutils.get_or_insert_function(builder.module, ir.FunctionType(bit, [bit, bit]), "llvm.expect.i1")
-        return builder.call(expect, [given[0], bit(0)])
-
-    return types.boolean(types.boolean), lower
+def _expect(context, builder, signature, given):
+    return called(builder, "llvm.expect.i1", [*given, ir.IntType(1)(0)])
 
 
-rarely = bool if numba.config.DISABLE_JIT else _rarely
+rarely = instruction(_expect, types.boolean, types.boolean)

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..motion.records import DONE, FULL, PARTIAL, REST, RESTED
+from ..rows.states import element
 from .inside import earlier_entry
 from .layout import LAYER_END, MINUS, OCTAVES, PLUS
 from .read import (
@@ -197,7 +198,7 @@ def flow_loop(flow, gamma, rest, V0, omega0, t, rows, answer, start, stop):
         need = max(need, PATH if rows[n] == _X or rows[n] == _ANGLE else LOSS if rows[n] >= SLIP_LOSS else SPEEDS)
     request = Request(need, rest, lambda_at_rest(rest, flow) if rest > 0.0 else 0.0)
     for i in range(start, stop):
-        V, omega = V0[min(i, V0.size - 1)], omega0[min(i, omega0.size - 1)]
+        V, omega = element(V0, i), element(omega0, i)
         answer.status[i], onset, resting = flow_motion(V, omega, tau, request, flow, one)
         if need >= LOSS:
             for m in range(t.size):

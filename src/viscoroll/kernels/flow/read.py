@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compile.fma import fma
 from ..compile.jit import kernel
-from ..numerics.four import LANES, fused, load, parts, spread
+from ..numerics.four import LANES, fused, loads, parts, spread
 from ..numerics.nodes import gauss
 from ..rows import lanes
 from ..rows.law import octave
@@ -32,6 +32,8 @@ _SLIDE, _ONSET, _AFTER = SHAPES.slide[2], SHAPES.onset[2], SHAPES.after[2]
 _SLOW, _MANIFOLD, _ENTRY = SHAPES.slow[1], SHAPES.manifold[1], SHAPES.entry[2]
 _ROWS, _ENTRIES, _LAYERS = layout.HIGH - layout.LOW, layout.OCTAVES, SHAPES.layer[2]
 _LAYER = SHAPES.layer[3] * SHAPES.layer[4]
+#: of t, in the coefficient of a power of s
+_powers = loads(LAYER_TERMS // LANES)
 #: 5-point Gauss-Legendre rule on [0, 1]
 _GAUSS_X, _GAUSS_W = gauss(5)
 
@@ -44,8 +46,8 @@ def slide_to(V, need, flow):
     if row == 0:
         return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
     at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _ROWS)) * _SLIDE
-    T, limit = lanes.pair(flow.table, at, t)
-    X = lanes.one(flow.table, at + layout.SLIDE_X, t) if need >= PATH else 0.0
+    T, limit = lanes.pair(flow.table, at, t)[:2]
+    X = lanes.one(flow.table, at + layout.SLIDE_X, t)[0] if need >= PATH else 0.0
     return T if V > 0.0 else -T, X, limit
 
 
@@ -55,7 +57,7 @@ def speed_after(T, flow):
     row, t, _ = octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
         return flow.mu * T
-    V = lanes.one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _ROWS)) * _AFTER, t)
+    V = lanes.one(flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _ROWS)) * _AFTER, t)[0]
     return V if T > 0.0 else -V
 
 
@@ -82,8 +84,8 @@ def onset_of(I, need, flow):
         return 0.0, 0.0, 0.0
     row, t, _ = octave(x, layout.LOW)
     at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _ROWS)) * _ONSET
-    V, T = lanes.pair(flow.table, at, t)
-    X = lanes.one(flow.table, at + layout.ONSET_X, t) if need >= PATH else 0.0
+    V, T = lanes.pair(flow.table, at, t)[:2]
+    X = lanes.one(flow.table, at + layout.ONSET_X, t)[0] if need >= PATH else 0.0
     return (V, T, X) if I < 0.0 else (-V, -T, X)
 
 
@@ -105,7 +107,7 @@ def _on_manifold(lam):
 def manifold_speeds(lam, table):
     """(V, delta) on the slow manifold at lambda."""
     at, t, share = _on_manifold(lam)
-    V, delta = lanes.pair(table, at, t)
+    V, delta = lanes.pair(table, at, t)[:2]
     return share * V, share * delta
 
 
@@ -113,7 +115,7 @@ def manifold_speeds(lam, table):
 def _to_go(lam, table):
     """(distance, angle) left to rest on the slow manifold."""
     at, t, share = _on_manifold(lam)
-    x, angle = lanes.pair(table, at + layout.SLOW_PATH, t)
+    x, angle = lanes.pair(table, at + layout.SLOW_PATH, t)[:2]
     return share * x, share * angle
 
 
@@ -140,14 +142,14 @@ def manifold_path(start, span, rate, table):
 def manifold_loss(lam, table):
     """Energy still to be lost in slip at lambda on the slow manifold; it falls like V^3 as V -> 0."""
     at, t, share = _on_manifold(lam)
-    return share**3 * lanes.one(table, at + layout.SLOW_LOSS, t)
+    return share**3 * lanes.one(table, at + layout.SLOW_LOSS, t)[0]
 
 
 @kernel
 def manifold_at(v, table):
     """(lambda, delta) on the slow manifold at v = kappa V, from LOWEST on."""
     row, t, _ = octave(v, layout.LOW)
-    return lanes.pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)
+    return lanes.pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
 
 
 @kernel
@@ -162,13 +164,13 @@ def entry_of(family, v, need, flow):
     table = flow.table
     row, t, _ = octave(v, flow.first)
     at = STARTS.entry + (row - 1 + family * _ENTRIES) * _ENTRY
-    lam, rate = lanes.pair(table, at, t)
+    lam, rate = lanes.pair(table, at, t)[:2]
     x = angle = loss = 0.0
     if need >= PATH:
-        x, angle = lanes.pair(table, at + layout.ENTRY_PATH, t)
+        x, angle = lanes.pair(table, at + layout.ENTRY_PATH, t)[:2]
     if need >= LOSS:
-        loss = lanes.one(table, at + layout.ENTRY_LOSS, t)
-    return Entry(lam, rate, lanes.one(table, at + layout.ENTRY_SPLIT, t), x, angle, loss)
+        loss = lanes.one(table, at + layout.ENTRY_LOSS, t)[0]
+    return Entry(lam, rate, lanes.one(table, at + layout.ENTRY_SPLIT, t)[0], x, angle, loss)
 
 
 @kernel(inline=True)
@@ -186,12 +188,6 @@ def layer_place(family, v, u, flow):
 
 
 @kernel(inline=True)
-def _times(a, x, b):
-    """a x + b of three vectors."""
-    return fused(a[0], x, b[0]), fused(a[1], x, b[1]), fused(a[2], x, b[2])
-
-
-@kernel(inline=True)
 def _over_t(p, t):
     """The polynomial whose twelve powers are three vectors."""
     square = t * t
@@ -201,37 +197,26 @@ def _over_t(p, t):
 
 
 @kernel(inline=True)
-def _power(table, at, m):
-    """Powers of t in the coefficient of s^m."""
-    at += m * layout.LAYER_TERMS
-    return load(table, at), load(table, at + LANES), load(table, at + 2 * LANES)
-
-
-@kernel
-def layer_value(table, column, at, t, s):
-    """Column of a layer: a polynomial in t (speed at onset) and s (stiff time)."""
-    at += column * layout.BLOCK
-    per, value = spread(s), _power(table, at, LAYER_TERMS - 1)
-    for m in range(LAYER_TERMS - 2, -1, -1):
-        value = _times(value, per, _power(table, at, m))
-    return _over_t(value, t)
-
-
-@kernel
 def layer_slopes(table, column, at, t, s):
-    """The same, and its slopes over t and s."""
+    """Column of a layer, a polynomial in t (speed at onset) and s (stiff time), and its slopes over these."""
     at += column * layout.BLOCK
-    per, value = spread(s), _power(table, at, LAYER_TERMS - 1)
+    per, value = spread(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
     rise = value
     for m in range(LAYER_TERMS - 2, 0, -1):
-        value = _times(value, per, _power(table, at, m))
-        rise = _times(rise, per, value)
-    value = _times(value, per, _power(table, at, 0))
+        value = fused(value, per, _powers(table, at + m * LAYER_TERMS))
+        rise = fused(rise, per, value)
+    value = fused(value, per, _powers(table, at))
     powers = (*parts(value[0]), *parts(value[1]), *parts(value[2]))
     slope = 11.0 * powers[11]
     for k in range(10, 0, -1):
         slope = fma(slope, t, k * powers[k])
     return _over_t(value, t), slope, _over_t(rise, t)
+
+
+@kernel
+def layer_value(table, column, at, t, s):
+    """The same alone."""
+    return layer_slopes(table, column, at, t, s)[0]
 
 
 @kernel

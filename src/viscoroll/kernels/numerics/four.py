@@ -8,11 +8,11 @@ from __future__ import annotations
 import operator
 from typing import Any, Callable
 
-import numba
-import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
+from numba.extending import lower_builtin, models, register_model, type_callable
+
+from ..compile.instruction import called, instruction
 
 #: how many
 LANES = 4
@@ -20,23 +20,12 @@ VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INT = ir.IntType(32)
 
 
-def spread_over(builder: Any, x: Any) -> Any:
-    """Instructions that make a vector of one number, four times."""
-    one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
-    return builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(_INT, LANES), [0] * LANES))
-
-
-def split(builder: Any, vector: Any) -> list:
-    """Instructions that take a vector apart."""
-    return [builder.extract_element(vector, _INT(n)) for n in range(LANES)]
-
-
 class _FourType(types.Type):
     def __init__(self) -> None:
         super().__init__("four numbers")
 
 
-_four = _FourType()
+FOUR = _FourType()
 
 
 @register_model(_FourType)
@@ -45,18 +34,41 @@ class _FourModel(models.PrimitiveModel):
         super().__init__(manager, kind, VECTOR)
 
 
-def _operator(function: Callable, instruction: str) -> None:
+def shuffled(builder: Any, a: Any, b: Any, order: Any) -> Any:
+    """Instructions that take four of the eight numbers of two vectors."""
+    return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
+
+
+def spread_over(builder: Any, x: Any) -> Any:
+    """Instructions that make a vector of one number, four times."""
+    one = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), x, _INT(0))
+    return shuffled(builder, one, one, [0] * LANES)
+
+
+def fused_by(builder: Any, *given: Any) -> Any:
+    """The instruction of :func:`fused`."""
+    return called(builder, "llvm.fma.v4f64", given)
+
+
+def pointers(context: Any, builder: Any, kind: Any, array: Any, at: Any, count: int) -> list:
+    """Where vectors of an array or behind a pointer stand, the first of their numbers being number ``at``."""
+    data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
+    first = builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
+    return [builder.gep(first, [_INT(n)]) for n in range(count)]
+
+
+def _operator(function: Callable, name: str) -> None:
     """Have an operator of Python work on fours, and on a number and a four."""
 
     def typed(context: Any) -> Callable:
-        return lambda a, b: _four if _four in (a, b) and {a, b} <= {_four, types.float64} else None
+        return lambda a, b: FOUR if FOUR in (a, b) and {a, b} <= {FOUR, types.float64} else None
 
     def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         each = zip(given, signature.args, strict=True)
-        return getattr(builder, instruction)(*(x if kind is _four else spread_over(builder, x) for x, kind in each))
+        return getattr(builder, name)(*(x if kind is FOUR else spread_over(builder, x) for x, kind in each))
 
     type_callable(function)(typed)
-    for kinds in ((_four, _four), (_four, types.float64), (types.float64, _four)):
+    for kinds in ((FOUR, FOUR), (FOUR, types.float64), (types.float64, FOUR)):
         lower_builtin(function, *kinds)(lower)
 
 
@@ -65,89 +77,72 @@ for _name, _instruction in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), (
     _operator(getattr(operator, f"i{_name}"), _instruction)
 
 
-def _fused(typing_context, a, b, c):
-    def lower(context, builder, signature, given):
-        known = ir.FunctionType(VECTOR, [VECTOR] * 3)
-        return builder.call(cgutils.get_or_insert_function(builder.module, known, "llvm.fma.v4f64"), given)
-
-    return _four(_four, _four, _four), lower
+def _every(builder: Any, kind: Any, x: Any, count: int) -> list:
+    """The fours of a tuple, or one for each of another's."""
+    return cgutils.unpack_tuple(builder, x) if isinstance(kind, types.UniTuple) else [x] * count
 
 
-def _slide(typing_context, a, b):
-    def lower(context, builder, signature, given):
-        order = [LANES - 1 + n for n in range(LANES)]
-        return builder.shuffle_vector(given[0], given[1], ir.Constant(ir.VectorType(_INT, LANES), order))
-
-    return _four(_four, _four), lower
+def _widest(*kinds):
+    return next((kind for kind in kinds if isinstance(kind, types.UniTuple)), FOUR)(*kinds)
 
 
-def _spread(typing_context, x):
-    def lower(context, builder, signature, given):
-        return spread_over(builder, given[0])
-
-    return _four(types.float64), lower
+def _whole(context, builder, kind, found):
+    return found[0] if kind is FOUR else context.make_tuple(builder, kind, found)
 
 
-def _four_of(typing_context, a, b, c, d):
-    def lower(context, builder, signature, given):
-        whole = ir.Constant(VECTOR, ir.Undefined)
-        for n, one in enumerate(given):
-            whole = builder.insert_element(whole, one, _INT(n))
-        return whole
-
-    return _four(*[types.float64] * LANES), lower
+def _fused(context, builder, signature, given):
+    kind = signature.return_type
+    columns = (_every(builder, own, x, getattr(kind, "count", 1)) for own, x in zip(signature.args, given))
+    return _whole(context, builder, kind, [fused_by(builder, *each) for each in zip(*columns, strict=True)])
 
 
-def _parts(typing_context, four):
-    def lower(context, builder, signature, given):
-        return context.make_tuple(builder, signature.return_type, split(builder, given[0]))
-
-    return types.UniTuple(types.float64, LANES)(four), lower
+def _slide(context, builder, signature, given):
+    return shuffled(builder, *given, range(LANES - 1, 2 * LANES - 1))
 
 
-def _pointer(context, builder, kind, array, at):
-    """Where the four numbers of an array or behind a pointer begin, the first of them number ``at``."""
-    data = array if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
+def _spread(context, builder, signature, given):
+    return spread_over(builder, *given)
 
 
-def _load(typing_context, array, at):
-    def lower(context, builder, signature, given):
-        return builder.load(_pointer(context, builder, signature.args[0], *given), align=8)
-
-    return _four(array, types.int64), lower
-
-
-def _store(typing_context, array, at, four):
-    def lower(context, builder, signature, given):
-        builder.store(given[2], _pointer(context, builder, signature.args[0], *given[:2]), align=8)
-        return context.get_dummy_value()
-
-    return types.void(array, types.int64, _four), lower
+def _four(context, builder, signature, given):
+    whole = ir.Constant(VECTOR, ir.Undefined)
+    for n, one in enumerate(given):
+        whole = builder.insert_element(whole, one, _INT(n))
+    return whole
 
 
-def _put(array: Any, at: int, four: Any) -> None:
-    array[at : at + LANES] = four
+def _parts(context, builder, signature, given):
+    found = [builder.extract_element(given[0], _INT(n)) for n in range(LANES)]
+    return context.make_tuple(builder, signature.return_type, found)
 
 
-if numba.config.DISABLE_JIT:
-    four = lambda *given: np.array(given)  # noqa: E731
-    fused = lambda a, b, c: a * b + c  # noqa: E731
-    slide = lambda a, b: np.concatenate([a[-1:], b[:-1]])  # noqa: E731
-    spread = lambda x: np.full(LANES, x)  # noqa: E731
-    load = lambda array, at: array[at : at + LANES].copy()  # noqa: E731
-    store = _put
-    parts = tuple
-else:
-    #: four numbers as one
-    four = intrinsic(_four_of)
-    #: the last of one before the first three of another: a load across two stores would wait for both
-    slide = intrinsic(_slide)
-    #: a b + c
-    fused = intrinsic(_fused)
-    #: and back
-    parts = intrinsic(_parts)
-    #: a number, four times
-    spread = intrinsic(_spread)
-    #: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors
-    load, store = intrinsic(_load), intrinsic(_store)
+def _load(context, builder, signature, given):
+    kind = signature.return_type
+    places = pointers(context, builder, signature.args[0], *given, getattr(kind, "count", 1))
+    return _whole(context, builder, kind, [builder.load(place, align=8) for place in places])
+
+
+def _store(context, builder, signature, given):
+    numbers = _every(builder, signature.args[2], given[2], 1)
+    for place, each in zip(pointers(context, builder, signature.args[0], *given[:2], len(numbers)), numbers):
+        builder.store(each, place, align=8)
+    return context.get_dummy_value()
+
+
+#: four numbers as one
+four = instruction(_four, FOUR, *[types.float64] * LANES)
+#: the last of one before the first three of another: a load across two stores would wait for both
+slide = instruction(_slide, FOUR, FOUR, FOUR)
+#: a b + c of fours, or of tuples of them and what all of these have in common
+fused = instruction(_fused, _widest, None, None, None)
+#: and back
+parts = instruction(_parts, types.UniTuple(types.float64, LANES), FOUR)
+#: a number, four times
+spread = instruction(_spread, FOUR, types.float64)
+#: (array, at) -> its numbers at, at + 1, ...; (array, at, four) puts them there.  Arrays are contiguous vectors
+load, store = instruction(_load, FOUR, None, types.int64), instruction(_store, types.void, None, types.int64, None)
+
+
+def loads(count: int) -> Any:
+    """A :func:`load` of so many fours, as a tuple."""
+    return instruction(_load, types.UniTuple(FOUR, count), None, types.int64)

@@ -72,27 +72,22 @@ class Interpolation:
 def radau(n: int, side: int) -> list[Decimal]:
     """Nodes of Radau's rule on [-1, 1]: the end ``side`` (-1 or 1) and n - 1 inside, upward."""
 
-    def jacobi(x: Any) -> tuple[Any, Any]:
-        """P_(n-1) + P_n and its slope."""
-        before, value, slope = _legendre(n, x)
-        return before + value, x * slope - n * value + slope
-
-    inner = [_zero(jacobi, math.cos((k - 0.25) * math.pi / n)) for k in range(1, n)]
+    inner = [_zero(_jacobi, n, (k - 0.25) / n) for k in range(1, n)]
     return sorted([Decimal(side), *(-side * x for x in inner)])
 
 
 @in_many_digits
 def gauss(n: int) -> tuple[_Floats, _Floats]:
     """Nodes and weights of Gauss's and Legendre's rule on [0, 1]."""
-    nodes = _symmetric(n, lambda x: _legendre(n, x)[1:], [(k - 0.25) / (n + 0.5) for k in range(1, n // 2 + 1)])
-    weights = [1 / ((1 - x * x) * _legendre(n, x)[2] ** 2) for x in nodes]
+    nodes = _symmetric(n, _legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n // 2 + 1)])
+    weights = [1 / ((1 - x * x) * _legendre(n, x)[1] ** 2) for x in nodes]
     return rounded([(1 + x) / 2 for x in nodes]), rounded(weights)
 
 
 @in_many_digits
 def chebyshev(n: int) -> list[Decimal]:
     """Zeros of T_n, upward."""
-    return _symmetric(n, lambda x: _chebyshev(n, x), [(k - 0.5) / n for k in range(1, n // 2 + 1)])
+    return _symmetric(n, _chebyshev, [(k - 0.5) / n for k in range(1, n // 2 + 1)])
 
 
 @in_many_digits
@@ -122,27 +117,33 @@ def rounded(values: Any) -> _Floats:
     return np.array(values, dtype=np.float64)
 
 
-def _symmetric(n: int, function: Callable[[Any], tuple[Any, Any]], turns: list[float]) -> list[Decimal]:
-    """Zeros of an even or odd function, from the cosines of the upper ones, in half turns."""
-    upper = [_zero(function, math.cos(turn * math.pi)) for turn in turns]
+def _symmetric(n: int, family: Callable, turns: list[float]) -> list[Decimal]:
+    """Zeros of an even or odd polynomial, from the cosines of the upper ones, in half turns."""
+    upper = [_zero(family, n, turn) for turn in turns]
     return [*(-x for x in upper), *([Decimal(0)] if n % 2 else []), *reversed(upper)]
 
 
-def _zero(function: Callable[[Any], tuple[Any, Any]], near: float) -> Decimal:
-    """By Newton's iteration, first in double precision; ``function`` gives value and slope."""
-    x: Any = near
+def _zero(family: Callable, n: int, turn: float) -> Decimal:
+    """By Newton's iteration, first in double precision; ``family`` gives value and slope."""
+    x: Any = math.cos(turn * math.pi)
     for kind in (float, float, float, Decimal, Decimal):
-        value, slope = function(kind(x))
+        value, slope = family(n, kind(x))
         x = kind(x) - value / slope
     return round(x, _DIGITS - 4)  # the last digits would tell how this machine takes a cosine
 
 
-def _legendre(n: int, x: Any) -> tuple[Any, Any, Any]:
-    """P_(n-1), P_n and the slope of P_n inside (-1, 1)."""
-    before, value = 1 + 0 * x, x
-    for k in range(1, n):
+def _legendre(n: int, x: Any) -> tuple[Any, Any]:
+    """P_n and its slope inside (-1, 1)."""
+    before, value = 0 * x, 1 + 0 * x
+    for k in range(n):
         before, value = value, ((2 * k + 1) * x * value - k * before) / (k + 1)
-    return before, value, n * (before - x * value) / (1 - x * x)
+    return value, n * (before - x * value) / (1 - x * x)
+
+
+def _jacobi(n: int, x: Any) -> tuple[Any, Any]:
+    """P_(n-1) + P_n and its slope."""
+    (before, rise), (value, slope) = _legendre(n - 1, x), _legendre(n, x)
+    return before + value, rise + slope
 
 
 def _chebyshev(n: int, x: Any) -> tuple[Any, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..rows.states import put, slip_and_creep, state_of
+from ..rows.states import element, put, slip_and_creep, state_of
 from .law import OK, direct_contact_length, direct_delta_star, direct_moment, direct_stick, direct_traction
 
 
@@ -45,5 +45,5 @@ def direct_loop(alpha, asked, count):
     """What is asked for of ``count`` states."""
     worst = OK
     for n in range(count):
-        worst = max(worst, direct_state(alpha[min(n, alpha.size - 1)], n, asked))
+        worst = max(worst, direct_state(element(alpha, n), n, asked))
     return worst

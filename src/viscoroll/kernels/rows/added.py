@@ -9,6 +9,7 @@ from ..compile.rarely import rarely
 from . import lanes
 from .law import octave
 from .record import ALPHA, COUNT, E0
+from .states import element
 
 #: gamma N at V = 0 from which on it is out of reach
 _HEAVY = -4.0
@@ -20,7 +21,7 @@ def _unsteady(u, law):
     row, t, per = octave(u, law.marks[E0])
     count, alpha = law.marks[COUNT], law.rows[ALPHA]
     if row < count:
-        N, whole, slope, _ = lanes.pair_slopes(law.added, row * 2 * lanes.TERMS, t)
+        N, whole, slope, _, _, _ = lanes.pair(law.added, row * 2 * lanes.TERMS, t)
         return row, N, whole, slope * per
     whole = -(alpha - 1.0) / (16.0 * alpha * u)
     return count, -whole / u, whole, 2.0 * whole / (u * u)
@@ -48,4 +49,4 @@ def added_mass(law, V, kappa, gamma):
 def unsteady_loop(law, kappa, V, out):
     """N of states, one value of kappa and V, or one each."""
     for n in range(out.size):
-        _, out[n], _, _ = _unsteady(kappa[min(n, kappa.size - 1)] * abs(V[min(n, V.size - 1)]), law)
+        _, out[n], _, _ = _unsteady(element(kappa, n) * abs(element(V, n)), law)

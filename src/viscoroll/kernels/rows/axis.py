@@ -17,6 +17,7 @@ from ..compile.jit import kernel
 from ..numerics.four import LANES, four, load, store
 from .newton import product
 from .record import ALPHA, COUNT, LOW, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WHOLE, WIDTH
+from .states import element
 
 #: terms of a sum; numbers of a part of a row for all alphas of an octave
 TERMS_OF_ALPHA = 16
@@ -39,7 +40,7 @@ _FAST = math.log(2.0) - float(np.euler_gamma)
 def hold(n, source):
     """:func:`record.hold`."""
     given = record_at(source)
-    alpha, rows = doubles(given.alpha, given.count)[min(n, given.count - 1)], doubles(given.rows, WIDTH)
+    alpha, rows = element(doubles(given.alpha, given.count), n), doubles(given.rows, WIDTH)
     if alpha != rows[ALPHA]:
         word = bits_of(alpha)
         octave = (word >> 52) - _EXPONENT

@@ -8,16 +8,14 @@ the status is not 0.  Nothing is written but ``out``: any number of threads may 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
-import numba
 import numpy as np
 from numba import carray
 from numba.core import types
 from numpy.typing import NDArray
 
-from ..compile.address import doubles, integers
+from ..compile.address import address_of, doubles, integers, record_at
 from ..compile.jit import kernel
 from .contact import slopes_of_Q, traction_of
 from .law import bodies, place, speed, way_of
@@ -33,8 +31,6 @@ SCENE = np.dtype(
     [(name, np.int64) for name in ("function", "slopes", "unlike", "rows", "marks", "count")]
     + [(name, np.float64) for name in ("kappa", "mu", "V", "omega", "Q", "M")]
 )
-_DOUBLES = types.CPointer(types.float64)
-_SIGNATURE = types.int32(types.float64, types.float64, _DOUBLES, types.CPointer(numba.from_dtype(SCENE)))
 
 
 @kernel(inline=True, allocates=True)
@@ -45,7 +41,7 @@ def _law_of(scene):
 
 @kernel(allocates=True)
 def _loads(speed_of_axis, spin, to, scenes):
-    out, scene = carray(to, OUT), carray(scenes, 1)[0]
+    out, scene = carray(to, OUT), record_at(scenes)
     V, omega = speed_of_axis / scene.V, spin / scene.omega
     u = scene.kappa * abs(V)
     if not (u <= FASTEST and abs(V) < np.inf and abs(omega) < np.inf):
@@ -83,9 +79,6 @@ def bind(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, fl
     return found
 
 
-@cache
 def function() -> int:
     """Address of the function."""
-    _loads.compile(_SIGNATURE)
-    compiled = _loads.overloads[_SIGNATURE.args]
-    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name))
+    return address_of(_loads, SCENE, types.int32, types.float64, types.float64, types.CPointer(types.float64))

@@ -21,6 +21,7 @@ from .lanes import TERMS
 from .newton import NODES, OTHER, POINTS, SCRATCH, VALUES, X, Y, differences, read, turn
 from .record import COUNT, E0, OWN, OWN_MARKS, PART, PARTS, PRESS, STAMP, WIDTH
 from .series import CYLINDER, HALF_SPACE, RISE, SHIFT, ratios, room_in, unpacked, values
+from .states import element
 
 #: nodes of an octave of z; octaves behind the shortest time where the fast limit begins
 PER, FAST = 10, 34
@@ -95,7 +96,7 @@ def hold(n, source):
     """:func:`record.hold`."""
     given = record_at(source)
     marks = integers(given.marks, PARTS)
-    row = integers(given.of, given.count)[min(n, given.count - 1)]
+    row = element(integers(given.of, given.count), n)
     if marks[HELD] != row:
         marks[HELD] = row
         marks[STAMP] += 1

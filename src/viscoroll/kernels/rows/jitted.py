@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import Any, NoReturn
 
 from llvmlite import ir
-from numba import config
 from numba.core import cgutils, types
 from numba.core.imputils import lower_constant
 from numba.core.typing import signature
@@ -22,8 +21,6 @@ from .bound import OUT, bind, function
 from .loads import LoadsAndSlopes
 from .record import Law
 
-#: whether numba compiles nothing
-SWITCHED_OFF = bool(config.DISABLE_JIT)
 #: room for what the function finds
 Room = ctypes.c_double * OUT
 _C = ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double), ctypes.c_void_p

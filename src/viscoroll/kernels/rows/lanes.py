@@ -2,161 +2,119 @@
 
 A polynomial of ``one`` function is its powers in their order, six vectors in t^4; of a ``pair`` of functions a and b it
 is a0 a1 b0 b1, a2 a3 b2 b3, ..., twelve vectors in t^2.  So a row costs no more than an eighth of its octave with half
-as many powers would.
+as many powers would.  All take (table, where the row begins, t).
 """
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any
 
-import numba
-import numpy as np
 from llvmlite import ir
-from numba.core import cgutils, types
-from numba.extending import intrinsic
+from numba.core import types
 
-from ..numerics.four import LANES, VECTOR, split, spread_over
+from ..compile.fma import fma
+from ..compile.instruction import instruction
+from ..compile.jit import kernel
+from ..numerics.four import FOUR, LANES, VECTOR, fused_by, parts, pointers, shuffled, spread_over
 
 TERMS = 24
-_INT, _PLACE = ir.IntType(64), ir.IntType(32)
-#: of one function and of a pair: which of two neighbouring vectors' eight numbers, and by what they rise, make the next
-#: power's slope
-_ONE, _PAIR = ([1, 2, 3, 4], [1, 2, 3, 4], 4), ([1, 4, 3, 6], [1, 2, 1, 2], 2)
+_ONE, _PAIR = TERMS // LANES, 2 * TERMS // LANES
 
 
-class _Row:
-    """Builds the instructions that work on the vectors of a row."""
+def _row(context: Any, builder: Any, signature: Any, given: Any, count: int) -> list:
+    places = pointers(context, builder, signature.args[0], *given[:2], count)
+    return [builder.load(place, align=8) for place in places]
 
-    def __init__(self, context: Any, builder: Any, kind: Any, table: Any, at: Any, layout: tuple, count: int) -> None:
-        self.builder, self.layout = builder, layout
-        data = context.make_array(kind)(context, builder, table).data
-        start = builder.bitcast(builder.gep(data, [at]), VECTOR.as_pointer())
-        self.terms = [builder.load(builder.gep(start, [_INT(k)]), align=8) for k in range(count)]
-        known = ir.FunctionType(VECTOR, [VECTOR] * 3)
-        self._fma = cgutils.get_or_insert_function(builder.module, known, "llvm.fma.v4f64")
 
-    def fma(self, a: Any, b: Any, c: Any) -> Any:
-        return self.builder.call(self._fma, [a, b, c])
+def _constant(numbers: Any) -> Any:
+    return ir.Constant(VECTOR, [float(x) for x in numbers])
 
-    def derived(self, terms: list) -> list:
-        """The vectors of the slope over t."""
-        order, rise, step = self.layout
-        mask, found = ir.Constant(ir.VectorType(_PLACE, LANES), order), []
-        for k, (low, high) in enumerate(zip(terms, [*terms[1:], ir.Constant(VECTOR, [0.0] * LANES)])):
-            powers = ir.Constant(VECTOR, [float(step * k + n) for n in rise])
-            found.append(self.builder.fmul(self.builder.shuffle_vector(low, high, mask), powers))
-        return found
 
-    def orders(self, count: int) -> list:
-        """The vectors, those of the slope, and of its slope: so many of these."""
-        found = [self.terms]
-        while len(found) < count:
-            found.append(self.derived(found[-1]))
-        return found
+def _sums(count: int, orders: int) -> Any:
+    """(table, at, power) -> the sum of so many vectors times powers, its slope over the power, and that of this."""
 
-    def sums(self, terms: list, power: Any) -> list:
-        """By Estrin's scheme: its parts do not wait for one another.  Four numbers."""
-        power = spread_over(self.builder, power)
-        while len(terms) > 1:
-            pairs = [terms[n : n + 2] for n in range(0, len(terms), 2)]
-            terms = [self.fma(pair[1], power, pair[0]) if len(pair) > 1 else pair[0] for pair in pairs]
-            power = self.builder.fmul(power, power)
-        return split(self.builder, terms[0])
+    def lower(context, builder, signature, given):
+        terms, found = _row(context, builder, signature, given, count), []
+        for _ in range(orders):
+            level, power = terms, spread_over(builder, given[2])
+            while len(level) > 1:  # by Estrin's scheme: its parts do not wait for one another
+                pairs = [level[n : n + 2] for n in range(0, len(level), 2)]
+                level = [fused_by(builder, pair[1], power, pair[0]) if len(pair) > 1 else pair[0] for pair in pairs]
+                power = builder.fmul(power, power)
+            found.append(level[0])
+            terms = [builder.fmul(_constant([k] * LANES), term) for k, term in enumerate(terms)][1:]
+        return context.make_tuple(builder, signature.return_type, found)
 
-    def secants(self, terms: list, power: Any, other: Any) -> tuple[list, list]:
-        """Values at ``power``, and their differences from those at ``other`` over that of the two."""
-        power, other = spread_over(self.builder, power), spread_over(self.builder, other)
+    return instruction(lower, types.UniTuple(FOUR, orders), None, types.int64, types.float64)
+
+
+def _secants(context, builder, signature, given):
+    """Of one function and of its slope: sums at a power, and their differences from those at another over that."""
+    terms, found = _row(context, builder, signature, given, _ONE), []
+    power, other = (spread_over(builder, x) for x in given[2:])
+    for _ in range(2):
         value = total = terms[-1]
         for term in terms[-2:0:-1]:
-            value = self.fma(power, value, term)
-            total = self.fma(other, total, value)
-        return split(self.builder, self.fma(power, value, terms[0])), split(self.builder, total)
+            value = fused_by(builder, power, value, term)
+            total = fused_by(builder, other, total, value)
+        found += [fused_by(builder, power, value, terms[0]), total]
+        following = zip(terms, [*terms[1:], _constant([0.0] * LANES)])
+        terms = [shuffled(builder, a, b, range(1, LANES + 1)) for a, b in following]
+        powers = [range(LANES * k + 1, LANES * (k + 1) + 1) for k in range(_ONE)]
+        terms = [builder.fmul(_constant(each), term) for each, term in zip(powers, terms, strict=True)]
+    return context.make_tuple(builder, signature.return_type, found)
 
 
-def _pair(orders: int) -> Callable:
-    """(table, at, t) -> values of two functions; their slopes where ``orders`` is 2, and slopes of these where 3."""
-
-    def instructions(row: _Row, t: Any) -> list:
-        square, found = row.builder.fmul(t, t), []
-        for terms in row.orders(orders):
-            a_even, a_odd, b_even, b_odd = row.sums(terms, square)
-            found += [row.builder.fma(t, a_odd, a_even), row.builder.fma(t, b_odd, b_even)]
-        return found
-
-    return _intrinsic(instructions, _PAIR, orders, 2)
+_pair_sums, _one_sums = _sums(_PAIR, 3), _sums(_ONE, 2)
+_one_secants = instruction(_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64)
 
 
-def _one(orders: int) -> Callable:
-    """(table, at, t) -> value of one function, and its slope where ``orders`` is 2."""
-
-    def instructions(row: _Row, t: Any) -> list:
-        square = row.builder.fmul(t, t)
-        fourth = row.builder.fmul(square, square)
-        return [_joined(row, row.sums(terms, fourth), t, square) for terms in row.orders(orders)]
-
-    return _intrinsic(instructions, _ONE, orders)
-
-
-def _secants() -> Callable:
-    """(table, at, t, s) -> p(t) and (p(t) - p(s))/(t - s) of one function, then of its slope."""
-
-    def instructions(row: _Row, t: Any, s: Any) -> list:
-        fma, add, multiply = row.builder.fma, row.builder.fadd, row.builder.fmul
-        both, square, other = add(t, s), multiply(t, t), multiply(s, s)
-        squares, found = add(square, other), []
-        for terms in row.orders(2):
-            values, rises = row.secants(terms, multiply(square, square), multiply(other, other))
-            # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
-            rise = multiply(multiply(both, squares), _joined(row, rises, s, other))
-            _, first, second, third = values
-            first = fma(fma(t, s, squares), third, fma(both, second, first))
-            found += [_joined(row, values, t, square), add(rise, first)]
-        return found
-
-    return _intrinsic(instructions, _ONE, 2, 2, secants=True)
+@kernel(inline=True)
+def pair(table, at, t):
+    """Values of two functions, their slopes, and the slopes of these: what is not taken is not computed."""
+    twice, square = 2.0 * t, t * t
+    value, rise, bend = _pair_sums(table, at, square)
+    a_even, a_odd, b_even, b_odd = parts(value)
+    # f = E + t O of t^2
+    a_even_1, a_odd_1, b_even_1, b_odd_1 = parts(rise)
+    a_even_2, a_odd_2, b_even_2, b_odd_2 = parts(bend)
+    a_1, b_1 = fma(t, a_odd_1, a_even_1), fma(t, b_odd_1, b_even_1)
+    a_2 = 2.0 * fma(twice, a_odd_1 + fma(square, a_odd_2, t * a_even_2), a_1)
+    b_2 = 2.0 * fma(twice, b_odd_1 + fma(square, b_odd_2, t * b_even_2), b_1)
+    values = fma(t, a_odd, a_even), fma(t, b_odd, b_even)
+    return *values, fma(twice, a_1, a_odd), fma(twice, b_1, b_odd), a_2, b_2
 
 
-def _joined(row: _Row, parts: list, t: Any, square: Any) -> Any:
+@kernel(inline=True)
+def _joined(sums, t, square):
     """One number from the sums of its powers modulo four."""
-    fma = row.builder.fma
-    return fma(square, fma(t, parts[3], parts[2]), fma(t, parts[1], parts[0]))
+    a, b, c, d = parts(sums)
+    return fma(square, fma(t, d, c), fma(t, b, a))
 
 
-def _interpreted(function: Any, t: float, *other: float) -> list:
-    """The value of a polynomial, and the mean slope from another place on."""
-    rises = [c * sum(t**m * s ** (k - 1 - m) for m in range(k)) for s in other for k, c in enumerate(function)]
-    return [np.polynomial.polynomial.polyval(t, function), *([sum(rises)] if other else [])]
+@kernel(inline=True)
+def one(table, at, t):
+    """Value of one function, and its slope."""
+    square = t * t
+    value, rise = _one_sums(table, at, square * square)
+    _, b, c, d = parts(value)
+    slope = fma(4.0 * t * square, _joined(rise, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b))
+    return _joined(value, t, square), slope
 
 
-def _intrinsic(instructions: Callable, layout: tuple, orders: int, each: int = 1, secants: bool = False) -> Callable:
-    """What kernels call with (table, where the row begins, places); where numba is switched off, the same in Python.
-
-    each : results of an order.
-    """
-    count, results = TERMS // layout[2], orders * each
-
-    def plain(table: Any, at: int, *places: float) -> Any:
-        numbers = table.ravel()[at : at + LANES * count]
-        functions = [numbers] if layout is _ONE else numbers.reshape(-1, 2, 2).swapaxes(0, 1).reshape(2, -1)
-        slopes = [np.polynomial.polynomial.polyder(f, order) for order in range(orders) for f in functions]
-        found = [one for f in slopes for one in _interpreted(f, *places)]
-        return found[0] if results == 1 else tuple(found)
-
-    def lower(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        row = _Row(context, builder, signature.args[0], given[0], given[1], layout, count)
-        found = instructions(row, *given[2:])
-        return found[0] if results == 1 else context.make_tuple(builder, signature.return_type, found)
-
-    returned = types.float64 if results == 1 else types.UniTuple(types.float64, results)
-
-    def at_one(typing_context, table, at, t):
-        return returned(table, types.int64, types.float64), lower
-
-    def at_two(typing_context, table, at, t, s):
-        return returned(table, types.int64, types.float64, types.float64), lower
-
-    return plain if numba.config.DISABLE_JIT else intrinsic(at_two if secants else at_one)
+@kernel(inline=True)
+def _secant(sums, rises, t, s):
+    square, other = t * t, s * s
+    # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
+    _, first, second, third = parts(sums)
+    first = fma(fma(t, s, square + other), third, fma(t + s, second, first))
+    return _joined(sums, t, square), (t + s) * (square + other) * _joined(rises, s, other) + first
 
 
-pair, pair_slopes, pair_seconds = _pair(1), _pair(2), _pair(3)
-one, one_slopes, secants = _one(1), _one(2), _secants()
+@kernel(inline=True)
+def secants(table, at, t, s):
+    """p(t) and (p(t) - p(s))/(t - s) of one function, then of its slope."""
+    square, other = t * t, s * s
+    sums, rises, slope_sums, slope_rises = _one_secants(table, at, square * square, other * other)
+    value, rise = _secant(sums, rises, t, s)
+    return value, rise, *_secant(slope_sums, slope_rises, t, s)

@@ -116,7 +116,7 @@ def speed(at, u, law):
         per, fall = law.rows[LOW] / u, shift - 4.0 * part
         bend = per * (2.0 * fall - 4.0 * part) / u
         return Speed(law.rows[LOW] * (1.0 + shift), -per * fall, bend, shift + part, z, z * (3.0 * part - shift))
-    L, m, dL, dm, ddL, _ = lanes.pair_seconds(law.rows, ready(SPEED, at.row, law), at.t)
+    L, m, dL, dm, ddL, _ = lanes.pair(law.rows, ready(SPEED, at.row, law), at.t)
     return Speed(L, dL * at.per, ddL * at.per * at.per, m, 1.0, m + u * at.per * dm)
 
 
@@ -132,7 +132,7 @@ def lengths(at, u, law):
     if beyond(at):
         _, shift, _ = _fast(u, WHOLE, law)
         return law.rows[LOW], shift
-    return lanes.pair(law.rows, ready(LENGTHS, at.row, law), at.t)
+    return lanes.pair(law.rows, ready(LENGTHS, at.row, law), at.t)[:2]
 
 
 @kernel(inline=True)
@@ -143,7 +143,8 @@ def bodies(at, u, law):
         _, cylinder, other = _fast(u, CYLINDER, law)
         per_half_space, per_cylinder = z * (3.0 * part - half_space), z * (3.0 * other - cylinder)
         return half_space + part, cylinder + other, per_half_space, per_cylinder
-    half_space, cylinder, d_half_space, d_cylinder = lanes.pair_slopes(law.rows, ready(BODIES, at.row, law), at.t)
+    found = lanes.pair(law.rows, ready(BODIES, at.row, law), at.t)
+    half_space, cylinder, d_half_space, d_cylinder, _, _ = found
     per = u * at.per
     return half_space, cylinder, half_space + per * d_half_space, cylinder + per * d_cylinder
 
@@ -164,7 +165,7 @@ def share(at, v, law):
     """eta/F at v."""
     if beyond(at):
         return _fast_share(1.0 / v, law)[0]
-    return lanes.one(law.rows, ready(SHARE, at.row, law), at.t)
+    return lanes.one(law.rows, ready(SHARE, at.row, law), at.t)[0]
 
 
 @kernel(inline=True)
@@ -174,7 +175,7 @@ def press(at, v, law):
         y = 1.0 / v
         eta, d_eta = _fast_share(y, law)
         return law.rows[ALPHA] * eta * eta, 2.0 * law.rows[ALPHA] * eta * d_eta * y * y
-    value, slope = lanes.one_slopes(law.rows, ready(PRESS, at.row, law), at.t)
+    value, slope = lanes.one(law.rows, ready(PRESS, at.row, law), at.t)
     return value, slope * at.per
 
 
@@ -189,15 +190,16 @@ def press_secants(at, near, v, x, law):
         value, slope = press(at, v, law)
         rise, bend = _fast_secants(v, x, law)
         return value, slope, rise, bend
-    if near.row == at.row:
-        value, rise, slope, bend = lanes.secants(law.rows, ready(PRESS, at.row, law), at.t, near.t)
-        return value, slope * per, rise * per, bend * per * per
-    value, here, slope, bend_here = lanes.secants(law.rows, ready(PRESS, at.row, law), at.t, -1.0)
-    _, there, _, bend_there = lanes.secants(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
-    # of the way that lies in the row of v
-    part = min((at.t + 1.0) * (1.0 + x) / (per * v * x), 1.0)
-    bend = part * bend_here * per * per + (1.0 - part) * bend_there * other * other
-    return value, slope * per, part * here * per + (1.0 - part) * there * other, bend
+    end = near.t if near.row == at.row else -1.0
+    value, rise, slope, bend = lanes.secants(law.rows, ready(PRESS, at.row, law), at.t, end)
+    rise, bend = rise * per, bend * per * per
+    if near.row != at.row:
+        _, there, _, bend_there = lanes.secants(law.rows, ready(PRESS, near.row, law), 1.0, near.t)
+        # of the way that lies in the row of v
+        part = min((at.t + 1.0) * (1.0 + x) / (per * v * x), 1.0)
+        rise = part * rise + (1.0 - part) * there * other
+        bend = part * bend + (1.0 - part) * bend_there * other * other
+    return value, slope * per, rise, bend
 
 
 @kernel

@@ -19,6 +19,7 @@ from ..bessel.ratios import asymptotic_series, ratio_i2, ratio_k, ratio_r, slope
 from ..compile.jit import kernel
 from ..numerics.four import LANES, four, parts, store
 from .series import FUNCTIONS, inverse, values
+from .states import element
 
 #: from here on r and k by their asymptotic series, whose slopes keep their digits
 _FAR = 64.0
@@ -99,7 +100,7 @@ def _unsteady(z, series, of_g, of_h, of_y):
 def set_alpha(n, alpha, series):
     """Make a series of one mode that of state n; ``alpha``: none, or one, or one each."""
     if alpha.size > 0:
-        own = alpha[min(n, alpha.size - 1)]
+        own = element(alpha, n)
         series.a[0] = own
         series.e[0] = series.t[0] = np.sqrt((own - 1.0) / own)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from ..numerics.four import LANES, fused, load, slide, spread, store
+from ..numerics.four import LANES, fused, load, loads, slide, spread, store
 from ..numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
 from .lanes import TERMS
 
@@ -16,6 +16,8 @@ POINTS = 36
 _ROOM = LANES + POINTS
 OTHER = 2 * _ROOM
 X, VALUES, Y, _C, SCRATCH = LANES, LANES + _ROOM, 5 * _ROOM, 5 * _ROOM + TERMS, 5 * _ROOM + 2 * TERMS
+#: the 24 numbers of a row
+row = loads(TERMS // LANES)
 NODES = rounded(chebyshev(TERMS))
 #: in the slow row a Chebyshev coefficient below this share of the function is rounding
 _ROUNDING = 4e-16
@@ -48,47 +50,26 @@ def differences(count, numbers):
             numbers[at + _ROOM] = numbers[at]
 
 
-@kernel(inline=True)
-def _put_row(a, to, numbers):
-    """Twenty-four numbers."""
-    a0, a1, a2, a3, a4, a5 = a
-    store(numbers, to, a0)
-    store(numbers, to + LANES, a1)
-    store(numbers, to + 2 * LANES, a2)
-    store(numbers, to + 3 * LANES, a3)
-    store(numbers, to + 4 * LANES, a4)
-    store(numbers, to + 5 * LANES, a5)
-
-
-@kernel(inline=True)
-def _row(values, at):
-    """Likewise."""
-    low = load(values, at), load(values, at + LANES), load(values, at + 2 * LANES)
-    return *low, load(values, at + 3 * LANES), load(values, at + 4 * LANES), load(values, at + 5 * LANES)
-
-
 @kernel
 def read(nodes, which, numbers):
     """Values of a function's polynomial at the nodes of a row."""
     at = VALUES + OTHER * which + _ROOM
-    x0, x1, x2, x3, x4, x5 = _row(nodes, 0)
-    a0 = a1 = a2 = a3 = a4 = a5 = spread(numbers[at + POINTS - 1])
+    x, last = row(nodes, 0), spread(numbers[at + POINTS - 1])
+    value = last, last, last, last, last, last
     for n in range(POINTS - 2, -1, -1):
-        x, d = spread(numbers[X + n]), spread(numbers[at + n])
-        a0, a1, a2 = fused(x0 - x, a0, d), fused(x1 - x, a1, d), fused(x2 - x, a2, d)
-        a3, a4, a5 = fused(x3 - x, a3, d), fused(x4 - x, a4, d), fused(x5 - x, a5, d)
-    _put_row((a0, a1, a2, a3, a4, a5), Y, numbers)
+        away = fused(x, spread(1.0), spread(-numbers[X + n]))
+        value = fused(away, value, spread(numbers[at + n]))
+    store(numbers, Y, value)
 
 
 @kernel(inline=True)
 def product(matrix, first, terms, given, to, numbers):
     """Of so many numbers and a matrix whose rows of 24 stand one after another from ``first`` on."""
-    a0 = a1 = a2 = a3 = a4 = a5 = spread(0.0)
+    zero = spread(0.0)
+    total = zero, zero, zero, zero, zero, zero
     for n in range(terms):
-        x, (m0, m1, m2, m3, m4, m5) = spread(numbers[given + n]), _row(matrix, first + TERMS * n)
-        a0, a1, a2 = fused(m0, x, a0), fused(m1, x, a1), fused(m2, x, a2)
-        a3, a4, a5 = fused(m3, x, a3), fused(m4, x, a4), fused(m5, x, a5)
-    _put_row((a0, a1, a2, a3, a4, a5), to, numbers)
+        total = fused(row(matrix, first + TERMS * n), spread(numbers[given + n]), total)
+    store(numbers, to, total)
 
 
 @kernel

@@ -67,12 +67,6 @@ _VECTORS = len(Room._fields) - 2
 _FOUND = LANES * FUNCTIONS
 
 
-def room_of(modes: int) -> Room:
-    """Room for the evaluations of a series of so many modes."""
-    vectors = [np.empty(LANES * modes) for _ in range(_VECTORS)]
-    return Room(*vectors, np.empty(LANES * modes * modes), np.empty(_FOUND))
-
-
 def packed_size(modes: int) -> int:
     """How many numbers a series has, packed: its vectors, then Q."""
     return modes * (len(Series._fields) - 1 + modes)
@@ -86,17 +80,22 @@ def room_size(modes: int) -> int:
 @kernel(inline=True)
 def unpacked(numbers, n, unlike):
     """A series of n modes."""
-    weights = numbers[4 * n : 5 * n] if unlike else numbers[:0]
-    vectors = numbers[:n], numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n : 4 * n]
-    return Series(*vectors, weights, numbers[5 * n : (5 + n) * n].reshape(n, n))
+    row = numbers[: (5 + n) * n].reshape(5 + n, n)
+    return Series(row[0], row[1], row[2], row[3], row[4, : n if unlike else 0], row[5:])
 
 
 @kernel(inline=True)
 def room_in(work, modes):
     """Room for the evaluations of one."""
     n = LANES * modes
-    vectors = work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n], work[4 * n : 5 * n]
-    return Room(*vectors, work[5 * n : 6 * n], work[6 * n : (6 + modes) * n], work[(6 + modes) * n :])
+    end = (_VECTORS + modes) * n
+    row, matrix = work[: _VECTORS * n].reshape(_VECTORS, n), work[_VECTORS * n : end]
+    return Room(row[0], row[1], row[2], row[3], row[4], row[5], matrix, work[end:])
+
+
+def room_of(modes: int) -> Room:
+    """Room for the evaluations of a series of so many modes."""
+    return room_in.py_func(np.empty(room_size(modes)), modes)
 
 
 @kernel(inline=True)

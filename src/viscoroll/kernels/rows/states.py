@@ -66,7 +66,8 @@ class Asked(NamedTuple):
 
 
 @kernel(inline=True)
-def _element(values, n):
+def element(values, n):
+    """Number n of an array of one value, or of one each."""
     return values[np.uint64(n * (values.size > 1))]
 
 
@@ -74,7 +75,7 @@ def _element(values, n):
 def state_of(states, n):
     """State number n."""
     return State(
-        _element(states.kappa, n), _element(states.mu, n), _element(states.V, n), _element(states.creep, n),
+        element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
         states.creep_is_omega,
     )  # fmt: skip
 

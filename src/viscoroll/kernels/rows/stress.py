@@ -30,6 +30,7 @@ from ..numerics.four import LANES, spread
 from ..numerics.nodes import gauss
 from .modes import set_alpha
 from .series import ratios, room_of, values
+from .states import element
 
 _NODES, _WEIGHTS = gauss(28)
 #: exp(-38) = 3e-17: beyond this exponent the integrand is nothing
@@ -124,17 +125,17 @@ class Points(NamedTuple):
     zeta: Any
 
 
-@kernel(inline=True)
-def _at(values, i):
-    return values[min(i, values.size - 1)]
-
-
 @kernel
 def _stress(i, points, series, whole, stick):
     """(p/E', |tau|/E') at a point."""
-    kappa, mu, lam, epsilon = _at(points.kappa, i), _at(points.mu, i), _at(points.lam, i), _at(points.epsilon, i)
-    beta, zeta = _at(points.beta, i), _at(points.zeta, i)
-    y = 2.0 * _at(points.x, i) / lam
+    kappa, mu, lam, epsilon = (
+        element(points.kappa, i),
+        element(points.mu, i),
+        element(points.lam, i),
+        element(points.epsilon, i),
+    )
+    beta, zeta = element(points.beta, i), element(points.zeta, i)
+    y = 2.0 * element(points.x, i) / lam
     u = (1.0 - y) + epsilon
     w = (1.0 + y) - epsilon
     scale = lam / (8.0 * np.pi * kappa)
