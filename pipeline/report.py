@@ -15,12 +15,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 import viscoroll as vr
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
-from viscoroll.materials.law_store import errors_of
 from viscoroll.presets import PRESETS
 
 from . import stage
@@ -42,12 +39,6 @@ _STYLE = (
 )
 
 
-class Report(msgspec.Struct, forbid_unknown_fields=True):
-    """[report]: the table files that the page links to, seen from the root of the project."""
-
-    tables: list[str]
-
-
 def records(out: Path) -> dict[str, dict[str, Any]]:
     """What the stages left under <out>/stages.
 
@@ -66,12 +57,6 @@ def records(out: Path) -> dict[str, dict[str, Any]]:
     return found
 
 
-def table_facts(path: Path) -> dict[str, Any]:
-    """Size in kB, title, and the stated errors of the file of a law."""
-    table = vr.tables.load(path)
-    return {"kB": path.stat().st_size / 1e3, "title": table.attrs["title"], "errors": errors_of(table)}
-
-
 def rows(pairs: dict[str, Any]) -> str:
     """A two-column HTML table."""
     lines = (
@@ -82,22 +67,27 @@ def rows(pairs: dict[str, Any]) -> str:
 
 
 def grid(found: list[dict[str, Any]]) -> str:
-    """An HTML table of rows, their names in the first column."""
-    head = "".join(f"<th>{escape(name)}</th>" for name in found[0])
-    lines = (
+    """An HTML table of rows, their names in the first line."""
+    lines = ["".join(f"<th>{escape(name)}</th>" for name in found[0])]
+    lines += [
         "".join(
             f"<td{' class=n' if isinstance(value, float) else ''}>{escape(stage.readable(value))}</td>"
-            for value in row.values()
+            for value in each.values()
         )
-        for row in found
-    )
-    return f"<table><tr>{head}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+        for each in found
+    ]
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
 
 def link(path: Path, out: Path) -> str:
     """A link as seen from the page."""
     target = Path(os.path.relpath(path, out)).as_posix()
     return f'<a href="{escape(target)}">{escape(path.name)}</a>'
+
+
+def links(out: Path, record: dict[str, Any]) -> str:
+    """What a stage left."""
+    return f"<p>{', '.join(link(out / file, out) for file in record['files'])}</p>"
 
 
 def picture(path: Path, out: Path, caption: str) -> str:
@@ -115,8 +105,7 @@ def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
     for title, captions in SECTIONS.items():
         parts.append(f"<h2>{escape(title)}</h2>")
         if title in numbers:
-            parts.append(rows(found[numbers[title]]["headline"]))
-            parts += [f"<p>{link(out / file, out)}</p>" for file in found[numbers[title]]["files"]]
+            parts += [rows(found[numbers[title]]["headline"]), links(out, found[numbers[title]])]
         parts += [picture(drawn.pop(name), out, caption) for name, caption in captions.items() if name in drawn]
     return parts + [picture(path, out, name) for name, path in drawn.items()]
 
@@ -133,24 +122,18 @@ def introduced(found: dict[str, dict[str, Any]]) -> str:
     )
 
 
-def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> str:
+def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
     """The whole page: the physics first, then tables and checks, seconds last."""
     failed = found["validate"]["failed"]
     verdict = '<span class="bad">a stated tolerance is exceeded</span>' if failed else "every check passed"
     parts = [
         "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>viscoroll</title>',
         f"<style>{_STYLE}</style></head><body>", "<h1>A viscoelastic cylinder, rolling and sliding</h1>",
-        introduced(found), *pictures(out, found), "<h2>Tables</h2>",
-    ]  # fmt: skip
-    for path, facts in tables.items():
-        parts.append(f"<h3>{link(path, out)} ({facts['kB']:.0f} kB)</h3><p>{escape(facts['title'])}.</p>")
-        parts.append("<p>Largest error of each function at any speed, relative:</p>" + rows(facts["errors"]))
-    report = (out / "validation.txt").read_text(encoding="utf-8")
-    parts += [
+        introduced(found), *pictures(out, found), "<h2>Tables</h2>", rows(found["offline"]["headline"]),
+        links(out, found["offline"]),
         "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
         rows(found["validate"]["headline"]),
-        f"<p>{', '.join(link(out / file, out) for file in found['validate']['files'])}</p>",
-        f"<pre>{escape(report)}</pre>",
+        links(out, found["validate"]), f"<pre>{escape((out / 'validation.txt').read_text(encoding='utf-8'))}</pre>",
         "<h2>Time against error</h2><p>Offline a stage wrote the law of the material into a file; at run time the "
         "three throws come from that file alone.  Here that stands beside roll, and beside splines in a grid of Q and "
         "M over V and δ; the truth is root solves of the printed equations.  Error: the largest of V and ω over the "
@@ -163,11 +146,8 @@ def page(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
     return "\n".join(part for part in parts if part) + "\n"
 
 
-def show(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[str, Any]]) -> None:
+def show(out: Path, found: dict[str, dict[str, Any]]) -> None:
     """Print the same in short: files, headline numbers, times."""
-    for path, facts in tables.items():
-        worst = ", ".join(f"{name} {error:.2g}" for name, error in facts["errors"].items())
-        print(f"{stage.shown(path)} ({facts['kB']:.0f} kB): largest errors, relative: {worst}")
     for name, record in found.items():
         files = [stage.shown(out / file) for file in record["files"]]
         where = f"{len(files)} pictures in {stage.shown(out / 'figures')}" if name == "figures" else ", ".join(files)
@@ -177,23 +157,17 @@ def show(out: Path, found: dict[str, dict[str, Any]], tables: dict[Path, dict[st
     print(f"Everything on one page: {stage.shown(out / 'index.html')}")
 
 
-def make(config: Path, out: Path, print_only: bool) -> None:
+def make(out: Path, print_only: bool) -> None:
     """Write the page, or print the same in short."""
-    settings = stage.read_section(config, "report", Report)
     found = records(out)
-    tables = {stage.ROOT / name: table_facts(stage.ROOT / name) for name in settings.tables}
     if print_only:
-        return show(out, found, tables)
-    write_text(out / "index.html", page(out, found, tables))
+        return show(out, found)
+    write_text(out / "index.html", page(out, found))
     print(f"report: {stage.shown(out / 'index.html')}")
 
 
-def main() -> int:
-    parser = stage.parser(__doc__)
-    parser.add_argument("--show", action="store_true", help="print files, errors and times; write nothing")
-    arguments = parser.parse_args()
-    return stage.told("report", lambda: make(arguments.config, arguments.output, arguments.show))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    options = stage.parser(__doc__)
+    options.add_argument("--show", action="store_true", help="print files, errors and times; write nothing")
+    given = options.parse_args()
+    sys.exit(stage.told("report", lambda: make(given.output, given.show)))

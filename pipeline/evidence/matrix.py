@@ -23,9 +23,9 @@ import tempfile
 import time
 import tomllib
 import zipfile
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from email import message_from_bytes
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -72,10 +72,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
-    wanted, found = pythons()
-    for version in wanted:
-        if version not in found:
-            print(f"matrix: no Python {version} was found: it is not tried", flush=True)
+    found = pythons()
     if not found:
         return 1
     newest = list(found)[-1]
@@ -87,34 +84,26 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="viscoroll-matrix-") as folder:
         packages = built(Path(folder))
         with ThreadPoolExecutor(2) as pool:
-            passed = list(pool.map(lambda case: tried(case, packages, Path(folder)), cases))
+            passed = list(pool.map(partial(tried, packages=packages, folder=Path(folder)), cases))
     print(f"matrix: {sum(passed)} of {len(cases)} cases passed", flush=True)
     return int(not all(passed))
 
 
-def pythons() -> tuple[list[str], dict[str, str]]:
-    """The versions that are wanted, and where each that was found lies, oldest first."""
+def pythons() -> dict[str, str]:
+    """Version -> where it lies, oldest first; tells of those that are not found."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     words = [each.rpartition(":: ")[2] for each in project["classifiers"] if "Python :: 3." in each]
-    named = os.environ.get("PYTHONS", "").split()
-    found: dict[str, str] = {}
-    for path in named or candidates(words):
-        done = subprocess.run([path, "-c", _VERSION], capture_output=True, text=True, check=False)
-        if done.returncode == 0 and (named or done.stdout.strip() in words):
-            found.setdefault(done.stdout.strip(), path)
-        elif named:
-            print(f"matrix: {path} is no Python that makes environments: it is not tried", flush=True)
-    return ([] if named else words), dict(sorted(found.items(), key=lambda each: int(each[0].partition(".")[2])))
-
-
-def candidates(versions: list[str]) -> Iterator[str]:
-    """Pythons that may be there, the preferred first."""
-    yield sys.executable
     installed = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
-    for version in versions:
-        yield from map(str, sorted(installed.glob(f"{version}.*/bin/python"), reverse=True))
-        if path := shutil.which(f"python{version}"):
-            yield path
+    places = [Path(sys.executable).parent, *sorted(installed.glob("*/bin"), reverse=True), os.environ["PATH"]]
+    found = {}
+    for name in os.environ.get("PYTHONS", "").split() or [f"python{version}" for version in words]:
+        path = shutil.which(name, path=os.pathsep.join(map(str, places))) or "false"
+        done = subprocess.run([path, "-c", _VERSION], capture_output=True, text=True, check=False)
+        if done.returncode:
+            print(f"matrix: no {name} that makes environments was found: it is not tried", flush=True)
+        else:
+            found[done.stdout.strip()] = path
+    return dict(sorted(found.items(), key=lambda each: int(each[0].partition(".")[2])))
 
 
 def packed(folder: Path, *options: str) -> tuple[Path, Path, bytes]:

@@ -32,7 +32,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--base", metavar="REV", help="compare with this commit")
     base = parser.parse_args().base
-    here = {name: _hash(values) for name, values in parts()}
+    here = {name: _hash(found) for name, found in parts()}
     there = _hashes_at(base) if base else here
     for name, value in here.items():
         print(f"{name:<20} {value}" + ("" if there[name] == value else f"  was {there[name]}"))
@@ -40,7 +40,7 @@ def main() -> int:
 
 
 def parts() -> Iterator[tuple[str, Any]]:
-    """What is computed, and its name without blanks: a result, or arrays."""
+    """What is computed, and its name without blanks."""
     draw = np.random.default_rng(12)
     V, delta = (
         10.0 ** draw.uniform(*ends, _STATES) * draw.choice((-1.0, 1.0), _STATES) for ends in ((-12, 12), (-9, 0.5))
@@ -58,13 +58,15 @@ def parts() -> Iterator[tuple[str, Any]]:
     starts, t = draw.uniform(-2.0, 2.0, (2, _MOTIONS)), np.linspace(0.0, 3e-3, 13)
     kappa, mu = 10.0 ** draw.uniform([[-0.3], [-2.0]], [[2.0], [0.3]], (2, _MOTIONS))
     own = scene.replace(alpha=alpha[:_MOTIONS], kappa=kappa, mu=mu, j=draw.uniform(0.2, 2.0, _MOTIONS))
+
+    def motions(each: Any, count: int = _MOTIONS, **how: Any) -> Any:
+        return vr.ensemble(each, *starts[:, :count], t, fields=_ALL, **how)
+
     for rtol in (1e-6, 1e-10):
         for name, each in (("motions-own-scene", own), ("motions", scene)):
-            e = vr.ensemble(each, *starts, t, rtol=rtol, method="integrate", rest=1e-3, fields=_ALL)
-            yield f"{name}-{rtol:g}", [*_fields(e), e.onset_time, e.rest_time, e.steps]
-    m = vr.roll(scene.replace(mu=0.01), 1.0, 1.0, t)
-    yield "roll", [m.V, m.omega, m.x, m.angle, m.delta, m.regime, [each.t for each in m.switches]]
-    yield "flow-map", _fields(vr.ensemble(scene, *starts, t, method="flow", fields=_ALL))
+            yield f"{name}-{rtol:g}", motions(each, rtol=rtol, method="integrate", rest=1e-3)
+    yield "roll", vr.roll(scene.replace(mu=0.01), 1.0, 1.0, t)
+    yield "flow-map", motions(scene, method="flow")
     strengths, times = np.array([3.0, 5.0, 1.0]), (1e-3, 0.1, 10.0)
     rubber, plastic = vr.Prony(strengths, times), vr.Prony((2.0,), (1.0,))
     each = vr.Prony(np.linspace(1.0, 6.0, 50)[:, None] * strengths, times)
@@ -72,28 +74,21 @@ def parts() -> Iterator[tuple[str, Any]]:
     for name, material, many in (("series", rubber, each), ("pair", pair, pairs)):
         scene = vr.Scene(material=material, kappa=20.0, mu=0.2, gamma=100.0)
         yield f"contact-{name}", vr.contact(scene, V, delta=delta, slopes=True)
-        motions = vr.ensemble(scene.replace(material=many), *starts[:, :50], t, method="integrate", fields=_ALL)
-        yield f"motions-{name}-each", _fields(motions)
-        torque = np.linspace(-0.1, 0.1, 200)
-        yield f"driven-{name}", _fields(vr.ensemble(scene, *starts[:, :200], t, force=0.03, torque=torque, fields=_ALL))
-        steady = vr.steady(scene, torque=np.geomspace(1e-4, 0.1, 50))
-        yield f"steady-{name}", [steady.V, steady.omega, steady.Q, steady.M_half_space, steady.M_cylinder]
+        yield f"motions-{name}-each", motions(scene.replace(material=many), 50, method="integrate")
+        yield f"driven-{name}", motions(scene, 200, force=0.03, torque=np.linspace(-0.1, 0.1, 200))
+        yield f"steady-{name}", vr.steady(scene, torque=np.geomspace(1e-4, 0.1, 50))
     axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
-    for name, made in (
-        ("grid", vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)),
-        ("law", vr.tables.law(vr.presets.RUBBER_CYLINDER.material)),
-    ):
-        yield name, [each.values for each in made.data_vars.values()]
-
-
-def _fields(e: Any) -> list[Any]:
-    return [getattr(e, name) for name in _ALL]
+    yield "grid", vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)
+    yield "law", vr.tables.law(vr.presets.RUBBER_CYLINDER.material)
 
 
 def _hash(found: Any) -> str:
+    """Of all numbers of a result or a table."""
+    data = found.to_xarray() if hasattr(found, "to_xarray") else found
     total = hashlib.sha256()
-    for each in found if isinstance(found, list) else found.as_dict().values():
-        total.update(np.ascontiguousarray(each, dtype=np.float64).tobytes())
+    for each in data.variables.values():
+        if each.dtype.kind in "biuf":
+            total.update(np.ascontiguousarray(each, dtype=np.float64).tobytes())
     return total.hexdigest()[:16]
 
 

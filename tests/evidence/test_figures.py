@@ -83,8 +83,6 @@ t = [0.0, 1e-3, 4e-3]
 rtol = 1e-4
 seed = 3
 kept = 40
-[report]
-tables = ["{law}"]
 """
 
 
@@ -151,7 +149,7 @@ def test_stage_refuses_in_one_line(demo, tmp_path):
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
         ("ensemble", '"paper-section-5-rounded"', '"paper"', "preset: 'paper' is not"),
-        ("report", "[report]", "[report", "is not TOML"),
+        ("ensemble", "[ensemble]", "[ensemble", "is not TOML"),
     ):
         config.write_text(small.replace(old, new))
         assert words in stage_refused(name, "--config", config, "-o", tmp_path / "out")

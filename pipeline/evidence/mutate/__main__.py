@@ -1,6 +1,6 @@
 """Plant one defect after another in the kernels and see whether the tests notice -> data/results/mutants.json.
 
-    python -m pipeline.evidence.mutate [--check] [--only WORD ...] [--fresh] [--jobs N] [--timeout SECONDS]
+    python -m pipeline.evidence.mutate [--check] [--only WORD ...] [--fresh] [--jobs N]
 
 Each mutant of mutants.py is planted in a copy of the tree with a compile cache of its own, and the tests
 named beside it run until the first failure; without a defect they must pass.  As many run at a time as there
@@ -22,8 +22,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,8 @@ from .mutants import MUTANTS, Mutant
 RESULTS = ROOT / "data/results/mutants.json"
 KERNELS = "src/viscoroll/kernels"
 LEAST_KILLED = 0.95
+#: seconds of the tests of a mutant
+LONGEST = 900.0
 
 
 def main() -> int:
@@ -46,21 +49,19 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", default=[""], metavar="WORD")
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="mutants at a time (default: all cores)")
-    parser.add_argument("--timeout", type=float, default=900.0)
     arguments = parser.parse_args()
-    chosen = [mutant for mutant in MUTANTS if any(word in name_of(mutant) for word in arguments.only)]
-    lost = list(without_place(chosen))
+    chosen = {name_of(m): m for m in MUTANTS if any(word in name_of(m) for word in arguments.only)}
+    lost = list(without_place(chosen.values()))
     print("\n".join(lost or [f"{len(chosen)} mutants, each with one place"]), flush=True)
     if lost or arguments.check:
         return int(bool(lost))
-    known = {name_of(mutant) for mutant in MUTANTS}
-    results: dict[str, Any] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
-    results = {name: result for name, result in results.items() if name in known}
+    before = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+    results: dict[str, Any] = {name: before[name] for name in map(name_of, MUTANTS) if name in before}
     if arguments.fresh:
-        chosen = [m for m in chosen if results.get(name_of(m), {}).get("kernels") != kernels_digest()]
+        chosen = {name: m for name, m in chosen.items() if results.get(name, {}).get("kernels") != kernels_digest()}
     with ThreadPoolExecutor(arguments.jobs) as pool:
         try:
-            judge_all(chosen, pool, arguments.timeout, results)
+            judge_all(chosen, pool, results)
         finally:
             pool.shutdown(cancel_futures=True)
     killed = sum(result["outcome"] != "survived" for result in results.values())
@@ -68,7 +69,7 @@ def main() -> int:
     return int(killed < LEAST_KILLED * len(results))
 
 
-def without_place(mutants: list[Mutant]) -> Iterator[str]:
+def without_place(mutants: Iterable[Mutant]) -> Iterator[str]:
     """Those that cannot be planted as they are, and why: to be renewed after kernels were rewritten."""
     for mutant in mutants:
         path = ROOT / KERNELS / mutant.file
@@ -85,20 +86,15 @@ def without_place(mutants: list[Mutant]) -> Iterator[str]:
             yield f"no {mutant.tests}: {name_of(mutant)}"
 
 
-def judge_all(mutants: list[Mutant], pool: ThreadPoolExecutor, timeout: float, results: dict[str, Any]) -> None:
+def judge_all(mutants: dict[str, Mutant], pool: ThreadPoolExecutor, results: dict[str, Any]) -> None:
     """Into ``results`` and their file, one by one, once the tests have passed without a defect."""
-    tests = sorted({mutant.tests for mutant in mutants})
-    for name, (outcome, by, _) in zip(tests, pool.map(lambda name: judge(None, name, timeout), tests), strict=True):
-        if outcome != "survived":
-            raise SystemExit(f"{name}: {outcome} {by} without any defect planted")
-    runs = {pool.submit(judge, mutant, mutant.tests, timeout): mutant for mutant in mutants}
+    for found in pool.map(partial(judge, None), {mutant.tests for mutant in mutants.values()}):
+        if found["outcome"] != "survived":
+            raise SystemExit(f"{found['tests']}: {found['outcome']} {found['by']} without any defect planted")
+    runs = {pool.submit(judge, mutant, mutant.tests): name for name, mutant in mutants.items()}
     for number, run in enumerate(as_completed(runs), 1):
-        mutant, (outcome, by, seconds) = runs[run], run.result()
-        results[name_of(mutant)] = {
-            "outcome": outcome, "by": by, "seconds": round(seconds, 1), "tests": mutant.tests,
-            "date": datetime.date.today().isoformat(), "kernels": kernels_digest(),
-        }  # fmt: skip
-        print(f"{number}/{len(runs)} {outcome:>9} {seconds:>5.0f} s  {name_of(mutant)}", flush=True)
+        found = results[runs[run]] = run.result()
+        print(f"{number}/{len(runs)} {found['outcome']:>9} {found['seconds']:>5.0f} s  {runs[run]}", flush=True)
         write_text(RESULTS, json.dumps(results, indent=1, sort_keys=True, ensure_ascii=False) + "\n")
 
 
@@ -106,8 +102,8 @@ def name_of(mutant: Mutant) -> str:
     return f"{mutant.file}: {mutant.old.strip()} -> {mutant.new.strip()}"
 
 
-def judge(mutant: Mutant | None, tests: str, timeout: float) -> tuple[str, str, float]:
-    """Outcome of the tests on a tree with this defect or none, the first test that failed, and seconds."""
+def judge(mutant: Mutant | None, tests: str) -> dict[str, Any]:
+    """Outcome of the tests on a tree with this defect or none, and the first of them that failed."""
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
@@ -116,7 +112,11 @@ def judge(mutant: Mutant | None, tests: str, timeout: float) -> tuple[str, str, 
         shutil.copy(ROOT / "pyproject.toml", tree)
         if mutant is not None:
             plant(mutant, tree / KERNELS / mutant.file)
-        return *run(tree, tests, timeout), time.monotonic() - begun
+        outcome, by = run(tree, tests)
+    return {
+        "outcome": outcome, "by": by, "seconds": round(time.monotonic() - begun, 1), "tests": tests,
+        "date": datetime.date.today().isoformat(), "kernels": kernels_digest(),
+    }  # fmt: skip
 
 
 def plant(mutant: Mutant, path: Path) -> None:
@@ -129,13 +129,13 @@ def plant(mutant: Mutant, path: Path) -> None:
     path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
 
 
-def run(tree: Path, tests: str, timeout: float) -> tuple[str, str]:
+def run(tree: Path, tests: str) -> tuple[str, str]:
     """(killed, crashed, timed out or survived; the first failing test)."""
     command = [sys.executable, "-m", "pytest", "-x", "-rfE", "--tb=no", "-p", "no:cacheprovider", *tests.split()]
     environment = os.environ | {"PYTHONPATH": str(tree / "src"), "VISCOROLL_CACHE_DIR": str(tree / "cache")}
     try:
         done = subprocess.run(
-            command, cwd=tree, env=environment, capture_output=True, text=True, timeout=timeout, check=False
+            command, cwd=tree, env=environment, capture_output=True, text=True, timeout=LONGEST, check=False
         )
     except subprocess.TimeoutExpired:
         return "timed out", ""
