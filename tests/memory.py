@@ -11,7 +11,7 @@ from viscoroll.motion import Ensemble, flow
 
 def forget() -> None:
     """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
-    flow._recent.clear()
+    flow._map.cache_clear()
     law_table._made.cache_clear()
 
 

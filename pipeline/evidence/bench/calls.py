@@ -128,7 +128,7 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     t = np.linspace(0.0, sizes["end"], sizes["times"] + 1)[1:]
 
     def load() -> Any:
-        flow._recent.clear()
+        flow._map.cache_clear()
         return flow.flow_map(PAPER, 2.0)
 
     table, calls = load(), {}

@@ -8,8 +8,8 @@ highest speed, which is the next power of 16 (times a constant) above the speeds
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,9 +30,8 @@ _MEASURED = (0, 1, 2, 3, 6, 7)
 #: distance and angle are differences of what is left to rest: of the path, their error is relative to the path so
 #: far and to this share of the whole
 _PATH_SHARE = 1e-5
-#: maps kept in memory, the one used last at the end
+#: maps kept in memory
 _IN_MEMORY = 4
-_recent: dict[tuple, FlowMap] = {}
 _BLOCK = 1 << 14
 #: octaves that the highest speed is rounded up to
 _OCTAVES = 4
@@ -53,19 +52,16 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
     A map on disk that is damaged is built again, with a RuntimeWarning; where the disk cannot
     be written the map is kept in memory only.
     """
-    parameters, octave = asked(scene, speed)
-    key = (*parameters, octave)
-    found = _recent.pop(key, None)
+    return _map(*asked(scene, speed), threads)
+
+
+@lru_cache(_IN_MEMORY)
+def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
+    path = path_of(parameters, octave)
+    found = load(path, parameters)
     if found is None:
-        path = path_of(parameters, octave)
-        found = load(path, parameters)
-        if found is None:
-            found = build(parameters, octave, threads)
-            save(found, path)
-    _recent[key] = found
-    with suppress(StopIteration, RuntimeError, KeyError):  # another thread may be here too: it only costs a map
-        while len(_recent) > _IN_MEMORY:
-            del _recent[next(iter(_recent))]
+        found = build(parameters, octave, threads)
+        save(found, path)
     return found
 
 

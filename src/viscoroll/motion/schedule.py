@@ -23,16 +23,20 @@ _ROUNDING_OF_SLOPE = 1e-12
 
 
 class Curve(NamedTuple):
-    """A function of time of one motion or m: starts and ends (m, k), the last end infinite; terms (m, k, terms).
+    """A function of time of one motion or m: starts (m, k), the last piece without end; terms (m, k, terms).
 
     What is the same for all has one row.  Where motions have times of their own, pieces may have no length.
     error : the largest difference seen between a callable and its fit.
     """
 
     starts: Floats
-    ends: Floats
     terms: Floats
     error: float = 0.0
+
+    @property
+    def ends(self) -> Floats:
+        """Of the pieces."""
+        return _ends(self.starts)
 
 
 def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.inf) -> Curve:
@@ -51,8 +55,7 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         starts, terms, error = fitted(name, given, end, rtol, low)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
-        ends = np.r_[starts[1:], end, np.inf]
-        return Curve(np.append(starts, end)[None], ends[None], np.concatenate([terms, after])[None], error)
+        return Curve(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
     if isinstance(given, Schedule):
         return _linear(given.times, checked(f"values of {name}", given.values, low=low))
     values = checked(name, 0.0 if given is None else given, low=low)
@@ -60,19 +63,24 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
         raise ParameterError(
             name, f"array of shape {values.shape}", "a number, one a motion, or a Schedule(times, values)"
         )
-    return Curve(np.zeros((1, 1)), np.full((1, 1), np.inf), values.reshape(-1, 1, 1))
+    return Curve(np.zeros((1, 1)), values.reshape(-1, 1, 1))
 
 
 def _linear(times: Floats, values: Floats) -> Curve:
     """Linear between times, constant outside; a time given twice is a jump."""
     times, values = np.atleast_2d(times, values)
-    first, second, none = values[:, :-1], values[:, 1:], np.zeros((len(times), 1))
+    first, second = values[:, :-1], values[:, 1:]
     terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
     terms = np.concatenate([_flat(values[:, :1]), terms, _flat(values[:, -1:])], axis=1)
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
-    starts, ends = np.concatenate([none, times], axis=1), np.concatenate([times, none + np.inf], axis=1)
-    kept = (ends > starts).any(axis=0)
-    return Curve(starts[:, kept], ends[:, kept], terms[:, kept])
+    starts = np.pad(times, [(0, 0), (1, 0)])
+    kept = (_ends(starts) > starts).any(axis=0)
+    return Curve(starts[:, kept], terms[:, kept])
+
+
+def _ends(starts: Floats) -> Floats:
+    """Of pieces one after another."""
+    return np.pad(starts[:, 1:], [(0, 0), (0, 1)], constant_values=np.inf)
 
 
 def _flat(values: Floats) -> Floats:
@@ -125,11 +133,9 @@ def pieces_of(curves: tuple[Curve, ...], end: float) -> Floats:
     apart = max(len(each.starts) for each in curves)
     own = [np.broadcast_to(each.starts, (apart, each.starts.shape[1])) for each in curves]
     starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
-    new = np.concatenate([np.diff(starts, axis=1), np.ones((apart, 1))], axis=1) > 0.0
-    starts = starts[:, new.any(axis=0)]
-    ends = np.concatenate([starts[:, 1:], np.full((apart, 1), np.inf)], axis=1)
+    starts = starts[:, (_ends(starts) > starts).any(axis=0)]
     kept = max(int((starts < end).any(axis=0).sum()), 1)
-    starts, ends = starts[:, :kept], ends[:, :kept]
+    starts, ends = starts[:, :kept], _ends(starts)[:, :kept]
     count, terms = max(len(each.terms) for each in curves), max(each.terms.shape[-1] for each in curves)
     rows, lengths = np.zeros((count, starts.shape[1], FIRST + len(curves) * terms)), ends - starts
     rows[..., START] = starts
