@@ -5,20 +5,18 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Literal, TypeAlias, overload
+from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import checked
 from ..core.errors import ParameterError
-from ..core.typed import Numbers
+from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from .contact import contact
 from .contact_table import refuse_overflow
 from .parameters import Rolls, framed
 
-Array: TypeAlias = NDArray[np.float64]
 #: what the law takes as it is; all else goes through :func:`contact`
 _NUMBERS = frozenset({float, int, np.float64})
 _loads, _loads_and_slopes = partial(tuple.__new__, Loads), partial(tuple.__new__, LoadsAndSlopes)
@@ -51,9 +49,9 @@ class Law:
         self, V: float, omega: float, *, slopes: Literal[True]
     ) -> LoadsAndSlopes[float]: ...
     @overload
-    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False) -> Loads[Array]: ...
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False) -> Loads[Floats]: ...
     @overload
-    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Array]: ...
+    def __call__(self, V: Numbers, omega: Numbers, *, slopes: Literal[True]) -> LoadsAndSlopes[Floats]: ...
     def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
         """Q and M at speed V of the axis and angular velocity omega, any signs: Eqs. (15)-(18).
 

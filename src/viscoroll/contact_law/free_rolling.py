@@ -15,15 +15,13 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.scale import Scale
+from ..core.typed import Booleans, Floats, Integers
 from ..materials.bodies import one_series
 from ..materials.law_table import law_table
 from ..materials.prony import Prony
 from .contact_table import rolling
-
-Array = NDArray[np.float64]
 
 #: ln u in steps of a sixteenth of an octave, to 20 octaves beyond the times of a material, where it is in its limits
 #: to 1e-6
@@ -57,33 +55,33 @@ class Curve:
         self._rise = self._N(self.s[0], 1)
         self._first = u[0] ** 2 / M[0]  # the way from u[0] on, where M is proportional to u
 
-    def _place(self, u: Array) -> tuple[Array, Array]:
+    def _place(self, u: Floats) -> tuple[Floats, Floats]:
         """(ln u within the curve, u over the end that it is beyond)."""
         inside = np.clip(u, self.low, self.high)
         return np.log(inside), u / inside
 
-    def N(self, u: Array) -> Array:
+    def N(self, u: Floats) -> Floats:
         """Linear in u below the curve, as u^-2 above."""
         s, beyond = self._place(u)
         return (self._N(s) + self._rise * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(beyond, 1.0) ** 2
 
-    def M(self, u: Array) -> Array:
+    def M(self, u: Floats) -> Floats:
         """kappa M."""
         s, beyond = self._place(u)
         return np.exp(2.0 * s) / self._rate(s) * np.where(beyond < 1.0, beyond, 1.0 / beyond)
 
-    def time(self, u: Array) -> Array:
+    def time(self, u: Floats) -> Floats:
         """From u to some u below the curve."""
         s, beyond = self._place(u)
         return self._time(s) + 0.5 * self.high / self.M_high * (np.maximum(beyond, 1.0) ** 2 - 1.0)
 
-    def way(self, u: Array) -> Array:
+    def way(self, u: Floats) -> Floats:
         """From u to rest, in l0."""
         s, beyond = self._place(u)
         above = self.high**2 / (3.0 * self.M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
         return (self._first + self._way(s)) * np.minimum(beyond, 1.0) + above
 
-    def bound(self, u: Array, least: float) -> tuple[Array, NDArray[np.bool_]]:
+    def bound(self, u: Floats, least: float) -> tuple[Floats, Booleans]:
         """(u down to which |N| stays below ``least`` on the way from u, or 0; whether it is below at u).
 
         Where it is not, the next u above from which on it is.
@@ -97,7 +95,7 @@ class Curve:
         at = np.searchsorted(ends, u, side="right")
         return ends[np.where(below, at - 1, np.minimum(at, ends.size - 1))], below
 
-    def work(self, u: Array, way: Array, rested: Array) -> Array:
+    def work(self, u: Floats, way: Floats, rested: Floats) -> Floats:
         """W of leaving the imprint of a rest: an energy of P l0^2 W/(4 R) in SI units; ``way`` in l0."""
         longest, W = _SHORT * np.maximum(2.0 * way, _CLIMB), np.zeros(u.shape)
         for J, T in zip(*self.modes, strict=True):
@@ -157,9 +155,9 @@ class Free:
     """
 
     materials: Sequence[float | Prony]
-    which: NDArray[np.int64]
-    u: Array
-    g: Array
+    which: Integers
+    u: Floats
+    g: Floats
     speed: Any
     time: Any
     length: Any
@@ -196,7 +194,7 @@ class Free:
         lam, epsilon = (row.reshape(self.u.shape)[()] for row in out)
         return Strained(lam * (1.0 + epsilon) / (2.0 * kappa), epsilon, lam)
 
-    def each(self, of: Callable[..., Sequence[Array]], elastic: Sequence[float], *more: Any) -> list[Array]:
+    def each(self, of: Callable[..., Sequence[Floats]], elastic: Sequence[float], *more: Any) -> list[Floats]:
         """Numbers of every state, by u, g and ``more``; ``elastic``: of those that no law brakes."""
         out = np.empty((len(elastic), self.u.size))
         given = [np.broadcast_to(each, self.u.shape).ravel() for each in (self.u, self.g, *more)]
@@ -220,7 +218,7 @@ class Free:
     def reach(self, level: float) -> Reach:
         """Until the unsteadiness was ``level``."""
 
-        def of(curve: Curve, u: Array, g: Array) -> list[Array]:
+        def of(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
             end, below = np.empty(u.size), np.empty(u.size, bool)
             several, own = np.unique(g, return_inverse=True)
             for n, one in enumerate(several):
@@ -237,7 +235,7 @@ class Free:
     def start(self, rested: float = math.inf) -> Start:
         """What a start from a rest of this time, as the caller counts it, costs."""
 
-        def of(curve: Curve, u: Array, g: Array, rested: Array) -> list[Array]:
+        def of(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
             way = curve.way(u)
             W = curve.work(u, way / g, rested)
             share = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)

@@ -6,13 +6,13 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import broadcast_shape, checked, checked_extent, frozen
 from ..core.drive import slope_factor
 from ..core.errors import ParameterError, one_of
 from ..core.results import short
 from ..core.scale import DIMENSIONLESS, Scale
+from ..core.typed import Floats, Integers
 from ..materials.bodies import Bodies, one_series
 from ..materials.law_table import LawTable, law_table
 from ..materials.prony import Prony
@@ -65,7 +65,7 @@ class Rolls:
         """A copy with some parameters changed."""
         raise NotImplementedError
 
-    def some(self, which: NDArray[np.int64], count: int) -> Self:
+    def some(self, which: Integers, count: int) -> Self:
         """Some of ``count``, by their numbers."""
         parts = {name: each[which] for name, each in self._given.items() if getattr(each, "shape", ()) == (count,)}
         return self.replace(**parts) if parts else self
@@ -253,7 +253,7 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
     return roller, scene, roller.scale
 
 
-def _refuse_ratio(mu: NDArray[np.float64], kappa: NDArray[np.float64]) -> None:
+def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
     """Raise ParameterError where mu/kappa, and with it delta_star, leaves the range of doubles, or nearly."""
     low, high = RATIO_RANGE
     with np.errstate(over="ignore", under="ignore"):

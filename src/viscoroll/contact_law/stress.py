@@ -6,20 +6,17 @@ from itertools import pairwise
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import elements, run_blocks
 from ..core.checks import broadcast_shape, checked
 from ..core.errors import one_of
 from ..core.labels import unlabelled
 from ..core.results import Values
-from ..core.typed import Numbers
+from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
 from .contact import shaped, states
 from .parameters import Parameters, Rolls, framed
-
-Array = NDArray[np.float64]
 
 _BLOCK = 1 << 15
 
@@ -94,7 +91,7 @@ def stress(
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 
-def _fill(scene: Parameters, numbers: Array, points: Any, p: Array, tau: Array) -> None:
+def _fill(scene: Parameters, numbers: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """The stresses at points; ``numbers``: alphas, or of the materials, which lie together where they share one."""
     from ..kernels.rows.stress import memories, stress_loop
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import ParameterError
-from .typed import Floats
+from .typed import Booleans, Floats
 
 
 def checked(
@@ -51,7 +51,7 @@ def checked_extent(
     return array, (smallest, largest)
 
 
-def _listed(array: Floats, bad: NDArray[np.bool_]) -> str:
+def _listed(array: Floats, bad: Booleans) -> str:
     """The first bad value, its place, and how many more there are."""
     if array.size == 1:
         return str(array.item())

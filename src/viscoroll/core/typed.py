@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 #: numbers as results hold them
 Floats: TypeAlias = NDArray[np.float64]
+Integers: TypeAlias = NDArray[np.int64]
+Booleans: TypeAlias = NDArray[np.bool_]
 
 if TYPE_CHECKING:
     Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..core.checks import broadcast_shape, checked, frozen
 from ..core.errors import ParameterError
+from ..core.typed import Floats, Integers
 from .prony import Block, OneOrMany, Prony, descending, series_of_alpha
 from .prony_forms import MOST_MODES
 
@@ -108,7 +109,7 @@ class Bodies(OneOrMany):
         return one if one.shape == self.shape else one.repeated(len(self))
 
     @cached_property
-    def half_space_weights(self) -> NDArray[np.float64]:
+    def half_space_weights(self) -> Floats:
         """What of the strength of each creep mode of ``total``, slowest first, is the half-space's."""
         J = self.total.J
         if self._same:
@@ -116,7 +117,7 @@ class Bodies(OneOrMany):
         own = self._both[2][..., : J.shape[-1]]
         return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
 
-    def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
+    def blocks(self, which: Integers) -> Iterator[Block]:
         """The pairs ``which``, those of as many modes together."""
         some = self[which]
         for block in some.total.blocks(np.arange(len(some))):

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..core.checks import checked, number
 from ..core.errors import ParameterError, one_of
+from ..core.typed import Floats
 from .bodies import Bodies
 from .prony import Prony
 
@@ -159,9 +159,7 @@ def poisson(nu: Any) -> float:
     return nu
 
 
-def pairs(
-    name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def pairs(name: str, values: ArrayLike, other: str, at: ArrayLike, *, strict: bool = True) -> tuple[Floats, Floats]:
     """Two lists of one length, the first >= 0, the second > 0 (>= 0 unless ``strict``); raises ParameterError."""
     first, second = checked(name, values, low=0.0), checked(other, at, low=0.0, strict=strict)
     if first.ndim != 1 or first.shape != second.shape:

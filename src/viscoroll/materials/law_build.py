@@ -18,12 +18,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.typed import Floats
 from ..kernels.numerics.nodes import chebyshev, powers_of_chebyshev, rounded, to_chebyshev
 from .law_modes import AtPlaces
-
-Floats = NDArray[np.float64]
 
 TERMS = 24
 #: functions of a table in their order: the first five are of kappa |V|, the others of 1/F(eta)

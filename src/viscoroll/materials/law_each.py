@@ -8,13 +8,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.typed import Floats, Integers
 from .bodies import Bodies
 from .law_axis import OCTAVES, tables_of, to_chebyshev
 from .law_build import octaves
 from .law_modes import refuse_far, series_of
-from .law_table import Floats
 from .prony import Block, Prony, read_only
 
 _lock = threading.Lock()
@@ -44,7 +43,7 @@ def law_of_alphas(alpha: Floats) -> Any:
     return _record(hold, make, SOURCE, rows=rows, marks=marks, alpha=alpha, count=alpha.size, octaves=_known)
 
 
-def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> NDArray[np.int64]:
+def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     """An order in which states of one octave of alpha and one of kappa |V| follow each other.
 
     What they read is then near: scattered states take half as long again.
@@ -53,7 +52,7 @@ def order_of_alphas(alpha: Floats, kappa: Floats, V: Floats) -> NDArray[np.int64
     return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
 
 
-def _room(count: int) -> tuple[Floats, NDArray[np.int64]]:
+def _room(count: int) -> tuple[Floats, Integers]:
     """Of so many rows, numbers and marks, with those in front."""
     from ..kernels.rows.record import PARTS, WIDTH
 
@@ -90,7 +89,7 @@ def _octave(octave: int) -> tuple[Floats, int]:
     return read_only(np.moveaxis(found, 0, 2)), rows
 
 
-def law_of_materials(materials: Prony | Bodies, which: NDArray[np.int64]) -> Any:
+def law_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     """The record of states or motions that have the materials ``which``.
 
     For one thread; it holds the law of one of them at a time (:func:`..kernels.rows.record.hold`).

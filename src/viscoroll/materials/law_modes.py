@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.errors import ParameterError
+from ..core.typed import Floats
 from .bodies import Bodies
 from .prony import Prony
 from .prony_forms import Modes
-
-Floats = NDArray[np.float64]
 
 #: times in T_ref beyond which numbers of rows leave the doubles
 _LONGEST = 1e100

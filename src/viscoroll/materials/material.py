@@ -9,11 +9,12 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..core.checks import checked, number
 from ..core.errors import ParameterError
 from ..core.results import Row, Shown
+from ..core.typed import Floats
 from .importers import FromPrograms, poisson
 from .measured import Measured
 from .prony import Prony
@@ -258,7 +259,7 @@ class Material(FromPrograms):
         storage = 1.0 + (E * (np.where(fast, 1.0, ratio * ratio) / whole)).sum(axis=-1)
         return storage[()], (E * (ratio / whole)).sum(axis=-1)[()]
 
-    def _over(self, t: ArrayLike, name: str, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _over(self, t: ArrayLike, name: str, times: Floats) -> Floats:
         """t over each of the times."""
         with np.errstate(over="ignore"):
             return checked(name, t, low=0.0)[..., None] / (self.T_ref * times)

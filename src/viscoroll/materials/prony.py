@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.checks import broadcast_shape, checked
 from ..core.errors import ParameterError
+from ..core.typed import Floats, Integers
 from .prony_forms import HIGHEST_ALPHA, MOST_MODES, WIDEST, Modes, of_creep, of_relaxation
 
 
@@ -30,9 +31,9 @@ class Block(NamedTuple):
     weights : of pairs, what of the strength of each creep mode is the half-space's
     """
 
-    rows: NDArray[np.int64]
+    rows: Integers
     modes: Modes
-    weights: NDArray[np.float64] | None = None
+    weights: Floats | None = None
 
 
 class OneOrMany:
@@ -160,7 +161,7 @@ class Prony(OneOrMany):
         """Both forms of a single one, and the gaps between their rates."""
         return (of_creep if self.by_creep else of_relaxation)(self._strengths, self._times, self.alpha)
 
-    def blocks(self, which: NDArray[np.int64]) -> Iterator[Block]:
+    def blocks(self, which: Integers) -> Iterator[Block]:
         """The materials ``which``, those of as many modes together."""
         counts, form = self._counts[which], of_creep if self.by_creep else of_relaxation
         for count in np.unique(counts).tolist():
@@ -170,7 +171,7 @@ class Prony(OneOrMany):
             yield Block(rows, form(strengths, times, self.alpha[own]))
 
     @cached_property
-    def _counts(self) -> NDArray[np.int64]:
+    def _counts(self) -> Integers:
         return np.count_nonzero(self._strengths, axis=-1)
 
     @cached_property
@@ -187,22 +188,22 @@ class Prony(OneOrMany):
         return read_only(strengths), read_only(1.0 / rates)
 
     @property
-    def E(self) -> NDArray[np.float64]:
+    def E(self) -> Floats:
         """Strengths of relaxation over the long-time modulus, slowest mode first."""
         return self._other[0] if self.by_creep else self._strengths
 
     @property
-    def tau(self) -> NDArray[np.float64]:
+    def tau(self) -> Floats:
         """Relaxation times over T_ref, longest first."""
         return self._other[1] if self.by_creep else self._times
 
     @property
-    def J(self) -> NDArray[np.float64]:
+    def J(self) -> Floats:
         """Strengths of creep over the long-time compliance, slowest mode first."""
         return self._strengths if self.by_creep else self._other[0]
 
     @property
-    def T(self) -> NDArray[np.float64]:
+    def T(self) -> Floats:
         """Retardation times over T_ref, longest first."""
         return self._times if self.by_creep else self._other[1]
 
@@ -290,7 +291,7 @@ def series_of_alpha(alpha: float) -> Prony:
     return made
 
 
-def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[NDArray[np.float64]]:
+def descending(strengths: NDArray, times: NDArray, *more: NDArray) -> list[Floats]:
     """Strengths and times by falling times: those of equal times added up, those of no strength behind the others.
 
     ``more`` : parts of the strengths, likewise.

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.typed import Floats
+
 #: from some 1e18 on 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha zeta is large
 HIGHEST_ALPHA = 1e12
 #: most modes of a series, and longest over shortest time
@@ -30,11 +32,11 @@ class Modes:
     """
 
     alpha: Any
-    a: NDArray[np.float64]
-    b: NDArray[np.float64]
-    E: NDArray[np.float64]
-    J: NDArray[np.float64]
-    gap: NDArray[np.float64]
+    a: Floats
+    b: Floats
+    E: Floats
+    J: Floats
+    gap: Floats
 
 
 def of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
@@ -56,13 +58,13 @@ def of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     return Modes(alpha, a, b, _strengths(gap, alpha)[1] / a, J, gap)
 
 
-def _between(times: NDArray) -> NDArray[np.float64]:
+def _between(times: NDArray) -> Floats:
     """rate[j] - rate[l] of the rates 1/times: of close times the difference is exact, of their rates it is not."""
     row, column = times[..., None, :], times[..., :, None]
     return (row - column) / (column * row)
 
 
-def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> NDArray[np.float64]:
+def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Floats:
     """gap[..., j, i] = s_i - pole_j to full relative accuracy, s_i the zeros of constant + sum weight_j/(pole_j - s).
 
     spread[..., j, l] = pole_j - pole_l.  Poles ascend and weights are positive, so that the sum rises from pole to
@@ -88,19 +90,19 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> NDA
     return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
 
 
-def _seen_from(origin: NDArray, spread: NDArray) -> NDArray[np.float64]:
+def _seen_from(origin: NDArray, spread: NDArray) -> Floats:
     """[..., i, j] = pole_j - pole of the origin of zero i."""
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
 
-def _sum_at(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> NDArray[np.float64]:
+def _sum_at(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
     """The sum at s = pole[origin] + step."""
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
 
 def _polished(
     distance: NDArray, origin: NDArray, side: NDArray, seen: NDArray, weight: NDArray, constant: NDArray
-) -> NDArray[np.float64]:
+) -> Floats:
     """One step of Newton's iteration for weight[origin] = distance side (the rest of the sum)."""
     per, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     each = np.where(own, 0.0, weight[..., None, :] * per)
@@ -112,7 +114,7 @@ def _polished(
     return np.where((new > 0.5 * distance) & (new < 2.0 * distance), new, distance)
 
 
-def _strengths(gap: NDArray, alpha: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
     """(J, E) times their rates: products of gaps over products of the differences of their own rates.
 
     The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.  Factors are

@@ -14,7 +14,7 @@ from ..core.checks import broadcast_shape, extent, number
 from ..core.drive import Feedback, Schedule, over
 from ..core.errors import MotionStatus, ParameterError, refuse_unknown
 from ..core.scale import OF_TIME
-from ..core.typed import Floats, Numbers
+from ..core.typed import Booleans, Floats, Integers, Numbers
 from ..materials.bodies import Bodies
 from ..materials.law_each import law_of_alphas, law_of_materials
 from ..materials.law_table import law_table
@@ -156,7 +156,7 @@ class _Many(NamedTuple):
 
     begun: Begun
     inputs: dict[str, NDArray]
-    caught: NDArray[np.bool_]
+    caught: Booleans
     times: Floats
     rows: tuple[str, ...]
     threads: int | None
@@ -196,7 +196,7 @@ def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict
     return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": problem}
 
 
-def _keep_caught(answer: Answer, caught: NDArray[np.bool_]) -> None:
+def _keep_caught(answer: Answer, caught: Booleans) -> None:
     """Motions that never leave the imprint of their rest."""
     answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
     answer.status[caught] = MotionStatus.CAUGHT
@@ -232,7 +232,7 @@ def _map_of(
     return flow_map(scene, speed, threads=threads) if speed > 0.0 else None
 
 
-def _integrate_others(answer: Answer, many: _Many) -> NDArray[np.int64]:
+def _integrate_others(answer: Answer, many: _Many) -> Integers:
     """Integrate the motions without an answer; returns the steps of each."""
     begun, inputs = many.begun, many.inputs.values()
     law, rows = _law_of(begun.scene, begun.unsteady), np.array([ROWS.index(name) for name in many.rows], np.int64)
@@ -253,7 +253,7 @@ def _integrate_others(answer: Answer, many: _Many) -> NDArray[np.int64]:
     return steps
 
 
-def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.int64]], tuple[Any, bool]]:
+def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """(alphas of motions, which they are) -> the law that they share, or that of each in turn; whether bodies
     differ.  ``unsteady``: of one motion, with N."""
     each: Any = scene.each
@@ -262,7 +262,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, NDArray[np.
         law = (one.unsteady_record if unsteady else one.record), one.unlike
         return lambda alpha, which: law
 
-    def made(alpha: NDArray, which: NDArray[np.int64]) -> tuple[Any, bool]:
+    def made(alpha: NDArray, which: Integers) -> tuple[Any, bool]:
         if each is None:
             return law_table(alpha.item()).unsteady_record if unsteady else law_of_alphas(alpha), False
         which = np.minimum(which, len(each) - 1)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters
 from ..core.blocks import flattened, run_blocks
-from ..core.typed import Floats
+from ..core.typed import Floats, Integers
 from .flow_motions import motions
 from .flow_store import FlowMap, load, path_of, save
 
@@ -153,7 +153,7 @@ class Answer(NamedTuple):
     status: NDArray[np.int8]
     onset: Floats
     rest: Floats
-    switches: NDArray[np.int64]
+    switches: Integers
 
     @classmethod
     def empty(cls, rows: int, count: int, times: int) -> Answer:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_law.assumptions import Validity
 from ..contact_law.judged import validity
@@ -15,7 +14,7 @@ from ..contact_law.steadiness import Steadiness
 from ..core.errors import MotionStatus
 from ..core.labels import Labels
 from ..core.results import Row
-from ..core.typed import Floats
+from ..core.typed import Booleans, Floats, Integers
 from .result import Rolled
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ class Ensemble(Rolled):
 
     V0: Floats
     omega0: Floats
-    flow: NDArray[np.bool_]
+    flow: Booleans
     flow_error: float
     flow_problem: str
     labels: Labels | None = None
@@ -115,7 +114,7 @@ class Ensemble(Rolled):
         free = scene.freely(np.nan_to_num(speeds / scale["V"])).scaled(scale)
         return found._replace(steady=Steadiness.along(free, rolls, x, ends=True))
 
-    def judged(self) -> tuple[NDArray[np.int64], Floats, Floats]:
+    def judged(self) -> tuple[Integers, Floats, Floats]:
         """Which motions :meth:`validity` looks at, and the highest V and omega that they start with or reach."""
         fastest = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, found in fastest.items():

@@ -16,7 +16,7 @@ from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
 from ..core.errors import MotionStatus, ParameterError
 from ..core.results import Row, Values
-from ..core.typed import Floats
+from ..core.typed import Booleans, Floats
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS
 from .result import Rolled
@@ -238,7 +238,7 @@ def _course(t: NDArray, values: NDArray) -> str:
     return f"first {first}, {peak}last {last}"
 
 
-def _with_gaps(values: NDArray, reached: NDArray[np.bool_]) -> NDArray:
+def _with_gaps(values: NDArray, reached: Booleans) -> NDArray:
     """``values`` where ``reached``, and between them NaN, or False among booleans."""
     whole = np.full(reached.shape, False if values.dtype == bool else np.nan)
     whole[reached] = values

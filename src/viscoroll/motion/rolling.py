@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..contact_law.parameters import Parameters, Rolls, framed
 from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
-from ..core.typed import Floats
+from ..core.typed import Floats, Integers
 from .checks import controls, in_words, refuse_many
 from .driven import ROWS, Drive, Prepared, prepared, refuse_drives, refuse_rest
 from .unsteady import climbed, refuse_unlike, time_of_rest
@@ -71,7 +71,7 @@ def begin(
 
 def integrate(
     count: int, batch: tuple[Any, ...], drive: tuple[NDArray, NDArray, int], times: Floats,
-    limits: tuple[float, float, int], rows: NDArray[np.int64], notes: tuple[NDArray, ...] = NO_NOTES,
+    limits: tuple[float, float, int], rows: Integers, notes: tuple[NDArray, ...] = NO_NOTES,
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """(Rows of :data:`ROWS` of ``count`` motions at the times; status, steps, switches, onset and rest time of each).
 

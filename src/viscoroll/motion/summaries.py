@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.errors import MotionStatus, ParameterError
+from ..core.typed import Floats, Integers
 from .export import column_attributes, provenance
 from .quantities import QUANTITIES
 
@@ -35,13 +36,13 @@ class Histogram(msgspec.Struct):
     """
 
     bins: NDArray[np.int32]
-    counts: NDArray[np.int64]
+    counts: Integers
     count: int = 0
     mean: float = np.nan
     spread: float = np.nan
     low: float = np.nan
     high: float = np.nan
-    values: NDArray[np.float64] | None = None
+    values: Floats | None = None
 
 
 class Summary(msgspec.Struct):
@@ -74,7 +75,7 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
     return Summary(histograms, dict(zip(codes.tolist(), counts.tolist(), strict=True)), int(motions.flow.sum()))
 
 
-def histogram(values: NDArray[np.float64], exact: bool = False) -> Histogram:
+def histogram(values: Floats, exact: bool = False) -> Histogram:
     """Histogram of the finite ones of ``values``."""
     kept = values[np.isfinite(values)]
     bins, counts = np.unique(_bin_of(kept), return_counts=True)
@@ -85,13 +86,13 @@ def histogram(values: NDArray[np.float64], exact: bool = False) -> Histogram:
     return Histogram(bins, counts, kept.size, *moments, kept if exact else None)
 
 
-def _bin_of(values: NDArray[np.float64]) -> NDArray[np.int32]:
+def _bin_of(values: Floats) -> NDArray[np.int32]:
     """Number of the bin of each value; the order of numbers is that of bins."""
     bits = (values + 0.0).view(np.int64)  # -0 becomes 0
     return ((bits ^ ((bits >> 63) & _MAGNITUDE)) >> _DROPPED).astype(np.int32)
 
 
-def _edges(bins: NDArray[np.int32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _edges(bins: NDArray[np.int32]) -> tuple[Floats, Floats]:
     """Least numbers of bins, and of those that follow."""
     bits = np.stack([bins, bins + 1]).astype(np.int64) << _DROPPED
     below, above = (bits ^ ((bits >> 63) & _MAGNITUDE)).view(np.float64)
@@ -122,14 +123,14 @@ def _sum(a: Histogram, b: Histogram) -> Histogram:
     )  # fmt: skip
 
 
-def _counts(one: Histogram, bins: NDArray[np.int32]) -> NDArray[np.int64]:
+def _counts(one: Histogram, bins: NDArray[np.int32]) -> Integers:
     """Its counts over more bins."""
     counts = np.zeros(bins.size, np.int64)
     counts[np.searchsorted(bins, one.bins)] = one.counts
     return counts
 
 
-def quantiles(one: Histogram, levels: tuple[float, ...]) -> NDArray[np.float64]:
+def quantiles(one: Histogram, levels: tuple[float, ...]) -> Floats:
     """Quantiles of a histogram; NaN where it is empty."""
     if not one.count:
         return np.full(len(levels), np.nan)
@@ -141,7 +142,7 @@ def quantiles(one: Histogram, levels: tuple[float, ...]) -> NDArray[np.float64]:
     return first + (position - lower) * (second - first)
 
 
-def _in_order(one: Histogram, ranks: NDArray[np.int64]) -> NDArray[np.float64]:
+def _in_order(one: Histogram, ranks: Integers) -> Floats:
     """The values of these ranks (from 0), were those of each bin evenly spread."""
     below, above = _edges(one.bins)
     reached = np.cumsum(one.counts)
@@ -150,7 +151,7 @@ def _in_order(one: Histogram, ranks: NDArray[np.int64]) -> NDArray[np.float64]:
     return np.clip(below[at] + share * (above[at] - below[at]), one.low, one.high)
 
 
-def summary_dataset(total: Summary, t: NDArray[np.float64], levels: tuple[float, ...], si: bool) -> xr.Dataset:
+def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bool) -> xr.Dataset:
     """Moments, quantiles and histograms over t, and counts of how motions ended."""
     import xarray as xr
 

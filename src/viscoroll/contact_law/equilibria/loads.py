@@ -6,11 +6,12 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.checks import broadcast_shape, checked
 from ...core.drive import Feedback, slope_factor
 from ...core.errors import ParameterError
+from ...core.typed import Floats
 from ..contact_table import refuse_overflow
 from ..parameters import Parameters
 
@@ -47,12 +48,12 @@ class Loads(NamedTuple):
     shape: tuple[int, ...]
     gains: Gains
     given: str | None
-    force: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    kappa: NDArray[np.float64]
-    mu: NDArray[np.float64]
-    j: NDArray[np.float64]
-    V: NDArray[np.float64] | None = None
+    force: Floats
+    torque: Floats
+    kappa: Floats
+    mu: Floats
+    j: Floats
+    V: Floats | None = None
 
 
 def loads_of(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.scale import Scale
+from ...core.typed import Integers
 from .loads import Loads
 
 
@@ -21,7 +22,7 @@ class Reasons(NamedTuple):
 
     loads: Loads
     states: tuple[NDArray, NDArray, NDArray]
-    number: NDArray[np.int64]
+    number: Integers
     top: tuple[float, float]
     elastic: bool
     scale: Scale

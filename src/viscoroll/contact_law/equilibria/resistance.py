@@ -12,9 +12,9 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import ParameterError
+from ...core.typed import Booleans, Floats, Integers
 from ...materials.law_table import LawTable
 from ..contact_table import rolling
 from ..parameters import Rolls, framed
@@ -36,21 +36,21 @@ class Humps(NamedTuple):
     V : speeds.  M : moments there.  top : whether it is a maximum.
     """
 
-    V: NDArray[np.float64]
-    M: NDArray[np.float64]
-    top: NDArray[np.bool_]
+    V: Floats
+    M: Floats
+    top: Booleans
 
 
 @dataclass(frozen=True)
 class Branches:
     """kappa (M - G V) over the speed: nodes by rising speed, and those between which it is monotone."""
 
-    u: NDArray[np.float64]
-    rise: NDArray[np.float64]
-    flat: NDArray[np.bool_]
+    u: Floats
+    rise: Floats
+    flat: Booleans
     gain: float
-    first: NDArray[np.int64]
-    last: NDArray[np.int64]
+    first: Integers
+    last: Integers
 
     @cached_property
     def curve(self) -> Any:
@@ -65,7 +65,7 @@ class Branches:
         n = int(np.argmax(self.rise))
         return float(self.rise[n]), float(self.u[n])
 
-    def met(self, load: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def met(self, load: Floats) -> tuple[Integers, Integers]:
         """(Which loads meet a branch, the node behind which they do).
 
         An extremum, and loads next to it, belong to the branch that ends in it.
@@ -150,7 +150,7 @@ def branches(law: LawTable, gain: float) -> Branches:
     return Branches(u, _curve(law, gain, u)[0], is_flat, gain, ends[:-1].copy(), ends[1:].copy())
 
 
-def grid(law: LawTable) -> NDArray[np.float64]:
+def grid(law: LawTable) -> Floats:
     """Nodes of log2(u), ascending: close where the material relaxes."""
     times = np.append(law.retardation_time, law.relaxation_time) if law.alpha > 1.0 else np.ones(1)
     low, high = math.floor(-math.log2(times.max())) - _MARGIN, math.ceil(-math.log2(times.min())) + _MARGIN
@@ -159,6 +159,6 @@ def grid(law: LawTable) -> NDArray[np.float64]:
     return np.concatenate([*steps, [high + _WIDE]])
 
 
-def _curve(law: LawTable, gain: float, u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
     """kappa (M - gain V) and its slope over kappa V."""
     return rolling(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])

@@ -8,12 +8,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.labels import Labels
 from ...core.results import Row, Values, short, unit_of
 from ...core.scale import DIMENSIONS, Scale
 from ...core.symbols import attributes
+from ...core.typed import Floats
 from . import row
 from .loads import Loads
 from .reason import Reasons
@@ -44,11 +44,11 @@ class Loss:
         a towed one that drives; 0 where nothing is taken out, NaN at rest.
     """
 
-    slip: NDArray[np.float64]
-    half_space: NDArray[np.float64]
-    cylinder: NDArray[np.float64]
-    coefficient: NDArray[np.float64]
-    efficiency: NDArray[np.float64]
+    slip: Floats
+    half_space: Floats
+    cylinder: Floats
+    coefficient: Floats
+    efficiency: Floats
 
 
 class Steady(Values):

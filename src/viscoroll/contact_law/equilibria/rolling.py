@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.drive import Feedback, over
 from ...core.errors import ParameterError
 from ...core.labels import unlabelled
-from ...core.typed import Numbers
+from ...core.typed import Integers, Numbers
 from ...materials.law_table import LawTable
 from ..parameters import Rolls, framed
 from . import row
@@ -107,7 +106,7 @@ def steady(
     return found
 
 
-def _resting(loads: Loads, neutral: bool) -> NDArray[np.int64]:
+def _resting(loads: Loads, neutral: bool) -> Integers:
     """Loads that leave the cylinder at rest, if friction does; where ``neutral`` it need not be at rest under them."""
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]

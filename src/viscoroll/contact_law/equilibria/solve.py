@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blocks import run_blocks
+from ...core.typed import Floats
 from ...materials.law_table import LawTable
 from ..contact_table import states_of
 from . import row
@@ -27,12 +28,12 @@ _SLIGHT, _CANCELS = 1e-8, 0.2
 _ROWS = "Q", "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV"
 
 
-def contact_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> NDArray[np.float64]:
+def contact_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str) -> Floats:
     """Fields of the contact, a row each."""
     return states_of(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
 
-def rows_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> NDArray[np.float64]:
+def rows_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
     """The rows of :mod:`row` at V > 0 and a creep."""
     rows = np.empty((2 + len(_ROWS), V.size))
     rows[row.V], rows[row.DELTA], rows[2:] = V, delta, contact_at(law, kappa, mu, V, delta, *_ROWS)
@@ -40,7 +41,7 @@ def rows_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> N
     return rows
 
 
-def crossings(law: LawTable, gain: float, total: NDArray[np.float64]) -> tuple[NDArray, NDArray, NDArray]:
+def crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
     """(load, sign of V, kappa |V|) wherever kappa (M - gain V) meets a total."""
     from ...kernels.rows.steady import crossing_loop
 
@@ -56,7 +57,7 @@ def crossings(law: LawTable, gain: float, total: NDArray[np.float64]) -> tuple[N
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 
 
-def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: NDArray[np.float64]) -> States:
+def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
     """Steady states at V > 0, in the frame of ``sign``, friction sufficing or not."""
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V

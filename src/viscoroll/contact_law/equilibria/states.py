@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.typed import Floats, Integers
 from . import row
 from .loads import Gains, Loads
 
@@ -17,8 +18,8 @@ class States(NamedTuple):
     Where friction does not suffice, delta and omega are NaN.
     """
 
-    load: NDArray[np.int64]
-    rows: NDArray[np.float64]
+    load: Integers
+    rows: Floats
 
     @classmethod
     def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
@@ -63,7 +64,7 @@ class States(NamedTuple):
         return States(self.load[held], self.rows[:, held])
 
 
-def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> NDArray[np.float64]:
+def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     """Of (V, omega) over gamma t: real parts of the faster and of the other, and the imaginary part of the other.
 
     slopes : a, b of Q over V and omega, then those of both moments over V.

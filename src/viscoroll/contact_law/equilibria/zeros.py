@@ -7,14 +7,16 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.typed import Floats
+
 _HALVINGS = 62
 #: where a function comes near 0 and turns back, it is looked at this often with so many points
 _ZOOMS, _ZOOMED = 4, 33
 
-Function = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+Function = Callable[[Floats], Floats]
 
 
-def zeros(function: Function, nodes: NDArray[np.float64], noise: NDArray[np.float64] | float = 0.0) -> NDArray:
+def zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> NDArray:
     """Zeros of a vectorised ``function`` between ascending ``nodes``, pairs closer than the nodes among them.
 
     A pair is found where |function| has a minimum at a node.  Nodes where it is not above ``noise`` have no sign.
