@@ -14,7 +14,7 @@ from places import ROOT
 
 import viscoroll as vr
 from viscoroll.core.extras import imported
-from viscoroll.io.runs import export_netcdf, open_summaries, read_run, run_ensemble
+from viscoroll.io.runs import export_netcdf, open_run, read_run, run_ensemble
 
 RUN = """
 preset = "paper-section-5"
@@ -54,7 +54,7 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def test_a_missing_extra_is_named(bare, run_file, tmp_path):
     run, store = read_run(run_file), tmp_path / "store.zarr"
-    for call in (partial(run_ensemble, run, store), partial(open_summaries, store), partial(export_netcdf, store, "x")):
+    for call in (partial(run_ensemble, run, store), partial(open_run, store), partial(export_netcdf, store, "x")):
         with pytest.raises(vr.MissingDependencyError, match=r"zarr is not .*pip install 'viscoroll\[runs\]'"):
             call()
     assert not store.exists()

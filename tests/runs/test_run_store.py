@@ -15,7 +15,7 @@ from refusals import refused
 import viscoroll as vr
 from viscoroll.app.cli import main
 from viscoroll.core import files
-from viscoroll.io.runs import export_netcdf, open_summaries, read_run, run_ensemble, verify
+from viscoroll.io.runs import export_netcdf, open_run, read_run, run_ensemble, verify
 from viscoroll.io.runs.store import Store, locked
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
@@ -84,7 +84,7 @@ def test_damaged_motions_are_not_exported(tmp_path, whole):
         export_netcdf(store, tmp_path / "all.nc")
     assert not (tmp_path / "all.nc").exists()
     (store / "V_mean/0").write_bytes(b"")
-    refused(lambda: open_summaries(store), "V_mean/0", error=vr.FileError)
+    refused(lambda: open_run(store), "V_mean/0", error=vr.FileError)
 
 
 @pytest.mark.parametrize("change", ["flip", "truncate", "remove"])

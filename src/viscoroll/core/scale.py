@@ -53,7 +53,7 @@ KINDS = {
 }
 
 
-def _powers(dimension: str) -> dict[str, int]:
+def powers(dimension: str) -> dict[str, int]:
     """Powers of what a dimension, or a unit as "N m/m" or "N m m-1", is made of."""
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
@@ -63,7 +63,7 @@ def _powers(dimension: str) -> dict[str, int]:
 
 
 #: what each dimension is made of
-_PARTS = {dimension: _powers(dimension) for dimension in KINDS}
+_PARTS = {dimension: powers(dimension) for dimension in KINDS}
 #: quantity -> the power of time in it
 OF_TIME = {name: power for name, dimension in DIMENSIONS.items() if (power := _PARTS[dimension].get("T", 0))}
 
@@ -124,5 +124,5 @@ def si_unit(name: str) -> str:
 def refuse_other_unit(name: str, value: Any, unit: str) -> None:
     """Raise ParameterError for another unit, or an array of xarray or pandas that says it has one; "m/s" is "m s-1"."""
     given = value if isinstance(value, str) else getattr(value, "attrs", {}).get("units")
-    if given is not None and _powers(str(given)) != _powers(unit):
+    if given is not None and powers(str(given)) != powers(unit):
         raise ParameterError(name, f"in {given!s:.40}", f"in {unit}")

@@ -167,14 +167,11 @@ def _sobol(seed: int, dimensions: int, start: int, stop: int) -> NDArray[np.floa
     """
     sequence = copy.copy(_sequence(seed, dimensions))
     drawn = np.empty((stop - start, dimensions))
-    state, begun = sequence._shift.copy(), max(start - 1, 0)
-    gray = begun ^ (begun >> 1)
+    state, gray = sequence._shift.copy(), start ^ (start >> 1)
     for bit in range(gray.bit_length()):
         if gray >> bit & 1:
             state ^= sequence._sv[:, bit]
-    sequence._quasi, sequence.num_generated = state, start
-    first = start == 0
-    if first:  # alone: the first call would warn about a number of points that is no power of 2
-        drawn[:1] = sequence.random(1)
-    drawn[first:] = sequence.random(stop - start - first)
+    drawn[0] = state * 2.0**-_BITS
+    sequence._quasi, sequence.num_generated = state, start + 1
+    drawn[1:] = sequence.random(stop - start - 1)
     return np.ascontiguousarray(drawn.T)

@@ -21,7 +21,6 @@ from .arguments import COMMANDS
 
 #: What a shell reports for a program ended by SIGINT or SIGPIPE.
 _INTERRUPTED, _BROKEN_PIPE = 130, 141
-_NEGATIVE = re.compile(r"-\.?(\d|inf|nan)")
 #: first words of several commands
 _GROUPS = {
     "material": "show and fit a material of several relaxation times",
@@ -38,6 +37,8 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
+        # what is no option: argparse takes a value like -1:1:5 or -1e-3 for one
+        self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message} (see {self.prog} --help)")
@@ -93,7 +94,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str]) -> int:
     try:
-        given = parser().parse_args(_joined(argv))
+        given = parser().parse_args(argv)
         code = given.run(given) or 0
     except SystemExit as finished:  # argparse's own way to end after --help and --version
         code = int(finished.code or 0)
@@ -110,14 +111,3 @@ def _told(message: Warning | str, *_: Any, **__: Any) -> None:
 def _failed(error: object) -> int:
     print("viscoroll: error:", " ".join(str(error).split()), file=sys.stderr)
     return 2
-
-
-def _joined(argv: Sequence[str]) -> list[str]:
-    """``--V -1:1:5`` as ``--V=-1:1:5``: argparse takes a value like -1:1:5 or -1e-3 for an option."""
-    joined: list[str] = []
-    for text in argv:
-        if joined and joined[-1].startswith("--") and "=" not in joined[-1] and _NEGATIVE.match(text):
-            joined[-1] += f"={text}"
-        else:
-            joined.append(text)
-    return joined

@@ -5,6 +5,7 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ... import __version__
+from ...core.scale import powers
 from .variables import MODELS, UNITS, Model, Variable
 
 #: what a model can do: attributes of ModelExchange and CoSimulation of both, and of either version
@@ -27,9 +28,9 @@ def described(version: int, name: str, starts: dict[str, float], token: str, tit
     )  # fmt: skip
     _add_kinds(root, version, name, model)
     units = SubElement(root, "UnitDefinitions")
-    for unit, exponents in UNITS.items():
+    for unit, base in UNITS.items():
         one = SubElement(units, "Unit", name=unit)
-        SubElement(one, "BaseUnit", {base: str(power) for base, power in exponents.items()})
+        SubElement(one, "BaseUnit", {each: str(power) for each, power in powers(base).items()})
     SubElement(root, "DefaultExperiment", startTime="0", stopTime="1", stepSize="0.01")
     variables = SubElement(root, "ModelVariables")
     references = {each.name: str(n) for n, each in enumerate(model.variables, start=1)}
@@ -81,16 +82,16 @@ def _add_structure(parent: Element, version: int, model: Model, references: dict
     outputs = [references[each.name] for each in model.variables if each.causality == "output"]
     rates = [references[f"der_{state}"] for state in model.states]
     unknowns = sorted((*outputs, *rates), key=int)
+    kinds = {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}
     if version == 3:
         kinds = {"Output": outputs, "ContinuousStateDerivative": rates, "InitialUnknown": unknowns}
-        for kind, found in kinds.items():
-            for reference in found:
-                SubElement(parent, kind, valueReference=reference)
-        return
-    for kind, found in {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}.items():
-        group = SubElement(parent, kind) if found else parent
+    for kind, found in kinds.items():
+        group = SubElement(parent, kind) if version == 2 and found else parent
         for reference in found:
-            SubElement(group, "Unknown", index=reference)
+            if version == 2:
+                SubElement(group, "Unknown", index=reference)
+            else:
+                SubElement(group, kind, valueReference=reference)
 
 
 def sources_described(name: str) -> str:

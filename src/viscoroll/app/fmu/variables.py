@@ -84,9 +84,8 @@ ROLLER = Model(
 )
 #: Name -> model.
 MODELS = {"Roller": ROLLER, "ContactElement": ELEMENT}
-#: Unit -> exponents of the base units.
-UNITS: dict[str, dict[str, int]] = {
-    "m": {"m": 1}, "s": {"s": 1}, "kg": {"kg": 1}, "m/s": {"m": 1, "s": -1}, "m/s2": {"m": 1, "s": -2},
-    "rad/s": {"rad": 1, "s": -1}, "N": {"kg": 1, "m": 1, "s": -2}, "N.m": {"kg": 1, "m": 2, "s": -2},
-    "Pa": {"kg": 1, "m": -1, "s": -2}, "1": {},
+#: Unit -> what of the base units it is.
+UNITS = {
+    "m": "m", "s": "s", "kg": "kg", "m/s": "m s-1", "m/s2": "m s-2", "rad/s": "rad s-1", "N": "kg m s-2",
+    "N.m": "kg m2 s-2", "Pa": "kg m-1 s-2", "1": "",
 }  # fmt: skip

@@ -11,7 +11,7 @@ from .evaluate import roll_inputs
 from .export import export_netcdf
 from .results import RunResults, open_run
 from .runfile import Run, read_run
-from .verify import open_summaries, verify
+from .verify import verify
 
 __all__ = [
     "Run",
@@ -19,7 +19,6 @@ __all__ = [
     "estimate",
     "export_netcdf",
     "open_run",
-    "open_summaries",
     "read_run",
     "roll_inputs",
     "run_ensemble",

@@ -29,6 +29,8 @@ _AHEAD = 2
 _RETRIES = 3
 #: seconds between lines of progress where there is no terminal
 LINE_EVERY = 30.0
+#: tcp://host:port, or the same with tls
+_ADDRESS = re.compile(r"(tcp|tls)://([^/:[\]]+|\[[^/[\]]+\]):\d+")
 #: dask's workers give every freed array back to the system, which costs a block time, and watch
 #: themselves a hundred times a second; glibc takes no larger second value
 _CALM = {
@@ -83,13 +85,13 @@ def run_ensemble(
     store = Store(Path(path).absolute(), run)
     imported("zarr", "zarr", "runs")
     store.refuse_other()
-    with _executor(cluster, threads) as (pool, workers, given):  # a cluster that is not there is refused first
+    with _executor(store, cluster, threads) as (pool, workers, shared):  # a cluster that is not there is refused first
         look_at_materials(run)
         with locked(store.root), _bar(run, progress) as advance:
             store.begin()
             made = 0
             try:
-                for motions in _results(store, pool, workers, given, advance):
+                for motions in _results(store, shared, pool, workers, advance):
                     made += 1
                     advance(motions)
             except KeyboardInterrupt:
@@ -99,18 +101,16 @@ def run_ensemble(
     return made
 
 
-def _results(
-    store: Store, pool: Executor, workers: int, given: Callable[[Store], Any], advance: Callable[..., Any]
-) -> Iterator[int]:
+def _results(store: Store, shared: Any, pool: Executor, workers: int, advance: Callable[..., Any]) -> Iterator[int]:
     """Give out the missing blocks, and yield the motions of each that is done."""
     running: set[Future[int]] = set()
-    known, shared = 0, given(store)
+    known = 0
     try:
         for block in store.missing():
             start = store.run.edges(block)[0]
             advance(start - known, old=True)
             known = store.run.edges(block)[1]
-            running.add(pool.submit(work_block, shared, block))
+            running.add(pool.submit(Store.work, shared, block))
             if len(running) >= _AHEAD * workers:
                 done, running = wait(running, return_when=FIRST_COMPLETED)
                 yield from (future.result() for future in done)
@@ -123,26 +123,21 @@ def _results(
             future.cancel()
 
 
-def work_block(store: Store, block: int) -> int:
-    """The task of a worker."""
-    return store.work(block)
-
-
 @contextmanager
-def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Callable[[Store], Any]]]:
-    """(executor, workers, how a store is handed to tasks)."""
+def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Any]]:
+    """(executor, workers, the store as tasks are handed it)."""
     if cluster is None:
         ended = threading.Event()
         pool = ThreadPoolExecutor(thread_count(threads), initializer=heed, initargs=(ended,))
         try:
-            yield pool, thread_count(threads), lambda store: store
+            yield pool, thread_count(threads), store
         except BaseException:
             ended.set()  # blocks that are being made are given up
             raise
         finally:
             pool.shutdown(wait=not ended.is_set(), cancel_futures=True)
         return
-    if cluster != "local" and not _is_address(cluster):
+    if cluster != "local" and not _ADDRESS.fullmatch(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
     distributed = imported("distributed", "distributed", "cluster")
     try:
@@ -151,17 +146,12 @@ def _executor(cluster: str | None, threads: int | None) -> Iterator[tuple[Execut
             if not workers:
                 raise FileError(cluster, "this cluster has no workers")
             with client.get_executor(pure=False, retries=_RETRIES) as pool:
-                yield pool, workers, lambda store: client.scatter(store, broadcast=True)
+                yield pool, workers, client.scatter(store, broadcast=True)
     except ViscorollError:
         raise
     except (OSError, TimeoutError, CancelledError, distributed.scheduler.KilledWorker) as error:
         text = " ".join((str(error) or type(error).__name__).split())
         raise FileError(cluster, f"the cluster went away ({text:.200}): the same command goes on") from error
-
-
-def _is_address(text: str) -> bool:
-    """Whether it is tcp://host:port, or the same with tls."""
-    return re.fullmatch(r"(tcp|tls)://([^/:[\]]+|\[[^/[\]]+\]):\d+", text) is not None
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:

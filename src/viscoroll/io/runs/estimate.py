@@ -22,12 +22,9 @@ _USUAL_RESIDENT = 4e8
 
 @dataclass(frozen=True)
 class Estimate:
-    """Size, memory and time of a run; ``trial`` motions were rolled to tell."""
+    """Memory, time and bytes on disk of ``run``; ``trial`` motions were rolled to tell."""
 
-    motions: int
-    blocks: int
-    block: int
-    method: str
+    run: Run
     workers: int
     trial: int
     seconds: float
@@ -35,8 +32,9 @@ class Estimate:
     stored: float
 
     def __str__(self) -> str:
+        run = self.run
         return (
-            f"{self.motions} motions in {self.blocks} blocks of {self.block}, method {self.method}\n"
+            f"{run.settings.n} motions in {run.blocks} blocks of {run.block}, method {run.method}\n"
             f"time    about {_duration(self.seconds)} on {self.workers} workers\n"
             f"memory  about {self.memory / 1e6:.0f} MB at a time\n"
             f"disk    about {self.stored / 1e6:.1f} MB\n"
@@ -54,24 +52,15 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     workers = min(thread_count(threads), run.blocks)
     trial = min(run.block, _TRIAL[run.method])
     few = replace(run, settings=msgspec.structs.replace(run.settings, block=trial))
-    _work(few)
+    made(few, 0)
     begun = time.perf_counter()
-    chunks, record = _work(few)
+    files, summary, _ = made(few, 0)
+    record = len(encoded(Record("", {}, summary=summary)))
     seconds = time.perf_counter() - begun
-    stored = chunks * (run.settings.n / trial) + record * run.blocks
-    resident = _most_resident() - trial * run.bytes_a_motion
-    memory = resident + workers * run.block * run.bytes_a_motion
+    stored = sum(map(len, files.values())) * (run.settings.n / trial) + record * run.blocks
+    memory = _most_resident() + (workers * run.block - trial) * run.bytes_a_motion
     motions_a_worker = min(-(-run.blocks // workers) * run.block, run.settings.n)
-    return Estimate(
-        run.settings.n, run.blocks, run.block, run.method, workers, trial, seconds * motions_a_worker / trial, memory,
-        stored,
-    )  # fmt: skip
-
-
-def _work(run: Run) -> tuple[int, int]:
-    """What a worker does with the first block, but for the writing: bytes of its motions and of its record."""
-    files, summary, _ = made(run, 0)
-    return sum(map(len, files.values())), len(encoded(Record("", {}, summary=summary)))
+    return Estimate(run, workers, trial, seconds * motions_a_worker / trial, memory, stored)
 
 
 def _most_resident() -> float:

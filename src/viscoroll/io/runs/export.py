@@ -11,8 +11,9 @@ from typing import Any
 from ...core.errors import FileError
 from ...core.extras import imported
 from ...core.files import replacing
+from .results import open_run
 from .store import MOTIONS
-from .verify import open_summaries, verify
+from .verify import verify
 
 #: most that deflate makes of incompressible bytes, and room for a chunk in the index and for the head of an array
 _LARGER, _ENTRY, _HEAD = 1.002, 512, 1 << 16
@@ -41,7 +42,7 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     -----
     Values are those of the store, bit for bit (``tests/runs/test_run_store.py``).
     """
-    summaries, verdict = open_summaries(store), verify(store)
+    summaries, verdict = open_run(store).summaries, verify(store)
     if not verdict.ok:
         raise FileError(store, "; ".join(str(verdict).splitlines()[-2:]))
     with replacing(path) as temporary:

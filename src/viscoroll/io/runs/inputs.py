@@ -93,11 +93,6 @@ class Inputs:
         return (*self.random, *(name for sample in self.joint.values() for name in sample.columns))
 
     @property
-    def si(self) -> bool:
-        """Whether they are those of a cylinder, in SI units."""
-        return "cylinder" in self.content
-
-    @property
     def medians(self) -> dict[str, Any]:
         """Every input in the middle of its draws; of a file the row in its middle."""
         return {name: each.item() for name, each in self.values(np.full((len(self.dimensions), 1), 0.5)).items()}
@@ -106,25 +101,16 @@ class Inputs:
         """Every input (n,) at ``points`` (dimensions, n) in (0, 1)."""
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
-            rows |= dict(zip(self.correlated, self._mixed([rows[name] for name in self.correlated]), strict=True))
+            from scipy.special import ndtr, ndtri
+
+            normal = [ndtri(rows[name]) for name in self.correlated]
+            # a sum in a fixed order, whatever the number of points
+            mixed: Any = sum(part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True))
+            rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
         for name, sample in self.joint.items():
             values |= sample.rows(rows[name])
         return values
-
-    def _mixed(self, rows: list[NDArray]) -> list[NDArray]:
-        """Independent uniform rows -> uniform rows under the copula, sums in a fixed order."""
-        from scipy.special import ndtr, ndtri
-
-        assert self.mixing is not None
-        normal = [ndtri(row) for row in rows]
-        mixed = []
-        for n in range(len(rows)):
-            total = self.mixing[n, 0] * normal[0]
-            for k in range(1, n + 1):
-                total = total + self.mixing[n, k] * normal[k]
-            mixed.append(np.clip(ndtr(total), SMALLEST, LARGEST))
-        return mixed
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> NDArray[np.float64]:
         """The least and the largest draw of an input, or those of these shares."""

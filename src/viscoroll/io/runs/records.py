@@ -36,11 +36,6 @@ class Record(msgspec.Struct):
     summary: Summary | None = None
 
 
-def write_record(path: Path, record: Record) -> None:
-    """Write a record, whole or not at all; raises FileError."""
-    write_bytes(path, encoded(record))
-
-
 def encoded(record: Record) -> bytes:
     """The bytes of a record."""
     return seal(zlib.compress(msgspec.msgpack.encode(record, enc_hook=_from_array), 4))

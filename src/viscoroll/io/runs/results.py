@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core.errors import FileError, MotionStatus
+from ...core.extras import imported
 from ...core.results import Row, Shown, column, unit_of
-from .store import MOTIONS
-from .verify import open_summaries
+from .store import MOTIONS, problems
+from .verify import start_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -119,4 +120,10 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     MissingDependencyError
         If zarr is not installed.
     """
-    return RunResults(Path(path), open_summaries(path))
+    import xarray as xr
+
+    imported("zarr", "zarr", "runs")
+    root = Path(path)
+    if found := problems(root, "end", start_of(root).run):
+        raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
+    return RunResults(root, xr.open_zarr(root, chunks=None))

@@ -30,7 +30,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.errors import FileError, ParameterError, unknown
+from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
 from ...materials.file import as_toml, materials_of
 from ...motion.batch import FIELDS, FLOW_PAYS, begin
@@ -163,7 +163,7 @@ class Run:
     @property
     def si(self) -> bool:
         """Whether everything in the file and in the results is in SI units."""
-        return self.inputs.si
+        return "cylinder" in self.inputs.content
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -245,10 +245,11 @@ def read_run(path: str | PathLike[str]) -> Run:
 def _check_settings(run: Run) -> None:
     """Raise FileError for what msgspec cannot check of [run]."""
     settings = run.settings
-    for key, allowed, kind in (("fields", FIELDS, "a field"), ("summaries", tuple(QUANTITIES), "a summary")):
-        for name in getattr(settings, key):
-            if name not in allowed:
-                raise fault(run.path, "run", key, str(unknown(key, name, allowed, kind)))
+    try:
+        refuse_unknown("fields", settings.fields, FIELDS, "a field")
+        refuse_unknown("summaries", settings.summaries, QUANTITIES, "a summary")
+    except ParameterError as error:
+        raise fault(run.path, "run", error.name, str(error)) from error
     if not settings.summaries:
         raise fault(run.path, "run", "summaries", "summaries = []: must name at least one quantity")
     if settings.method == "flow" and not run.mappable:
@@ -259,18 +260,17 @@ def _check_settings(run: Run) -> None:
 def _check_inputs(run: Run) -> None:
     """Refuse, before anything is drawn, what a motion would: of the medians, of each input's ends, and of all ends."""
     inputs, medians = run.inputs, run.inputs.medians
-    known = inputs.content | {"run": msgspec.to_builtins(run.settings)}
     try:
         _begin(run, medians)
     except ParameterError as error:
-        raise located(run.path, known, error) from error
+        raise located(run.path, inputs.content, error) from error
     for at in inputs_in(inputs.content):
         ends = inputs.ends(at.name)
         try:
             _begin(run, medians | {at.name: ends})
         except (ParameterError, FileError) as error:
-            if isinstance(error, ParameterError) and error.name in known["run"]:
-                raise located(run.path, known, error) from error
+            if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
+                raise located(run.path, inputs.content, error) from error
             reaches = f"{at.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
             problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
             raise fault(run.path, at.section, at.key, f"{reaches}: {problem}; add truncate = [low, high]") from error

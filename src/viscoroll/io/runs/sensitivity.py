@@ -76,8 +76,14 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     Variance shares known in closed form lie inside the stated intervals (``tests/runs/test_sensitivity.py``).
     The bootstrap takes the points for random ones, which are less even: intervals err on the wide side.
     """
+    import xarray as xr
+
+    from .store import about
+
     names = _independent(run.inputs)
-    base = _power_of_two(n)
+    if not _LEAST <= n <= _MOST:
+        raise ParameterError("n", n, f"a whole number in [{_LEAST}, {_MOST}]")
+    base = 1 << (n - 1).bit_length()  # a Sobol sequence is even only over so many points
     rows = base * (len(names) + 2)
     summaries = tuple(dict.fromkeys(run.settings.summaries))
     settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
@@ -87,16 +93,30 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     refused: list[str] = []
     data: dict[str, Any] = {}
     for name, values in outcomes.items():
-        found = _indices(whole, name, values.reshape(-1, len(names) + 2, base), refused)
-        over, about = ("t",) * QUANTITIES[name].over_time, QUANTITIES[name].about(run.si)["long_name"]
-        for (key, text), each in zip(_INDICES.items(), found if np.isfinite(found).any() else (), strict=False):
-            told = {"long_name": f"{text} of: {about}", "units": "1"}
-            data[f"{name}_{key}"] = (*over, "input"), each if over else each[0], told
+        over = ("t",) * QUANTITIES[name].over_time
+        noise = settings.rtol * np.abs(values, where=np.isfinite(values), out=np.zeros_like(values)).max()
+        each = [_indices(one.reshape(-1, base), noise, settings.seed) for one in values]
+        times = [f" at t = {t:g}" for t in run.t] if over else [""]
+        refused += [f"{name}{at}: {reason}" for at, (_, reason) in zip(times, each, strict=True) if reason]
+        found = np.stack([rows for rows, _ in each], axis=1)
+        of = QUANTITIES[name].about(run.si)["long_name"]
+        for (key, text), one in zip(_INDICES.items(), found if np.isfinite(found).any() else (), strict=False):
+            told = {"long_name": f"{text} of: {of}", "units": "1"}
+            data[f"{name}_{key}"] = (*over, "input"), one if over else one[0], told
     if not data:
         raise ParameterError("summaries", "; ".join(refused), "quantities that vary and that every motion has")
-    return _dataset(whole, names, data).assign_attrs(
-        asked_base_points=n, base_points=base, resamples=_RESAMPLES, confidence=CONFIDENCE,
-        refused="\n".join(refused), **_ended(status),
+    coordinates = {
+        "t": ("t", run.t, column_attributes("t", run.si)),
+        "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
+    }
+    described = about(whole) | provenance("Sobol indices of motions of a viscoelastic cylinder")
+    for of_blocks in ("motions_a_block", "blocks"):
+        del described[of_blocks]
+    ended = zip(*np.unique(status, return_counts=True), strict=True)
+    return xr.Dataset(data, coordinates, described).assign_attrs(
+        design="Saltelli's, on a scrambled Sobol sequence", asked_base_points=n, base_points=base,
+        resamples=_RESAMPLES, confidence=CONFIDENCE, refused="\n".join(refused),
+        **{f"ended: {MotionStatus(code).message}": int(count) for code, count in ended},
     )  # fmt: skip
 
 
@@ -113,13 +133,6 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
             allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
             raise ParameterError(", ".join(map(places.__getitem__, sample.columns)), f"rows of {file}", allowed)
     return inputs.uncertain
-
-
-def _power_of_two(n: int) -> int:
-    """``n`` rounded up: a Sobol sequence is even only over so many points."""
-    if not _LEAST <= n <= _MOST:
-        raise ParameterError("n", n, f"a whole number in [{_LEAST}, {_MOST}]")
-    return 1 << (n - 1).bit_length()
 
 
 def _points(count: int, base: int, seed: int) -> NDArray[np.float64]:
@@ -154,26 +167,23 @@ def _outcomes(
     return outcomes, status
 
 
-def _indices(run: Run, name: str, outcomes: NDArray[np.float64], refused: list[str]) -> NDArray[np.float64]:
-    """The rows of ``_INDICES`` over (t, input) from outcomes (t, point, base); NaN where there are none, and why goes
-    into ``refused``."""
+def _indices(values: NDArray[np.float64], noise: float, seed: int) -> tuple[NDArray[np.float64], str]:
+    """(The rows of ``_INDICES`` over inputs from outcomes (point, base), ""); or NaN, and why there are none.
+
+    ``noise`` : what rtol leaves open of the largest outcome at any t.
+    """
     from scipy.special import ndtri
 
-    base = outcomes.shape[2]
-    found = np.full((len(_INDICES), len(outcomes), outcomes.shape[1] - 2), np.nan)
-    noise = run.settings.rtol * np.abs(outcomes, where=np.isfinite(outcomes), out=np.zeros_like(outcomes)).max()
-    for k, values in enumerate(outcomes):
-        reason = _reason_against(values, noise)
-        if reason:
-            refused.append(
-                f"{name} at t = {run.t[k]:g}: {reason}" if QUANTITIES[name].over_time else f"{name}: {reason}"
-            )
-            continue
-        random = np.random.default_rng(run.settings.seed)
-        again = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
-        found[0::2, k] = _estimated(values)
-        found[1::2, k] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(again, axis=0, ddof=1)
-    return found
+    found = np.full((len(_INDICES), len(values) - 2), np.nan)
+    if missing := np.count_nonzero(~np.isfinite(values)):
+        return found, f"{missing} of {values.size} motions have no value"
+    if not values.std() > noise:
+        return found, "it varies by no more than rtol of its largest value"
+    random, base = np.random.default_rng(seed), values.shape[1]
+    again = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
+    found[0::2] = _estimated(values)
+    found[1::2] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(again, axis=0, ddof=1)
+    return found, ""
 
 
 def _estimated(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -181,29 +191,6 @@ def _estimated(values: NDArray[np.float64]) -> NDArray[np.float64]:
     one, other, *others = values - values[:2].mean()
     mixed = np.array(others)
     return np.array([(other * (mixed - one)).mean(axis=1), 0.5 * ((mixed - one) ** 2).mean(axis=1)]) / values[:2].var()
-
-
-def _reason_against(values: NDArray[np.float64], noise: float) -> str:
-    """Why these values have no indices, or ""; ``noise`` is what rtol leaves open of the largest at any t."""
-    missing = np.count_nonzero(~np.isfinite(values))
-    if missing:
-        return f"{missing} of {values.size} motions have no value"
-    return "" if values.std() > noise else "it varies by no more than rtol of its largest value"
-
-
-def _dataset(run: Run, names: tuple[str, ...], data: dict[str, Any]) -> xr.Dataset:
-    import xarray as xr
-
-    from .store import about
-
-    coordinates = {
-        "t": ("t", run.t, column_attributes("t", run.si)),
-        "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
-    }
-    own = provenance("Sobol indices of motions of a viscoelastic cylinder")
-    described = about(run) | own | {"design": "Saltelli's, on a scrambled Sobol sequence"}
-    cut = ("motions_a_block", "blocks")
-    return xr.Dataset(data, coordinates, {key: value for key, value in described.items() if key not in cut})
 
 
 def table(indices: xr.Dataset) -> pd.DataFrame:
@@ -217,9 +204,3 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
         over = ["t"] * ("t" in frame)
         tables.append(frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable"))
     return pd.concat(tables).rename(columns={"t": column("t", unit_of(indices["t"].attrs))})
-
-
-def _ended(status: NDArray[np.int8]) -> dict[str, int]:
-    """How many motions ended in which way."""
-    codes, counts = np.unique(status, return_counts=True)
-    return {f"ended: {MotionStatus(code).message}": int(n) for code, n in zip(codes, counts, strict=True)}

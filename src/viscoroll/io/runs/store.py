@@ -24,13 +24,14 @@ from numpy.typing import NDArray
 
 from ... import __version__
 from ...core.errors import FileError
+from ...core.files import write_bytes
 from ...motion.export import provenance
 from ...motion.many import Ensemble
 from ...motion.summaries import Summary, merged, summarise, summary_dataset
 from . import zarr_files
 from .columns import attributes
 from .evaluate import roll_block, roll_inputs
-from .records import Record, damaged, make_folder, put, read_record, write_record
+from .records import Record, damaged, encoded, make_folder, put, read_record
 from .runfile import Run
 
 RECORDS, MOTIONS = "records", "motions"
@@ -57,8 +58,12 @@ class Store:
         self.refuse_other()
         make_folder(self.root / RECORDS)
         self._sweep()
-        made = Record(identity(self.run), put(self.root, self._metadata()), about(self.run))
-        write_record(_path(self.root, "start"), made)
+        self._keep("start", metadata(self.run), about=about(self.run))
+
+    def _keep(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
+        """Write files, then the record of them; raises FileError."""
+        record = Record(identity(self.run), put(self.root, files), **more)
+        write_bytes(_path(self.root, name), encoded(record))
 
     def refuse_other(self) -> None:
         """Raise FileError unless the folder is new, or begun by the same run."""
@@ -91,15 +96,15 @@ class Store:
     def work(self, block: int) -> int:
         """Roll a block and store it; returns its number of motions.  Raises FileError."""
         files, summary, count = made(self.run, block)
-        write_record(_path(self.root, block), Record(identity(self.run), put(self.root, files), summary=summary))
+        self._keep(block, files, summary=summary)
         return count
 
     def end(self) -> None:
         """Merge the summaries of all blocks and write them; raises FileError."""
         dataset = summary_dataset(merged(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si)
         files = zarr_files.dataset_files(dataset.assign_attrs(about(self.run)))
-        files[".zmetadata"] = zarr_files.consolidated(files | self._metadata())
-        write_record(_path(self.root, "end"), Record(identity(self.run), put(self.root, files)))
+        files[".zmetadata"] = zarr_files.consolidated(files | metadata(self.run))
+        self._keep("end", files)
         self._sweep()
 
     def _sweep(self) -> None:
@@ -115,27 +120,31 @@ class Store:
                 raise FileError(self.root, f"block {block} was damaged meanwhile: the same command goes on")
             yield record.summary
 
-    def _metadata(self) -> dict[str, bytes]:
-        """Metadata of the group of all motions, if they are kept; a single motion tells names and types."""
-        if self.run.settings.keep == "summaries":
-            return {}
-        values = {name: np.atleast_1d(value) for name, value in self.run.inputs.medians.items()}
-        columns = columns_of(self.run, values, roll_inputs(self.run, values))
-        described = {name: attributes(name, self.run.si) for name in (*columns, "t")}
-        found = zarr_files.metadata(
-            columns, self.run.settings.n, self.run.block, self.run.t, described, about(self.run)
-        )
-        return {f"{MOTIONS}/{name}": content for name, content in found.items()}
-
 
 def made(run: Run, block: int) -> tuple[dict[str, bytes], Summary, int]:
     """What there is to store of a block: files, summary, number of motions."""
     values, motions = roll_block(run, block)
-    files: dict[str, bytes] = {}
-    if run.settings.keep == "all":
-        found = zarr_files.chunks(columns_of(run, values, motions), block, run.settings.n, run.block)
-        files = {f"{MOTIONS}/{name}": content for name, content in found.items()}
+    files = _motion_files(run, columns_of(run, values, motions), block) if run.settings.keep == "all" else {}
     return files, summarise(motions, run.settings.summaries), len(motions)
+
+
+def metadata(run: Run) -> dict[str, bytes]:
+    """Metadata of the group of all motions, if they are kept; a single motion tells names and types."""
+    if run.settings.keep == "summaries":
+        return {}
+    values = {name: np.atleast_1d(value) for name, value in run.inputs.medians.items()}
+    return _motion_files(run, columns_of(run, values, roll_inputs(run, values)))
+
+
+def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
+    import xarray as xr
+
+    described: dict[str, Any] = {
+        name: (("motion", "t")[: values.ndim], values, attributes(name, run.si)) for name, values in columns.items()
+    }
+    motions = xr.Dataset(described, {"t": ("t", run.t, attributes("t", run.si))}, about(run))
+    files = zarr_files.motion_files(motions, run.settings.n, run.block, block)
+    return {f"{MOTIONS}/{name}": content for name, content in files.items()}
 
 
 def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import FileError
 from ...core.extras import imported
-from ...core.sections import fault, hint
+from ...core.sections import fault, hint, refuse_unknown
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
 from .inputs import Distribution, Input, Inputs, Joint
@@ -21,7 +21,7 @@ from .inputs import Distribution, Input, Inputs, Joint
 PREFIXES = {"base": "base_", "drive": "drive_"}
 _SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive")
 #: keys that a name leaves out, or has in another form
-_WORDS = {"prony": (), "creep": (), "values": (), "times": ("time",)}
+_WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
 #: of a material, what may be uncertain
 _SOLID = ("E", "nu", "prony", "creep", "temperature")
 _ONE = {"distribution", "file", "column"}
@@ -52,7 +52,7 @@ class _Reader:
         return {key: self.part(each, name, key, (key,)) if key in may else each for key, each in given.items()}
 
     def part(self, given: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
-        """What stands at a key; ``words``: of the name of an input there."""
+        """What stands at a key; ``words``: the keys down to it, and places in lists."""
         if isinstance(given, list):
             return [self.part(each, section, key, (*words, str(n))) for n, each in enumerate(given, 1)]
         if not isinstance(given, dict):
@@ -61,13 +61,9 @@ class _Reader:
             for name in given:
                 if near := hint(name, _ONE):
                     raise fault(self.path, section, key, f"{key}: unknown key {name!r}{near}")
-            *before, last = words
-            own = (*before, *_WORDS.get(last, (last,)))
-            return {
-                name: self.part(each, f"{section}.{key}", name, (*own, *_WORDS.get(name, (name,))))
-                for name, each in given.items()
-            }
-        found = Input(PREFIXES.get(section.partition(".")[0], "") + "_".join(words), section, key)
+            return {name: self.part(each, f"{section}.{key}", name, (*words, name)) for name, each in given.items()}
+        own = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
+        found = Input(PREFIXES.get(section.partition(".")[0], "") + own, section, key)
         if "distribution" in given:
             self.random[found.name] = self.distribution(found, given)
         else:
@@ -76,12 +72,6 @@ class _Reader:
 
     def fault(self, at: Input, problem: str) -> FileError:
         return fault(self.path, at.section, at.key, f"{at.name}: {problem}")
-
-    def refuse_unknown(self, at: Input, given: dict[str, Any], allowed: tuple[str, ...]) -> None:
-        for key in given:
-            if key not in allowed:
-                problem = f"unknown key {key!r}: must be one of {', '.join(allowed)}{hint(key, allowed)}"
-                raise self.fault(at, problem)
 
     @np.errstate(all="ignore")  # scipy may overflow on what is refused here
     def distribution(self, at: Input, given: dict[str, Any]) -> Distribution:
@@ -107,7 +97,9 @@ class _Reader:
             near = hint(str(which), known)
             raise self.fault(at, f"distribution {which!r:.40} is no continuous one of scipy.stats{near}")
         shapes = [shape.strip() for shape in (found.shapes or "").split(",") if shape.strip()]
-        self.refuse_unknown(at, given, ("distribution", *shapes, "loc", "scale", "truncate"))
+        refuse_unknown(
+            self.path, f"{at.section}.{at.key}", given, ("distribution", *shapes, "loc", "scale", "truncate")
+        )
         values = {key: value for key, value in given.items() if key not in ("distribution", "truncate")}
         for key, value in values.items():
             if not _is_number(value) or not math.isfinite(value):
@@ -122,7 +114,7 @@ class _Reader:
 
     def column(self, at: Input, given: dict[str, Any]) -> None:
         """File a column of a CSV, netCDF or Parquet file."""
-        self.refuse_unknown(at, given, ("file", "column", "distribution"))
+        refuse_unknown(self.path, f"{at.section}.{at.key}", given, ("file", "column", "distribution"))
         file, column = given.get("file"), given.get("column")
         if not isinstance(file, str) or not isinstance(column, str):
             raise self.fault(at, "must name a distribution, or a file and a column")

@@ -5,15 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ...core.errors import FileError
-from ...core.extras import imported
 from .records import Record, read_record
 from .store import RECORDS, problems
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True)
@@ -60,7 +55,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     -----
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
     """
-    root, start = Path(path), _start(path)
+    root, start = Path(path), start_of(path)
     damaged, missing = [*problems(root, "start", start.run)], []
     blocks = int(start.about["blocks"])
     for block in range(blocks):
@@ -73,26 +68,9 @@ def verify(path: str | PathLike[str]) -> Verdict:
     return Verdict(blocks, tuple(missing), tuple(damaged), not end)
 
 
-def _start(path: str | PathLike[str]) -> Record:
+def start_of(path: str | PathLike[str]) -> Record:
     """The record of its start; raises FileError."""
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
         raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")
     return start
-
-
-def open_summaries(path: str | PathLike[str]) -> xr.Dataset:
-    """The summaries of a finished store.
-
-    Raises
-    ------
-    FileError
-        If there are none, or they are damaged.
-    """
-    import xarray as xr
-
-    imported("zarr", "zarr", "runs")
-    root = Path(path)
-    if found := problems(root, "end", _start(path).run):
-        raise FileError(path, f"{found[0]} is missing or damaged: the same `viscoroll ensemble` command puts it right")
-    return xr.open_zarr(root, chunks=None)

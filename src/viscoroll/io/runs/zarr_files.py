@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.extras import imported
 
@@ -20,32 +19,26 @@ if TYPE_CHECKING:
 _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
-def metadata(
-    columns: Mapping[str, NDArray], count: int, block: int, t: NDArray, described: dict[str, dict[str, Any]],
-    about: dict[str, Any],
-) -> dict[str, bytes]:  # fmt: skip
-    """The group of all motions without its chunks; ``columns`` show names, types and dimensions."""
+def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None = None) -> dict[str, bytes]:
+    """The group of all ``count`` motions without their chunks, or the chunks of block ``number``, whose they are."""
     zarr = imported("zarr", "zarr", "runs")
 
     files: dict[str, Any] = {}
-    group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=about)
-    for name, values in columns.items():
-        _create(group, name, values, count, block, described[name])
-    # with zarr's own fill value, 0, xarray would take t = 0 for missing
-    about_t = described["t"] | {"_ARRAY_DIMENSIONS": ["t"]}
-    group.create_array("t", shape=t.shape, dtype=t.dtype, chunks=t.shape, fill_value=np.nan, attributes=about_t)[:] = t
-    return _as_bytes(files)
-
-
-def chunks(columns: Mapping[str, NDArray], number: int, count: int, block: int) -> dict[str, bytes]:
-    """The chunks of one block, by their path in the group."""
-    zarr = imported("zarr", "zarr", "runs")
-
-    files: dict[str, Any] = {}
-    group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2)
-    for name, values in columns.items():
-        _create(group, name, values, count, block, {})[number * block : number * block + values.shape[0]] = values
-    return {key: content for key, content in _as_bytes(files).items() if key.rpartition("/")[2] not in _METADATA}
+    group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=motions.attrs)
+    start = 0 if number is None else number * block
+    for name, one in motions.variables.items():
+        of_each = "motion" in one.dims
+        more = one.shape[1:] if of_each else one.shape
+        array = group.create_array(
+            name, shape=(*(count,) * of_each, *more), chunks=(*(block,) * of_each, *more), dtype=one.dtype,
+            # with zarr's own fill value, 0, xarray would take t = 0 for missing
+            fill_value=np.nan if one.dtype.kind == "f" else None, config={"write_empty_chunks": True},
+            attributes=one.attrs | {"_ARRAY_DIMENSIONS": list(one.dims)},
+        )  # fmt: skip
+        if of_each == (number is not None):
+            array[start : start + len(one)] = one.values
+    content = _as_bytes(files)
+    return content if number is None else {key: each for key, each in content.items() if not _is_metadata(key)}
 
 
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
@@ -59,17 +52,12 @@ def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
 
 def consolidated(files: dict[str, bytes]) -> bytes:
     """The file .zmetadata of a hierarchy, by which readers find everything at once."""
-    found = {key: json.loads(text) for key, text in sorted(files.items()) if key.rpartition("/")[2] in _METADATA}
+    found = {key: json.loads(text) for key, text in sorted(files.items()) if _is_metadata(key)}
     return json.dumps({"metadata": found, "zarr_consolidated_format": 1}, indent=1).encode()
 
 
-def _create(group: Any, name: str, values: NDArray, count: int, block: int, described: dict[str, Any]) -> Any:
-    dims = ["motion", "t"][: values.ndim]
-    return group.create_array(
-        name, shape=(count, *values.shape[1:]), chunks=(block, *values.shape[1:]), dtype=values.dtype,
-        fill_value=np.nan if values.dtype.kind == "f" else None, config={"write_empty_chunks": True},
-        attributes=described | {"_ARRAY_DIMENSIONS": dims},
-    )  # fmt: skip
+def _is_metadata(key: str) -> bool:
+    return key.rpartition("/")[2] in _METADATA
 
 
 def _as_bytes(files: Mapping[str, Any]) -> dict[str, bytes]:

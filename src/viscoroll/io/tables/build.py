@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 _MAX_NODES = 50_000_000
 #: Random points that a stated error is the largest over, and their seed: it can be had again.
 SAMPLE, SEED = 100_000, 20260102
-_OF_A_CYLINDER = ("R", "m", "mu", "load")
+#: of a scene, and of a cylinder: the numbers among the attributes, and what all is counted in
+_NUMBERS = ("alpha", "kappa", "mu"), ("R", "m", "mu", "load")
+_UNITS = "dimensionless", "in SI units, per m of length"
 
 
 def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> NDArray[np.float64]:
@@ -102,14 +104,17 @@ def build(
         name: np.take(values, 0, axis=1) for name, values in _fields(what, plane, schema.PLANE).items()
     }
     si = isinstance(what, Cylinder)
-    flat = tuple(name for name in axes if name != "delta")
     data = {
-        name: schema.variable(name, flat if name in schema.PLANE else tuple(axes), values, si)
+        name: schema.variable(name, tuple(plane if name in schema.PLANE else axes), values, si)
         for name, values in fields.items()
     }
     coordinates = {name: schema.variable(name, (name,), nodes, si) for name, nodes in axes.items()}
-    table = xr.Dataset(data, coordinates, schema.global_attributes(_title(what), _shape(axes), command))
-    table.attrs |= {name: value for name, value in _constants(what).items() if name not in axes}
+    title = f"Contact of a viscoelastic cylinder rolling with partial slip, {_UNITS[si]}"
+    of = ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())
+    table = xr.Dataset(data, coordinates, schema.global_attributes(title, of, command))
+    material = what.pair if isinstance(what, Cylinder) else what.material
+    numbers = {name: float(getattr(what, name)) for name in _NUMBERS[si] if name not in axes}
+    table.attrs |= numbers | ({} if material is None else {"material": described(material)})
     _state_errors(table, what)
     return table
 
@@ -160,20 +165,3 @@ def _between(nodes: NDArray, random: np.random.Generator) -> NDArray[np.float64]
         return np.full(SAMPLE, nodes[0])
     cell = random.integers(nodes.size - 1, size=SAMPLE)
     return nodes[cell] + random.random(SAMPLE) * (nodes[cell + 1] - nodes[cell])
-
-
-def _title(what: Scene | Cylinder) -> str:
-    units = "in SI units, per m of length" if isinstance(what, Cylinder) else "dimensionless"
-    return f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
-
-
-def _constants(what: Scene | Cylinder) -> dict[str, Any]:
-    """Its numbers, and its materials in words."""
-    if isinstance(what, Scene):
-        numbers = {name: float(value) for name, value in what.numbers.items() if name in ("alpha", "kappa", "mu")}
-        return numbers | ({} if what.material is None else {"material": described(what.material)})
-    return {name: float(getattr(what, name)) for name in _OF_A_CYLINDER} | {"material": described(what.pair)}
-
-
-def _shape(axes: dict[str, NDArray]) -> str:
-    return ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...core.blocks import flattened
 from ...core.checks import broadcast_shape, checked
 from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
@@ -40,33 +39,26 @@ class Interpolant:
         self._table, self._axes = table, schema.axes_of(table)
         # files before 1.2 state the errors of linear interpolation in V, delta and alpha
         self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")
-        self._evaluators: dict[str, Any] = {}
+        self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolated ``fields`` at ``points``; see :func:`interpolate`."""
-        names = self._field_names(fields)
-        flat, shape = self._checked_points(points, names)
-        results = {}
-        for name in names:
-            dims, evaluator = self._evaluator(name)
-            if dims:
-                columns = [np.broadcast_to(flat[dim], (int(np.prod(shape)),)) for dim in dims]
-                values = evaluator(np.column_stack(columns)).reshape(shape)
-            else:
-                values = np.full(shape, evaluator)
-            results[name] = values if shape else values.item()
-        return Values(results, title="Interpolated")
-
-    def _field_names(self, fields: Iterable[str] | None) -> tuple[str, ...]:
         known = schema.fields_of(self._table)
         names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
         refuse_unknown("fields", names, known, "a field of this table")
-        return names
+        places, shape = self._places(points, names)
+        results: dict[str, Any] = {}
+        for name in names:
+            dims, values = self._spline(name)
+            if dims:
+                values = values(np.stack([places[dim] for dim in dims], axis=-1))
+            results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
+        return Values(results, title="Interpolated")
 
-    def _checked_points(
+    def _places(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
     ) -> tuple[dict[str, NDArray], tuple[int, ...]]:
-        """Flattened coordinates in which the interpolation runs, and the shape of the answer."""
+        """Coordinates in which the splines run, of the shape of the answer."""
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() or not points.keys() <= set(self._axes):
             wanted = ", ".join(axis for axis in self._axes if axis in needed)
@@ -79,7 +71,7 @@ class Interpolant:
             outside = (array < low) | (array > high)
             if outside.any():
                 raise OutOfTableError(name, array[outside].flat[0] if array.ndim else float(array), low, high)
-        return {name: self._mapped(name, flattened(array, shape)) for name, array in arrays.items()}, shape
+        return {name: np.broadcast_to(self._mapped(name, array), shape) for name, array in arrays.items()}, shape
 
     def _mapped(self, name: str, values: NDArray) -> NDArray[np.float64]:
         """The coordinate of an axis in which the law is smooth."""
@@ -87,32 +79,26 @@ class Interpolant:
             return values
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
-    def _evaluator(self, name: str) -> tuple[tuple[str, ...], Any]:
-        if name not in self._evaluators:
-            field = self._table[name].squeeze()  # an axis of one node has one value
+    def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
+        """Axes of a field and the spline over them; an axis of one node has one value, and needs no place."""
+        if name not in self._splines:
+            field = self._table[name].squeeze()
             dims = tuple(map(str, field.dims))
             axes = [self._mapped(dim, self._table[dim].values) for dim in dims]
-            self._evaluators[name] = dims, self._new_evaluator(field.values, axes)
-        return self._evaluators[name]
-
-    def _new_evaluator(self, values: NDArray, axes: list[NDArray]) -> Any:
-        from scipy.interpolate import RegularGridInterpolator
-
-        if not axes:
-            return values.item()
-        return RegularGridInterpolator(tuple(axes), values) if self._linear else spline(values, axes)
+            self._splines[name] = dims, spline(field.values, axes, 1 if self._linear else 3)
+        return self._splines[name]
 
 
-def spline(values: NDArray, axes: list[NDArray]) -> Any:
-    """The tensor spline through values on a grid: cubic, not-a-knot, along two or three nodes of lower degree."""
+def spline(values: NDArray, axes: list[NDArray], degree: int) -> Any:
+    """The tensor spline through values on a grid, not-a-knot, along few nodes of lower degree; no axes: the value."""
     from scipy.interpolate import NdBSpline, make_interp_spline
 
-    knots, degrees = [], tuple(min(3, axis.size - 1) for axis in axes)
+    knots, degrees = [], tuple(min(degree, axis.size - 1) for axis in axes)
     for n, axis in enumerate(axes):
         one = make_interp_spline(axis, values, k=degrees[n], axis=n)
         knots.append(one.t)
         values = np.moveaxis(one.c, 0, n)
-    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees) if axes else values
 
 
 def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
