@@ -83,7 +83,7 @@ MOTION = [
     ("motion/rates.py", "spread = L + u * dL\n", "spread = L\n", _MOTION),
     ("motion/rates.py", "press_secants(at, place(2.0 * u / L, law), v, D / w, law)", "press_secants(at, at, v, D / w, law)", _DRIVE),
     ("motion/rates.py", "- creep_limit(V, scene) * abs(V)", "- 0.98 * creep_limit(V, scene) * abs(V)", _MOTION),
-    ("motion/collocation.py", "total = fma(t, total, powers[row + k])", "total = fma(t, total, powers[row + k] * (1.0 + 1e-7))", _MOTION),
+    ("motion/collocation.py", "total = fma(t, total, nodes[row + k])", "total = fma(t, total, nodes[row + k] * (1.0 + 1e-7))", _MOTION),
     ("motion/collocation.py", "_ALL.powers() / np.arange(1.0, WIDE + 1.0)", "_ALL.powers() / np.arange(2.0, WIDE + 2.0)", _MOTION),
     ("motion/output.py", "(scene.j * half_space - cylinder)", "(half_space - scene.j * cylinder)", "tests/motion/test_motion.py"),
     ("motion/integrate.py", "on_edge = sigma * here(inside, stick, clock, case)[1].rate < 0.0", "on_edge = False", "tests/motion/test_nasty_starts.py"),

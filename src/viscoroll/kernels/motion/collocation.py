@@ -102,27 +102,27 @@ def invert(matrix):
 
 
 @kernel(inline=True)
-def rise_terms(row, nodes, to, powers):
+def rise_terms(row, to, nodes):
     """Coefficients for :func:`rise_at` of the interpolant of all nodes less its value at the left end."""
-    product(_RISES, row, nodes[row], nodes, to, powers)
+    product(_RISES, row, nodes[row], nodes, to, nodes)
 
 
 @kernel
-def integral_terms(row, nodes, to, powers):
+def integral_terms(row, to, nodes):
     """Coefficients for :func:`integral_at` of the interpolant of all nodes."""
-    product(_TO_INTEGRAL, row, nodes[row], nodes, to, powers)
+    product(_TO_INTEGRAL, row, nodes[row], nodes, to, nodes)
 
 
 @kernel(inline=True)
-def integral_at(v, first, powers, row):
+def integral_at(v, first, nodes, row):
     """The integral from the left end, where what is integrated is ``first``, to v = 1 + t: right beside itself."""
-    return v * (first + rise_at(v, powers, row))
+    return v * (first + rise_at(v, nodes, row))
 
 
 @kernel(inline=True)
-def rise_at(v, powers, row):
+def rise_at(v, nodes, row):
     """The rise in this row from the left end to v = 1 + t."""
     t, total = v - 1.0, 0.0
     for k in range(WIDE - 1, -1, -1):
-        total = fma(t, total, powers[row + k])
+        total = fma(t, total, nodes[row + k])
     return v * total

@@ -44,21 +44,21 @@ def _node_of(event, last, nodes):
 
 
 @kernel(inline=True)
-def first_event(panel, frame, work):
+def first_event(panel, frame, nodes):
     """(Event whose function falls below 0 first, v there); NO_EVENT for none.
 
     Between the same two nodes the interpolants tell which comes first: behind V = 0 no other counts.
     """
     event, last, v = NO_EVENT, N, 2.0
     for row in range(EVENTS):
-        node = _node_of(row, last, work.nodes) if may_end(row, panel, frame) else 0
+        node = _node_of(row, last, nodes) if may_end(row, panel, frame) else 0
         if node == 0:
             continue
-        here = place_of(row, node, work)
+        here = place_of(row, node, nodes)
         if event == NO_EVENT or node < last or here < v:
             event, last, v = row, node, here
     if event == NO_EVENT and frame.slips:
-        here = _dip(EDGE, work)
+        here = _dip(EDGE, nodes)
         if here > 0.0:
             return EDGE, here
     return event, v
@@ -77,7 +77,7 @@ def goes_behind(nodes):
 def passed_over(panel, frame, case):
     """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
     the first of them; NO_EVENT for none."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     for row in range(EVENTS):
         # full slip is a case of the equations of partial slip
         if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame):
@@ -93,23 +93,22 @@ def passed_over(panel, frame, case):
 
 
 @kernel
-def place_of(event, node, work):
+def place_of(event, node, nodes):
     """v at which the interpolant of an event's function passes 0, before this node or, where that is 0, beyond the
     panel."""
-    nodes, powers = work.nodes, work.powers
-    rise_terms(EVENT + WIDE * event, nodes, OF_EVENT, powers)
+    rise_terms(EVENT + WIDE * event, OF_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _BEYOND)
-    return _zero(nodes[EVENT + WIDE * event], low, high, powers)
+    return _zero(nodes[EVENT + WIDE * event], low, high, nodes)
 
 
 @kernel
-def _zero(start, low, high, powers):
+def _zero(start, low, high, nodes):
     """v where the interpolant there falls through 0."""
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        if start + rise_at(middle, powers, OF_EVENT) > 0.0:
+        if start + rise_at(middle, nodes, OF_EVENT) > 0.0:
             low = middle
         else:
             high = middle
@@ -117,29 +116,29 @@ def _zero(start, low, high, powers):
 
 
 @kernel
-def _dip(event, work):
+def _dip(event, nodes):
     """v where an event's function falls through 0 between nodes at all of which it is positive; 0 for nowhere."""
-    nodes, powers, at = work.nodes, work.powers, EVENT + WIDE * event
+    at = EVENT + WIDE * event
     for i in range(1, N):
         if 0.0 < nodes[at + i] < min(nodes[at + i - 1], nodes[at + i + 1]):
-            rise_terms(at, nodes, OF_EVENT, powers)
+            rise_terms(at, OF_EVENT, nodes)
             start, low, high = 1.0 + NODES[i - 1], 1.0 + NODES[i - 1], 1.0 + NODES[i + 1]
             for _ in range(_THIRDS):
                 third = (high - low) / 3.0
-                if rise_at(low + third, powers, OF_EVENT) < rise_at(high - third, powers, OF_EVENT):
+                if rise_at(low + third, nodes, OF_EVENT) < rise_at(high - third, nodes, OF_EVENT):
                     high -= third
                 else:
                     low += third
-            if nodes[at] + rise_at(low, powers, OF_EVENT) < 0.0:
-                return _zero(nodes[at], start, low, powers)
+            if nodes[at] + rise_at(low, nodes, OF_EVENT) < 0.0:
+                return _zero(nodes[at], start, low, nodes)
     return 0.0
 
 
 @kernel
 def _itself(event, v, frame, case):
     """An event's function at v by the unknowns there."""
-    nodes, powers = case.work.nodes, case.work.powers
-    speed, second = nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND)
+    nodes = case.nodes
+    speed, second = nodes[V] + rise_at(v, nodes, OF_V), nodes[SECOND] + rise_at(v, nodes, OF_SECOND)
     if event == SLOW:
         return max(abs(speed), abs(second)) - case.limits.rest
     if event == STOP:

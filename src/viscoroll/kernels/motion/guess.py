@@ -28,9 +28,9 @@ def guess(panel, slope, track, frame, case):
     """
     alike = panel.tau > track.tau or panel.length > _SHORT * track.length
     if alike and track.length > 0.0 and panel.tau + panel.length <= track.tau + (1.0 + _REACH) * track.length:
-        _follow(panel, track, frame, case.work)
-    elif panel.known and case.work.nodes[SPEED] > 0.0:
-        _set_out(panel, slope, frame, case.work.nodes)
+        _follow(panel, track, frame, case.nodes)
+    elif panel.known and case.nodes[SPEED] > 0.0:
+        _set_out(panel, slope, frame, case.nodes)
     else:
         _set_out_from_rest(panel, frame, case)
 
@@ -50,14 +50,13 @@ def _keep(i, speed, second, slips, nodes):
 
 
 @kernel
-def _follow(panel, track, frame, work):
+def _follow(panel, track, frame, nodes):
     """Along the interpolants of a panel."""
-    nodes, powers = work.nodes, work.powers
     start = _along(panel.tau, track)
-    speed, second = nodes[V] - rise_at(start, powers, OF_V), nodes[SECOND] - rise_at(start, powers, OF_SECOND)
+    speed, second = nodes[V] - rise_at(start, nodes, OF_V), nodes[SECOND] - rise_at(start, nodes, OF_SECOND)
     for i in range(1, N + 1):
         v = _along(time_at(panel, i), track)
-        _keep(i, speed + rise_at(v, powers, OF_V), second + rise_at(v, powers, OF_SECOND), frame.slips, nodes)
+        _keep(i, speed + rise_at(v, nodes, OF_V), second + rise_at(v, nodes, OF_SECOND), frame.slips, nodes)
 
 
 @kernel(inline=True)
@@ -79,7 +78,7 @@ def _set_out(panel, slope, frame, nodes):
 @kernel
 def _set_out_from_rest(panel, frame, case):
     """Unknowns at the nodes from V = 0 on, where speeds may start at no pace and follow the drive, as d does."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     load, d = load_at(panel.tau + panel.length, panel.piece, frame, case), 0.0
     if not frame.slips:
         sticks, d = departing(load, frame.spin, case.scene)

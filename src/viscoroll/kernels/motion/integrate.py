@@ -10,7 +10,7 @@ import numpy as np
 from ..compile.held import held
 from ..compile.jit import kernel
 from .load import brakes, goes_on, piece_end, threshold, undriven
-from .nodes import PATHS
+from .nodes import PATHS, TOTALS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
 from .output import coast, put_here, put_still, regime_of
 from .phase import creeps, phase
@@ -31,7 +31,6 @@ from .records import (
     STUCK,
     UNDECIDED,
     UNSTEADY,
-    Case,
     Clock,
     Frame,
     State,
@@ -106,7 +105,7 @@ def clock_at(length, clock):
 @kernel
 def note(what, noted, clock, case):
     """Note a change of regime or of the sign of V; how many there were."""
-    switches = case.notes.switches
+    switches = case.switches
     if noted < switches.shape[0]:
         switches[noted, 0], switches[noted, 1] = clock.tau / case.scene.gamma, what
     return noted + 1
@@ -220,7 +219,7 @@ def follow(moving, fresh, state, frame, clock, case):
             if regime >= 0 and regime != REST:
                 turns, noted = turns + 1, note(REST, noted, clock, case)
             rest_time, omega = clock.tau / case.scene.gamma, speeds(state, frame, case.scene)[0]
-            case.work.totals[PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
+            case.nodes[TOTALS + PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
             return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
         if event != NO_EVENT and not spent(event, state, frame, case):
             state, frame, still = switch(event, state, frame, clock, case)
@@ -238,9 +237,9 @@ def follow(moving, fresh, state, frame, clock, case):
 
 
 @kernel
-def integrate(scene, drive, V0, omega0, limits, tau, out, asked, notes, work):
+def integrate(V0, omega0, given):
     """Roll one motion from t = 0 to the last of its times: (status, steps, switches, onset time, rest time)."""
-    case = held(Case(scene, drive, limits, tau, out, asked, notes, work))
+    case = held(given)
     clock = Clock(0.0, 0, 0, 0, 0, 0.0)
     state, frame, fresh = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), False
     fastest = max(abs(V0), abs(omega0))

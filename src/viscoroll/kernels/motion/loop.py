@@ -13,9 +13,9 @@ from ..rows.record import hold
 from .collocation import WIDE
 from .integrate import integrate
 from .load import FIRST, RATE, SCALE, START, terms_of
-from .nodes import INTERPOLANTS, NUMBERS, ONES, PATHS
+from .nodes import NUMBERS, ONES
 from .output import OUTPUTS, asked_by
-from .records import Batch, Drive, Gains, Limits, Notes, Scene, Work
+from .records import Batch, Case, Drive, Gains, Limits, Scene
 
 #: columns of the per-motion information
 INFO = ("status", "steps", "switches", "onset_time", "rest_time")
@@ -56,15 +56,14 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
 
     Records come as plain tuples: it takes numba microseconds to tell the type of a record.
     """
-    motions, drives, limits, asked = Batch(*batch), Drives(*drives), Limits(*limits), asked_by(rows)
+    motions, drives, limits = Batch(*batch), Drives(*drives), Limits(*limits)
+    (paths, acting), (switches, ends) = asked_by(rows), notes
     tau, one, pieces = np.empty(t.size), np.empty((OUTPUTS, t.size)), np.empty(drives.pieces.shape[1:])
-    nodes, powers, totals = np.empty(NUMBERS), np.empty(INTERPOLANTS), np.empty(PATHS)
-    matrix, second_matrix = np.empty(WIDE * WIDE), np.empty(WIDE * WIDE)
-    work = Work(pointer(nodes), pointer(powers), pointer(matrix), pointer(second_matrix), pointer(totals))
+    nodes, matrix, second_matrix = np.empty(NUMBERS), np.empty(WIDE * WIDE), np.empty(WIDE * WIDE)
     for i in range(out.shape[1]):
         for row in one:
             fill(np.nan, row)
-        for array in (nodes, powers, matrix, second_matrix, totals):
+        for array in (nodes, matrix, second_matrix):
             fill(0.0, array)
         fill(1.0, nodes[ONES : ONES + WIDE])
         hold(motions.law, i)
@@ -75,7 +74,11 @@ def motion_loop(batch, drives, t, limits, rows, out, info, notes):
         scene = Scene(motions.law, motions.unlike, kappa, mu, gamma, j)
         drive = Drive(pieces, _drive_of(drives, gamma, i, pieces), drives.prescribed)
         V0, omega0 = _own(motions.V0, i), _own(motions.omega0, i)
-        result = integrate(scene, drive, V0, omega0, limits, tau, one, asked, Notes(*notes), work)
+        case = Case(
+            scene, drive, limits, tau, one, paths, acting, switches, ends,
+            pointer(nodes), pointer(matrix), pointer(second_matrix),
+        )  # fmt: skip
+        result = integrate(V0, omega0, case)
         for n in range(rows.size):
             copy(one[rows[n]], out[n, i])
         info[i, 0], info[i, 1], info[i, 2], info[i, 3], info[i, 4] = result

@@ -25,10 +25,12 @@ PATH, PATHS = WIDE * 22, 7
 #: functions of events, and the drive
 EVENT = PATH + WIDE * PATHS
 DRIVE = EVENT + WIDE * EVENTS
-NUMBERS = DRIVE + WIDE * FUNCTIONS
-#: the interpolants: of V, of the second unknown, of the path, of the function of an event
-OF_V, OF_SECOND, OF_PATH, OF_EVENT = 0, WIDE, 2 * WIDE, (2 + PATHS) * WIDE
-INTERPOLANTS = OF_EVENT + WIDE
+#: the interpolants: of V, of the second unknown, of the path, of the function of an event; what has added up
+OF_V = DRIVE + WIDE * FUNCTIONS
+OF_SECOND, OF_PATH = OF_V + WIDE, OF_V + WIDE * 2
+OF_EVENT = OF_PATH + WIDE * PATHS
+TOTALS = OF_EVENT + WIDE
+NUMBERS = TOTALS + PATHS
 #: |d| up to which either branch of the law serves: they differ by its square
 FAINT = 1e-8
 
@@ -66,7 +68,7 @@ def time_at(panel, i):
 @kernel
 def put_drive(panel, case):
     """Fill the drive at all nodes."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     values = values_at(panel.tau, panel.piece, case.drive)
     changes = varies(panel.piece, case.drive)
     for i in range(N + 1):
@@ -78,7 +80,7 @@ def put_drive(panel, case):
 @kernel(inline=True)
 def load_there(i, frame, case):
     """The drive at node i."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     values = nodes[DRIVE + i], nodes[DRIVE + WIDE + i], nodes[DRIVE + WIDE * 2 + i], nodes[DRIVE + WIDE * 3 + i]
     return load_of(values, frame, case)
 
@@ -103,7 +105,7 @@ def may_end(event, panel, frame):
 @kernel
 def acting_at(i, frame, case):
     """(The equations at node i, by its unknowns as they are now; force, torque, brake)."""
-    state, load = State(case.work.nodes[V + i], case.work.nodes[SECOND + i]), load_there(i, frame, case)
+    state, load = State(case.nodes[V + i], case.nodes[SECOND + i]), load_there(i, frame, case)
     rates = rates_of(state, load, frame, case.scene)
     moments = rates.Q, rates.M_half_space, rates.M_cylinder
     return rates, needed((state.V, rates.omega), moments, load, frame, case.scene.j)
@@ -112,7 +114,7 @@ def acting_at(i, frame, case):
 @kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
-    nodes, scene = case.work.nodes, loaded(case.scene)
+    nodes, scene = case.nodes, loaded(case.scene)
     for i in range(N + 1):
         speed, second = nodes[V + i], nodes[SECOND + i]
         nodes[EVENT + WIDE * TURN + i] = speed
@@ -133,7 +135,7 @@ def put_events(panel, frame, case):
 @kernel(inline=True)
 def put_path(panel, frame, case):
     """Fill the integrands of the path at all nodes."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     for i in range(N + 1):
         rates, (force, torque, brake) = acting_at(i, frame, case)
         speed, omega, weight = nodes[V + i], rates.omega, grade(i, panel.power)

@@ -7,9 +7,9 @@ import numpy as np
 from ..compile.jit import kernel
 from .collocation import WIDE, integral_at, integral_terms, rise_at
 from .load import load_at, needed
-from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, V, put_path, risen
+from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, TOTALS, V, put_path, risen
 from .rates import inertia_at, moments_slopes, rates_of, speeds
-from .records import FULL, LOCKED, PARTIAL, REST, Asked, Clock, Frame, State
+from .records import FULL, LOCKED, PARTIAL, REST, Clock, Frame, State
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
 OUTPUTS = 13
@@ -18,12 +18,12 @@ PATH_FROM, FORCE, WORK = 2, 6, 8
 
 @kernel
 def asked_by(rows):
-    """What these rows take."""
+    """(Whether anything that adds up is asked for, whether what acts)."""
     paths = acting = False
     for row in rows:
         paths = paths or PATH_FROM <= row < PATH_FROM + 2 or row >= WORK
         acting = acting or FORCE <= row < WORK
-    return Asked(paths, acting)
+    return paths, acting
 
 
 @kernel
@@ -57,7 +57,7 @@ def _put_path(column, n, value, case):
 def _put_totals(column, case):
     """What has added up so far, in one column."""
     for n in range(PATHS):
-        _put_path(column, n, case.work.totals[n], case)
+        _put_path(column, n, case.nodes[TOTALS + n], case)
 
 
 @kernel
@@ -79,7 +79,7 @@ def _put_state(column, state, piece, frame, case):
     out, direction = case.out, frame.direction
     omega, delta = speeds(state, frame, case.scene)
     _put_moving(column, (direction * state.V, direction * omega, delta), regime_of(frame), case)
-    if case.asked.acting:
+    if case.acting:
         load = load_at(case.tau[column], piece, frame, case)
         rates = rates_of(state, load, frame, case.scene)
         moments = rates.Q, rates.M_half_space, rates.M_cylinder
@@ -99,21 +99,21 @@ def put_here(state, frame, clock, case):
 
 
 @kernel(inline=True)
-def _way(n, v, panel, work):
+def _way(n, v, panel, nodes):
     """What number ``n`` of what adds up has risen by at v."""
-    first = work.nodes[PATH + WIDE * n]
-    return 0.5 * panel.length * integral_at(v, first, work.powers, OF_PATH + WIDE * n)
+    first = nodes[PATH + WIDE * n]
+    return 0.5 * panel.length * integral_at(v, first, nodes, OF_PATH + WIDE * n)
 
 
 @kernel(inline=True)
 def _put(column, v, panel, frame, case):
     """One column from the interpolants of a panel."""
-    nodes, powers, direction = case.work.nodes, case.work.powers, frame.direction
-    state = State(nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND))
+    nodes, direction = case.nodes, frame.direction
+    state = State(nodes[V] + rise_at(v, nodes, OF_V), nodes[SECOND] + rise_at(v, nodes, OF_SECOND))
     _put_state(column, state, panel.piece, frame, case)
-    for n in range(PATHS if case.asked.paths else 0):
-        way = _way(n, v, panel, case.work)
-        _put_path(column, n, case.work.totals[n] + (direction * way if n < 2 else way), case)
+    for n in range(PATHS if case.paths else 0):
+        way = _way(n, v, panel, case.nodes)
+        _put_path(column, n, case.nodes[TOTALS + n] + (direction * way if n < 2 else way), case)
 
 
 @kernel(inline=True)
@@ -125,29 +125,29 @@ def pass_panel(end, v, panel, frame, clock, case):
     tau, at = case.tau, clock.at
     closed = end == tau[tau.size - 1]
     outputs = at < tau.size and (tau[at] < end or closed)
-    paths = PATHS if case.asked.paths else 0
+    paths = PATHS if case.paths else 0
     if paths > 0:
         put_path(panel, frame, case)
     if outputs or v < 2.0:
         for n in range(paths):
-            integral_terms(PATH + WIDE * n, case.work.nodes, OF_PATH + WIDE * n, case.work.powers)
+            integral_terms(PATH + WIDE * n, OF_PATH + WIDE * n, case.nodes)
     if outputs:
         while at < tau.size and (tau[at] < end or closed):
             share = min(max(tau[at] - panel.tau, 0.0) / panel.length, 1.0)
             _put(at, 2.0 * (share if panel.power == 1 else share ** (1.0 / panel.power)), panel, frame, case)
             at += 1
-    if clock.ends < case.notes.ends.size:
-        case.notes.ends[clock.ends] = end / case.scene.gamma
+    if clock.ends < case.ends.size:
+        case.ends[clock.ends] = end / case.scene.gamma
     for n in range(paths):
-        way = _way(n, v, panel, case.work) if v < 2.0 else risen(PATH + WIDE * n, panel, case.work.nodes)
-        case.work.totals[n] += frame.direction * way if n < 2 else way
+        way = _way(n, v, panel, case.nodes) if v < 2.0 else risen(PATH + WIDE * n, panel, case.nodes)
+        case.nodes[TOTALS + n] += frame.direction * way if n < 2 else way
     return Clock(end, at, clock.piece, clock.steps, clock.ends + 1, clock.length)
 
 
 @kernel
 def coast(state, frame, clock, case):
     """Outputs of the last decay, (1 + j + gamma N) V' = -T_mean V with delta/V constant: (clock, time of rest)."""
-    scene, out, direction, totals = case.scene, case.out, frame.direction, case.work.totals
+    scene, out, direction, nodes = case.scene, case.out, frame.direction, case.nodes
     _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, scene)
     inertia = 1.0 + scene.j + inertia_at(0.0, scene)[0]
     # V and omega fall together: Q = 4 kappa delta takes what the moments differ by
@@ -166,8 +166,8 @@ def coast(state, frame, clock, case):
         _put_acting(at, 0.0, 0.0, out)
         way = -direction * state.V * gone / rate
         for n in range(PATHS):
-            _put_path(at, n, totals[n] + (way if n < 2 else 0.0), case)
-        _put_path(at, PATHS - 1, totals[PATHS - 1] + energy * (1.0 - decay * decay if moves else 1.0), case)
+            _put_path(at, n, nodes[TOTALS + n] + (way if n < 2 else 0.0), case)
+        _put_path(at, PATHS - 1, nodes[TOTALS + PATHS - 1] + energy * (1.0 - decay * decay if moves else 1.0), case)
     last = case.tau[case.tau.size - 1]
     clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
     return clock, end / case.scene.gamma if end <= last else np.nan

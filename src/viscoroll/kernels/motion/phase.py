@@ -79,10 +79,10 @@ def moderate_speed(scene):
 @kernel
 def _rise_time(rise, clock, frame, case):
     """Time in which V rises from 0 to about this: its pace changes as the drive does."""
-    soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.work.nodes[V_RATE]
+    soon, pace = _SOON * (piece_end(clock.piece, case) - clock.tau), case.nodes[V_RATE]
     load = load_at(clock.tau + soon, clock.piece, frame, case)
     _, d = departing(load, frame.spin, case.scene)
-    later = rates_of(State(0.0, d if d != 0.0 else case.work.nodes[SECOND]), load, frame, case.scene)
+    later = rates_of(State(0.0, d if d != 0.0 else case.nodes[SECOND]), load, frame, case.scene)
     pace, gain = max(pace, 0.0), (later.p_rate / later.p_V - pace) / soon
     square = pace**2 + 2.0 * gain * rise
     if square < 0.0:  # it does not rise so far, and falls from here on
@@ -94,7 +94,7 @@ def _rise_time(rise, clock, frame, case):
 @kernel
 def _first_length(fresh, clock, frame, case):
     """Length to try first."""
-    nodes, scene = case.work.nodes, case.scene
+    nodes, scene = case.nodes, case.scene
     speed, fastest, pace, rate = nodes[V], nodes[SPEED], abs(nodes[V_RATE]), abs(nodes[RATE])
     if frame.slips:
         length = _FIRST * fastest / max(pace, rate) if fastest > 0.0 and max(pace, rate) > 0.0 else np.inf
@@ -117,7 +117,7 @@ def _pace_to_zero(panel, state, frame, case):
 
     In partial slip V only comes to 0 against the drive.
     """
-    pace = case.work.nodes[V_RATE]
+    pace = case.nodes[V_RATE]
     if not pace < 0.0:
         return np.inf
     if frame.slips:
@@ -136,7 +136,7 @@ def _attempt(panel, left, aimed, track, frame, case):
     Where a panel is too long for its tolerance and the regime ends on it, the law bends there: one that ends there may
     be good.
     """
-    nodes, event, size, longest = case.work.nodes, NO_EVENT, np.inf, left
+    nodes, event, size, longest = case.nodes, NO_EVENT, np.inf, left
     for _ in range(_CUTS):
         if not solve(panel, nodes[SLOPE], track, frame, case):
             return NO_EVENT, 2.0, panel, np.inf, track
@@ -144,7 +144,7 @@ def _attempt(panel, left, aimed, track, frame, case):
         if not size <= _CUTTABLE:
             break
         put_events(panel, frame, case)
-        found, v = first_event(panel, frame, case.work)
+        found, v = first_event(panel, frame, nodes)
         behind = goes_behind(nodes)
         missed = passed_over(panel, frame, case)
         if missed != NO_EVENT and panel.length <= _INSTANT * (panel.tau + left):
@@ -164,7 +164,7 @@ def _attempt(panel, left, aimed, track, frame, case):
                 return event, located(event, v, frame, case), panel, size, track
             v *= _BEHIND_IT
         if found == NO_EVENT:
-            v = place_of(event, 0, case.work)
+            v = place_of(event, 0, nodes)
             if v >= NOWHERE:  # nowhere near
                 return NO_EVENT, 2.0, panel, size, track
         length = min(panel.length * (0.5 * v) ** panel.power, longest)
@@ -178,7 +178,7 @@ def _attempt(panel, left, aimed, track, frame, case):
 @kernel(inline=True)
 def _slow_length(panel, frame, case):
     """Length to try behind a panel along which d has relaxed: from there on it follows V, which changes slowly."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     if frame.slips or not nodes[SLOPE + N] * panel.length < -_OVER:
         return 0.0
     pace = max(abs(nodes[P_RATE + N] * nodes[PER_P + N] / nodes[V + N]), abs(2.0 * nodes[DIAGONAL + N] / panel.length))
@@ -207,7 +207,7 @@ def _next_length(panel, size, rejected, last, last_size):
 @kernel(inline=True)
 def _begin(state, frame, clock, case):
     """The frame with node 0 filled; from delta = 0 on the branch is that which d turns to."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     nodes[V], nodes[SECOND] = state.V, state.second
     rates = rates_of(state, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
     put_node(0, rates, 1.0, nodes)
@@ -232,7 +232,7 @@ def creeps(state, frame, case):
 @kernel
 def phase(fresh, state, frame, clock, case):
     """Follow a regime: (event, state, frame, clock).  ``fresh``: the stick zone has just formed."""
-    nodes, powers, limits = case.work.nodes, case.work.powers, case.limits
+    nodes, limits = case.nodes, case.limits
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
     length = max(length, _INSTANT * clock.tau) if length > 0.0 else length
     power = _GRADED if fresh else 1
@@ -264,7 +264,7 @@ def phase(fresh, state, frame, clock, case):
         )
         state = State(nodes[V + N], nodes[SECOND + N])
         if v < 2.0:
-            state = State(nodes[V] + rise_at(v, powers, OF_V), nodes[SECOND] + rise_at(v, powers, OF_SECOND))
+            state = State(nodes[V] + rise_at(v, nodes, OF_V), nodes[SECOND] + rise_at(v, nodes, OF_SECOND))
         if event != NO_EVENT:
             return event, state, frame, clock
         length = max(length, _slow_length(panel, frame, case))

@@ -111,43 +111,28 @@ class Limits(NamedTuple):
     max_steps: int
 
 
-class Work(NamedTuple):
-    """Arrays of a panel: rows of values at the nodes, interpolants, Newton's matrices of p and of the second unknown,
-    what has added up."""
-
-    nodes: Any
-    powers: Any
-    matrix: Any
-    second_matrix: Any
-    totals: Any
-
-
-class Notes(NamedTuple):
-    """Room for what is noted on the way: (t, regime behind) of the switches, REVERSED among them, (k, 2), and the ends
-    of panels."""
-
-    switches: Any
-    ends: Any
-
-
-class Asked(NamedTuple):
-    """Which outputs are, beside V, omega, delta and the regime: all that adds up along the way; what acts."""
-
-    paths: bool
-    acting: bool
-
-
 class Case(NamedTuple):
-    """All that stays the same from start to end of a motion; times in tau = gamma t."""
+    """All that stays the same from start to end of a motion; times in tau = gamma t.
+
+    tau, out : times of the outputs, and room for these
+    paths, acting : which are asked for beside V, omega, delta and the regime: all that adds up along the way; what acts
+    switches, ends : room for (t, regime behind) of switches, REVERSED among them, (k, 2), and for the ends of panels
+    nodes, matrix, second_matrix : where the numbers of a panel begin (:mod:`nodes`), and Newton's matrices of p and of
+        the second unknown
+    """
 
     scene: Scene
     drive: Drive
     limits: Limits
     tau: Any
     out: Any
-    asked: Asked
-    notes: Notes
-    work: Work
+    paths: bool
+    acting: bool
+    switches: Any
+    ends: Any
+    nodes: Any
+    matrix: Any
+    second_matrix: Any
 
 
 class Batch(NamedTuple):

@@ -80,7 +80,7 @@ def _creep_weight(share):
 @kernel(inline=True)
 def scales(panel, frame, case):
     """(Of V, of the second unknown): what errors are measured by; speeds by the largest of the panel."""
-    nodes, fastest, own, moved = case.work.nodes, 0.0, 0.0, 0.0
+    nodes, fastest, own, moved = case.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
         fastest, own = max(fastest, nodes[SPEED + i]), max(own, abs(nodes[V + i]))
     fastest = max(fastest, own)
@@ -96,7 +96,7 @@ def scales(panel, frame, case):
 @kernel(inline=True)
 def _put_equations(anew, panel, frame, case):
     """Fill the nodes from their unknowns, the right side of the second, and, ``anew``, what both matrices take."""
-    own, nodes, half = loaded(case), case.work.nodes, 0.5 * panel.length
+    own, nodes, half = loaded(case), case.nodes, 0.5 * panel.length
     product(SLOPES, SECOND, nodes[SECOND], nodes, SECOND_SLOPE, nodes)
     for i in range(1, WIDE):
         rates = rates_at(nodes[V + i], nodes[SECOND + i], load_there(i, frame, own), frame, own.scene)
@@ -117,36 +117,36 @@ def _put_equations(anew, panel, frame, case):
 
 
 @kernel
-def _feed_matrix(work):
+def _feed_matrix(case):
     """Add what d feeds to the matrix of V."""
     for k in range(1, WIDE):
         for i in range(1, WIDE):
-            fed = work.nodes[FED + i] * work.second_matrix[WIDE * k + i]
-            work.matrix[WIDE * k + i] += fed * work.nodes[COUPLED + k]
+            fed = case.nodes[FED + i] * case.second_matrix[WIDE * k + i]
+            case.matrix[WIDE * k + i] += fed * case.nodes[COUPLED + k]
 
 
 @kernel(inline=True)
 def _newton(anew, fed, panel, frame, case):
     """One iteration; the largest change over what it is measured by."""
-    work, nodes = case.work, case.work.nodes
+    nodes, matrix, second_matrix = case.nodes, case.matrix, case.second_matrix
     if anew:
         _put_equations(True, panel, frame, case)
-        weighted_slopes(ONES, DIAGONAL, nodes, work.matrix)
-        weighted_slopes(WEIGHTS, SECOND_DIAGONAL, nodes, work.second_matrix)
-        invert(work.second_matrix)
+        weighted_slopes(ONES, DIAGONAL, nodes, matrix)
+        weighted_slopes(WEIGHTS, SECOND_DIAGONAL, nodes, second_matrix)
+        invert(second_matrix)
         if fed:
-            _feed_matrix(work)
-        invert(work.matrix)
+            _feed_matrix(case)
+        invert(matrix)
     else:
         _put_equations(False, panel, frame, case)
     if fed:
-        product(work.second_matrix, SECOND_RIGHT, 0.0, nodes, CHANGE, nodes)
+        product(second_matrix, SECOND_RIGHT, 0.0, nodes, CHANGE, nodes)
         for i in range(1, WIDE):
             nodes[RIGHT + i] += nodes[FED + i] * nodes[CHANGE + i]
-    product(work.matrix, RIGHT, 0.0, nodes, CHANGE, nodes)
+    product(matrix, RIGHT, 0.0, nodes, CHANGE, nodes)
     for i in range(1, WIDE):
         nodes[SECOND_RIGHT + i] -= nodes[COUPLED + i] * nodes[CHANGE + i]
-    product(work.second_matrix, SECOND_RIGHT, 0.0, nodes, SECOND_CHANGE, nodes)
+    product(second_matrix, SECOND_RIGHT, 0.0, nodes, SECOND_CHANGE, nodes)
     change, rise = 0.0 * (nodes[CHANGE + N] + nodes[SECOND_CHANGE + N]), 0.0  # a NaN is lost in any other place
     for i in range(1, WIDE):
         second = nodes[SECOND_CHANGE + i]
@@ -166,7 +166,7 @@ def solve(panel, slope, track, frame, case):
 
     ``track`` : the panel whose interpolants are there; afterwards they are those of this one.
     """
-    work, tolerance = case.work, max(SHARE * case.limits.rtol, _LEAST)
+    nodes, tolerance = case.nodes, max(SHARE * case.limits.rtol, _LEAST)
     left = max(_NEWTON * tolerance, _LEAST)
     put_drive(panel, case)
     guess(panel, slope, track, frame, case)
@@ -177,8 +177,8 @@ def solve(panel, slope, track, frame, case):
         if not (change < 1e6 and gain < 2.0):
             return False
         if change * gain <= left:
-            rise_terms(V, work.nodes, OF_V, work.powers)
-            rise_terms(SECOND, work.nodes, OF_SECOND, work.powers)
+            rise_terms(V, OF_V, nodes)
+            rise_terms(SECOND, OF_SECOND, nodes)
             return True
         anew = change > _ANEW and (n == 0 or gain > _SLOWED)
         before = change
@@ -198,7 +198,7 @@ def _mismatch(row, slopes, first, nodes):
 @kernel
 def _least(panel, case):
     """V where the first output lies, over the largest: speeds there are to be right beside themselves."""
-    nodes, at = case.work.nodes, case.tau[case.tau.size - 1]
+    nodes, at = case.nodes, case.tau[case.tau.size - 1]
     for i in range(case.tau.size):
         if case.tau[i] > panel.tau:
             at = case.tau[i]
@@ -214,11 +214,11 @@ def _least(panel, case):
 @kernel(inline=True)
 def panel_error(panel, frame, case):
     """Error of the interpolants over their tolerance; of d only what its relaxation leaves of it counts."""
-    nodes, half, smooth = case.work.nodes, 0.5 * panel.length, panel.power == 1
+    nodes, half, smooth = case.nodes, 0.5 * panel.length, panel.power == 1
     of_V, of_second = scales(panel, frame, case)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not
     error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half if smooth else 0.0, nodes) * abs(nodes[PER_P + N])
-    error = max(error, _LAST * abs(case.work.powers[OF_V + N - 1]))
+    error = max(error, _LAST * abs(case.nodes[OF_V + N - 1]))
     # shorter panels do not mend what the rounding of the drive moves V by
     error = max(error - panel.length * rounding(panel.piece, case.drive.pieces), 0.0) / of_V
     if nodes[SPEED] == 0.0:
@@ -231,5 +231,5 @@ def panel_error(panel, frame, case):
         # near the edge of the stick zone relaxation comes to an end
         error = max(error, off / ((1.0 + panel.length * abs(nodes[SLOPE])) * of_second))
     if not frame.slips:  # between the nodes
-        error = max(error, _LAST * abs(case.work.powers[OF_SECOND + N - 1]) / of_second)
+        error = max(error, _LAST * abs(case.nodes[OF_SECOND + N - 1]) / of_second)
     return _OVERSTATED * error / (SHARE * case.limits.rtol)

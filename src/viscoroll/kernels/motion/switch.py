@@ -53,7 +53,7 @@ def released(state, frame, clock, case):
 @kernel
 def closed(state, locked, case):
     """Whether the stick band closes at V = 0, where omega is 0 too."""
-    nodes = case.work.nodes
+    nodes = case.nodes
     if not locked:
         return state.V <= _CLOSED * nodes[V]
     largest = 0.0  # slip with omega = 0 ends with V, which is 0 but for the tolerance
@@ -82,7 +82,7 @@ def stands(state, frame, clock, case):
         return False
     rates, fastest = here(state, frame, clock, case)[1], 0.0
     for i in range(N + 1):
-        fastest = max(fastest, case.work.nodes[FASTEST + i])
+        fastest = max(fastest, case.nodes[FASTEST + i])
     return max(abs(state.V), abs(rates.omega)) <= drift(fastest, clock, case)
 
 
