@@ -16,7 +16,6 @@ from run_files import FILES
 from scipy import stats
 
 import viscoroll as vr
-from pipeline.validation import validate
 from viscoroll import fmu
 from viscoroll.app.identification.file import read_measurements
 from viscoroll.contact_law.steadiness import Steadiness
@@ -39,7 +38,7 @@ MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr
 OMEGA = np.logspace(-2, 4, 20)
 #: what the calls see
 NAMES = vars(experiments) | {
-    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "validate": validate, "xr": xr, "fmu": fmu,
+    "vr": vr, "np": np, "math": math, "nan": math.nan, "inf": math.inf, "xr": xr, "fmu": fmu,
     "DMA": (OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA),
     "LABELLED": V, "FRAME": pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=["x", "y"]),
     "DMA_ROLLER": ON_DMA, "ONE": vr.Scene(11.0, 10.0, 0.5, 120.0), "dataclasses": dataclasses,

@@ -1,6 +1,6 @@
 """Is what the package computes what the paper's equations say?  :func:`validate` -> :class:`Report`.
 
-Read in this order: :mod:`report`, :mod:`states` and :mod:`stresses` (contact law), :mod:`direct_motion` (an
+Read in this order: :mod:`states` and :mod:`stresses` (contact law), :mod:`direct_motion` (an
 integrator of its own) and :mod:`motions` (what it is for); rows of files are those of ``viscoroll tables validate``.
 """
 
@@ -9,15 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from viscoroll.core.errors import ParameterError
 from viscoroll.io.tables.check import Check, Report, check_table
-
-from .report import report_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Check", "Report", "report_dataset", "validate"]
+__all__ = ["Check", "Report", "validate"]
 
 
 def validate(
@@ -45,12 +42,10 @@ def validate(
     Returns
     -------
     Report
-        ``ok``, ``checks``, a printed table by ``str``; :func:`report_dataset` for a file.
+        ``ok``, ``checks``, a printed table by ``str``.
 
     Raises
     ------
-    ParameterError
-        A count below 1 (times: 2) or a negative seed.
     FileError
         A table that does not state its errors.
     ConvergenceError
@@ -67,12 +62,6 @@ def validate(
     from .states import along_motion_checks, random_state_checks
     from .stresses import stress_checks
 
-    settings = {"states": states, "stress_states": stress_states, "table_points": table_points, "times": times}
-    for name, value in settings.items():
-        if value < (least := 2 if name == "times" else 1):
-            raise ParameterError(name, value, f"a whole number >= {least}")
-    if seed < 0:
-        raise ParameterError("seed", seed, "a whole number >= 0")
     parts: list[Callable[[], list[Check]]] = [
         lambda: random_state_checks(states, seed),
         lambda: along_motion_checks(times),
@@ -83,4 +72,5 @@ def validate(
     checks = []
     for part in tqdm(parts, desc="validate", delay=1.0, leave=False, disable=not progress):
         checks += part()
+    settings = {"states": states, "stress_states": stress_states, "table_points": table_points, "times": times}
     return Report(tuple(checks), settings | {"seed": seed})

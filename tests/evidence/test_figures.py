@@ -93,7 +93,7 @@ folder, *options = sys.argv[1:]
 for name in ("offline", "runtime", "ensemble", "validate", "benchmark", "figures", "report"):
     sys.argv = [name, *options, *(["--tables", folder] if name == "offline" else [])]
     try:
-        runpy.run_module(f"pipeline.{name}", run_name="__main__")
+        runpy.run_module(f"pipeline.{name}", run_name="__main__", alter_sys=True)
     except SystemExit as ended:
         assert not ended.code, name
 """
@@ -134,7 +134,7 @@ def test_summary_page(demo):
     assert text.index("preset paper-section-5") < text.index("Three throws") < text.index("How long it took")
     assert "too slow for the law of steady rolling to drive a motion" in text
     assert text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1  # and the benchmark's
-    assert {"ensemble.nc", "validation.nc", "validation.txt"} <= links
+    assert {"ensemble.nc", "validation.csv", "validation.txt"} <= links
     assert all((out / target).exists() for target in links)
     before = (out / "index.html").stat().st_mtime_ns
     shown = made("report", "--config", config, "-o", out, "--show")
@@ -150,6 +150,7 @@ def test_stage_refuses_in_one_line(demo, tmp_path):
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
         ("ensemble", '"paper-section-5-rounded"', '"paper"', "preset: 'paper' is not"),
         ("ensemble", "[ensemble]", "[ensemble", "is not TOML"),
+        ("validate", "times = 5", "times = 1", "[validate]"),
     ):
         config.write_text(small.replace(old, new))
         assert words in stage_refused(name, "--config", config, "-o", tmp_path / "out")
