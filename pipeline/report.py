@@ -112,13 +112,12 @@ def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
 
 def introduced(found: dict[str, dict[str, Any]]) -> str:
     """What rolls on this page, and what that is worth."""
-    names = {str(found["ensemble"]["headline"]["preset"])}
-    scenes = " and ".join(f"preset {escape(name)}: {escape(str(PRESETS[name]))}" for name in sorted(names))
-    fastest = max(abs(V0) for V0, _ in vr.presets.PAPER_STARTS.values())
-    worth = "; ".join(PRESETS[name].validity(fastest).steady.sentence for name in sorted(names))
+    name = str(found["ensemble"]["headline"]["preset"])
+    worth = PRESETS[name].validity(max(abs(V0) for V0, _ in vr.presets.PAPER_STARTS.values())).steady.sentence
     return (
         f"<p>A viscoelastic cylinder rolls and slides on a half-space of its material: the example of the paper's "
-        f"Sect. 5, {scenes}.  Everything is dimensionless.</p><p>For motions: {escape(worth)}.</p>"
+        f"Sect. 5, preset {escape(name)}: {escape(str(PRESETS[name]))}.  Everything is dimensionless.</p>"
+        f"<p>For motions: {escape(worth)}.</p>"
     )
 
 

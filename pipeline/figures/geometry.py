@@ -35,9 +35,9 @@ def geometry() -> Figure:
     return figure
 
 
-def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float], text: str, **style: Any) -> None:
-    axes.annotate("", end, start, arrowprops=_ARROW | style)
-    axes.annotate(text, end, (5, 3), **_TEXT)
+def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float], text: str = "", **style: Any) -> None:
+    axes.annotate("", end, start, arrowprops=_ARROW, **style)
+    axes.annotate(text, end, (5, 3), **_TEXT, **style)
 
 
 def _body(axes: Any) -> None:
@@ -46,24 +46,19 @@ def _body(axes: Any) -> None:
 
     axes.add_patch(Circle((0.0, _HEIGHT), 1.0, facecolor=_BODY, edgecolor=_EDGE, linewidth=1.2))
     axes.fill_between([-1.7, 1.9], [-0.45, -0.45], [0.0, 0.0], color=_GROUND, zorder=2)
-    half = np.sqrt(1.0 - _HEIGHT**2)
+    half, turn, down = np.sqrt(1.0 - _HEIGHT**2), np.radians(np.linspace(150.0, 60.0, 60)), np.radians(215.0)
+    x, y = 0.62 * np.cos(turn), _HEIGHT + 0.62 * np.sin(turn)
     axes.plot([-1.7, 1.9], [0.0, 0.0], color=_EDGE, linewidth=1.2, zorder=3)
     axes.plot([-half, half], [0.0, 0.0], color=LINES[2]["color"], linewidth=3.5, zorder=4, solid_capstyle="butt")
-    axes.annotate("contact", (0.0, 0.0), (0, -16), textcoords="offset points", ha="center", zorder=5)
     axes.plot(0.0, _HEIGHT, "o", color="black", markersize=4)
-    _arrow(axes, (0.0, _HEIGHT), (1.45, _HEIGHT), f"${labelled('V').strip('$')}$")
-    _arrow(axes, (0.0, 2.45), (0.0, 2.0), "")
-    axes.annotate("load $P$", (0.0, 2.3), (6, 0), **_TEXT)
-    turn = np.radians(np.linspace(150.0, 60.0, 60))
-    x, y = 0.62 * np.cos(turn), _HEIGHT + 0.62 * np.sin(turn)
     axes.plot(x[:-3], y[:-3], color="black", linewidth=1.3)
+    axes.plot([0.0, np.cos(down)], [_HEIGHT, _HEIGHT + np.sin(down)], color="0.5", linewidth=0.8)
+    _arrow(axes, (0.0, _HEIGHT), (1.45, _HEIGHT), labelled("V"))
+    _arrow(axes, (0.0, 2.45), (0.0, 2.0), "load $P$")
     _arrow(axes, (x[-4], y[-4]), (x[-1], y[-1]), labelled("omega"))
-    down = np.radians(215.0)
-    rim = np.cos(down), _HEIGHT + np.sin(down)
-    axes.plot([0.0, rim[0]], [_HEIGHT, rim[1]], color="0.5", linewidth=0.8)
-    axes.annotate("$R$", (0.5 * rim[0], 0.5 * (_HEIGHT + rim[1])), (-3, 5), **_TEXT)
-    _arrow(axes, (half + 0.12, -0.17), (half + 0.75, -0.17), "", zorder=6)
-    axes.annotate("$QP$", (half + 0.75, -0.17), (6, 0), va="center", zorder=6, **_TEXT)
+    _arrow(axes, (half + 0.12, -0.17), (half + 0.75, -0.17), "$QP$", zorder=6)
+    axes.annotate("$R$", (0.5 * np.cos(down), _HEIGHT + 0.5 * np.sin(down)), (-3, 5), **_TEXT)
+    axes.annotate("contact", (0.0, 0.0), (0, -16), textcoords="offset points", ha="center", zorder=5)
     axes.set(xlim=(-1.7, 1.9), ylim=(-0.45, 2.55), aspect="equal")
     axes.set_axis_off()
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from viscoroll.contact_law.stress import stress
 from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
-from viscoroll.motion import Motion, roll
+from viscoroll.motion import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
 from .title import caveat, describe, number
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 #: The times of the paper's Fig. 7.
 PAPER_TIMES = (1.52e-4, 4e-4, 24e-4, 30e-4)
-#: beta as the paper prints it at the first of these times
-PAPER_BETA = 0.45
 _SCENE = ("alpha", "kappa", "mu", "gamma")
 #: Times are shown in units of 1e-4.
 _UNIT = 1e4
@@ -54,20 +52,7 @@ def figure_7() -> Figure:
     for axes in panels[:, 0]:
         axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
     panels[0, 0].legend(frameon=False, loc="upper left")
-    panels[0, 0].text(0.02, 0.6, _printed(motion), transform=panels[0, 0].transAxes, va="top", fontsize="small")
     return figure
-
-
-def _printed(motion: Motion) -> str:
-    """Why beta at the first of the paper's times is not what the paper prints."""
-    near = motion.at(np.linspace(motion.onset_time, PAPER_TIMES[0], 101))
-    beta = near.contact("beta").beta
-    passed, rise = np.interp(PAPER_BETA, beta, near.t), (beta[-1] - beta[-2]) / (near.t[-1] - near.t[-2])
-    return (
-        f"the paper prints {labelled('beta')} = {PAPER_BETA},\n"
-        rf"passed at {labelled('t')} = ${_UNIT * passed:.4g}\times 10^{{-4}}$:"
-        f"\n{labelled('beta')} climbs here by\n{1e-6 * rise:.1g} in $10^{{-6}}$ of {labelled('t')}"
-    )
 
 
 def _front_edge(axes: Any, x: NDArray, found: Any, mu: float) -> None:
