@@ -2,6 +2,7 @@
 
 import math
 
+import flint
 import mpmath as mp
 import numpy as np
 import tolerances as tol
@@ -9,7 +10,8 @@ from closeness import close
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from pipeline.evidence.truth.series import functions, rates
+from pipeline.evidence.truth.enclosures import zone_of
+from pipeline.evidence.truth.material import material_of
 from viscoroll.contact_law.contact_fields import SLOPES_OF_BODIES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
@@ -37,15 +39,14 @@ def test_speeds_against_extended_precision():
     """Also close to the fold: an error of 1e-16 of the load is one of its square root there."""
     scene = vr.Scene(11.0, KAPPA, 10.0)
     hump = vr.humps(scene)
-    with mp.workdps(50):
-        known = rates(mp, [10.0], [1.0 / 11.0])
+    with mp.workdps(50), flint.ctx.workprec(600):
 
         def curve(x):
             """kappa V and kappa M over ln zeta."""
             z = mp.exp(x)
-            f = functions(mp, known, z)
-            u = 1 / (2 * z * mp.sqrt(1 + 2 * f.h / z))
-            return u, u * f.m
+            f = zone_of(material_of(11.0), flint.arb(z))
+            u = 1 / (2 * z * mp.sqrt(1 + 2 * mp.mpf(f.h.mid()) / z))
+            return u, u * mp.mpf(f.m.mid())
 
         start = -mp.log(2 * mp.mpf(hump.V[0] * KAPPA))
         x_top = mp.findroot(

@@ -8,7 +8,7 @@ from places import kept
 
 import viscoroll as vr
 from pipeline.evidence.prove import unsteady
-from pipeline.evidence.prove.transient import BEHIND, Contact, grid
+from pipeline.evidence.prove.transient import Contact, grid
 
 CELLS = grid(0.04)
 
@@ -19,16 +19,15 @@ def test_run_in_it_is_the_steady_contact(motion):
     scene, u = unsteady.scene_of(motion), motion[1]
     series, c = scene.material, vr.contact(scene, u, delta=0.0)
     contact = Contact((series.J, series.T, series.alpha), CELLS, 10.0, u, c.lam)
-    _, low, high, _ = contact.where
+    low, high, *_ = contact.where
     assert close(contact.kM, c.M, rel=tol.TRANSIENT_M)
     assert close(0.5 * (high - low) * CELLS.h, c.lam, rel=CELLS.h, scale=1.0)
 
 
 def test_at_rest_it_is_hertz():
     contact = Contact((np.ones(1) / 2.0, np.ones(1), 2.0), CELLS, 10.0)
-    x = CELLS.h * np.arange(contact.memory.p.size) - BEHIND
     assert close(contact.kM, 0.0, rel=1e-12, scale=1.0)
-    assert close(contact.memory.p, np.sqrt(np.maximum(1.0 - x * x, 0.0)), rel=CELLS.h, scale=1.0)
+    assert close(contact.p, np.sqrt(np.maximum(1.0 - contact.x**2, 0.0)), rel=CELLS.h, scale=1.0)
 
 
 @pytest.mark.parametrize(

@@ -78,5 +78,5 @@ def test_check_values_sample_is_enclosed():
     rows = check_rows()
     for row in rows[:: len(rows) // 60]:
         exact = contact_enclosure(*(row[name] for name in ("alpha", "kappa", "mu", "V", "delta")))
-        for name, ball in exact.items():
-            assert row[name] == float(ball), name
+        for name in row.keys() & exact.keys():
+            assert row[name] == float(exact[name]), name

@@ -1,16 +1,18 @@
-"""Materials of many relaxation times and pairs: the matching conditions at 60 digits, and Chebyshev polynomials.
+"""Materials of many relaxation times and pairs: the matching conditions in balls, and Chebyshev polynomials.
 
-The conditions stand in ``pipeline.evidence.truth.series`` as they were derived, without the system that the kernels
+The conditions stand in ``pipeline.evidence.truth.enclosures`` as they were derived, without the system that the kernels
 solve; the Chebyshev solver knows neither Bessel functions nor the relaxation form.
 """
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import Any
 
-import mpmath
+import flint
 import numpy as np
+from flint import arb
 
 import viscoroll as vr
 from viscoroll.contact_law.contact_fields import OF_BODIES
@@ -18,17 +20,16 @@ from viscoroll.kernels.rows.modes import modes_loop
 from viscoroll.kernels.rows.series import FUNCTIONS, room_of
 from viscoroll.materials.law_modes import series_of
 
-from ..truth import series as raw
 from ..truth import spectral
+from ..truth.enclosures import INPUTS, enclosed, slopes, zone_of
+from ..truth.material import Material, material_of
 from .claim import Found, Proof, at
 from .draws import powers
 from .states import EPSILON, LAM
 
-DIGITS, DECADES = 60, 14.0
+BITS, DECADES = 400, 14.0
 #: e-folds beyond the shortest and the longest time
 BELOW, ABOVE = 30.0, 28.0
-#: slopes are differences, and M is small in fast rolling
-DIGITS_OF_STATES = 90
 #: of the Chebyshev solver: z over its shortest time, and terms that resolve the layers there
 THICKEST, TERMS = 300.0, 220
 
@@ -55,12 +56,14 @@ def functions(random: np.random.Generator, count: int, modes: int) -> Found:
     """g, h and m, which rows are made of, over all z: ten z a material, of many modes fewer."""
     for _ in range(max(count // modes // 10, 1)):
         p = random_series(random, modes)
-        with mpmath.workdps(DIGITS):
-            known = raw.rates(mpmath, p.E.tolist(), p.tau.tolist())
+        with flint.ctx.workprec(BITS):
+            material = material_of(p)
             for z in np.exp(random.uniform(np.log(p.tau[-1]) - BELOW, np.log(p.T[0]) + ABOVE, 10)).tolist():
-                truth, (g, h, half_space, cylinder) = raw.functions(mpmath, known, z), of_z(p, z)
-                pairs = zip((g, h, half_space + cylinder), (truth.g, truth.h, truth.m))
-                yield f"{at(z=z)}, {p!r}", {"": [abs(float(mpmath.mpf(a) / exact - 1)) for a, exact in pairs]}
+                truth, (g, h, half_space, cylinder) = zone_of(material, arb(z)), of_z(p, z)
+                yield (
+                    f"{at(z=z)}, {p!r}",
+                    {"": [abs(float(value / exact - 1)) for value, exact in zip((g, h, half_space + cylinder), truth)]},
+                )
 
 
 def by_chebyshev(random: np.random.Generator, count: int) -> Found:
@@ -74,39 +77,47 @@ def by_chebyshev(random: np.random.Generator, count: int) -> Found:
         yield f"{at(z=z)}, {p!r}", {"": abs(found / [*other[:3], weights @ other.shares] - 1.0)}
 
 
-def state_errors(material: Any, known: raw.Rates, zeta: float, share: float) -> dict[str, float]:
-    """Relative errors of a state by its rows: beta and the slopes of Q over the condition of beta.
+def state_errors(given: Any, V: float, delta: float) -> dict[str, float]:
+    """Relative errors of a state by its rows at kappa = mu = 1: beta and the slopes of Q over the condition of beta.
 
-    dQ_dV over mu/V where it is below, dM_dV and the parts of M in the bodies over M or M/V.
+    dQ_dV over mu/V where it is below, dM_dV and the parts of M in the bodies over M/V or M.
     """
-    V, delta, exact, whole = raw.state(mpmath, known, zeta, share)
-    exact["dQ_domega"] = exact["dQ_ddelta"] / V
-    condition = 1 / (1 - delta / exact["delta_star"])
-    scales = {"dQ_dV": max(abs(exact["dQ_dV"]), 1 / V), "dM_dV": whole.m, **dict.fromkeys(OF_BODIES, exact["M"])}
-    half = mpmath.mpf(0.5)
-    if isinstance(material, vr.Bodies):
-        parts = whole.shares(known, mpmath.mpf(zeta), raw.creep_strengths(mpmath, known))
-        half = sum(weight * part for weight, part in zip(material.half_space_weights.tolist(), parts))
-        half /= sum(parts)  # V and zeta differ by a rounding
-    exact |= dict(zip(OF_BODIES, (half * exact["M"], (1 - half) * exact["M"])))
-    # of one alpha by its rows, and by those of the axis, as where there are several
-    one = isinstance(material, float)
-    scenes = [{"alpha": material}, {"alpha": [material, 2.0]}] if one else [{"material": material}]
-    found = [vr.contact(vr.Scene(kappa=1.0, mu=1.0, **given), V, delta=delta, fields=list(exact)) for given in scenes]
-    errors = {}
-    for name, truth in exact.items():
-        off = max(abs(np.ravel(getattr(each, name)).item(0) - truth) for each in found)
-        ill = condition if name in ("beta", "dQ_dV", "dQ_ddelta", "dQ_domega") else 1
-        errors[name] = float(off / (scales.get(name, abs(truth)) * ill))
+    # balls, but for a series or bodies
+    balls = dict(zip(INPUTS, (given, *map(arb, (1, 1, V, delta))))) | (
+        {"alpha": arb(given)} if isinstance(given, float) else {}
+    )
+    truth = enclosed(balls, 100) | slopes(balls)
+    with flint.ctx.workprec(BITS):
+        truth["dQ_domega"] = truth["dQ_ddelta"] / V
+        condition = 1 / (1 - delta / truth["delta_star"])
+        scales = {
+            "dQ_dV": max(abs(truth["dQ_dV"]), 1 / arb(V)),
+            "dM_dV": truth["M"] / V,
+            **dict.fromkeys(OF_BODIES, truth["M"]),
+        }
+        # of one alpha by its rows, and by those of the axis, as where there are several
+        one = isinstance(given, float)
+        scenes = [{"alpha": given}, {"alpha": [given, 2.0]}] if one else [{"material": given}]
+        fields = sorted(truth.keys() - {"zeta", "full_slip"})
+        found = [vr.contact(vr.Scene(kappa=1.0, mu=1.0, **each), V, delta=delta, fields=fields) for each in scenes]
+        errors = {}
+        for name in fields:
+            off = max(abs(arb(np.ravel(getattr(each, name)).item(0)) - truth[name]) for each in found)
+            ill = condition if name in ("beta", "dQ_dV", "dQ_ddelta", "dQ_domega") else 1
+            errors[name] = float(off / (scales.get(name, abs(truth[name])) * ill))
     return errors
 
 
-def any_state(random: np.random.Generator, known: raw.Rates) -> tuple[float, float]:
-    """zeta, from 14 decades below the fastest time to 14 above the slowest or near them, and 1 - beta, about."""
-    near, far = (float(mpmath.log10(1 / rate)) for rate in (known.a[-1], known.b[0]))
+def any_state(random: np.random.Generator, material: Material) -> tuple[float, float]:
+    """V and delta: zeta from 14 decades below the fastest time to 14 above the slowest or near them, 1 - beta any."""
+    near, far = (math.log10(float(1 / rate)) for rate in (material.a[-1], material.b[0]))
     beyond = 14.0 if random.random() < 0.3 else 2.0
     small, gap = powers(random, (-14.0, 0.0), (-7.0, 0.0))
-    return powers(random, (near - beyond, far + beyond))[0], (small, random.random(), 1.0 - gap)[random.integers(3)]
+    zeta = arb(powers(random, (near - beyond, far + beyond))[0])
+    eta = zeta * (1 - arb((small, random.random(), 1.0 - gap)[random.integers(3)]))
+    whole, stick = zone_of(material, zeta), zone_of(material, eta)
+    V = 1 / (2 * (zeta * (zeta + 2 * whole.h)).sqrt())
+    return float(V), float((zeta + whole.g - eta - stick.g) * V)
 
 
 def any_material(random: np.random.Generator, n: int) -> Any:
@@ -126,12 +137,11 @@ def any_material(random: np.random.Generator, n: int) -> Any:
 def states(random: np.random.Generator, count: int) -> Found:
     """Every field of states by their rows, five a material."""
     for n in range(count):
-        material = any_material(random, n)
-        with mpmath.workdps(DIGITS_OF_STATES):
-            known = raw.rates_of(mpmath, material)
-            for _ in range(5):
-                zeta, share = any_state(random, known)
-                yield f"{at(zeta=zeta, share=share)}, {material!r}", state_errors(material, known, zeta, share)
+        given = any_material(random, n)
+        for _ in range(5):
+            with flint.ctx.workprec(BITS):
+                V, delta = any_state(random, material_of(given))
+            yield f"{at(V=V, delta=delta)}, {given!r}", state_errors(given, V, delta)
 
 
 def _states(sentence: str, bound: float, *names: str) -> dict[str, tuple[str, float]]:

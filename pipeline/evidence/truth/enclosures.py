@@ -1,21 +1,32 @@
-"""The contact law in ball arithmetic: every value comes with a proven bound on its error.
+"""The contact law of any material in ball arithmetic: every value comes with a bound on its error.
 
 The reduced form of the law, H(zeta) = 1/(2 kappa V)^2 and F(eta) = F(zeta) - delta/(mu V), with
 the Bessel functions and the error bounds of Arb (python-flint).  A root is a ball at whose ends
 the enclosed function, which rises strictly, lies certainly below and certainly above.  Digits
 that cancel show as a wide ball, and the whole is done again with more.
 
+Of several relaxation times (:mod:`material`, rates without a radius) by the matching conditions as they stand,
+Goryacheva's way; the kernels solve another system.  Inside the contact the pressure is that of Hertz and one
+exponential a relaxation mode, of amplitude X_i; each creep mode's memory must be continuous at the front edge:
+
+    sum_i X_i a_i (1 + r_i k_j)/(a_i - b_j) = 1/b_j     r_i = I1/I0(a_i z)     k_j = K0/K1(b_j z)
+
 ``tests/truth/test_enclosures.py`` puts the balls into the equations as printed.
 """
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
-from typing import Any
+from contextlib import suppress
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import flint
+from flint import acb, arb
 
 from viscoroll.core.errors import ConvergenceError
-from viscoroll.core.extras import imported
+
+from .material import Material, material_of
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14
@@ -38,16 +49,15 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
     Returns
     -------
     dict
-        lam, zeta, epsilon, delta_star, beta, Q, M as ``flint.arb``; full_slip as bool.
+        lam, zeta, epsilon, delta_star, beta, Q, M as ``arb``; full_slip as bool.
 
     Notes
     -----
     Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
     most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
     """
-    flint = _flint()
     given = (alpha, kappa, mu, abs(V), abs(delta))
-    state = enclosed({name: flint.arb(float(value)) for name, value in zip(INPUTS, given, strict=True)}, bits)
+    state = enclosed({name: arb(float(value)) for name, value in zip(INPUTS, given, strict=True)}, bits)
     with flint.ctx.workprec(_MOST_BITS):  # a change of sign shall not round
         if V < 0.0:
             state["M"] = -state["M"]
@@ -57,10 +67,14 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
 
 
 def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
-    """``contact_enclosure`` of exact balls with V > 0 and delta >= 0."""
-    flint, working = _flint(), bits + 60
+    """``contact_enclosure`` of exact balls with V > 0 and delta >= 0; alpha: a ball, a series or a pair of bodies.
+
+    And the parts of M.
+    """
+    working = bits + 60
+    state = None
     while working <= _MOST_BITS:
-        with flint.ctx.workprec(working):
+        with flint.ctx.workprec(working), suppress(ZeroDivisionError):
             state = _state(**given)
         if state is not None and all(state[name].rel_accuracy_bits() >= bits for name in state if name != "full_slip"):
             return state
@@ -74,12 +88,12 @@ def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]
     By differences with a relative step of 2^-180, far above the balls and far below anything that bends; alpha moves
     up, away from 1, and delta down, away from delta_star.
     """
-    flint, bits = _flint(), bits + _STEP_BITS
+    bits += _STEP_BITS
     base = enclosed(given, bits)
     del base["full_slip"]
     total = dict.fromkeys(base, 0.0)
     with flint.ctx.workprec(2 * bits):
-        step = flint.arb(2) ** -_STEP_BITS
+        step = arb(2) ** -_STEP_BITS
         for name in INPUTS:
             moved = enclosed(given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits)
             for field, value in base.items():
@@ -93,11 +107,10 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
 
     V > 0 and 0 < delta < delta_star.  Their own error is of the order of the step squared, 2^-360.
     """
-    flint = _flint()
     bits += _STEP_BITS
     found = {}
     with flint.ctx.workprec(4 * bits):
-        step = flint.arb(2) ** -_STEP_BITS
+        step = arb(2) ** -_STEP_BITS
         for by in ("V", "delta"):
             up, down = (enclosed(given | {by: given[by] * (1 + sign * step)}, bits) for sign in (1, -1))
             for name in ("Q", "M") if by == "V" else ("Q",):
@@ -111,8 +124,6 @@ def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:
     p/E' = V/(4 pi) S(X - g(zeta); zeta), X = x/(l0 kappa V), and the shear is mu times the difference of
     two such; the integral is Arb's, with its proven bound.
     """
-    flint = _flint()
-    arb, acb = flint.arb, flint.acb
     if abs(Y) >= z:
         return arb(0)
     ellipse = ((z - Y) * (z + Y)).sqrt()
@@ -145,14 +156,13 @@ def ratio_k(z: Any) -> Any:
     (Arb's own way at middling z takes seconds at integer order.)  The series is taken at the middle of
     the ball, where it may cancel; 0 < k' < k/z < k/z at the lower end carries the radius over.
     """
-    flint = _flint()
     if 5 * z > 3 * flint.ctx.prec:  # exp(-2 z) is far below the last digit
         return z.bessel_k(0, scaled=True) / z.bessel_k(1, scaled=True)
     middle = z.mid()
     with flint.ctx.extraprec(64 * (int(3 * float(z.upper())) // 64 + 2)):  # K0 I0 cancels from I0^2, e^(2 z) larger
         k0, i0, i1 = _k0_series(middle)
         k = k0 * i0 / (1 / middle - i1 * k0)
-    return k + flint.arb(0, (z.rad() * k / z.lower()).abs_upper())
+    return k + arb(0, (z.rad() * k / z.lower()).abs_upper())
 
 
 def _k0_series(z: Any) -> tuple[Any, Any, Any]:
@@ -161,103 +171,126 @@ def _k0_series(z: Any) -> tuple[Any, Any, Any]:
     sum q^n/n!^2 (1 + ... + 1/n), q = z^2/4: once n > z a term is less than half of the one before,
     so that the rest of the sum is less than the last term taken.
     """
-    flint = _flint()
     q, count = z * z / 4, 32
-    least = flint.arb(2) ** -flint.ctx.prec
+    least = arb(2) ** -flint.ctx.prec
     while True:
         series = _harmonic_series(count, flint.ctx.prec)
         last = series[count] * q**count
         if count > z and last < least:
             break
         count += count // 2
-    total = series(q) + flint.arb(0, last.abs_upper())
+    total = series(q) + arb(0, last.abs_upper())
     i0, i1 = z.bessel_i(0), z.bessel_i(1)
-    return total - ((z / 2).log() + flint.arb.const_euler()) * i0, i0, i1
+    return total - ((z / 2).log() + arb.const_euler()) * i0, i0, i1
 
 
-@functools.lru_cache(maxsize=256)
+@lru_cache(maxsize=256)
 def _harmonic_series(count: int, bits: int) -> Any:
     """(1 + ... + 1/n)/n!^2 for n up to ``count``, as a polynomial."""
-    flint = _flint()
     with flint.ctx.workprec(bits):
-        harmonic, factorial, terms = flint.arb(0), flint.arb(1), [flint.arb(0)]
+        harmonic, factorial, terms = arb(0), arb(1), [arb(0)]
         for n in range(1, count + 1):
-            harmonic += flint.arb(1) / n
+            harmonic += arb(1) / n
             factorial *= n
             terms.append(harmonic / (factorial * factorial))
         return flint.arb_poly(terms)
 
 
+class Zone(NamedTuple):
+    """g, h and m at z; ``parts`` of m, of the half-space and the cylinder; the amplitudes X and I2/I0 of the modes."""
+
+    g: Any
+    h: Any
+    m: Any
+    parts: tuple[Any, Any]
+    X: list[Any]
+    i2: list[Any]
+
+
+def zone_of(of: Material, z: Any) -> Zone:
+    """The functions of a contact, or a stick zone, of half length z > 0 over V T_ref.
+
+    h = sum X_i r_i, and of creep mode j in g and in m, as its memory does it to the pressure, with H = z^2 + 2 z h
+
+    J_j sum_i X_i a_i/(a_i - b_j) r_i k_j     J_j sum_i X_i a_i/(a_i - b_j) (r_i k_j + (z^2/H) u_i)
+    u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)     i2_i = I2/I0(a_i z)
+
+    Raises
+    ------
+    ZeroDivisionError
+        Where the precision does not tell the matrix from a singular one.
+    """
+    a, modes = of.a, range(len(of.a))
+    if not a:
+        return Zone(*3 * [0 * z], (0 * z, 0 * z), [], [])
+    r, k, i2 = [ratio_r(at * z) for at in a], [ratio_k(at * z) for at in of.b], [ratio_i2(at * z) for at in a]
+    per = [[at / (at - b) for at in a] for b in of.b]
+    matrix = flint.arb_mat([[per[n][i] * (1 + r[i] * k[n]) for i in modes] for n in modes])
+    X = matrix.solve(flint.arb_mat([[1 / b] for b in of.b])).entries()
+    h = sum(X[i] * r[i] for i in modes)
+    square = 1 / (1 + 2 * h / z)
+    between = [[a[i] * a[n] / (a[i] + a[n]) * (i2[i] - i2[n]) for n in modes] for i in modes]
+    u = [i2[i] + sum(X[n] * between[i][n] for n in modes) for i in modes]
+    shift = [of.J[n] * sum(X[i] * per[n][i] * r[i] * k[n] for i in modes) for n in modes]
+    m = [shift[n] + of.J[n] * square * sum(X[i] * per[n][i] * u[i] for i in modes) for n in modes]
+    half_space = sum(part * weight for part, weight in zip(m, of.weights, strict=True))
+    cylinder = sum(part * (1 - weight) for part, weight in zip(m, of.weights, strict=True))
+    return Zone(sum(shift), h, sum(m), (half_space, cylinder), X, i2)
+
+
 def _state(alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any] | None:
     """The law at the working precision; None where that does not decide a sign."""
-    arb = _flint().arb
-    w, c = 2 * kappa * V, (alpha - 1) / alpha
-    if c == 0:  # so that a creep of exactly delta_star is seen as such
-        zeta, lam = 1 / w, arb(1)
-    else:
-        zeta = _root(lambda z: _H(z, alpha, c), 1 / w**2, 1 / w)
-        if zeta is None:
-            return None
-        lam = w * zeta
-    r, k, i2 = ratio_r(alpha * zeta), ratio_k(zeta), ratio_i2(alpha * zeta)
-    whole = 1 + r * k
-    epsilon = c * r * k / (whole * zeta)
+    of, w = material_of(alpha), 2 * kappa * V
+    zeta = _root(of, _H, 1 / w**2, 1 / w)
+    if zeta is None:
+        return None
+    whole, lam = (
+        zone_of(of, zeta),
+        w * zeta if of.a else arb(1),
+    )  # so that a creep of exactly delta_star is seen as such
+    epsilon = whole.g / zeta
     delta_star = mu * lam * (1 + epsilon) / (2 * kappa)
-    state = {"lam": lam, "zeta": zeta, "epsilon": epsilon, "delta_star": delta_star}
-    state["M"] = V * c * (lam**2 * i2 + r * k) / whole
+    parts = dict(zip(("M", "M_half_space", "M_cylinder"), (V * each for each in (whole.m, *whole.parts)), strict=True))
+    state = {"lam": lam, "zeta": zeta, "epsilon": epsilon, "delta_star": delta_star} | parts
     over = 2 * kappa * delta - mu * lam * (1 + epsilon)
     if over >= 0:
         return state | {"full_slip": True, "beta": arb(0), "Q": mu}
     if not over < 0:
         return None
-    eta = zeta if delta == 0 else stick_length(zeta * (1 + epsilon) - delta / (mu * V), alpha)
+    if delta == 0:
+        return state | {"full_slip": False, "beta": arb(1), "Q": arb(0)}
+    y = zeta + whole.g - delta / (mu * V)
+    eta = _root(of, _F, y, y)
     if eta is None:
         return None
-    share = 1 - _H(eta, alpha, c)[0] * w**2 if delta != 0 else arb(0)
-    return state | {"full_slip": False, "beta": eta / zeta if delta != 0 else arb(1), "Q": mu * share}
+    return state | {"full_slip": False, "beta": eta / zeta, "Q": mu * (1 - _H(of, eta) * w**2)}
 
 
-def stick_length(y: Any, alpha: Any) -> Any:
-    """eta > 0 of Eq. (10), F(eta) = y; None without the digits for it."""
-    c = (alpha - 1) / alpha
-    return y if c == 0 else _root(lambda z: _F(z, alpha, c), y, y.mid())
+def _F(of: Material, z: Any) -> Any:
+    return z + zone_of(of, z).g
 
 
-def _F(z: Any, alpha: Any, c: Any) -> tuple[Any, Any]:
-    """F = z + g and its slope."""
-    g, _, dg, _ = _generators(z, alpha, c)
-    return z + g, 1 + dg
+def _H(of: Material, z: Any) -> Any:
+    return z * (z + 2 * zone_of(of, z).h)
 
 
-def _H(z: Any, alpha: Any, c: Any) -> tuple[Any, Any]:
-    """H = z^2 + 2 z h and its slope."""
-    _, h, _, dh = _generators(z, alpha, c)
-    return z * (z + 2 * h), 2 * (z + h + z * dh)
+def _root(of: Material, function: Callable[[Material, Any], Any], y: Any, guess: Any) -> Any:
+    """A ball that holds the z > 0 at which F or H, which rise strictly, is y; None without the digits for it.
 
-
-def _generators(z: Any, alpha: Any, c: Any) -> tuple[Any, Any, Any, Any]:
-    """(g, h, g', h'): g = c r k/(1 + r k), h = c r/(1 + r k)."""
-    r, k = ratio_r(alpha * z), ratio_k(z)
-    dr, dk = alpha * (1 - r / (alpha * z) - r * r), k * k + k / z - 1
-    whole = 1 + r * k
-    share, rise = c / whole, (r * dk + k * dr) / whole
-    return share * r * k, share * r, share * rise, share * (dr - r * rise)
-
-
-def _root(function: Callable[[Any], tuple[Any, Any]], y: Any, guess: Any) -> Any:
-    """A ball that holds the z > 0 at which a strictly rising function is y; None without the digits for it.
-
-    Newton's iteration in logarithms, on midpoints; then ever wider balls until the ends lie on either side.
+    Newton's iteration in logarithms, on midpoints, slopes by differences; then ever wider balls until the ends lie on
+    either side.  Without modes what is asked is the guess itself.
     """
-    flint = _flint()
-    arb, z = flint.arb, guess.mid()
+    z = guess.mid()
     if not y > 0:
         return None
+    if not of.a:
+        return guess
     fine = arb(2) ** -(flint.ctx.prec // 2)
     for _ in range(_MOST_STEPS):
-        value, slope = function(z)
-        step = ((value / y).log() * value / (z * slope)).mid()
-        z = (z * (-step).exp()).mid()
+        value = function(of, z)
+        slope = (function(of, z * (1 + fine)) / value).log() / fine
+        step = ((y / value).log() / slope).mid()
+        z = (z * step.exp()).mid()
         if not z.is_finite():  # Arb found no digits
             return None
         if abs(step) < fine:
@@ -268,10 +301,6 @@ def _root(function: Callable[[Any], tuple[Any, Any]], y: Any, guess: Any) -> Any
     while 512 * radius < z:
         radius *= 256
         low, high = (z - radius).lower(), (z + radius).upper()
-        if function(low)[0] < y and function(high)[0] > y:
+        if function(of, low) < y and function(of, high) > y:
             return low.union(high)
     return None
-
-
-def _flint() -> Any:
-    return imported("flint", "python-flint", "dev")

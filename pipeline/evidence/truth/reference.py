@@ -39,10 +39,7 @@ CONDITIONED = ("epsilon", "delta_star", "beta", "Q", "M")
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
 SPEEDS, OUTPUTS = ("V", "omega"), ("V", "omega", "x", "angle")
 #: the second of two motions: what a step leaves out is about the power ``nodes`` of its length
-FINER = {
-    "free": {"tolerance": 1e-24, "nodes": 28, "bits": 200},
-    "driven": {"tolerance": 1e-23, "nodes": 26, "bits": 260},
-}
+FINER = {"tolerance": 1e-26, "nodes": 28, "bits": 280}
 _BITS = 400
 
 
@@ -92,7 +89,7 @@ def driven_motion(row: dict[str, Any]) -> Case:
 def rolled_twice(case: Case, kind: str) -> tuple[PreciseMotion, float]:
     """The finer of two motions, and how far they differ, to two digits."""
     given = case.scene, case.V0, case.omega0, case.t.tolist()
-    coarse, fine = (roll_precise(*given, **case.drive, **how) for how in ({}, FINER[kind]))
+    coarse, fine = (roll_precise(*given, **case.drive, **how) for how in ({}, FINER))
     return fine, float(f"{difference(coarse, fine, kind == 'free'):.1e}")
 
 

@@ -1,122 +1,122 @@
-"""A step of a driven motion in extended precision: collocation, and the event that it ends on (:mod:`driven`)."""
+"""A step of a motion in extended precision: collocation of V and omega - V, and the event that it ends on."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import flint
 import numpy as np
+from flint import arb
 from numpy.typing import NDArray
 
-from viscoroll.core.extras import imported
-
-from .collocation import Radau
-from .phases import Phase
+from .collocation import Radau, weighted
+from .phases import NOTHING, Phase
 
 #: iterations of a step, of which the first take a new matrix, and steps that look for an event
 _MOST_ITERATIONS, _MATRICES, _CUTS = 14, 3, 12
-#: by which an event is found between two nodes before steps are cut
-_HALVINGS = 24
+#: by which an event is found between two nodes
+_HALVINGS = 120
 #: a correction below this share of the unknowns leaves nothing to be corrected
-_LAST_CORRECTION = 1e-24
-#: an event is met to this share of its function's largest value, and its slope taken over this share of a step
-_MET, _BESIDE = 1e-28, 1e-8
+_LAST_CORRECTION = 1e-26
+#: an event is met to this share of a step, and looked for beyond its end by that one
+_MET, _BEYOND = 1e-28, arb("1.001")
+#: errors of omega - V are measured by no less than this part of its limit
+_LEAST_SLIP = 1e-8
 
 
 def solved(phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Radau) -> list[list[Any]] | None:
-    """Values at the nodes of one step; None where the iteration does not converge."""
-    arb_mat = imported("flint", "python-flint", "dev").arb_mat
-    n, start, length = len(method.nodes), phase.unknowns(), float(h)
+    """States at the nodes of one step, from a guess; None where the iteration does not converge."""
+    n, start, length = len(method.nodes), list(phase.contact()[:2]), float(h)
     whole: NDArray[np.float64] = np.empty(0)
+    scale = np.empty(0)
     for iteration in range(_MOST_ITERATIONS):
-        defect = method.slopes * arb_mat([start, *values])
-        residual, scale = np.empty(2 * n), np.tile(phase.sizes(values), n)
-        whole = np.zeros((2 * n, 2 * n)) if iteration < _MATRICES else whole
-        for i, u in enumerate(values):
-            when = tau + h * method.nodes[i]
-            rates, weights = phase.rates(u, when)
-            here = slice(2 * i, 2 * i + 2)
-            residual[here] = [float(weights[m] * defect[i, m] - h * rates[m]) for m in range(2)]
-            if iteration >= _MATRICES:
-                continue
-            for m in range(2):
-                whole[2 * i + m, m::2] = float(weights[m]) * method.matrix[i]
-            for m in range(2):
-                step = abs(u[m]) * type(h)(10) ** -14 + type(h)(10) ** -22 * (m or 1e-10)
-                beside = list(u)
-                beside[m] = u[m] + (step if u[m] >= 0 else -step)
-                by = beside[m] - u[m]
-                moved, heavier = phase.rates(beside, when)
-                for k in range(2):
-                    slope = float((moved[k] - rates[k]) / by)
-                    weight = float((heavier[k] - weights[k]) / by * defect[i, k])
-                    whole[2 * i + k, 2 * i + m] += weight - length * slope
+        rates = [_rates(phase, u, tau + h * c) for u, c in zip(values, method.nodes, strict=True)]
+        defect = method.slopes * flint.arb_mat([start, *(state for state, _ in rates)])
+        residual = np.array([float(defect[i, k] - h * rates[i][1][k]) for i in range(n) for k in range(2)])
+        if iteration < _MATRICES:
+            size = np.abs(np.array([[float(part) for part in u] for u in values])).max(axis=0)
+            fastest = max(abs(float(state[0])) for state, _ in rates)
+            scale = np.tile(np.maximum(size, [1e-200, 1e-8 if phase.sticks else 1e-8 * fastest + 1e-200]), n)
+            whole = np.zeros((2 * n, 2 * n))
+            for i, u in enumerate(values):
+                for m in range(2):
+                    by = -(arb(10) ** -14) * abs(u[m]) - arb(10) ** -22 * (1e-10 if m == 0 else 1)
+                    beside = [part + by * (k == m) for k, part in enumerate(u)]
+                    moved = _rates(phase, beside, tau + h * method.nodes[i])
+                    slopes = [
+                        [float((a - b) / by) for a, b in zip(*pair)] for pair in zip(moved, rates[i], strict=True)
+                    ]
+                    for k in range(2):
+                        whole[k::2, 2 * i + m] = method.matrix[:, i] * slopes[0][k]
+                        whole[2 * i + k, 2 * i + m] -= length * slopes[1][k]
         matrix = whole * scale
         rows = np.abs(matrix).max(axis=1)
         if not (np.isfinite(matrix).all() and np.isfinite(residual).all() and (rows > 0.0).all()):
             return None
         change = np.linalg.solve(matrix / rows[:, None], residual / rows)
+        by_node = (change * scale).reshape(n, 2)
         values = [
-            [(u - float(d)).mid() for u, d in zip(value, by, strict=True)]
-            for value, by in zip(values, (change * scale).reshape(n, 2), strict=True)
+            [(u - float(d)).mid() for u, d in zip(*pair, strict=True)] for pair in zip(values, by_node, strict=True)
         ]
-        if not np.isfinite(change).all() or np.abs(change).max() > 1e6:
+        beyond = phase.sticks and any(u[1] > 1 + NOTHING for u in values)
+        if beyond or not np.isfinite(change).all() or np.abs(change).max() > 1e6:
             return None
         if np.abs(change).max() < _LAST_CORRECTION:
             return values
     return None
 
 
-def met(
-    phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Radau
-) -> tuple[str | None, Any, list[list[Any]] | None]:
-    """(Event, length, values) of a step that ends at the first event in it; no values where none was found."""
-    start, events = phase.unknowns(), phase.events()
-    event, share = _first(None, phase, tau, h, values, method)
-    if event is None:
-        return None, h, values
-    length = (h * share).mid()
+def _rates(phase: Phase, u: list[Any], tau: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """V and omega - V of a state, and their rates."""
+    c = phase.contact(u)
+    return (c.V, c.slip), phase.pushed(c, tau)
+
+
+def met(phase: Phase, tau: Any, h: Any, method: Radau) -> tuple[str | None, Any, list[list[Any]] | None]:
+    """(Event, length, states at the nodes) of a step up to h that ends at the first event; None where none is found."""
+    values = solved(phase, tau, h, phase.guess([h * c for c in method.nodes], tau), method)
+    event = None
     for _ in range(_CUTS):
-        guess = [method.at(start, values, length / h * c) for c in method.nodes]
-        found = solved(phase, tau, length, guess, method)
-        if found is None:
+        if values is None:
             break
-        values, h = found, length
-        earlier, share = _first(event, phase, tau, h, values, method)
-        if earlier is not None:
-            event, length = earlier, (h * share).mid()
-            continue
-        along = events[event][0]
-        sizes = [abs(along(u, tau + h * c)) for u, c in zip(values, method.nodes, strict=True)]
-        at_end = along(values[-1], tau + h)
-        if abs(at_end) <= _MET * max(sizes):
+        event, share = _first(event, phase, tau, h, values, method)
+        if event is None or abs(share - 1) < _MET:
             return event, h, values
-        near = along(method.at(start, values, type(h)(1 - _BESIDE)), tau + h * (1 - _BESIDE))
-        length = (h - at_end * _BESIDE * h / (at_end - near)).mid()
-        if not 0 < length < 2 * h:
-            break
+        guess = [method.at(values, share * c) for c in method.nodes]
+        h = (h * share).mid()
+        values = solved(phase, tau, h, guess, method)
     return None, h, None
 
 
 def _first(
     known: str | None, phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Radau
 ) -> tuple[str | None, Any]:
-    """(Event but the ``known`` one whose function first falls below what tells it, share of the step), or (None, 1)."""
-    start = phase.unknowns()
-    soonest: str | None = None
-    least: Any = 1
-    for event, (function, told) in phase.events().items():
-        at_nodes = [function(u, tau + h * c) for u, c in zip(values, method.nodes, strict=True)]
-        beyond = next((i for i, value in enumerate(at_nodes) if value < told), None)
-        if event == known or beyond is None:
-            continue
+    """(Event whose function first falls below 0, share of the step), that of the ``known`` one maybe beyond its end."""
+    soonest, least = None, _BEYOND
+    for event, function in phase.events().items():
 
         def along(theta: Any, function: Any = function) -> Any:
-            return function(method.at(start, values, theta), tau + h * theta)
+            return function(method.at(values, theta), tau + h * theta)
 
-        low, high = method.nodes[beyond - 1] if beyond else 0 * h, method.nodes[beyond]
+        nodes = [arb(0), *method.nodes, _BEYOND]
+        told = [function(u, tau + h * c) for u, c in zip(values, method.nodes, strict=True)]
+        told += [along(_BEYOND)] if event == known else []
+        beyond = next((i for i, value in enumerate(told) if value < -NOTHING * (event == "no creep")), None)
+        if beyond is None:
+            continue
+        low, high = nodes[beyond], nodes[beyond + 1]
         for _ in range(_HALVINGS):
             middle = ((low + high) / 2).mid()
             low, high = (middle, high) if along(middle) > 0 else (low, middle)
         if middle < least:
             soonest, least = event, middle
     return soonest, least
+
+
+def left_out(phase: Phase, values: list[list[Any]], method: Radau) -> float:
+    """The last Legendre coefficients of V and omega - V, over the largest of them in the step."""
+    states = [phase.contact(), *map(phase.contact, values)]
+    fastest = max(max(abs(float(c.V)), abs(float(c.omega))) for c in states)
+    slip = max(max(abs(float(c.slip)), _LEAST_SLIP * float(c.limit)) for c in states) if phase.sticks else fastest
+    sizes = max(fastest, 1e-200), max(slip, 1e-200)
+    return max(abs(float(weighted(method.tail, [c[k] for c in states]))) / sizes[k] for k in range(2))

@@ -3,21 +3,16 @@
 Slopes, and points over all doubles, are claims of ``test_claims.py``.
 """
 
-from collections.abc import Callable, Iterator
-
 import flint
-import mpmath as mp
 import numpy as np
 import tolerances as tol
 
 from pipeline.evidence.prove.ratios import ulps
-from pipeline.evidence.truth import enclosures, series
-from pipeline.evidence.truth.ratios import NODES, chebyshev_fit
+from pipeline.evidence.truth import enclosures
+from pipeline.evidence.truth.ratios import table
 from viscoroll.kernels.bessel import layout
 from viscoroll.kernels.bessel.ratios import TABLE, ratio_i2, ratio_k, ratio_r
 from viscoroll.kernels.compile.fma import septic
-
-HALF_BIN = 0.5 / layout.BINS
 
 
 def places() -> np.ndarray:
@@ -55,32 +50,11 @@ def test_ends():
 
 # --- the table ---
 
-RATIOS = series.of_mpmath(mp)
-EXACT: dict[str, Callable] = {
-    "r(x)/x": lambda x: RATIOS.r(x) / x,
-    "x (1 - r(x))": lambda x: x * (1 - RATIOS.r(x)),
-    "k(z)/z": lambda z: RATIOS.k(z) / z,
-    "z (1 - k(z))": lambda z: z * (1 - RATIOS.k(z)),
-    "i2(x)/x^2": lambda x: RATIOS.i2(x) / x**2,
-}
-
-
-def refit() -> Iterator[float]:
-    """The whole table once more, bin by bin: the interpolation that made it, on mpmath's Bessel functions."""
-    points = [mp.mpf(HALF_BIN) * mp.cos(mp.pi * (2 * i + 1) / (2 * NODES)) for i in range(NODES)]
-    for segment in layout.SEGMENTS:
-        for octave in range(segment.low, segment.high):
-            for index in range(layout.BINS):
-                centre = 1 + (2 * index + 1) * mp.mpf(HALF_BIN)
-                values = [EXACT[segment.function]((centre + t) * mp.mpf(2) ** octave) for t in points]
-                yield from map(float, chebyshev_fit(values, mp.mpf(HALF_BIN)))
-
 
 def test_every_coefficient_is_the_rounded_fit():
     """All of them, bit for bit: a change of one, however small and of whatever order, shows."""
     assert TABLE.shape == (layout.TABLE_SIZE,)
-    with mp.workdps(60):  # the highest orders are 1e-26 of the values
-        assert np.array_equal(TABLE, [*refit()])
+    assert np.array_equal(TABLE, table())
 
 
 def test_polynomials_are_summed_with_one_rounding_a_term():

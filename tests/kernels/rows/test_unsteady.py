@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import flint
 import mpmath as mp
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from pipeline.evidence.truth import series as raw
+from pipeline.evidence.truth.enclosures import zone_of
+from pipeline.evidence.truth.material import Material, material_of
 
 #: about the largest |N|, over S_J
 LARGEST = 0.05
@@ -25,17 +27,18 @@ def N(material: vr.Prony, kappa_V: Any) -> Any:
     return vr.contact(vr.Scene(material=material, kappa=10.0, mu=0.3), 0.1 * kappa_V, delta=0.0, fields="N").N
 
 
-def exact(known: raw.Rates, z: Any) -> Any:
+def exact(known: Material, z: Any) -> Any:
     """N by derivatives of H and H m of a material that is shifted, K(s + sigma), or stretched, K(s + sigma s)."""
 
     def state(z: Any, shift: Any, stretch: Any) -> tuple[Any, Any, Any]:
-        a, b = ([(rate - shift) / (1 + stretch) for rate in rates] for rates in (known.a, known.b))
-        found = raw.functions(mp, raw.Rates(a, b, None, sum(1 / at for at in b) - sum(1 / at for at in a)), z)
-        compliance = mp.mpf(1)  # of long times
+        z, shift, stretch = map(flint.arb, (z, shift, stretch))
+        moved = Material.of_rates(*([(rate - shift) / (1 + stretch) for rate in rates] for rates in (known.a, known.b)))
+        found = zone_of(moved, z)
+        compliance = flint.arb(1)  # of long times
         for own_a, own_b in zip(known.a, known.b, strict=True):
             compliance *= (1 - shift / own_a) / (1 - shift / own_b)
-        H = (z * z + 2 * z * found.h) / compliance
-        return H, H * found.m, found.g
+        H = z * (z + 2 * found.h) / compliance
+        return tuple(mp.mpf(value.mid()) for value in (H, H * found.m, found.g))
 
     def form(z: Any, shift: int) -> Any:
         """d(H m) - 2 g dH."""
@@ -51,19 +54,19 @@ def exact(known: raw.Rates, z: Any) -> Any:
 @pytest.mark.parametrize("material", [1.5, 1e4, random_series(1)])
 def test_rows_against_its_definition(material):
     """Over its largest size: N has a zero."""
-    with mp.workdps(50):
-        known = raw.rates_of(mp, material)
-        slow, fast = (float(1 / rates[end]) for rates, end in ((known.b, 0), (known.a, -1)))
+    with mp.workdps(50), flint.ctx.workprec(1000):
+        known = material_of(material)
+        slow, fast = float(1 / known.b[0]), float(1 / known.a[-1])
         found, truth = [], []
         for z in 10.0 ** np.random.default_rng(4).uniform(np.log10(fast) - 2.0, np.log10(slow) + 3.0, 4):
-            u = 1 / (2 * mp.sqrt(z * z + 2 * z * raw.functions(mp, known, z).h))
+            u = 1 / (2 * (z * (z + 2 * zone_of(known, flint.arb(z)).h)).sqrt())
             one = {"alpha" if isinstance(material, float) else "material": material}
             found.append(vr.contact(vr.Scene(kappa=1.0, mu=0.1, **one), float(u), delta=0.0, fields="N").N)
             if "alpha" in one:  # among others it is read from another place
                 many = vr.contact(vr.Scene([material, 1.0], kappa=1.0, mu=0.1), float(u), delta=0.0, fields="N").N
                 assert close(many, [found[-1], 0.0], rel=tol.AXIS_UNSTEADY, scale=LARGEST)
             truth.append(float(exact(known, mp.mpf(z))))
-        S_J = sum(J / b**2 for J, b in zip(raw.creep_strengths(mp, known), known.b, strict=True))
+        S_J = sum(J / b**2 for J, b in zip(known.J, known.b, strict=True))
     assert close(found, truth, rel=tol.AXIS_UNSTEADY, scale=LARGEST * float(S_J))
 
 
