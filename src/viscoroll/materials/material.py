@@ -212,7 +212,7 @@ class Material(FromPrograms):
 
     def _figure(self) -> Figure:
         """E', E'' and tan delta over frequency, and E(t)."""
-        from ..core.plots.material import master_curve
+        from ..core.plots.measured import master_curve
 
         return master_curve(self)
 

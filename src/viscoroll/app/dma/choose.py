@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from itertools import product
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import ParameterError
-from ...kernels.compile.notice import is_quiet
 from .curve import Curve
 from .spectrum import Spectrum, has_plateau, misfits, on_times, polished
 
@@ -23,9 +22,6 @@ _DRAWN_IN = -0.5
 _NEAR_BEST = 1.05
 #: calls of the residuals while modes are left out, and at the end; ways to leave one out that are tried
 _CALLS, _LAST_CALLS, _WAYS = 40, 400, 3
-#: seconds without a bar
-_WAIT = 2.0
-T = TypeVar("T")
 
 
 class Chosen(NamedTuple):
@@ -58,7 +54,7 @@ def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
     fewest = modes or 1
     enough = (start for start in starts if (good(start[0]) if modes is None else start[0].tau.size >= modes))
     spectrum, ends = next(enough, starts[-1])
-    for _ in _shown(range(spectrum.tau.size - fewest), "modes left out"):
+    for _ in range(spectrum.tau.size - fewest):
         fewer = _with_one_less(curve, spectrum, ends, good if modes is None else None)
         if fewer is None or spectrum.tau.size <= fewest:  # one step may leave out several
             break
@@ -74,7 +70,7 @@ def _starts(curve: Curve, target: float | None) -> list[tuple[Spectrum, tuple[fl
     The slow end of a grid is drawn in until there is a long-time modulus.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
-    for margin, density in _shown(list(product(MARGINS, DENSITIES)), "grids of times"):
+    for margin, density in product(MARGINS, DENSITIES):
         for slow in np.arange(margin, _DRAWN_IN - 0.1, -0.25):
             ends = 10.0**-margin / float(curve.omega[-1]), 10.0**slow / float(curve.omega[0])
             if ends[1] > ends[0] and has_plateau(curve, found := on_times(curve, grid_of_times(ends, density))):
@@ -83,13 +79,6 @@ def _starts(curve: Curve, target: float | None) -> list[tuple[Spectrum, tuple[fl
         if target is not None and starts and _reaches(curve, starts[-1][0], target):
             break
     return starts
-
-
-def _shown(steps: Sequence[T], what: str) -> Iterable[T]:
-    """Steps with a bar for whoever waits."""
-    from tqdm import tqdm
-
-    return tqdm(steps, desc=f"fit_prony, {what}", delay=_WAIT, leave=False, disable=is_quiet())
 
 
 def grid_of_times(ends: tuple[float, float], density: float) -> NDArray[np.float64]:

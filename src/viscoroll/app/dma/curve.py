@@ -15,6 +15,8 @@ from ...core.errors import ParameterError
 FEWEST_POINTS = 3
 #: a slope is taken over a quarter of a decade on either side, and over five points at least
 _WINDOW, _NEIGHBOURS = 0.25 * math.log(10.0), 5
+#: of ln omega, below which frequencies are one
+_APART = 1e-12
 
 
 class Curve(NamedTuple):
@@ -69,18 +71,8 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     for n, at in enumerate(x):
         away = np.abs(x - at)
         near = away <= max(_WINDOW, np.partition(away, nearest)[nearest])
-        slope, here = _line(x[near] - at, y[near])
+        slope, here = np.polyfit(x[near] - at, y[near], 1) if np.ptp(x[near]) > _APART else (math.nan, 0.0)
         allowed = 0.5 * math.pi * slope * math.exp(here)
         ratio[n] = curve.loss[n] / allowed if allowed > 0.0 else math.nan if math.isnan(slope) else math.inf
     known = ratio[~np.isnan(ratio)]
     return KramersKronig(curve.omega, ratio, float(np.median(known)) if known.size else math.nan)
-
-
-def _line(x: NDArray, y: NDArray) -> tuple[float, float]:
-    """Slope and value at 0 of the line of least squares; a NaN slope where all x are the same."""
-    dx = x - x.mean()
-    spread = float(dx @ dx)
-    if spread <= 1e-24 * (1.0 + float(x @ x)):
-        return math.nan, float(y.mean())
-    slope = float(dx @ y) / spread
-    return slope, float(y.mean() - slope * x.mean())

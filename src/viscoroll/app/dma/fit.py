@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,22 +14,23 @@ from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
 from ...core.checks import checked, number
 from ...core.errors import ParameterError
+from ...core.plots.measured import fitted
 from ...core.results import Shown
 from ...core.typed import Numbers
+from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from ...materials.prony_forms import MOST_MODES, WIDEST
 from .choose import chosen
 from .curve import Curve, KramersKronig, curve_of, kramers_kronig
+from .report import card
 from .shift import Shifts, master_curve
 from .spectrum import FLOOR, Spectrum, misfits
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
     from ...cylinder import Cylinder
-    from ...materials.material import Material
 
 #: highest over lowest frequency; times reach a decade beyond on either side
 MOST_SPREAD = WIDEST / 100.0
@@ -43,8 +43,8 @@ class Misfit(NamedTuple):
     loss: float
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Shown):
     """A Prony series fitted to a master curve, and what the data say and do not say about it.
 
     E : long-time modulus, in the unit of the data.
@@ -66,13 +66,13 @@ class Fit:
     misfit: Misfit
     target: float
     reached: bool
-    kramers_kronig: KramersKronig = field(repr=False)
+    kramers_kronig: KramersKronig
     outside: NDArray[np.bool_]
-    shifts: Shifts | None = field(repr=False)
-    omega: NDArray[np.float64] = field(repr=False)
-    storage: NDArray[np.float64] = field(repr=False)
-    loss: NDArray[np.float64] = field(repr=False)
-    grid: tuple[float, float] = field(repr=False)
+    shifts: Shifts | None
+    omega: NDArray[np.float64]
+    storage: NDArray[np.float64]
+    loss: NDArray[np.float64]
+    grid: tuple[float, float]
     source: str = ""
 
     @property
@@ -87,13 +87,9 @@ class Fit:
 
     def modulus(self, omega: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Storage and loss modulus of the fit at angular frequencies in rad/s, in the unit of the data."""
-        given = np.asarray(omega, dtype=np.float64)
-        storage, loss = self._spectrum.modulus(np.atleast_1d(given).ravel())
+        own, given = Spectrum(self.E, self.prony.E * self.E, self.prony.tau * self.T_ref), np.asarray(omega, np.float64)
+        storage, loss = own.modulus(given.ravel())
         return storage.reshape(given.shape), loss.reshape(given.shape)
-
-    @property
-    def _spectrum(self) -> Spectrum:
-        return Spectrum(self.E, self.prony.E * self.E, self.prony.tau * self.T_ref)
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
@@ -129,12 +125,8 @@ class Fit:
         ParameterError
             As there.
         """
-        from ...materials.material import Material
-
-        return Material(
-            E=self.E, nu=nu, prony=self.prony, T_ref=self.T_ref, name=name, density=density, thickness=thickness,
-            measured=self.measured,
-        )  # fmt: skip
+        own = self.E, nu, self.prony, self.T_ref
+        return Material(*own, name=name, density=density, thickness=thickness, measured=self.measured)
 
     def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
         """Whether a contact with this material sees frequencies that the data hold, and the fit is near them.
@@ -167,36 +159,20 @@ class Fit:
         seen = passage(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
         return measurement(seen, {"the material": self.measured})
 
-    plot = Shown.plot
-
-    def _figure(self) -> Figure:
-        """Storage and loss modulus of the data with those of the fit."""
-        from ...core.plots.material import fitted
-
-        return fitted(self)
-
     def to_xarray(self) -> xr.Dataset:
         """Data and fit over omega, the series over ``mode``, and the constants as attributes."""
         import xarray as xr
 
-        storage, loss = self.modulus(self.omega)
-        columns = {"storage": self.storage, "loss": self.loss, "storage_fit": storage, "loss_fit": loss}
-        data = {name: xr.Variable("omega", values, {"units": "unit of the data"}) for name, values in columns.items()}
-        data |= {"E": xr.Variable("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
-        data |= {"tau": xr.Variable("mode", self.prony.tau * self.T_ref, {"units": "s"})}
-        about = {"E_long": self.E, "T_ref": self.T_ref, "misfit_storage": self.misfit.storage}
-        coords = {"omega": xr.Variable("omega", self.omega, {"units": "rad s-1"})}
-        return xr.Dataset(
-            data, coords, attrs=about | {"misfit_loss": self.misfit.loss, "title": "Fit of a Prony series"}
-        )
+        fitted = zip(("storage_fit", "loss_fit"), self.modulus(self.omega), strict=True)
+        columns = {"storage": self.storage, "loss": self.loss, **dict(fitted)}
+        data = {name: ("omega", values, {"units": "unit of the data"}) for name, values in columns.items()}
+        data |= {"E": ("mode", self.prony.E, {"long_name": "strengths over the long-time modulus"})}
+        data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
+        about = {"E_long": self.E, "T_ref": self.T_ref, "title": "Fit of a Prony series"}
+        about |= {f"misfit_{name}": value for name, value in self.misfit._asdict().items()}
+        return xr.Dataset(data, {"omega": ("omega", self.omega, {"units": "rad s-1"})}, about)
 
-    def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(str(self))}</pre>"
-
-    def __str__(self) -> str:
-        from .report import report
-
-        return report(self)
+    _card, _figure = card, fitted
 
 
 def fit_prony(

@@ -214,7 +214,7 @@ class Identification(Shown):
 
     def _figure(self) -> Figure:
         """Data, best fit and its band, and below them residuals over sigma, a column for each quantity of a record."""
-        from ...core.plots.identification import compared
+        from ...core.plots.measured import compared
 
         return compared(self)
 

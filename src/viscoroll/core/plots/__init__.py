@@ -20,21 +20,20 @@ def draw(data: xr.Dataset) -> Figure:
     ParameterError
         A dataset that is none of these, or holds a single state.
     """
-    from . import many, motion, sensitivity, states
+    from . import many, states
 
-    has = set(data.dims)
-    if "quantile" in has or {"motion", "t"} <= has:
-        return many.distributions(data)
-    if "input" in has:
-        return sensitivity.sobol_bars(data)
-    if "t" in has and "regime" in data:
-        return motion.one(data)
-    if "equilibrium" in has:
-        return states.equilibria(data)
-    if {"p", "tau"} <= set(data) and "x" in data:
-        return states.stresses(data)
-    if states.axes_of(data):
-        return states.over_axes(data)
+    has = {*data.dims, *data}
+    kinds = (
+        ("quantile" in has or {"motion", "t"} <= set(data.dims), many.distributions),
+        ("input" in data.dims, many.sobol_bars),
+        ({"t", "regime"} <= {*has, *data.coords}, states.motion),
+        ("equilibrium" in data.dims, states.equilibria),
+        ({"p", "tau", "x"} <= {*has, *data.coords}, states.stresses),
+        (bool(states.axes_of(data)), states.over_axes),
+    )
+    for holds, figure in kinds:
+        if holds:
+            return figure(data)
     found = ", ".join(f"{name}: {size}" for name, size in data.sizes.items()) or "a single state"
     sentence = f"there is nothing to draw over: the result holds {found}; compute it at several speeds or creeps"
     raise ParameterError("plot", found, "a result over an axis", sentence)

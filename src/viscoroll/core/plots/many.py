@@ -1,4 +1,4 @@
-"""The figure of many motions: quantiles of each quantity, and how it lies at the end."""
+"""Figures of many motions: quantiles of each quantity and how it lies at the end, and Sobol indices as bars."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import axis, labelled, new_figure, quantile_bands
+from .style import THIN, axis, labelled, new_figure, panels, quantile_bands, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +18,10 @@ _DRAWN, _LEVELS = ("V", "omega", "x", "angle"), (0.05, 0.25, 0.5, 0.75, 0.95)
 _BARS, _FEWEST = 80, 8
 #: what a plot can tell apart, and how far it reaches
 _FINEST, _FARTHEST = 1e-280, 1e300
+#: of Sobol indices: width of a bar; which, in words, its grey and its side; symbols of starts
+_WIDTH = 0.38
+_SOBOL = {"S1": ("first-order", "0.35", -0.5), "ST": ("total", "0.8", 0.5)}
+_STARTS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 
 
 def distributions(data: xr.Dataset) -> Figure:
@@ -32,11 +36,10 @@ def distributions(data: xr.Dataset) -> Figure:
         names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
     drawn_by = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
     columns = 2 if each or any(f"{name}_histogram" in data for name in names) else 1
-    figure, rows = new_figure(
-        f"{data.sizes['motion'] if each else about['motions']} motions{drawn_by}",
-        max(len(names), 1), columns, (3.2 + 3.2 * columns, 2.8 * max(len(names), 1)), squeeze=False,
-    )  # fmt: skip
-    for name, (left, *right) in zip(names, rows, strict=False):
+    count, rows = data.sizes["motion"] if each else about["motions"], max(len(names), 1)
+    size = 3.2 + 3.2 * columns, 2.8 * rows
+    figure, boxes = new_figure(f"{count} motions{drawn_by}", rows, columns, size, squeeze=False)
+    for name, (left, *right) in zip(names, boxes, strict=False):
         found = data[name if each else f"{name}_quantiles"]
         text, over_t = labelled(name, found.attrs["units"], found.attrs.get("symbol", "")), "t" in found.dims
         levels = np.array(_LEVELS) if each else data["quantile"].values
@@ -107,3 +110,43 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     below[np.searchsorted(ends, high)] = np.cumsum(counts)
     below = np.maximum.accumulate(below)
     return edges, np.diff(np.interp(edges, ends, below))
+
+
+def sobol_bars(indices: xr.Dataset) -> Figure:
+    """First-order and total index of every input with its confidence interval, a panel a quantity.
+
+    Parameters
+    ----------
+    indices : of ``viscoroll.io.runs.sensitivity.sobol_indices``, or read from its netCDF file; quantities over t are
+        shown at the last t at which they have indices.  Inputs stand in one order, the largest total index first.
+    """
+    names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
+    shown = [_at_last_time(indices, name) for name in names]
+    order = np.argsort(-np.max([values["ST"] for _, values in shown], axis=0), kind="stable")
+    inputs = [_STARTS.get(name) or labelled(name) for name in indices["input"].values[order]]
+    percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
+    title = f"Sobol indices of {indices.attrs['motions']} motions, with intervals of {percent}"
+    figure, boxes = panels(title, len(shown), 3, (3.2, 2.6), sharey=True)
+    for box, (text, values) in zip(boxes, shown, strict=True):
+        for key, (which, grey, side) in _SOBOL.items():
+            box.bar(
+                np.arange(order.size) + side * _WIDTH, values[key][order], _WIDTH, yerr=values[f"{key}_conf"][order],
+                label=which, color=grey, edgecolor="black", linewidth=0.5, capsize=2.5, error_kw={"linewidth": 0.9},
+            )  # fmt: skip
+        box.axhline(0.0, **THIN)
+        box.set_xticks(np.arange(order.size), inputs)
+        box.set_title(text, fontsize="small")
+    boxes[0].set_ylabel("share of the variance")
+    boxes[0].legend(frameon=False, fontsize="small")
+    return figure
+
+
+def _at_last_time(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
+    """(title of a panel, its indices over input)."""
+    values = {key: indices[f"{name}_{key}"].values for each in _SOBOL for key in (each, f"{each}_conf")}
+    if values["S1"].ndim == 1:
+        return labelled(name), values
+    last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
+    t = indices["t"]
+    time = with_unit(f"{labelled('t')} = {t.values[last]:g}", t.attrs["units"])
+    return f"{labelled(name)} at {time}", {key: v[last] for key, v in values.items()}

@@ -1,4 +1,4 @@
-"""Figures of contact states, stresses, equilibria and tables."""
+"""Figures of contact states, stresses, equilibria, tables and motions."""
 
 from __future__ import annotations
 
@@ -8,93 +8,133 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..symbols import MEASURED
-from .style import LINES, THIN, axis, dashed, log_ticks, new_figure
+from .style import LINES, THIN, axis, by_factors, dashed, log_ticks, new_figure, panels
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: fields that are drawn where they are there, in this order
+#: fields that are drawn where they are there, in this order, at most so many
 _FIELDS = (
     "Q", "M", "C_rr", "beta", "epsilon", "lam", "M_half_space", "M_cylinder", "length", "delta_star", "kappa_M", "N",
 )  # fmt: skip
-_PARTS = ("M_half_space", "M_cylinder")
-_MOST = 6
-#: of a second axis
-_CURVES = 4
+_PARTS, _MOST = ("M_half_space", "M_cylinder"), 6
+#: of motions
+_FULL_SLIP, _SHADE = 0, "0.87"
+#: an output this near to a jump, as a share of the last time, holds one of its sides
+_AT_A_JUMP = 1e-9
 
 
 def axes_of(data: xr.Dataset) -> list[str]:
     """Axes of more than one value that the fields lie over."""
-    fields = [data[name] for name in _shown(data)]
-    return [str(dim) for dim in data.sizes if data.sizes[dim] > 1 and any(dim in field.dims for field in fields)]
+    over = {dim for name in _shown(data) for dim in data[name].dims}
+    return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in over]
 
 
 def over_axes(data: xr.Dataset) -> Figure:
     """Each field over the first axis, a curve for some values of the second, at the middle of any other."""
     first, *others = axes_of(data)
-    rest = {name: data.sizes[name] // 2 for name in others[1:]}
     title, held = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
     if held is not None:
         title += "; dashed: beyond what was measured"
-    if rest:
-        title += ", at " + ", ".join(f"{axis(data[name])} = {data[name].values[n]:.4g}" for name, n in rest.items())
-    data = data.isel(rest)
+    for n, name in enumerate(others[1:]):
+        middle = data.sizes[name] // 2
+        title += f"{', ' if n else ', at '}{_at(data, name, middle)}"
+        data = data.isel({name: middle})
     names = [name for name in _shown(data) if first in data[name].dims][:_MOST]
-    columns = min(len(names), 2)
-    rows = -(-len(names) // columns)
-    figure, boxes = new_figure(title, rows, columns, (4.8 * columns, 1.0 + 2.6 * rows), squeeze=False, sharex=True)
-    x = data[first].values if first in data.coords else np.arange(data.sizes[first])
-    for name, box in zip(names, boxes.ravel(), strict=False):
-        for n, line in _picked(data, others[:1]):
-            values = data[name].isel(n) if n and set(n) <= set(data[name].dims) else data[name]
-            text = ", ".join(f"{axis(data[key])} = {_at(data, key, place):.4g}" for key, place in n.items())
-            dashed(box, x, values.values, held, label=text or None, **line)
-        box.set(xlabel=axis(data[first]) if first in data.coords else first, ylabel=axis(data[name]))
+    figure, boxes = panels(title, len(names), 2, (4.8, 2.6), sharex=True)
+    x, second = data[first].values, others[:1]
+    places = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
+    for name, box in zip(names, boxes, strict=True):
+        for place, line in zip(np.unique(places).tolist(), LINES, strict=False):
+            values = data[name].isel(dict.fromkeys(second, place), missing_dims="ignore").values
+            dashed(box, x, values, held, label=_at(data, second[0], place) if second else None, **line)
+        box.set(xlabel=axis(data[first]), ylabel=axis(data[name]))
         if name == "C_rr" or (name == "M" and data[name].attrs.get("units", "1") == "1"):
             box.set_title("coefficient of rolling resistance", fontsize="small")
-        if _rises_by_factors(x):
+        if by_factors(x):
             box.set_xscale("log")
             log_ticks(box.xaxis)
         else:
             box.locator_params(axis="x", nbins=6)
-    for box in boxes.ravel()[len(names) :]:
-        box.remove()
-    if others:
-        boxes[0, 0].legend(frameon=False, fontsize="small")
+    if second:
+        boxes[0].legend(frameon=False, fontsize="small")
     return figure
 
 
 def stresses(data: xr.Dataset) -> Figure:
-    """Pressure and shear stress along the contact."""
+    """Pressure and shear stress along the contact, of the first state."""
     figure, box = new_figure("Pressure and shear stress along the contact")
-    x = data["x"]
+    over = data["x"].dims[0]
+    data = data.isel(dict.fromkeys(set(data.dims) - {over}, 0))
     for name, line in zip(("p", "tau"), LINES, strict=False):
-        values = data[name].values
-        values = values.reshape(x.size, -1)[:, 0] if x.ndim == 1 and values.shape[:1] == x.shape else values.ravel()
-        box.plot(x.values.ravel()[: values.size], values, label=axis(data[name]), **line)
+        box.plot(data["x"].values, data[name].values, label=axis(data[name]), **line)
     box.axhline(0.0, **THIN)
-    box.set(xlabel=axis(x), ylabel=f"{axis(data['p'])}, {axis(data['tau'])}")
+    box.set(xlabel=axis(data["x"]), ylabel=f"{axis(data['p'])}, {axis(data['tau'])}")
     box.legend(frameon=False)
     return figure
 
 
 def equilibria(data: xr.Dataset) -> Figure:
     """Speeds of all equilibria over what acts, stable (filled) and not (open)."""
-    names = [name for name in ("slope", "force", "torque") if name in data and np.ptp(_finite(data[name])) > 0.0]
-    over = names[0] if names else "force"
+    acting = (name for name in ("slope", "force", "torque") if name in data and np.ptp(_finite(data[name])) > 0.0)
+    over = next(acting, "force")
     figure, box = new_figure("Steady rolling: stable (filled) and not (open)")
-    acting = data[over].broadcast_like(data["V"]).transpose(*data["V"].dims).values
-    V, stable = data["V"].values, data["stable"].values != 0
-    colour = LINES[1]["color"]
-    for which, face, text in ((stable, colour, "stable"), (~stable, "white", "not stable")):
+    x, V, stable = (data[name].broadcast_like(data["V"]).values.ravel() for name in (over, "V", "stable"))
+    style: dict[str, Any] = {"color": LINES[1]["color"], "marker": "o", "linestyle": "", "markersize": 4}
+    for which, face, text in ((stable != 0, style["color"], "stable"), (stable == 0, "white", "not stable")):
         held = which & np.isfinite(V)
-        box.plot(acting[held], V[held], "o", color=colour, markerfacecolor=face, markersize=4, label=text)
+        box.plot(x[held], V[held], markerfacecolor=face, label=text, **style)
     speeds = _finite(data["V"])
     wide = speeds.min() > 0.0 and speeds.max() > 100.0 * speeds.min()
     box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale="log" if wide else "linear")
     box.legend(frameon=False)
     return figure
+
+
+def motion(data: xr.Dataset) -> Figure:
+    """V and omega, what acts, and the path over time; full slip is shaded."""
+    driven = [name for name in ("force", "torque") if name in data and data[name].values.any()]
+    rows = [["V", "omega"], ["x"], *[driven][: len(driven)]]
+    if data["V"].attrs.get("units", "1") != "1":  # of unlike units
+        rows = [[name] for row in rows for name in row]
+    status = f": {data.attrs['status']}; full slip is grey" if "status" in data.attrs else ""
+    size = 7.2, 1.0 + 1.9 * len(rows)
+    figure, boxes = new_figure(f"Motion{status}", len(rows), 1, size, sharex=True, squeeze=False)
+    t, slips = data["t"].values, np.concatenate(([0], data["regime"].values == _FULL_SLIP, [0]))
+    ends = np.flatnonzero(np.diff(slips)).reshape(-1, 2)
+    for box, names in zip(boxes.flat, rows, strict=True):
+        for name, line in zip(names, LINES, strict=False):
+            box.plot(*_with_corners(data, name), label=axis(data[name]), **line)
+        for begin, end in ends.tolist():
+            box.axvspan(t[begin], t[min(end, t.size - 1)], color=_SHADE, linewidth=0.0, zorder=0)
+        box.axhline(0.0, **THIN)
+        box.set_ylabel(", ".join(axis(data[name]) for name in names))
+        if len(names) > 1:
+            box.legend(frameon=False, fontsize="small")
+    boxes[-1, 0].set(xlabel=axis(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0))
+    return figure
+
+
+def _with_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
+    """(times, values) of a quantity: what a schedule gave has its corners too, and both sides of each jump.
+
+    What acts beside it, as a feedback and the pull of the slope, does not jump.
+    """
+    t, values = data["t"].values, data[name].values
+    if f"drive_{name}_time" not in data:
+        return t, values
+    corners, given = (data[key].values.ravel() for key in (f"drive_{name}_time", f"drive_{name}"))
+    jumps = corners[1:][np.diff(corners) == 0.0]
+    kept = (np.abs(t[:, None] - jumps) > _AT_A_JUMP * t[-1]).all(axis=1)
+    within = (corners >= t[0]) & (corners <= t[-1])
+    if not kept.any():
+        return t, values
+    beside = values[kept] - np.interp(t[kept], corners, given)
+    times = np.concatenate([t[kept], corners[within]])
+    found = np.concatenate([values[kept], np.interp(corners[within], t[kept], beside) + given[within]])
+    order = np.argsort(times, kind="stable")
+    return times[order], found[order]
 
 
 def _shown(data: xr.Dataset) -> list[str]:
@@ -110,22 +150,6 @@ def _finite(values: xr.DataArray) -> NDArray[Any]:
     return found if found.size else np.zeros(1)
 
 
-def _picked(data: xr.Dataset, others: list[str]) -> list[tuple[dict[str, int], dict[str, Any]]]:
-    """Places on a second axis, evenly, and the style of each."""
-    if not others:
-        return [({}, LINES[0])]
-    places = np.unique(np.linspace(0, data.sizes[others[0]] - 1, _CURVES).astype(int))
-    return [({others[0]: int(place)}, line) for place, line in zip(places, LINES, strict=False)]
-
-
-def _at(data: xr.Dataset, name: str, place: int) -> float:
-    return float(data[name].values[place]) if name in data.coords else float(place)
-
-
-def _rises_by_factors(x: NDArray[Any]) -> bool:
-    """Whether places lie more evenly on a logarithmic axis than on a linear one."""
-    places = np.unique(x)
-    if places.size < 3 or places[0] <= 0.0:
-        return False
-    linear, logarithmic = np.diff(places), np.diff(np.log(places))
-    return bool(logarithmic.std() / logarithmic.mean() < linear.std() / linear.mean())
+def _at(data: xr.Dataset, name: str, place: int) -> str:
+    """A place on an axis, in words."""
+    return f"{axis(data[name])} = {float(data[name].values[place]):.4g}"

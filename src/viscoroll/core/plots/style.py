@@ -40,6 +40,17 @@ def new_figure(
     return figure, figure.subplots(rows, columns, **options)
 
 
+def panels(title: str, count: int, most: int, size: tuple[float, float], **shared: bool) -> tuple[Figure, list[Any]]:
+    """A figure of so many axes of one size, at ``most`` so many beside each other."""
+    columns = min(most, count)
+    rows = -(-count // columns)
+    whole = max(6.4, size[0] * columns), 0.8 + size[1] * rows
+    figure, grid = new_figure(title, rows, columns, whole, squeeze=False, **shared)
+    for axes in grid.flat[count:]:
+        axes.remove()
+    return figure, [*grid.flat[:count]]
+
+
 def dashed(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, **line: Any) -> list[Any]:
     """Lines of matplotlib: a curve where |x| lies between the ends of what data ``held``, and dashed beyond."""
     if held is None:
@@ -49,6 +60,15 @@ def dashed(axes: Any, x: NDArray, y: NDArray, held: tuple[float, float] | None, 
     beyond[1:], beyond[:-1] = beyond[1:] | beyond[:-1], beyond[:-1] | beyond[1:]  # up to its neighbours
     drawn = axes.plot(x, seen, **line | {"linestyle": "-"})
     return [*drawn, *axes.plot(x, np.where(beyond, y, np.nan), **line | {"linestyle": "--", "label": None})]
+
+
+def by_factors(x: NDArray[Any]) -> bool:
+    """Whether places lie more evenly on a logarithmic axis than on a linear one."""
+    places = np.unique(x)
+    if places.size < 3 or places[0] <= 0.0:
+        return False
+    linear, logarithmic = np.diff(places), np.diff(np.log(places))
+    return bool(logarithmic.std() / logarithmic.mean() < linear.std() / linear.mean())
 
 
 def log_ticks(axis: Any) -> None:

@@ -1,4 +1,4 @@
-"""The figure of one material: its master curve and its relaxation."""
+"""Figures of what was measured: a material, a fit of its series, and an identification."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ParameterError
-from .style import LINES, dashed, new_figure
+from .style import LINES, THIN, by_factors, dashed, labelled, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,4 +61,34 @@ def fitted(fit: Any) -> Figure:
         axes.loglog(omega, curve, **line, label=f"{name} of the fit")
     axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, unit of the data")
     axes.legend(frameon=False, fontsize="small", ncols=2)
+    return figure
+
+
+def compared(fit: Any) -> Figure:
+    """A column for each quantity of a record: data and band over its places above, residuals over sigma below."""
+    shown = fit._problem.columns
+    figure, axes = new_figure(
+        f"Identification of {', '.join(fit.values)}", 2, len(shown), (3.6 * len(shown) + 1.2, 4.8), squeeze=False,
+        sharex="col", height_ratios=(2.5, 1.0),
+    )  # fmt: skip
+    for one, (above, below) in zip(shown, axes.T, strict=True):
+        name, called, quantity = str(one), one.record, one.quantity
+        record, band = fit.records[called], getattr(fit.predicted[called], quantity)
+        *others, place = record.PLACES
+        several = bool(others)  # curves at several speeds: dots, not one line
+        order = np.argsort(np.ravel(getattr(record, place)), kind="stable")
+        columns = getattr(record, place), fit.sigma[name], *band
+        x, sigma, value, low, high = (np.ravel(part)[order] for part in columns)
+        (above.vlines if several else above.fill_between)(x, low, high, color="0.7" if several else "0.85")
+        above.plot(x, value, "_" if several else "-", color=LINES[1]["color"], label="fit")
+        if not fit.planned:
+            y = np.ravel(getattr(record, quantity))[order]
+            above.plot(x, y, ".", color="black", markersize=3, label="data")
+            below.plot(x, (value - y) / sigma, ".", color="black", markersize=3)
+        below.axhline(0.0, **THIN)
+        if by_factors(x):
+            below.set_xscale("log")
+        above.set(ylabel=labelled(quantity, record.unit(quantity)), title=called)
+        above.legend(frameon=False, fontsize="small")
+        below.set(xlabel=labelled(place, record.unit(place)), ylabel="residual/sigma")
     return figure
