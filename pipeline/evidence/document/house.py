@@ -9,10 +9,10 @@ import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any
 
 import msgspec
+from msgspec import inspect as schema
 
 import viscoroll as vr
 from viscoroll.app.cli.program import parser
@@ -30,7 +30,8 @@ _SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "[material], [base]": (MaterialSection, (vr.Material,)), "[start]": (StartSection, (vr.roll,)),
     "[drive]": (DriveSection, (vr.roll,)), "[run]": (RunSection, ()),
 }  # fmt: skip
-_KINDS = {float: "number", int: "whole number", bool: "true or false", str: "text"}
+_KINDS = {schema.FloatType: "number", schema.IntType: "whole number", schema.BoolType: "true or false",
+          schema.StrType: "text"}  # fmt: skip
 
 
 def rooms(results: Results) -> str:
@@ -87,12 +88,14 @@ def _called(action: argparse.Action) -> str:
 def sections(results: Results) -> str:
     """A heading and a table of keys for every section of a TOML file."""
     lines = []
-    for names, (schema, meant) in _SECTIONS.items():
-        meanings = _parameters(schema)
-        for each in meant:
+    for names, (section, meant) in _SECTIONS.items():
+        meanings: dict[str, str] = {}
+        for each in (section, *meant):
             meanings |= _parameters(each)
-        kinds = {key: hint for key, hint in get_type_hints(schema, include_extras=True).items() if hint is not NoneType}
-        rows = [(f"`{key}`", _kind(kind), _default(schema, key), meanings.get(key, "")) for key, kind in kinds.items()]
+        rows = [
+            (f"`{field.name}`", _kind(field.type), _default(field), meanings.get(field.name, ""))
+            for field in schema.type_info(section).fields if not isinstance(field.type, schema.NoneType)
+        ]  # fmt: skip
         lines += [f"## {names}\n", table(("key", "what", "default", "meaning"), rows)]
     return "\n".join(lines)
 
@@ -107,24 +110,21 @@ def _parameters(thing: Any) -> dict[str, str]:
     }  # fmt: skip
 
 
-def _kind(hint: Any) -> str:
+def _kind(kind: Any) -> str:
     """A type in words."""
-    if get_origin(hint) is Annotated:
-        return _kind(get_args(hint)[0])
-    if get_origin(hint) in (Union, UnionType):
-        return " or ".join(_kind(each) for each in get_args(hint) if each is not type(None))
-    if get_origin(hint) is Literal:
-        return ", ".join(f'"{each}"' for each in get_args(hint))
-    if get_origin(hint) in (list, tuple):
-        return "list of " + {"number": "numbers", "text": "names"}.get(_kind(get_args(hint)[0]), "numbers")
-    if hint in _KINDS:
-        return _KINDS[hint]
-    return "{ " + ", ".join(get_type_hints(hint)) + " }"
+    if isinstance(kind, schema.UnionType):
+        return " or ".join(_kind(each) for each in kind.types if not isinstance(each, schema.NoneType))
+    if isinstance(kind, schema.LiteralType):
+        return ", ".join(f'"{each}"' for each in kind.values)
+    if isinstance(kind, schema.ListType | schema.VarTupleType):
+        return "list of names" if isinstance(kind.item_type, schema.StrType) else "list of numbers"
+    if fields := getattr(kind, "fields", None):
+        return "{ " + ", ".join(each.name for each in fields) + " }"
+    return _KINDS[type(kind)]
 
 
-def _default(schema: Any, key: str) -> str:
+def _default(field: schema.Field) -> str:
     """The default of a key as a file would say it; empty where there is none."""
-    (given,) = (each for each in msgspec.structs.fields(schema) if each.name == key)
-    if given.required or given.default is None:
-        return "" if given.required else "-"
-    return f"`{msgspec.json.encode(given.default).decode()}`"
+    if field.required:
+        return ""
+    return "-" if field.default is None else f"`{msgspec.json.encode(field.default).decode()}`"
