@@ -302,3 +302,16 @@ def test_each_motion_has_the_temperature_that_was_drawn(read):
         rubber = vr.Material(E=2e6, nu=0.49, T_ref=0.01, prony=vr.Prony([E_1, 2.0], [1.0, 0.1])).at(T, shift)
         alone = vr.Cylinder(R=0.1, m=35.5, mu=0.5, material=rubber).roll(2.0, 0.0, run.t)
         assert close(motions.V[i], alone.V, rel=tol.MOTION_RTOL * run.settings.rtol)
+
+
+def test_a_cylinder_of_its_own_numbers_on_a_base_that_is_uncertain(read):
+    run = read("""
+        cylinder = { R = 0.1, m = 35.5, mu = 0.5, E = 2.3e5, nu = 0.5, T_epsilon = 0.2, T_sigma = 0.02 }
+        start = { V0 = 2.0, omega0 = 0.0 }
+        run = { n = 5, t = [0.5, 1.0], fields = ["V", "omega"], keep = "all" }
+        base = { E = { distribution = "uniform", loc = 1e6, scale = 1e6 }, nu = 0.5 }
+    """)
+    values, motions = roll_block(run, 0)
+    for i, E in enumerate(values["base_E"]):
+        alone = vr.Cylinder(**run.inputs.content["cylinder"], base=vr.Material(E, 0.5)).roll(2.0, 0.0, run.t)
+        assert close(motions.V[i], alone.V, rel=tol.MOTION_RTOL * run.settings.rtol)

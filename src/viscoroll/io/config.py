@@ -86,7 +86,7 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
         misspelt or missing key, a value of the wrong type or out of its range.
     """
     content = read(path)
-    check_sections(path, content, beside)
+    check_sections(path, content, dict.fromkeys(beside))
     try:
         body = body_of(path, content, materials_of(path, content))
         body.scene()  # refuses what leaves the range of doubles
@@ -95,12 +95,12 @@ def read_body(path: str | PathLike[str], beside: tuple[str, ...] = ()) -> Scene 
     return body
 
 
-def check_sections(path: Any, content: dict[str, Any], beside: tuple[str, ...], more: Mapping[str, type] = {}) -> None:
+def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type | None]) -> None:
     """Raise FileError where sections do not go together, or hold keys and types that they do not have.
 
-    ``more`` : other sections that are checked by their schema.
+    ``more`` : other sections that the file may have, by their schema, or None where they are checked elsewhere.
     """
-    refuse_unknown(path, "", content, (*SCENES, *SECTIONS, *more, *beside))
+    refuse_unknown(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
         raise fault(path, "", "", "one of preset, [scene] and [cylinder] is needed")
     scenes = [name for name in ("preset", "scene") if name in content]
@@ -110,7 +110,7 @@ def check_sections(path: Any, content: dict[str, Any], beside: tuple[str, ...], 
         if name in content and "cylinder" not in content:
             raise fault(path, "", name, f"[{name}] goes with [cylinder]")
     for name, kind in {**SCHEMA, **more}.items():
-        if name in content:
+        if name in content and kind is not None:
             as_struct(path, name, content[name], kind)
 
 

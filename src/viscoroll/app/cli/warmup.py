@@ -39,31 +39,19 @@ def warm_up(given: Namespace) -> None:
 
 
 def _calls() -> Iterator[tuple[str, Callable[[], Any]]]:
-    """A small call of each kind that has kernels of its own.
-
-    ``unsteady=True`` needs nothing more: it is the same engine.
-    """
+    """Small calls that have all kernels between them: motions read those of contacts, and all have one engine."""
     from ...motion import flow
 
     scene = vr.presets.PAPER_SECTION_5
     modes = vr.Prony([1.0, 2.0], [1.0, 0.1])
     series = vr.Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     each = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
-    start: Any = {"V0": [1.0, 1.5], "omega0": [0.0, 0.5], "t": [0.0, 1e-3]}
-    yield "contact", lambda: vr.contact(scene, 0.5, delta=0.01)
-    yield "contact of an alpha each", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
-    yield "slopes", lambda: vr.contact(scene, 0.5, delta=0.01, slopes=True)
+    # a map of its own: that of an ensemble might be found on disk
+    yield "motions and flow maps", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
     yield "contact by root solves", lambda: vr.contact(scene, 0.5, delta=0.01, method="direct")
-    yield "contact of a series", lambda: vr.contact(series, 0.5, delta=0.01)
-    yield "bound law", lambda: vr.law(scene)
+    yield "contact of an alpha each", lambda: vr.contact(vr.Scene([3.0, 4.0], 2.91, 0.2), 0.5, delta=0.01)
     yield "contact of a series each", lambda: vr.contact(each, 0.5, delta=0.01)
-    yield "unsteady rolling of a series", lambda: vr.contact(series, 0.5, delta=0.01, fields="N")
+    yield "unsteady rolling", lambda: vr.contact(series, 0.5, delta=0.01, fields="N")
+    yield "bound law", lambda: vr.law(scene)
     yield "steady rolling", lambda: vr.steady(scene, force=0.01)
-    yield "validity", lambda: scene.validity(0.5)
     yield "stress", lambda: vr.stress(scene, 0.5, 0.5, delta=0.01)
-    yield "roll", lambda: vr.roll(scene, 1.0, 0.0, 1e-3)
-    yield "ensemble", lambda: vr.ensemble(scene, **start, method="integrate")
-    # not ``ensemble`` alone: it might find this map on disk
-    yield "flow map", lambda: flow.build((scene.alpha, scene.kappa, scene.mu, scene.j), 1)
-    yield "motions by a flow map", lambda: vr.ensemble(scene, **start, method="flow", rest=1e-3)
-    yield "law of a material as a file", lambda: vr.tables.law(modes)

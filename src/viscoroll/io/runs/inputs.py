@@ -51,19 +51,6 @@ class Distribution:
 
 
 @dataclass(frozen=True)
-class Joint:
-    """Columns of one file, drawn row by row with replacement."""
-
-    columns: dict[str, NDArray[np.float64]]
-
-    def rows(self, u: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-        """The columns at the rows that ``u`` picks."""
-        size = next(iter(self.columns.values())).size
-        picked = np.minimum((u * size).astype(np.int64), size - 1)
-        return {name: values[picked] for name, values in self.columns.items()}
-
-
-@dataclass(frozen=True)
 class Inputs:
     """The inputs of a run.
 
@@ -71,14 +58,14 @@ class Inputs:
     ----------
     content : sections of the file, with an :class:`Input` in place of every uncertain number.
     random : distributions, a dimension each.
-    joint : samples by file, a dimension each.
+    joint : columns of each file, a dimension: rows are drawn with replacement.
     correlated, mixing : names of the distributions under the Gaussian copula, and the Cholesky
         factor of their correlation matrix.
     """
 
     content: dict[str, Any]
     random: dict[str, Distribution] = field(default_factory=dict)
-    joint: dict[str, Joint] = field(default_factory=dict)
+    joint: dict[str, dict[str, NDArray[np.float64]]] = field(default_factory=dict)
     correlated: tuple[str, ...] = ()
     mixing: NDArray[np.float64] | None = None
 
@@ -90,7 +77,7 @@ class Inputs:
     @property
     def uncertain(self) -> tuple[str, ...]:
         """Names of the inputs."""
-        return (*self.random, *(name for sample in self.joint.values() for name in sample.columns))
+        return (*self.random, *(name for columns in self.joint.values() for name in columns))
 
     @property
     def medians(self) -> dict[str, Any]:
@@ -108,20 +95,22 @@ class Inputs:
             mixed: Any = sum(part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True))
             rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))
         values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
-        for name, sample in self.joint.items():
-            values |= sample.rows(rows[name])
+        for name, columns in self.joint.items():
+            size = next(iter(columns.values())).size
+            picked = np.minimum((rows[name] * size).astype(np.int64), size - 1)
+            values |= {each: column[picked] for each, column in columns.items()}
         return values
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> NDArray[np.float64]:
         """The least and the largest draw of an input, or those of these shares."""
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
-        column = next(sample.columns[name] for sample in self.joint.values() if name in sample.columns)
+        column = next(columns[name] for columns in self.joint.values() if name in columns)
         return np.array([column.min(), column.max()])
 
     def corners(self) -> dict[str, NDArray[np.float64]]:
         """Each input at its one end while all others are at their other, and all at the same."""
-        names = [*self.random, *(name for one in self.joint.values() if len(one.columns) == 1 for name in one.columns)]
+        names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
         own = np.hstack([np.eye(len(names), dtype=bool), np.zeros((len(names), 1), dtype=bool)])
         ends = {name: self.ends(name)[np.r_[one, ~one].astype(int)] for name, one in zip(names, own, strict=True)}
         return self.medians | ends

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...contact_law.parameters import Parameters, Rolls
 from ...core.checks import checked
-from ...core.drive import Schedule, slope_factor
+from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
 from ...cylinder import Cylinder
@@ -28,56 +28,61 @@ from ..config import body_of
 class Rollers(Rolls):
     """Cylinders each of a material of its own, in SI units.
 
-    parameters : dimensionless.
-    sizes : R, T, P and m, the units of these, numbers or one a cylinder.
-    seconds : whether times are counted in s where T is that of each: gamma does nothing but scale time (Eq. (22)), so
-        that gamma/T in its place makes it seconds, the same for every cylinder.
+    like : their numbers, with one of their materials.
+    law, E_prime, T : what they deform by, times over T.  Where each has a T of its own times are counted in s: gamma
+        does nothing but scale time (Eq. (22)), so that gamma/T in its place makes it seconds, the same for all.
     """
 
-    parameters: Parameters
-    sizes: dict[str, Any]
-    seconds: bool = False
+    like: Cylinder
+    law: Any
+    E_prime: Any
+    T: Any
+
+    @property
+    def seconds(self) -> bool:
+        """Whether times are counted in s."""
+        return np.ndim(self.T) > 0
+
+    @cached_property
+    def _scene(self) -> Parameters:
+        one = self.like
+        found = scene_of(one.R, one.m, one.load, self.E_prime, self.T, self.law, one.mu, one.j)
+        return found.replace(gamma=found.gamma / self.T) if self.seconds else found
 
     def scene(self) -> Parameters:
-        return self.parameters
+        return self._scene
 
     def tilted(self, slope: Any) -> Self:
-        load = self.sizes["P"] * slope_factor(slope)[1]
-        return replace(self, parameters=self.parameters.tilted(slope), sizes=self.sizes | {"P": load})
+        return replace(self, like=self.like.tilted(slope))
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        found = Scale(**self.sizes)
+        found = Scale(self.like.R, self.T, self.like.load, self.like.m)
         if self.seconds:
             found |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": found["V"], "angle": found["omega"]}
         return found
 
 
 class _Solid(NamedTuple):
-    """A body that is uncertain; ``typical``: one of its draws."""
+    """What a cylinder needs of a body that is uncertain."""
 
     E: Any
     nu: Any
     prony: Any
-    typical: Material
+    T_ref: float
 
 
 def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
     """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
-    plain = {name: body.typical if isinstance(body, _Solid) else body for name, body in bodies.items()}
-    one = body_of(path, content, plain)
+    one = body_of(path, content, {name: typical for name, (typical, _) in bodies.items()})
     if not isinstance(one, Cylinder):
         return one
-    sizes = {"R": one.R, "P": one.load, "m": one.m}
-    if any(isinstance(body, _Solid) for body in bodies.values()):
-        law, E_prime, T = _law(bodies["material"], bodies.get("base"), one.plane)
-        scene = scene_of(one.R, one.m, one.load, E_prime, T, law, one.mu, one.j)
-        return Rollers(scene, sizes | {"T": T})
+    each = {name: body for name, (_, body) in bodies.items()}
+    if any(isinstance(body, _Solid) for body in each.values()):
+        return Rollers(one, *_law(one.plane, each.get("material") or one.pair.cylinder, each.get("base")))
     if np.ndim(one.T_epsilon):
-        alpha = one.T_epsilon / one.T_sigma
-        scene = scene_of(one.R, one.m, one.load, one.E_prime, one.T_epsilon, alpha, one.mu, one.j)
-        return Rollers(scene.replace(gamma=scene.gamma / one.T_epsilon), sizes | {"T": one.T_epsilon}, seconds=True)
+        return Rollers(one, one.T_epsilon / one.T_sigma, one.E_prime, one.T_epsilon)
     return one
 
 
@@ -96,9 +101,10 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
         raise ParameterError(name, error.value, error.allowed, f"{name}: {error}") from error
 
 
-def _body(path: Path, name: str, given: Any) -> Material | _Solid:
+def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | _Solid]:
+    """One of its draws, and it."""
     if isinstance(given, Material):
-        return given
+        return given, given
     first = _first(given)
     typical = materials_of(path, {name: first})[name]
     series = series_of(path, name, given)
@@ -108,9 +114,9 @@ def _body(path: Path, name: str, given: Any) -> Material | _Solid:
         series = series.slower([shift(each) for each in given["temperature"]])
     E, nu = given.get("E", typical.E), given.get("nu", typical.nu)
     if not (series.shape or np.ndim(E) or np.ndim(nu)):
-        return typical
+        return typical, typical
     E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return _Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical)
+    return typical, _Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref)
 
 
 def _first(part: Any) -> Any:
@@ -122,13 +128,12 @@ def _first(part: Any) -> Any:
     return float(part[0]) if isinstance(part, np.ndarray) else part
 
 
-def _law(one: Any, other: Any, plane: str) -> tuple[Any, Any, float]:
+def _law(plane: str, one: Any, other: Any = None) -> tuple[Any, Any, float]:
     """(Series or bodies, one or one for each motion; E' of both; T_ref), as of a pair."""
-    times = [getattr(body, "typical", body).T_ref for body in (one, other) if body is not None]
     modulus = effective_modulus(one.E, one.nu, plane)
     if other is None:
-        return one.prony, modulus, times[0]
+        return one.prony, modulus, one.T_ref
     relaxes = np.ndim(one.prony.alpha) or one.prony.alpha > 1.0
-    T, base = times[0 if relaxes else 1], effective_modulus(other.E, other.nu, plane)
-    first, second = (body.prony.slower(time / T) for body, time in zip((one, other), times, strict=True))
+    T, base = (one if relaxes else other).T_ref, effective_modulus(other.E, other.nu, plane)
+    first, second = (body.prony.slower(body.T_ref / T) for body in (one, other))
     return Bodies(first, second, cylinders_share(modulus, base)), joint_modulus(modulus, base), T

@@ -219,8 +219,8 @@ def read_run(path: str | PathLike[str]) -> Run:
     path, content = Path(path), read(path)
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
-    sections = {"start": StartSection, "drive": DriveSection, "run": RunSection}
-    check_sections(path, medians, ("correlation",), sections)
+    sections = {"start": StartSection, "drive": DriveSection, "run": RunSection, "correlation": None}
+    check_sections(path, medians, sections)
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
             raise fault(path, "", name, f"section [{name}] is missing: it needs {needed}")
@@ -274,7 +274,7 @@ def _check_inputs(run: Run) -> None:
             reaches = f"{at.name}: reaches from {ends[0]:.6g} to {ends[1]:.6g}"
             problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
             raise fault(run.path, at.section, at.key, f"{reaches}: {problem}; add truncate = [low, high]") from error
-    wholes = (medians | sample.columns for sample in inputs.joint.values() if len(sample.columns) > 1)
+    wholes = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *wholes):
         try:
             _begin(run, values)
@@ -302,8 +302,8 @@ def _digest(settings: RunSection, times: NDArray, content: dict[str, Any], mater
     sections = {name: given for name, given in content.items() if name != "run"}
     samples = [
         [name, hashlib.sha256(values.tobytes()).hexdigest()]
-        for sample in inputs.joint.values()
-        for name, values in sample.columns.items()
+        for columns in inputs.joint.values()
+        for name, values in columns.items()
     ]
     described = [msgspec.to_builtins(settings), times.tolist(), sections, materials, samples]
     return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()

@@ -128,10 +128,10 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
         allowed = "left out: Sobol indices are defined for independent inputs only"
         raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
     places = {at.name: f"[{at.section}] {at.name}" for at in inputs_in(inputs.content)}
-    for file, sample in inputs.joint.items():
-        if len(sample.columns) > 1:
+    for file, columns in inputs.joint.items():
+        if len(columns) > 1:
             allowed = "distributions, or columns of a file each: Sobol indices are defined for independent inputs only"
-            raise ParameterError(", ".join(map(places.__getitem__, sample.columns)), f"rows of {file}", allowed)
+            raise ParameterError(", ".join(map(places.__getitem__, columns)), f"rows of {file}", allowed)
     return inputs.uncertain
 
 

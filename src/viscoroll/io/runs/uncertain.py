@@ -15,7 +15,7 @@ from ...core.extras import imported
 from ...core.sections import fault, hint, refuse_unknown
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
-from .inputs import Distribution, Input, Inputs, Joint
+from .inputs import Distribution, Input, Inputs
 
 #: what the names of inputs of a section begin with
 PREFIXES = {"base": "base_", "drive": "drive_"}
@@ -31,8 +31,7 @@ def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     """The inputs of a file that was read, independent; raises FileError."""
     reader = _Reader(path)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
-    joint = {file: Joint(columns) for file, columns in reader.joint.items()}
-    return Inputs(content | sections, reader.random, joint)
+    return Inputs(content | sections, reader.random, reader.joint)
 
 
 class _Reader:

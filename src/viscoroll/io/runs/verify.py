@@ -56,16 +56,12 @@ def verify(path: str | PathLike[str]) -> Verdict:
     One flipped bit in any file is found (``tests/runs/test_run_store.py``).
     """
     root, start = Path(path), start_of(path)
-    damaged, missing = [*problems(root, "start", start.run)], []
     blocks = int(start.about["blocks"])
-    for block in range(blocks):
-        found = problems(root, block, start.run)
-        if found:
-            missing.append(block)
-            damaged += [name for name in found if (root / name).exists()]
-    end = problems(root, "end", start.run)
-    damaged += [name for name in end if (root / name).exists()]
-    return Verdict(blocks, tuple(missing), tuple(damaged), not end)
+    found = {part: problems(root, part, start.run) for part in ("start", *range(blocks), "end")}
+    missing = tuple(block for block in range(blocks) if found[block])
+    # of a block or an end that was not made yet there is nothing to be damaged
+    damaged = (name for part, names in found.items() for name in names if part == "start" or (root / name).exists())
+    return Verdict(blocks, missing, tuple(damaged), not found["end"])
 
 
 def start_of(path: str | PathLike[str]) -> Record:
