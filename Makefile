@@ -67,9 +67,9 @@ numbers: setup figures ## measure again what README and docs state, and put it t
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)
 	$(RUN) -m pipeline.evidence.prove
-	$(RUN) -m pipeline.evidence.prove.figures
 	$(RUN) -m pipeline.evidence.prove.independent
 	$(RUN) -m pipeline.evidence.prove.unsteady
+	$(RUN) -m pipeline.evidence.prove.figures
 	$(RUN) -m pipeline.evidence.prove.layer
 	$(RUN) -m pipeline.evidence.measure.large
 	$(RUN) -m pipeline.evidence.document

@@ -1,6 +1,6 @@
-"""Tolerance against achieved error of motions, from data/results/proofs.json -> docs/figures/motion-errors.png.
+"""What is kept of proofs, as figures: motion-errors.png and transient.png in docs/figures.
 
-python -m pipeline.evidence.prove.figures [-o FILE]
+python -m pipeline.evidence.prove.figures [-o FOLDER]
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ import numpy as np
 
 from viscoroll.core.plots.style import LINES, THIN, new_figure, save
 
-from ...stage import ROOT, told
+from ...stage import ROOT, make_folder, told
 from ..results import RESULTS, Results, parser
 from .motion import FACTOR
+from .unsteady import LEVELS
 
 #: begin of a claim -> title of its panel; what is below the least is drawn there
 PANELS = {
@@ -24,8 +25,9 @@ PANELS = {
 _LEAST = 1e-17
 
 
-def drawn(rows: list[dict[str, Any]]) -> Any:
-    """Worst and mean over the motions, with the bound and rtol itself."""
+def motion_errors(results: Results) -> Any:
+    """Tolerance against achieved error: worst and mean over the motions, with the bound and rtol itself."""
+    rows = results["proofs motion"]["rows"]
     title = "Relative error of random motions over the tolerance asked for"
     figure, panels = new_figure(title, 1, len(PANELS), (9.6, 3.8), sharey=True)
     for axes, (begin, title) in zip(panels, PANELS.items(), strict=True):
@@ -43,7 +45,32 @@ def drawn(rows: list[dict[str, Any]]) -> Any:
     return figure
 
 
+def transient(results: Results) -> Any:
+    """The size of e over the unsteadiness, by the law and with N."""
+    title = "V by a transient solver over V by the law of steady rolling (full) and by the law with N (dotted), less 1"
+    figure, panels = new_figure(title, 1, 2, (9.6, 4.2), sharey=True)
+    words = {"steady": "from steady contact", "rest": "from long rest"}
+    colours = {1: LINES[0], 2: LINES[1], 4: LINES[2]}
+    for axes, (start, name) in zip(panels, words.items(), strict=True):
+        for row in results["transient"]["rows"]:
+            for which, style in ((1, "-"), (2, ":")):
+                line = colours[row["modes"]] | {"linestyle": style, "linewidth": 1.0}
+                places = [(e[0], max(abs(e[which]), 1e-5)) for e in row[start]["e"] if e[which] is not None]
+                axes.loglog(*zip(*places, strict=True) if places else ((), ()), **line)
+        axes.loglog(LEVELS, LEVELS, **THIN)
+        axes.set(title=name, xlabel="unsteadiness", ylim=(1e-5, 3.0))
+    for modes, line in colours.items():
+        panels[0].plot([], [], **(line | {"linestyle": "-"}), label=f"{modes} relaxation time{'s' * (modes > 1)}")
+    panels[0].set_ylabel("|e|")
+    panels[0].legend(fontsize="small", frameon=False)
+    return figure
+
+
+def draw() -> None:
+    folder = make_folder(parser(__doc__, ROOT / "docs/figures", sizes=False).parse_args().output)
+    for name, drawn in (("motion-errors", motion_errors), ("transient", transient)):
+        save(drawn(Results(RESULTS)), folder / f"{name}.png")
+
+
 if __name__ == "__main__":
-    output = parser(__doc__, ROOT / "docs/figures/motion-errors.png", sizes=False).parse_args().output
-    rows = Results(RESULTS)["proofs"]["parts"]["motion"]["rows"]
-    sys.exit(told("proof_figures", lambda: save(drawn(rows), output)))
+    sys.exit(told("proof_figures", draw))

@@ -5,30 +5,23 @@ time, less 1, where the law has reached the speed at which the unsteadiness was 
 ``roll(unsteady=True, rested=...)``, to where that ends.  From rest the law begins at the speed that leaving the
 imprint leaves.
 
-python -m pipeline.evidence.prove.unsteady [-o FILE] [--figure FILE] [--h H]: data/results/transient.json and
-docs/figures/transient.png, in some minutes.
+python -m pipeline.evidence.prove.unsteady [-o FILE]: data/results/transient.json, in some minutes.
 """
 
 from __future__ import annotations
 
 import sys
 import warnings
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 import viscoroll as vr
-from viscoroll.core.plots.style import LINES, THIN, new_figure, save
 
-from ...stage import ROOT, told
-from ..results import RESULTS, machine, parser, write_results
+from ..results import run
 from .transient import Contact, grid
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -46,6 +39,8 @@ MOTIONS = [
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0)
 #: of V at the start, what a start from rest has to leave: below, the formula for it is short by a tenth and more
 _CLEAR = 0.9
+#: cell of the grid, over half the contact length at rest
+H = 0.02
 #: of what is rolled with N: creep is then as small as in the solver, which has none
 _KAPPA = 1e4
 #: of the start, down to which a motion is followed, and what is waited for behind
@@ -116,44 +111,13 @@ def rolled(motion: tuple[Any, float, float], h: float) -> tuple[dict[str, Any], 
     return row, rows
 
 
-def drawn(rows: list[dict[str, Any]]) -> Figure:
-    """The size of e over the unsteadiness, by the law and with N."""
-    title = "V by a transient solver over V by the law of steady rolling (full) and by the law with N (dotted), less 1"
-    figure, panels = new_figure(title, 1, 2, (9.6, 4.2), sharey=True)
-    words = {"steady": "from steady contact", "rest": "from long rest"}
-    colours = {1: LINES[0], 2: LINES[1], 4: LINES[2]}
-    for axes, (start, name) in zip(panels, words.items(), strict=True):
-        for row in rows:
-            for which, style in ((1, "-"), (2, ":")):
-                line = colours[row["modes"]] | {"linestyle": style, "linewidth": 1.0}
-                places = [(e[0], max(abs(e[which]), 1e-5)) for e in row[start]["e"] if e[which] is not None]
-                axes.loglog(*zip(*places, strict=True) if places else ((), ()), **line)
-        axes.loglog(LEVELS, LEVELS, **THIN)
-        axes.set(title=name, xlabel="unsteadiness", ylim=(1e-5, 3.0))
-    for modes, line in colours.items():
-        panels[0].plot([], [], **(line | {"linestyle": "-"}), label=f"{modes} relaxation time{'s' * (modes > 1)}")
-    panels[0].set_ylabel("|e|")
-    panels[0].legend(fontsize="small", frameon=False)
-    return figure
-
-
-def main() -> int:
-    options = parser(__doc__, RESULTS / "transient.json", sizes=False)
-    options.add_argument("--figure", type=Path, default=ROOT / "docs/figures/transient.png")
-    options.add_argument("--h", type=float, default=0.02, help="cell of the grid, over half the contact length at rest")
-    arguments = options.parse_args()
-
-    def measured() -> None:
-        rows = []
-        for motion in MOTIONS:
-            rows.append(rolled(motion, arguments.h)[0])
-            print(rows[-1], flush=True)
-        write_results(arguments.output, {"rows": rows, "h": arguments.h, "machine": machine()})
-        save(drawn(rows), arguments.figure)
-        print(f"{arguments.output}, {arguments.figure}: written")
-
-    return told("unsteady", measured)
+def found() -> dict[str, Any]:
+    rows = []
+    for motion in MOTIONS:
+        rows.append(rolled(motion, H)[0])
+        print(rows[-1], flush=True)
+    return {"rows": rows, "h": H}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run("prove.unsteady", found, __doc__, "transient.json", sizes=False))

@@ -86,43 +86,32 @@ def driven_motion(row: dict[str, Any]) -> Case:
     return Case(vr.Scene(**given), row["V0"], row["omega0"], np.array(row["t"]), drive)
 
 
-def rolled_twice(case: Case, kind: str) -> tuple[PreciseMotion, float]:
+def rolled_twice(case: Case) -> tuple[PreciseMotion, float]:
     """The finer of two motions, and how far they differ, to two digits."""
     given = case.scene, case.V0, case.omega0, case.t.tolist()
     coarse, fine = (roll_precise(*given, **case.drive, **how) for how in ({}, FINER))
-    return fine, float(f"{difference(coarse, fine, kind == 'free'):.1e}")
+    return fine, float(f"{difference(coarse, fine):.1e}")
 
 
-def difference(one: PreciseMotion, other: PreciseMotion, free: bool) -> float:
-    """Worst of V, omega over the larger of both, x over the way so far, and the times of events over themselves.
-
-    Of driven motions over the largest speed so far, and of path, work and loss over their largest.
-    """
+def difference(one: PreciseMotion, other: PreciseMotion) -> float:
+    """Worst of V, omega over the larger of both, paths and losses over their largest so far, events over themselves."""
     with flint.ctx.workprec(_BITS):
         if [regime for _, regime in one.switches] != [regime for _, regime in other.switches]:
             return math.inf
-        events = ([*(when for when, _ in m.switches), *([] if free else m.reversals)] for m in (one, other))
+        events = ([*(when for when, _ in m.switches), *m.reversals] for m in (one, other))
         worst = [abs(a / b - 1) for a, b in zip(*events, strict=True) if b != 0]
-        speeds = [max(abs(V), abs(omega)) for V, omega in zip(other.V, other.omega)]
-        scales = dict.fromkeys(SPEEDS, speeds if free else _largest(speeds))
-        for name in ("x",) if free else PATHS:
-            sizes = [abs(value) for value in getattr(other, name)]
-            scales[name] = _largest(sizes) if free else [max(sizes)] * len(sizes)
-        for name, sizes in scales.items():
-            three = zip(getattr(one, name), getattr(other, name), sizes)
-            worst += [abs(a - b) / size for a, b, size in three if size > 0]
+        speeds = list(map(max, map(abs, other.V), map(abs, other.omega)))
+        for name in (*SPEEDS, *PATHS):
+            found = getattr(other, name)
+            sizes = speeds if name in SPEEDS else accumulate(map(abs, found), max)
+            worst += [abs(a - b) / size for a, b, size in zip(getattr(one, name), found, sizes) if size > 0]
         return max(map(float, worst))
-
-
-def _largest(values: list[Any]) -> list[Any]:
-    """So far."""
-    return list(accumulate(values, max))
 
 
 def free_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """One row an output: inputs, values, onset (NaN: none), and the difference of the two motions."""
     case, _ = free_motion(rows)
-    fine, apart = rolled_twice(case, "free")
+    fine, apart = rolled_twice(case)
     onset = math.nan if fine.onset_time is None else float(fine.onset_time)
     found = {"motion": int(rows[0]["motion"]), "onset_time": onset, "switches": len(fine.switches), "difference": apart}
     return [row | found | {name: float(getattr(fine, name)[i]) for name in OUTPUTS} for i, row in enumerate(rows)]
@@ -130,7 +119,7 @@ def free_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def driven_row(row: dict[str, Any]) -> dict[str, Any]:
     """What a motion is and what it does, as the nearest doubles."""
-    fine, apart = rolled_twice(driven_motion(row), "driven")
+    fine, apart = rolled_twice(driven_motion(row))
     found = {name: [float(value) for value in getattr(fine, name)] for name in (*SPEEDS, *PATHS)}
     switches = [[float(when), regime] for when, regime in fine.switches]
     return row | found | {"difference": apart, "switches": switches, "reversals": [float(t) for t in fine.reversals]}
