@@ -111,7 +111,7 @@ def _of_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
             return values
         return pd.DataFrame(values, index=index, columns=pd.RangeIndex(np.shape(values)[1], name=behind[0]))
 
-    levels = [str(name or ("index" if index.nlevels == 1 else f"level_{n}")) for n, name in enumerate(index.names)]
-    dim = levels[0] if index.nlevels == 1 else "state"
-    coords = {name: ((dim,), index.get_level_values(n).to_numpy()) for n, name in enumerate(levels)}
+    levels = first.rename("").reset_index().iloc[:, :-1]
+    dim = str(levels.columns[0]) if index.nlevels == 1 else "state"
+    coords = {str(name): ((dim,), values.to_numpy()) for name, values in levels.items()}
     return {name: each.to_numpy() for name, each in series.items()}, Labels(first.shape, wrap, (dim,), coords)

@@ -7,7 +7,6 @@ import re
 import warnings
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +57,12 @@ def read_dma(
     ModelWarning
         Where neither the file nor ``units`` says what a column is in.
     """
-    if units is not None:
-        _refuse_unknown(units)
+    kinds = _FREQUENCY, _MODULUS, _MODULUS
+    if units is not None and not (
+        isinstance(units, tuple) and len(units) == 2 and all(str(u).lower() in k for u, k in zip(units, kinds))
+    ):
+        allowed = f"(frequency, moduli), of {', '.join(_FREQUENCY)} and of {', '.join(_MODULUS)}"
+        raise ParameterError("units", f"{units!r:.60}", allowed)
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
@@ -69,7 +72,6 @@ def read_dma(
     values = np.array([[row[n] for n in columns] for row in rows]).T
     names = [" ".join(line[n] for line in headings if n < len(line)) for n in columns]
     names = [name + "".join(f" [{line[n]}]" for line in below) for name, n in zip(names, columns, strict=True)]
-    kinds = (_FREQUENCY, _MODULUS, _MODULUS)
     written = [_unit(path, name, kind) for name, kind in zip(names, kinds, strict=True)]
     if units is None:
         units = "Hz" if re.match(r"f(req|$|\W)", names[0].lower()) else "rad/s", "Pa"
@@ -79,13 +81,6 @@ def read_dma(
     wanted = zip(written, kinds, (units[0], units[1], units[1]), strict=True)
     omega, storage, loss = values * np.array([[kind[unit or other.lower()]] for unit, kind, other in wanted])
     return omega, storage, loss
-
-
-def _refuse_unknown(units: Any) -> None:
-    allowed = f"(frequency, moduli), of {', '.join(_FREQUENCY)} and of {', '.join(_MODULUS)}"
-    known = isinstance(units, tuple) and len(units) == 2 and all(isinstance(unit, str) for unit in units)
-    if not known or units[0].lower() not in _FREQUENCY or units[1].lower() not in _MODULUS:
-        raise ParameterError("units", f"{units!r:.60}", allowed)
 
 
 def _parted(path: str | PathLike[str], lines: list[str]) -> tuple[list[list[str]], list[list[float]]]:

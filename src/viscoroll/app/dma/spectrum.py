@@ -100,35 +100,30 @@ _ALONE = 1 << 17
 
 
 def _descended(curve: Curve, logs: NDArray, low: NDArray, high: NDArray, calls: int) -> NDArray[np.float64]:
-    """Levenberg's and Marquardt's iteration between bounds, damped as by H. B. Nielsen (1999).
+    """Levenberg's and Marquardt's iteration between bounds.
 
-    On the normal equations: a SVD of some hundred rows takes ten times as long on several threads as on one.
+    On the normal equations: a SVD of some hundred rows takes ten times as long on several threads as on one, and the
+    MINPACK of SciPy 1.17 gives other last digits from call to call.
     """
-    from scipy.linalg.lapack import dposv
-
     logs = np.clip(logs, low, high)
     errors, slopes = _residuals(curve, np.exp(logs)), _slopes(logs, curve)
-    damping, more = _DAMPING, 2.0
+    damping = _DAMPING
     for _ in range(calls - 1):
         downhill = -(slopes.T @ errors)
         free = ~((logs <= low) & (downhill < 0.0) | (logs >= high) & (downhill > 0.0))
         normal = _squared(slopes[:, free])
         np.fill_diagonal(normal, (1.0 + damping) * normal.diagonal() + np.finfo(float).tiny)
-        _, step, indefinite = dposv(normal, downhill[free])
         way = np.zeros_like(logs)
-        way[free] = 0.0 if indefinite else step
+        way[free] = np.linalg.solve(normal, downhill[free])
         way = np.clip(logs + way, low, high) - logs
         found = _residuals(curve, np.exp(logs + way))
         before, gain = errors @ errors, errors @ errors - found @ found
         if gain > 0.0:
-            hoped = way @ (2.0 * downhill) - np.square(slopes @ way).sum()
-            damping *= max(1.0 / 3.0, 1.0 - (2.0 * gain / hoped - 1.0) ** 3)
-            damping, more = max(damping, _LEAST_DAMPING), 2.0
-            logs = logs + way
+            damping, logs = max(damping / 3.0, _LEAST_DAMPING), logs + way
             errors, slopes = found, _slopes(logs, curve)
         else:
-            damping, more = damping * more, 2.0 * more
-        if not indefinite and abs(gain) <= _STILL * before:
+            damping *= 4.0
+        if abs(gain) <= _STILL * before:
             break
     return logs
 

@@ -5,22 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...core.checks import number, whole
 from ...core.errors import ParameterError, refuse_unknown
+from ...core.plots.measured import compared
 from ...core.results import Row, Shown, Values
 from .problem import Found, Problem, Vector
 from .profile import Likelihood, Product
 from .records import Record
 from .report import as_dataset, report
 from .unknowns import cylinder_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 _LEVEL = 0.95
 #: most draws of a band, and of them that are thrown away, at most, for one that lies within the ranges
@@ -132,8 +129,7 @@ class Identification(Shown):
         and the profile of just these.  Then, where it is much sharper, what holds near the values found alone, by the
         slopes there.
         """
-        which = [i for i, name in enumerate(self.values) if name in self.undetermined]
-        return self._about.products(which, self._rise(level))
+        return self._about.products(self._about.undetermined(self._rise()), self._rise(level))
 
     def predict(self, record: Record, *, draws: int = 0, level: float = _LEVEL, seed: int = 0) -> Prediction:
         """What a record would show, with bands.
@@ -181,8 +177,8 @@ class Identification(Shown):
             J = problem.slopes(seen, u, range(u.size)).T
             spread = half * np.sqrt(np.maximum(np.einsum("i...,ij,j...", J, cov, J), 0.0))
             low, high = value - spread, value + spread
-        ends = {"": value, "_low": low, "_high": high}
-        found = {name + end: row for end, rows in ends.items() for name, row in zip(record.KINDS, rows, strict=True)}
+        ends = (("", value), ("_low", low), ("_high", high))
+        found = {name + end: rows[n] for end, rows in ends for n, name in enumerate(record.KINDS)}
         places = {name: np.asarray(getattr(record, name)) for name in record.PLACES}
         units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
         return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
@@ -202,22 +198,14 @@ class Identification(Shown):
     def _coordinates(self, values: Mapping[str, float]) -> Vector:
         refuse_unknown("values", values, self.values, "an unknown")
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array([one.to_u(number(one.name, value, low=one.least, strict=True)) for one, value in given])
+        return np.array(
+            [one.to_u(number(one.name, value, low=-math.inf if one.unit else 0.0, strict=True)) for one, value in given]
+        )
 
     def _card(self) -> tuple[str, list[Row]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
         rows = [Row(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
         return title, [*rows, Row("chi2", f"{self.chi2:.1f} of {self.dof}")]
 
-    def __str__(self) -> str:
-        return report(self)
-
-    def _figure(self) -> Figure:
-        """Data, best fit and its band, and below them residuals over sigma, a column for each quantity of a record."""
-        from ...core.plots.measured import compared
-
-        return compared(self)
-
-    def to_xarray(self) -> xr.Dataset:
-        """Values, standard deviations, intervals and correlations over ``unknown``, data and fit over their places."""
-        return as_dataset(self)
+    __str__, to_xarray = report, as_dataset
+    _figure = compared

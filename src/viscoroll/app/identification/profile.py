@@ -164,10 +164,6 @@ class Walk:
         """How far a place is from the best."""
         return float(self.powers @ (u - self.best.u))
 
-    def rise(self, found: Found) -> float:
-        """By how much chi2 is above the best."""
-        return max(found.chi2 - self.best.chi2, 0.0)
-
     def moved(self, d: float, u: Vector) -> Vector:
         """A place so far from the best: ``u`` moved along the covariance."""
         return u + self.slope * (d - self.way(u))
@@ -190,7 +186,7 @@ class Walk:
                 d, last = self.out(reach, rise, seen[-1])
             ends.append(None if d is None else float(self.powers @ self.best.u) + d)
             made_by.append([] if d is None else self.made_by(last.u, rise))
-        within = np.array([one.u for one in self.passed if self.rise(one) <= rise])
+        within = np.array([one.u for one in self.passed if one.chi2 - self.best.chi2 <= rise])
         return Profile(ends, made_by, pieces, min(self.passed, key=lambda one: one.chi2), within)
 
     def out(self, reach: float, rise: float, low: Found) -> tuple[float | None, Found]:
@@ -205,7 +201,7 @@ class Walk:
                 b, *more = sorted(known, key=lambda b: abs(d - b))
                 u = known[b].u
                 known[d] = self.at(d, u + (u - known[more[0]].u) * ((d - b) / (b - more[0])) if more else u)
-            f = math.sqrt(self.rise(known[d])) - goal
+            f = math.sqrt(max(known[d].chi2 - self.best.chi2, 0.0)) - goal
             return 0.0 if abs(f) < _CLOSE * goal else f
 
         f = over(d)
@@ -229,7 +225,8 @@ class Walk:
                 seen = np.clip(self.moved(place, u), self.problem.low, self.problem.high)
                 if self.problem.cost(seen) - self.best.chi2 < _HOPELESS * rise:
                     found.append(self.at(place, u))
-        return sorted((one for one in found if self.rise(one) < _LOWER * rise), key=lambda one: abs(self.way(one.u)))
+        lower = [one for one in found if one.chi2 - self.best.chi2 < _LOWER * rise]
+        return sorted(lower, key=lambda one: abs(self.way(one.u)))
 
     def made_by(self, u: Vector, rise: float) -> list[str]:
         """Unknowns at an end of their range that would lower chi2 by going beyond, by slopes, the combination held."""

@@ -46,11 +46,6 @@ class Unknown(NamedTuple):
     mean: float = 0.0
     sd: float = math.inf
 
-    @property
-    def least(self) -> float:
-        """What it is above."""
-        return 0.0 if self.unit is None else -math.inf
-
     def to_u(self, value: Any) -> Any:
         """The coordinate of a value."""
         return np.log(value) if self.unit is None else value / self.unit

@@ -105,11 +105,8 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     if end - start < _FINEST:
         return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(keepdims=True)
     edges = np.linspace(start, end, _BARS + 1)
-    ends = np.unique(np.concatenate([low, high]))
-    below = np.zeros(ends.size)
-    below[np.searchsorted(ends, high)] = np.cumsum(counts)
-    below = np.maximum.accumulate(below)
-    return edges, np.diff(np.interp(edges, ends, below))
+    below = np.append(0, np.repeat(np.cumsum(counts), 2))[:-1]
+    return edges, np.diff(np.interp(edges, np.ravel([low, high], "F"), below))
 
 
 def sobol_bars(indices: xr.Dataset) -> Figure:
