@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
-from viscoroll.core.plots.style import save
+from viscoroll.core.plots.style import new_figure, save
 
 from . import stage
 from .runtime import Way, from_file, motions
@@ -103,9 +103,7 @@ def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    figure, axes = new_figure("Time against error of the paper's motions")
     for marker, name in zip("osd^", dict.fromkeys(row["law by"] for row in rows), strict=True):
         own = [row for row in rows if row["law by"] == name]
         axes.loglog([row["error"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name)
@@ -124,10 +122,8 @@ def work(settings: Benchmark, out: Path) -> stage.Outcome:
     stage.write_rows(out / "benchmark.csv", rows)
     picture = stage.make_folder(out / "figures") / "benchmark.png"
     draw(rows, picture)
-    headline = {
-        f"{row['law by']}, rtol {row['rtol']:g}": f"{row['ms a motion']:.3g} ms, error {row['error']:.2g}"
-        for row in rows
-    }
+    said = "{law by}, rtol {rtol:g}", "{ms a motion:.3g} ms, error {error:.2g}"
+    headline = {said[0].format_map(row): said[1].format_map(row) for row in rows}
     return stage.Outcome([out / "benchmark.csv", picture], headline)
 
 

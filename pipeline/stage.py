@@ -97,10 +97,10 @@ def plain_encoding(dataset: xr.Dataset) -> dict[str, Any]:
     return {str(name): {"_FillValue": None} for name in dataset.variables}
 
 
-def parser(doc: str | None, config: Path = CONFIG) -> argparse.ArgumentParser:
+def parser(doc: str | None) -> argparse.ArgumentParser:
     """Options of every stage."""
     result = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawTextHelpFormatter)
-    result.add_argument("--config", type=Path, default=config, help=f"TOML file (default {config.name})")
+    result.add_argument("--config", type=Path, default=CONFIG, help=f"TOML file (default {CONFIG.name})")
     result.add_argument("-o", "--output", type=Path, default=ROOT / "out", help="folder (default out)")
     return result
 
@@ -130,21 +130,13 @@ def told(name: str, work: Callable[[], int | None]) -> int:
         return 2
 
 
-def run(
-    name: str,
-    kind: type[T] | None,
-    work: Callable[..., Outcome],
-    doc: str | None,
-    *,
-    config: Path = CONFIG,
-    **folders: Path,
-) -> int:
+def run(name: str, kind: type[T] | None, work: Callable[..., Outcome], doc: str | None, **folders: Path) -> int:
     """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line.
 
     ``work`` gets its settings, a ``kind`` (without one the path of the configuration), and the ``folders``, which
     options of their names change; without any, --output.
     """
-    options = parser(doc, config)
+    options = parser(doc)
     for option, folder in folders.items():
         options.add_argument(f"--{option}", type=Path, default=folder, help=f"default {shown(folder)}")
     arguments = options.parse_args()
