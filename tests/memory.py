@@ -6,7 +6,8 @@ from collections.abc import Callable
 import numpy as np
 
 from viscoroll.materials import law_table
-from viscoroll.motion import Ensemble, flow
+from viscoroll.motion import flow
+from viscoroll.motion.many import Ensemble
 
 
 def forget() -> None:

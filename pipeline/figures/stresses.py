@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from viscoroll.contact_law.stress import stress
 from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
-from viscoroll.motion import roll
+from viscoroll.motion.single import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS
 
 from .title import caveat, describe, number

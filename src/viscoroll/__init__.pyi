@@ -13,9 +13,9 @@ from .contact_law.assumptions import Validity as Validity
 from .contact_law.bound import Law as Law
 from .contact_law.bound import law as law
 from .contact_law.contact import contact as contact
-from .contact_law.equilibria import Steady as Steady
-from .contact_law.equilibria import humps as humps
-from .contact_law.equilibria import steady as steady
+from .contact_law.equilibria.resistance import humps as humps
+from .contact_law.equilibria.result import Steady as Steady
+from .contact_law.equilibria.rolling import steady as steady
 from .contact_law.judged import validity as validity
 from .contact_law.stress import stress as stress
 from .core.drive import Feedback as Feedback
@@ -39,10 +39,10 @@ from .materials.measured import Measured as Measured
 from .materials.prony import Prony as Prony
 from .materials.shift import WLF as WLF
 from .materials.shift import Arrhenius as Arrhenius
-from .motion import ensemble as ensemble
-from .motion import roll as roll
+from .motion.batch import ensemble as ensemble
 from .motion.many import Ensemble as Ensemble
 from .motion.one import Motion as Motion
+from .motion.single import roll as roll
 from .scene import Scene as Scene
 
 __version__: str

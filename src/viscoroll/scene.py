@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from .contact_law.bound import law
 from .contact_law.contact import contact
-from .contact_law.equilibria import humps, steady
+from .contact_law.equilibria.resistance import humps
+from .contact_law.equilibria.rolling import steady
 from .contact_law.judged import validity
 from .contact_law.parameters import Parameters, Rolls
 from .contact_law.stress import stress
-from .motion import ensemble, roll
+from .motion.batch import ensemble
+from .motion.single import roll
 
 
 class Methods(Rolls):

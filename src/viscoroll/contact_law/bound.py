@@ -15,7 +15,7 @@ from ..core.typed import Floats, Numbers
 from ..kernels.rows.loads import Loads, LoadsAndSlopes
 from .contact import contact
 from .contact_table import refuse_overflow
-from .parameters import Rolls, framed
+from .parameters import Rolls, framed, refuse_arrays
 
 #: what the law takes as it is; all else goes through :func:`contact`
 _NUMBERS = frozenset({float, int, np.float64})
@@ -146,8 +146,5 @@ def law(roller: Rolls) -> Law:
     _, scene, _ = framed(roller, "law")
     if scene.each is not None:
         raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
-    for name in ("alpha", "kappa", "mu"):
-        value = np.asarray(getattr(scene, name))
-        if value.ndim:
-            raise ParameterError(name, f"an array of shape {value.shape}", "one number: a law is of one scene")
+    refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
     return Law(roller)

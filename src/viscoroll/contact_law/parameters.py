@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
@@ -251,6 +252,13 @@ def framed(given: Any, call: str, *, moves: bool = False, slope: Any = None) -> 
         sentence = f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale: it is not given"
         raise ParameterError("gamma", None, "a number > 0", sentence)
     return roller, scene, roller.scale
+
+
+def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a single number") -> None:
+    """Raise ParameterError where a parameter is an array, by its name."""
+    for name in names:
+        if shape := np.shape(getattr(scene, name)):
+            raise ParameterError(name, f"an array of shape {shape}", allowed)
 
 
 def _refuse_ratio(mu: Floats, kappa: Floats) -> None:

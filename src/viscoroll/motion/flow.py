@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from ..contact_law.parameters import Parameters
 from ..core.blocks import flattened, run_blocks
 from ..core.typed import Floats, Integers
-from .flow_motions import motions
 from .flow_store import FlowMap, load, path_of, save
+from .rolling import motions
 
 #: a stated error is so many times the worst that was found on the sampled motions, and at least the floor (of the
 #: speeds, the path, the energy lost), below which the integrator's own error shows

@@ -1,4 +1,4 @@
-"""The tables of a flow map, from the row of M and from motions of the scene (:mod:`.flow_motions`).
+"""The tables of a flow map, from the row of M and from motions of the scene (:func:`.rolling.motions`).
 
 Motions give V and delta at nodes; distance, angle and loss are integrals of what these are fitted by.
 """
@@ -19,9 +19,9 @@ from ..kernels.motion.records import PARTIAL
 from ..kernels.numerics.nodes import gauss
 from ..materials.law_build import paired
 from ..materials.law_table import law_table
-from .flow_motions import motions
 from .flow_rows import NODES, Nodes, Rows, octaves
 from .flow_store import FlowMap
+from .rolling import motions
 
 _HELD = "rolling resistance can hold the sliding cylinder at a speed"
 _SLIPS = "full slip returns"

@@ -8,14 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.parameters import Parameters, Rolls, framed
+from ..core.blocks import flattened, run_blocks
 from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
 from ..core.typed import Floats, Integers
+from ..materials.law_table import law_table
 from .checks import controls, in_words, refuse_many
-from .driven import ROWS, Drive, Prepared, prepared, refuse_drives, refuse_rest
+from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_drives, refuse_rest, undriven
 from .unsteady import climbed, refuse_unlike, time_of_rest
 
 _ALL = np.arange(len(ROWS))
+#: of a map's motions: as tight as the integrator goes, where with alpha of 1e10 it takes tens of thousands of steps
+_RTOL, _MOST_STEPS = 1e-12, 100_000
+_BLOCK = 40
+#: status, steps, switches, onset and rest time
+_INFO = 5
 #: no room for switches and ends of steps
 NO_NOTES = np.empty((0, 2)), np.empty(0)
 
@@ -97,3 +104,30 @@ def rolled(begun: Begun, times: Floats, *notes: NDArray) -> tuple[Floats, list[f
     batch = law.unsteady_record if begun.unsteady else law.record, law.unlike, *own
     out, info = integrate(1, batch, ready.for_kernel(), times, begun.limits, _ALL, notes)
     return out[:, 0], info[0].tolist()
+
+
+def motions(
+    parameters: tuple[Any, ...], starts: tuple[Floats, Floats], gamma: Floats, t: Floats, *, threads: int | None = 1
+) -> tuple[Floats, Floats]:
+    """(V, omega, x, angle, delta, regime, slip_loss, rolling_loss of motions at common times; status and the like).
+
+    What a flow map is made from and measured by; none of the kernels is compiled for it alone.
+
+    Parameters
+    ----------
+    starts : V and omega.
+    gamma : one a motion, which makes the common times what that counts in.
+    """
+    rows = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
+    given, kappa, mu, j = parameters
+    law, limits = law_table(given), (_RTOL, 0.0, _MOST_STEPS)
+    arrays = [flattened(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)]
+    out, info = np.empty((rows.size, starts[0].size, t.size)), np.empty((starts[0].size, _INFO))
+
+    def work(start: int, stop: int) -> None:
+        own = (array[start:stop] if array.size > 1 else array for array in arrays)
+        batch = law.record, law.unlike, *own
+        out[:, start:stop], info[start:stop] = integrate(stop - start, batch, undriven(), t, limits, rows)
+
+    run_blocks(work, starts[0].size, _BLOCK, threads=threads)
+    return out, info

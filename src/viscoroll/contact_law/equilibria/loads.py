@@ -13,7 +13,7 @@ from ...core.drive import Feedback, slope_factor
 from ...core.errors import ParameterError
 from ...core.typed import Floats
 from ..contact_table import refuse_overflow
-from ..parameters import Parameters
+from ..parameters import Parameters, refuse_arrays
 
 #: kappa |V| of a given speed
 FASTEST = 1e100
@@ -65,7 +65,7 @@ def loads_of(
 ) -> Loads:
     """The loads of a call of ``steady`` on the scene of a slope; errors as there."""
     if type(scene.alpha) is not float:
-        raise ParameterError("alpha", f"an array of shape {np.shape(scene.alpha)}", "a single number")
+        refuse_arrays(scene, ("alpha",))
     given = None if V is None else _given(slope, force=force, torque=torque)
     tangent = slope_factor(slope)[0]
     push, *of_force = _parts("force", force)

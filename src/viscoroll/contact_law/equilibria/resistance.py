@@ -17,7 +17,7 @@ from ...core.errors import ParameterError
 from ...core.typed import Booleans, Floats, Integers
 from ...materials.law_table import LawTable
 from ..contact_table import rolling
-from ..parameters import Rolls, framed
+from ..parameters import Rolls, framed, refuse_arrays
 from .zeros import zeros
 
 #: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
@@ -113,9 +113,7 @@ def humps(roller: Rolls) -> Humps:
     M is good to 1e-14, V to 1e-11 (``tests/test_steady.py``).
     """
     _, scene, scale = framed(roller, "humps")
-    for name in ("alpha", "kappa"):
-        if np.ndim(getattr(scene, name)):
-            raise ParameterError(name, f"an array of shape {np.shape(getattr(scene, name))}", "a single number")
+    refuse_arrays(scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
     if law.alpha == 1.0:

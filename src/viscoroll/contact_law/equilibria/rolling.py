@@ -22,8 +22,7 @@ from .reason import Reasons
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Steady, packed
 from .scan import scanned
-from .solve import crossings, states_at
-from .states import States
+from .states import States, crossings, states_at
 
 
 def steady(

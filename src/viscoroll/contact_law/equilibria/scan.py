@@ -22,8 +22,7 @@ from ...materials.law_table import LawTable
 from . import row
 from .loads import Loads
 from .resistance import grid
-from .solve import contact_at, crossings, rows_at
-from .states import States
+from .states import States, contact_at, crossings, rows_at
 from .zeros import zeros
 
 #: nodes that an interval of V within the stick limit is cut into, and those of a slip between its limits

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion import ensemble
+from ...motion.batch import ensemble
 from ...motion.many import Ensemble
 from ..sampling import points
 from .rollers import drive_of, roller_of
