@@ -1,1 +1,1 @@
-"""Motion of the cylinder, Eq. (22): one (:mod:`.single`), many (:mod:`.batch`)."""
+"""Motion of the cylinder, Eq. (22): one, or an ensemble of many."""
