@@ -17,13 +17,6 @@ pytestmark = [
 #: scene, start, drive, times; tolerances, and how many of each the error may be; steps at most
 MOTIONS = json.loads(Path(__file__).with_name("hard_motions.json").read_text())
 TIGHT = 1e-12
-#: those that still go wrong are expected to, until somebody mends them
-ROWS = [
-    pytest.param(
-        row, id=row["name"], marks=pytest.mark.xfail(strict=True, reason=row["known"]) if "known" in row else ()
-    )
-    for row in MOTIONS
-]
 
 
 def mirrored(name: str, drive):
@@ -48,7 +41,7 @@ def test_mirrored(row):
     assert np.array_equal(m.delta[moves], back.delta[moves])
 
 
-@pytest.mark.parametrize("row", ROWS)
+@pytest.mark.parametrize("row", MOTIONS, ids=[row["name"] for row in MOTIONS])
 def test_as_at_the_tightest_tolerance(row):
     """Regimes, their ends and turns of V; speeds over the largest so far, of free motions over that of the time."""
     case = vr.Scene(*row["scene"]), *row["start"], row["t"]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compile.held import held
 from ..compile.jit import kernel
-from .load import brakes, goes_on, piece_end, threshold, undriven
+from .load import brakes, goes_on, piece_end, threshold, undriven, unloaded
 from .nodes import PATHS, TOTALS
 from .origin import EITHER, STAYS, STICKS, depart, leaving_time
 from .output import coast, put_here, put_still, regime_of
@@ -113,8 +113,8 @@ def note(what, noted, clock, case):
 
 @kernel
 def coasts(state, frame, clock, case):
-    """Whether nothing drives any more, and V decays exponentially to rounding."""
-    return creeps(state, frame, case) and undriven(clock.piece, case.drive)
+    """Whether at most gains drive any more, and V decays exponentially to rounding."""
+    return creeps(state, frame, case) and unloaded(clock.piece, case.drive)
 
 
 @kernel

@@ -128,18 +128,21 @@ def risen_by(piece, pieces):
 
 
 @kernel
+def unloaded(piece, drive):
+    """Whether at most gains drive from this piece on."""
+    for row in drive.pieces[piece:]:
+        for n in range(FIRST, row.size):
+            if row[n] != 0.0:
+                return False
+    return drive.prescribed == NEITHER
+
+
+@kernel
 def undriven(piece, drive):
     """Whether nothing drives from this piece on."""
     gains = drive.gains
-    if drive.prescribed != NEITHER:
-        return False
     acting = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)
-    for row in drive.pieces[piece:]:
-        for n in range(FIRST, row.size):
-            acting += abs(row[n])
-        if acting > 0.0:
-            return False
-    return True
+    return acting == 0.0 and unloaded(piece, drive)
 
 
 @kernel

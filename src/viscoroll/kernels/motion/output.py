@@ -6,9 +6,9 @@ import numpy as np
 
 from ..compile.jit import kernel
 from .collocation import WIDE, integral_at, integral_terms, rise_at
-from .load import load_at, needed
+from .load import load_at, needed, threshold
 from .nodes import OF_PATH, OF_SECOND, OF_V, PATH, PATHS, SECOND, TOTALS, V, put_path, risen
-from .rates import inertia_at, moments_slopes, rates_of, speeds
+from .rates import inertia_at, last_pulls, rates_of, speeds
 from .records import FULL, LOCKED, PARTIAL, REST, Clock, Frame, State
 
 #: rows: V, omega, x, angle, delta, regime; force, torque; work of either, losses in the brake, in slip, in rolling
@@ -146,28 +146,29 @@ def pass_panel(end, v, panel, frame, clock, case):
 
 @kernel
 def coast(state, frame, clock, case):
-    """Outputs of the last decay, (1 + j + gamma N) V' = -T_mean V with delta/V constant: (clock, time of rest)."""
+    """Outputs of the last decay, (1 + j + gamma N) V' = -rate V with delta/V constant: (clock, time of rest)."""
     scene, out, direction, nodes = case.scene, case.out, frame.direction, case.nodes
-    _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, scene)
+    half_space, cylinder, force, torque = last_pulls(case)
     inertia = 1.0 + scene.j + inertia_at(0.0, scene)[0]
     # V and omega fall together: Q = 4 kappa delta takes what the moments differ by
-    rate, per = (half_space + cylinder) / inertia, 4.0 * scene.kappa * inertia
-    creep = state.V * (scene.j * half_space - cylinder) / per
-    fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), case.limits.rest, np.inf
+    rate, per = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
+    creep = state.V * (scene.j * (half_space - force) - cylinder + torque) / per
+    fastest, rest, end = max(state.V, abs(state.V * (1.0 + creep))), threshold(clock.piece, case), np.inf
     if rest > 0.0:
         end = clock.tau + max(np.log(fastest / rest) / rate, 0.0)
-    energy = 0.5 * (1.0 + scene.j) * state.V * state.V
+    by_force, by_torque = force / rate, torque / rate
+    energies = 0.0, 0.0, by_force, by_torque, 0.0, 0.0, 1.0 + scene.j + by_force + by_torque
     for at in range(clock.at, case.tau.size):
         moves = case.tau[at] <= end
         gone = np.expm1(-rate * (min(case.tau[at], end) - clock.tau))
         decay = 1.0 + gone if gone > -0.5 else np.exp(-rate * (case.tau[at] - clock.tau))
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
         _put_moving(at, (direction * V, direction * (V * (1.0 + delta)), delta), PARTIAL if moves else REST, case)
-        _put_acting(at, 0.0, 0.0, out)
+        _put_acting(at, force * direction * V, torque * direction * V, out)
         way = -direction * state.V * gone / rate
+        lost = 0.5 * state.V * state.V * (-gone * (1.0 + decay) if moves else 1.0)
         for n in range(PATHS):
-            _put_path(at, n, nodes[TOTALS + n] + (way if n < 2 else 0.0), case)
-        _put_path(at, PATHS - 1, nodes[TOTALS + PATHS - 1] + energy * (1.0 - decay * decay if moves else 1.0), case)
+            _put_path(at, n, nodes[TOTALS + n] + (way if n < 2 else energies[n] * lost), case)
     last = case.tau[case.tau.size - 1]
     clock = Clock(last, case.tau.size, clock.piece, clock.steps, clock.ends, 0.0)
     return clock, end / case.scene.gamma if end <= last else np.nan

@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from ..rows.record import ALPHA, E0
 from .collocation import N, rise_at
 from .events import NOWHERE, ends_on, first_event, goes_behind, located, passed_over, place_of
-from .load import load_at, piece_end, undriven
+from .load import load_at, piece_end, undriven, unloaded
 from .nodes import (
     DIAGONAL,
     OF_SECOND,
@@ -27,7 +27,7 @@ from .nodes import (
 )
 from .origin import departing
 from .output import pass_panel
-from .rates import rates_of
+from .rates import last_pulls, rates_of
 from .records import EDGE, NO_EVENT, SLOW, STUCK, TURN, Clock, Frame, State
 from .solve import panel_error, solve
 
@@ -222,11 +222,12 @@ def _begin(state, frame, clock, case):
 
 @kernel(inline=True)
 def creeps(state, frame, case):
-    """Whether V is so small that, where nothing drives, it decays exponentially to a share of the tolerance."""
-    if frame.slips or not case.scene.law.rows[ALPHA] > 1.0:
-        return False
+    """Whether V is so small that, under no load but by gains, it decays exponentially to a share of the tolerance."""
     rtol = case.limits.rtol
-    return 0.0 < state.V < _SLOWEST * rtol * moderate_speed(case.scene) and abs(state.second) < _SETTLED * rtol
+    if frame.slips or not 0.0 < state.V < _SLOWEST * rtol * moderate_speed(case.scene):
+        return False
+    half_space, cylinder, force, torque = last_pulls(case)
+    return half_space + cylinder > force + torque and abs(state.second) < _SETTLED * rtol
 
 
 @kernel
@@ -236,10 +237,10 @@ def phase(fresh, state, frame, clock, case):
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
     length = max(length, _INSTANT * clock.tau) if length > 0.0 else length
     power = _GRADED if fresh else 1
-    alone = undriven(clock.piece, case.drive)
+    alone, free = undriven(clock.piece, case.drive), unloaded(clock.piece, case.drive)
     rest = limits.rest if alone else 0.0
     track = Panel(clock.tau, 0.0, 1, clock.piece, False, alone, rest)
-    while clock.tau < end and clock.steps < limits.max_steps and not (alone and creeps(state, frame, case)):
+    while clock.tau < end and clock.steps < limits.max_steps and not (free and creeps(state, frame, case)):
         frame = _begin(state, frame, clock, case)
         if length == 0.0:
             length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)

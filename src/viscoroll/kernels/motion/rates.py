@@ -79,6 +79,14 @@ def moments_slopes(u, scene):
     return found.L, found.dL, found.ddL, share * half_space, share * cylinder, half_space_rise, cylinder_rise
 
 
+@kernel
+def last_pulls(case):
+    """(Moments of half-space and cylinder, force and torque by gains), over V = omega -> 0."""
+    _, _, _, half_space, cylinder, _, _ = moments_slopes(0.0, case.scene)
+    gains = case.drive.gains
+    return half_space, cylinder, gains.force_V + gains.force_omega, gains.torque_V + gains.torque_omega
+
+
 @kernel(inline=True)
 def creep_limit(V, scene):
     """delta_star at V."""
@@ -187,7 +195,7 @@ def slip_rates(V, omega, load, frame, scene):
     omega_rate = load.per_omega * (torque - Q - M_cylinder) + load.omega_rate
     return Rates(
         omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0,
-        1.0, 0.0, load.per_V * (gains.force_V - half_space_rise), 0.0,
+        1.0, 0.0, load.per_V * (gains.force_V - half_space_rise), load.per_V * gains.force_omega,
         load.per_omega * (gains.torque_V - cylinder_rise), load.per_omega * gains.torque_omega, 0.0,
     )  # fmt: skip
 

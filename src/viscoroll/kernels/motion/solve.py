@@ -7,7 +7,7 @@ vanishes where a panel ends at V = 0.  At the nodes, with D the slopes of the in
 
 b = V d', c = D d - h b_V, dV = (dp - p_d dd)/p_V: two N x N systems an iteration.  Their factors are kept while
 changes are small.  In full slip p is V, the second unknown omega, and 1 stands for the V that multiplies its equation.
-Where friction is strong p is V too, but d feeds it by F = h dV'/dd: with S the second matrix,
+Where friction is strong p is V too, but d feeds it by F = h dV'/dd, as omega does by a gain: with S the second matrix,
 
     [D - h diag(dV'/dV) + diag(F) S^-1 diag(c)] dV = h V' - D V + F S^-1 (h b - V (D d))
 """
@@ -170,7 +170,8 @@ def solve(panel, slope, track, frame, case):
     left = max(_NEWTON * tolerance, _LEAST)
     put_drive(panel, case)
     guess(panel, slope, track, frame, case)
-    before, anew, fed = np.inf, True, strong(load_there(0, frame, case), frame, case.scene)
+    before, anew = np.inf, True
+    fed = case.drive.gains.force_omega != 0.0 if frame.slips else strong(load_there(0, frame, case), frame, case.scene)
     for n in range(_MOST_ITERATIONS):
         change = _newton(anew, fed, panel, frame, case)
         gain = min(_FIRST_GAIN, _SQUARED * change + _SLOWED) if n == 0 else change / before
