@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,16 +23,10 @@ _NEAR_BEST = 1.05
 _CALLS, _LAST_CALLS, _WAYS = 40, 400, 3
 
 
-class Chosen(NamedTuple):
-    """A spectrum, the ends of its grid of times, and whether the misfit asked for is reached."""
-
-    spectrum: Spectrum
-    ends: tuple[float, float]
-    reached: bool
-
-
-def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
+def chosen(curve: Curve, target: float, modes: int | None) -> tuple[Spectrum, tuple[float, float], bool]:
     """The spectrum of fewest modes that reaches the target, or the best; of at most ``modes`` if that is given.
+
+    Behind it the ends of its grid of times, and whether the target is reached.
 
     Raises
     ------
@@ -61,7 +54,7 @@ def chosen(curve: Curve, target: float, modes: int | None) -> Chosen:
         spectrum = fewer
     last = polished(curve, spectrum, ends, _LAST_CALLS)
     spectrum = last if modes is not None or good(last) else spectrum
-    return Chosen(spectrum, ends, _reaches(curve, spectrum, target))
+    return spectrum, ends, _reaches(curve, spectrum, target)
 
 
 def _starts(curve: Curve, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:

@@ -14,7 +14,7 @@ from ...materials.prony import Prony
 from ...scene import Scene
 from .choose import grid_of_times
 from .curve import Curve
-from .spectrum import misfits, on_times
+from .spectrum import on_times
 
 #: times and speeds, a decade
 _TIMES, _SPEEDS = 2.0, 4
@@ -26,7 +26,6 @@ class Wider:
 
     decades : by which the grid is wider on either side.
     E, alpha, prony : its long-time modulus, ratio of moduli and series, the latter over the T_ref of the fit.
-    misfit : root mean square of the relative errors of E' and E''.
     V : speeds in R/T_ref times kappa of the fit; the contact there is passed in times that the data hold.
     M, M_fit : kappa M of the wider fit and of the fit, at the same load; kappa is that of the fit.
     """
@@ -35,7 +34,6 @@ class Wider:
     E: float
     alpha: float
     prony: Prony
-    misfit: tuple[float, float]
     V: NDArray[np.float64]
     M: NDArray[np.float64]
     M_fit: NDArray[np.float64]
@@ -57,7 +55,7 @@ def wider(curve: Curve, prony: Prony, E: float, T_ref: float, grid: tuple[float,
     other = Prony(found.strength / found.E, found.tau / T_ref)
     V, M_fit = _seen(prony, curve.omega * T_ref)
     M = _state(other, float(np.sqrt(found.E / E)), V).M
-    return Wider(decades, found.E, other.alpha, other, misfits(curve, found), V, M, M_fit)
+    return Wider(decades, found.E, other.alpha, other, V, M, M_fit)
 
 
 def _seen(prony: Prony, omega: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

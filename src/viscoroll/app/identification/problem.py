@@ -132,15 +132,13 @@ class Problem:
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
         return np.append(r, ((u - self._mean) / self._sd)[self._known])
 
-    def slopes(
-        self, of: Callable[[Vector], Vector], u: Vector, which: Sequence[int], step: float = _STEP, sided: bool = False
-    ) -> Vector:
-        """Of a vector over some coordinates within their ranges: central differences, or to one side."""
+    def slopes(self, of: Callable[[Vector], Vector], u: Vector, which: Sequence[int], step: float = _STEP) -> Vector:
+        """Of a vector over some coordinates within their ranges: central differences, or of ``_SIDE`` to one side."""
         columns = []
         for i in which:
             up, down = u.copy(), u.copy()
             up[i] = min(u[i] + step, self.high[i])
-            if not sided or up[i] < u[i] + step:
+            if step == _STEP or up[i] < u[i] + step:
                 down[i] = max(u[i] - step, self.low[i])
             columns.append((of(up) - of(down)) / (up[i] - down[i]))
         return np.array(columns).T
@@ -179,7 +177,7 @@ class Problem:
             return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
         def jacobian(v: Vector) -> Vector:
-            return np.vstack([self.slopes(self.residuals, at(v), free, _SIDE, sided=True), rule])
+            return np.vstack([self.slopes(self.residuals, at(v), free, _SIDE), rule])
 
         if free:
             found = least_squares(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -72,17 +73,14 @@ class Likelihood:
         self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
         self.others = [v for v in (*(one.u for one in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
         self.ends: list[Vector] = []
-        self._profiles: dict[tuple[float, ...], Profile] = {}
+        self._walked = cache(lambda rise, *powers: Walk(self, np.array(powers)).both_ways(rise))
 
     def profile(self, powers: Vector, rise: float) -> Profile:
         """The interval of a combination within which chi2 rises by no more than ``rise``.
 
         Beyond the ends that a walk finds it looks from other minima, the start, and the ends of other unknowns.
         """
-        key = (rise, *powers.tolist())
-        if key not in self._profiles:
-            self._profiles[key] = Walk(self, powers).both_ways(rise)
-        return self._profiles[key]
+        return self._walked(rise, *powers.tolist())
 
     def axes(self, rise: float) -> dict[int, Profile]:
         """Of each unknown that acts; where a side is open, as seen from the ends of what fits of the others too."""
@@ -90,7 +88,7 @@ class Likelihood:
         if not self.ends and any(None in one.ends for one in found.values()):
             ways = ((one.within, one.within[:, i]) for i, one in found.items())
             self.ends = [within[n] for within, way in ways for n in (np.argmin(way), np.argmax(way))]
-            self._profiles.clear()
+            self._walked.cache_clear()
             return self.axes(rise)
         return found
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.checks import broadcast_shape, checked, number
-from ...core.drive import Feedback
 from ...core.errors import ParameterError, refuse_unknown
 from ...core.labels import Labels, unlabelled
 from ...core.scale import refuse_other_unit, si_unit
@@ -241,9 +240,7 @@ class Coastdown(Record):
         """As all do, and which of its points fall into full slip."""
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0
-        drive: dict[str, Any] = {"brake": brake} if (brake := values.get("brake")) else {}
-        if drag := values.get("drag"):
-            drive["torque"] = Feedback(0.0, omega=-drag)
+        drive = {name: values[name] for name in ("brake", "drag") if values.get(name)}
         motion = cylinder.roll(V0, omega0, np.maximum(t, 0.0), rtol=_RTOL_DRIVEN if drive else _RTOL, **drive)
         slips = (motion.regime == 0) & (t >= 0.0)
         return {"V": motion.V, "omega": motion.omega, "x": motion.x, "slips": slips}
