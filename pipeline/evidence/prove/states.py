@@ -35,17 +35,11 @@ _TOGETHER = 150
 _ELEMENTS = 60
 
 
-def by_axis(states: list[tuple[float, ...]]) -> Any:
-    """States with an alpha each."""
-    alpha, kappa, mu, V, delta = np.array([*states, states[0]]).T  # of one alone its rows would be made
-    state = vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
-    return vr.Values({name: value[:-1] for name, value in state.as_dict().items()})
-
-
-def by_rows(states: list[tuple[float, ...]]) -> Any:
-    """States of one alpha."""
+def found_of(states: list[tuple[float, ...]], each: bool) -> dict[str, Any]:
+    """States with an alpha each, or by the rows of one alpha."""
     alpha, kappa, mu, V, delta = np.array(states).T
-    return vr.contact(vr.Scene(float(alpha[0]), kappa, mu), V, delta=delta, fields=(*FIELDS, "full_slip"))
+    scene = vr.Scene(alpha if each else float(alpha[0]), kappa, mu)
+    return vr.contact(scene, V, delta=delta, fields=(*FIELDS, "full_slip")).as_dict()
 
 
 def relative_error(value: float, exact: Any) -> float:
@@ -62,12 +56,12 @@ def given(state: tuple[float, ...]) -> dict[str, Any]:
     return {name: arb(abs(value)) for name, value in zip(INPUTS, state)}
 
 
-def contact(random: np.random.Generator, count: int, by: Any) -> Found:
+def contact(random: np.random.Generator, count: int, each: bool) -> Found:
     """full_slip, then each field over its bound."""
     for first in range(0, count, _TOGETHER):
-        one = None if by is by_axis else chosen_alpha(random)
+        one = None if each else chosen_alpha(random)
         states = [chosen_state(random, one or chosen_alpha(random)) for _ in range(min(_TOGETHER, count - first))]
-        values = by(states).as_dict()
+        values = found_of(states, each)
         for i, state in enumerate(states):
             exact, where = contact_enclosure(*state), at(**dict(zip(INPUTS, state)))
             if values["full_slip"][i] != exact["full_slip"]:
@@ -166,20 +160,20 @@ def by_elements(random: np.random.Generator, count: int) -> Found:
         yield at(V=V, creep=creep) + f", {bodies!r:.200}", errors | {"hurt": not found.least > 0.0}
 
 
-def _contact(way: str, size: str, by: Any) -> Proof:
+def _contact(way: str, size: str, each: bool) -> Proof:
     ill = f"over condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f} ({way})"
     claims = {
         (name, True): (f"{name}, relative, condition below {WELL_CONDITIONED:.0f} ({way})", WELL) for name in FIELDS
     }
     claims |= {(name, False): (f"{name}, {ill}", ROUNDINGS) for name in FIELDS}
     slip = {"full_slip": (f"full_slip: distance from delta_star where wrong, ULP ({way})", 2.0)}
-    return Proof("contact", size, STATES, claims | slip, partial(contact, by=by))
+    return Proof("contact", size, STATES, claims | slip, partial(contact, each=each))
 
 
 _BY_ELEMENTS = f"against {_ELEMENTS} and {2 * _ELEMENTS} boundary elements a zone, extrapolated"
 PROOFS = [
-    _contact("an alpha each", "states", by_axis),
-    _contact("one alpha", "slice_states", by_rows),
+    _contact("an alpha each", "states", True),
+    _contact("one alpha", "slice_states", False),
     Proof(
         "direct", "direct_states", "alpha in [1, 1e4], kappa V in [1e-3, 1e3], root solves of the printed equations",
         {name: (f"{name}, {unit}", bound) for name, (bound, unit) in ALLOWED.items()}, direct,

@@ -10,12 +10,10 @@ from flint import arb
 from numpy.typing import NDArray
 
 from .collocation import Radau, weighted
-from .phases import NOTHING, Phase
+from .phases import NOTHING, Phase, root
 
 #: iterations of a step, of which the first take a new matrix, and steps that look for an event
 _MOST_ITERATIONS, _MATRICES, _CUTS = 14, 3, 12
-#: by which an event is found between two nodes
-_HALVINGS = 120
 #: a correction below this share of the unknowns leaves nothing to be corrected
 _LAST_CORRECTION = 1e-26
 #: an event is met to this share of a step, and looked for beyond its end by that one
@@ -104,12 +102,9 @@ def _first(
         beyond = next((i for i, value in enumerate(told) if value < -NOTHING * (event == "no creep")), None)
         if beyond is None:
             continue
-        low, high = nodes[beyond], nodes[beyond + 1]
-        for _ in range(_HALVINGS):
-            middle = ((low + high) / 2).mid()
-            low, high = (middle, high) if along(middle) > 0 else (low, middle)
-        if middle < least:
-            soonest, least = event, middle
+        share = root(lambda theta: -along(theta), nodes[beyond], nodes[beyond + 1])
+        if share < least:
+            soonest, least = event, share
     return soonest, least
 
 
