@@ -62,6 +62,8 @@ SHARE, _NEWTON, _LEAST = 0.4, 0.01, 1e-14
 _ANEW, _SLOWED, _FIRST_GAIN, _SQUARED = 1e-2, 1e-3, 0.1, 10.0
 #: a mismatch of the rates at the left end overstates the error of their interpolants
 _OVERSTATED = 0.02 * (9.0 / N) ** 2
+#: a mismatch that is no small share of how the rates vary does not overstate it: over that share
+_UNRESOLVED = 30.0
 #: the last term's share of the error: the next one over this one, and the coefficient of a power over that
 _LAST = 0.1 / (_OVERSTATED * 2.0 ** (N - 1))
 _D_SHARE = 0.04
@@ -196,6 +198,15 @@ def _mismatch(row, slopes, first, nodes):
     return 2.0 * abs(off)
 
 
+@kernel(inline=True)
+def _variation(half, nodes):
+    """By how much the rates of p differ along the panel, times half its length."""
+    least = most = nodes[P_RATE + 1]
+    for i in range(2, N + 1):
+        least, most = min(least, nodes[P_RATE + i]), max(most, nodes[P_RATE + i])
+    return half * (most - least)
+
+
 @kernel
 def _least(panel, case):
     """V where the first output lies, over the largest: speeds there are to be right beside themselves."""
@@ -217,8 +228,11 @@ def panel_error(panel, frame, case):
     """Error of the interpolants over their tolerance; of d only what its relaxation leaves of it counts."""
     nodes, half, smooth = case.nodes, 0.5 * panel.length, panel.power == 1
     of_V, of_second = scales(panel, frame, case)
+    per = abs(nodes[PER_P + N])
+    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half if smooth else 0.0, nodes) * per
+    varies = _variation(half, nodes) * per + case.limits.rtol * of_V
+    error *= min(max(_UNRESOLVED * error / varies, 1.0), 1.0 / _OVERSTATED)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not
-    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half if smooth else 0.0, nodes) * abs(nodes[PER_P + N])
     error = max(error, _LAST * abs(case.nodes[OF_V + N - 1]))
     # shorter panels do not mend what the rounding of the drive moves V by
     error = max(error - panel.length * rounding(panel.piece, case.drive.pieces), 0.0) / of_V
