@@ -1,4 +1,4 @@
-"""The public interface, light imports (layers: `make check`), and the wheel."""
+"""The public interface, and light imports (layers: `make check`)."""
 
 import ast
 import pkgutil
@@ -10,8 +10,6 @@ import pytest
 from processes import printed
 
 import viscoroll as vr
-from viscoroll.contact_law.contact_fields import FIELDS
-from viscoroll.core.symbols import SYMBOLS
 
 PACKAGE = Path(vr.__file__).parent
 HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}
@@ -73,11 +71,3 @@ def test_kernels_import_numpy_and_numba_only():
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module.split(".")[0])
         assert names <= {"numpy", "numba", "llvmlite"} | set(sys.stdlib_module_names), path.name
-
-
-# --- the wheel ---
-
-
-def test_symbols_say_where_they_are_computed():
-    assert {symbol.computed for symbol in SYMBOLS.values() if not (PACKAGE / symbol.computed).exists()} == set()
-    assert all(SYMBOLS[name].computed for name in FIELDS if name != "full_slip")

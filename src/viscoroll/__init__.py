@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
+from os.path import splitext
 from typing import Any
 
 if sys.version_info < (3, 11):  # noqa: UP036 (a copy that pip did not install)
@@ -17,64 +18,24 @@ if sys.version_info < (3, 11):  # noqa: UP036 (a copy that pip did not install)
 #: the one place of it: the metadata of the package are made from this line
 __version__ = "0.2.0"
 
-_HOME = {
-    "Scene": "scene",
-    "Cylinder": "cylinder",
-    "Prony": "materials.prony",
-    "Bodies": "materials.bodies",
-    "Material": "materials.material",
-    "Measured": "materials.measured",
-    "WLF": "materials.shift",
-    "Arrhenius": "materials.shift",
-    "fit_prony": "app.dma",
-    "Fit": "app.dma",
-    "read_dma": "app.dma",
-    "identify": "app.identification",
-    "Resistance": "app.identification",
-    "Traction": "app.identification",
-    "Coastdown": "app.identification",
-    "contact": "contact_law.contact",
-    "stress": "contact_law.stress",
-    "law": "contact_law.bound",
-    "load_law": "materials.law_file",
-    "Law": "contact_law.bound",
-    "steady": "contact_law.equilibria.rolling",
-    "humps": "contact_law.equilibria.resistance",
-    "validity": "contact_law.judged",
-    "Feedback": "core.drive",
-    "Schedule": "core.drive",
-    "Motion": "motion.one",
-    "Ensemble": "motion.many",
-    "Steady": "contact_law.equilibria.result",
-    "Values": "core.results",
-    "Validity": "contact_law.assumptions",
-    "roll": "motion.single",
-    "ensemble": "motion.batch",
-    "ViscorollError": "core.errors",
-    "ParameterError": "core.errors",
-    "FileError": "core.errors",
-    "ConvergenceError": "core.errors",
-    "MissingDependencyError": "core.errors",
-    "ModelWarning": "core.errors",
-    "MotionStatus": "core.errors",
-}
-_MODULES = {
-    "presets": "presets",
-    "sampling": "io.sampling",
-    "tables": "io.tables",
-    "runs": "io.runs",
-    "fmu": "app.fmu",
-}
-__all__ = ["__version__", *_HOME, *_MODULES]  # noqa: PLE0604
+
+def _homes() -> dict[str, str]:
+    """Where each public name is imported from, as ``__init__.pyi`` tells type checkers and editors."""
+    with open(splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
+        return {name: home for _, home, _, name, *_ in (line.split() for line in stub if line.startswith("from"))}
+
+
+_HOMES = _homes()
+__all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        value = getattr(import_module(f".{_HOME[name]}", __name__), name)
-    elif name in _MODULES:
-        value = import_module(f".{_MODULES[name]}", __name__)
-    else:
+    if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if (home := _HOMES[name]) == ".":
+        value = import_module(f".{name}", __name__)
+    else:
+        value = getattr(__import__(home[1:], globals(), fromlist=[name], level=1), name)
     globals()[name] = value
     return value
 

@@ -1,4 +1,4 @@
-"""The public names, for type checkers and editors; ``__init__.py`` loads them on first use."""
+"""The public names, a line each, for type checkers, editors and ``__init__.py``, which loads them on first use."""
 
 from . import presets as presets
 from .app import fmu as fmu

@@ -16,119 +16,59 @@ MEASURED = "measured_V"
 
 
 class Symbol(NamedTuple):
-    """A quantity: LaTeX symbol, long name, range, equation of the paper, and where the package computes it.
-
-    ``computed`` is a file, or empty for a quantity that is given.
-    """
+    """A quantity: LaTeX symbol, long name, range, and equation of the paper."""
 
     latex: str
     long_name: str
     range: str = ""
     equation: str = ""
-    computed: str = ""
 
 
 SYMBOLS = {
-    "alpha": Symbol(
-        r"\alpha", "ratio of retardation to relaxation time T_epsilon/T_sigma", ">= 1", "Sect. 3.1", "scene.py"
-    ),
-    "kappa": Symbol(
-        r"\kappa", "ratio of cylinder radius to contact length at rest R/l0", "> 0", "Sect. 3.1", "scene.py"
-    ),
+    "alpha": Symbol(r"\alpha", "ratio of retardation to relaxation time T_epsilon/T_sigma", ">= 1", "Sect. 3.1"),
+    "kappa": Symbol(r"\kappa", "ratio of cylinder radius to contact length at rest R/l0", "> 0", "Sect. 3.1"),
     "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
-    "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)", "scene.py"),
-    "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)", "scene.py"),
-    "V": Symbol("V", "velocity of the axis", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
-    "omega": Symbol(r"\omega", "angular velocity", "finite", "Sect. 3.1", "kernels/motion/integrate.py"),
+    "gamma": Symbol(r"\gamma", "P T_epsilon^2/(m R)", "> 0", "Eq. (4)"),
+    "j": Symbol("j", "dimensionless moment of inertia J/(m R^2)", "> 0", "Eq. (22)"),
+    "V": Symbol("V", "velocity of the axis", "finite", "Sect. 3.1"),
+    "omega": Symbol(r"\omega", "angular velocity", "finite", "Sect. 3.1"),
     "t": Symbol("t", "time", ">= 0", "Sect. 4"),
-    "x": Symbol("x", "distance travelled", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
-    "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)", "kernels/motion/nodes.py"),
-    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)", "kernels/rows/contact.py"),
-    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)", "kernels/rows/contact.py"),
-    "lam": Symbol(
-        r"\lambda",
-        "contact length over contact length at rest",
-        "[alpha^(-1/2), 1]",
-        "Eq. (6)",
-        "kernels/rows/law.py",
-    ),
-    "epsilon": Symbol(
-        r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)", "kernels/rows/contact.py"
-    ),
-    "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)", "kernels/rows/law.py"),
-    "beta": Symbol(
-        r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)", "kernels/rows/contact.py"
-    ),
-    "Q": Symbol("Q", "traction", "[-mu, mu]", "Eqs. (15), (17)", "kernels/rows/contact.py"),
-    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)", "kernels/rows/series.py"),
+    "x": Symbol("x", "distance travelled", "finite", "Eq. (22)"),
+    "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)"),
+    "delta": Symbol(r"\delta", "creep ratio (omega - V)/V", "finite", "Eq. (5)"),
+    "delta_star": Symbol(r"\delta^*", "critical creep ratio", "> 0", "Eq. (9)"),
+    "lam": Symbol(r"\lambda", "contact length over contact length at rest", "[alpha^(-1/2), 1]", "Eq. (6)"),
+    "epsilon": Symbol(r"\varepsilon", "relative shift of the contact ahead of the axis", ">= 0", "Eq. (8)"),
+    "zeta": Symbol(r"\zeta", "time to travel half the contact", "> 0", "Eq. (7)"),
+    "beta": Symbol(r"\beta", "length of the stick zone over the contact length", "[0, 1]", "Eq. (10)"),
+    "Q": Symbol("Q", "traction", "[-mu, mu]", "Eqs. (15), (17)"),
+    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)"),
     "C_rr": Symbol(
-        r"C_\mathrm{rr}",
-        "coefficient of rolling resistance M/(P R); M of a scene is this",
-        "finite",
-        "Eq. (16)",
-        "contact_law/contact.py",
+        r"C_\mathrm{rr}", "coefficient of rolling resistance M/(P R); M of a scene is this", "finite", "Eq. (16)"
     ),
-    "force": Symbol("f", "force along V", "finite", "", "kernels/motion/load.py"),
-    "torque": Symbol("q", "torque along omega", "finite", "", "kernels/motion/load.py"),
-    "drag": Symbol("c", "torque of the bearing against omega, for each unit of it", ">= 0", "", "motion/driven.py"),
-    "brake": Symbol("B", "most torque that a brake takes", ">= 0", "", "kernels/motion/load.py"),
-    "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)", "", "contact_law/equilibria/loads.py"),
-    "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),
-    "rate_fast": Symbol(
-        r"\lambda_1", "rate of the faster small disturbance", "finite", "Eq. (22)", "contact_law/equilibria/result.py"
-    ),
-    "rate_slow": Symbol(
-        r"\lambda_2", "rate of the slower small disturbance", "finite", "Eq. (22)", "contact_law/equilibria/result.py"
-    ),
-    "M_half_space": Symbol("M_h", "part of M in the half-space", "finite", "", "kernels/rows/series.py"),
-    "M_cylinder": Symbol("M_c", "part of M in the cylinder", "finite", "", "kernels/rows/series.py"),
-    "N": Symbol(
-        "N",
-        "moment for each unit of V', M = M(V) + N V' in slow changes",
-        "finite",
-        "",
-        "kernels/rows/modes.py",
-    ),
+    "force": Symbol("f", "force along V", "finite"),
+    "torque": Symbol("q", "torque along omega", "finite"),
+    "drag": Symbol("c", "torque of the bearing against omega, for each unit of it", ">= 0"),
+    "brake": Symbol("B", "most torque that a brake takes", ">= 0"),
+    "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)"),
+    "grip": Symbol(r"1 - |Q|/\mu", "share of friction to spare", "[0, 1]", "Eq. (15)"),
+    "rate_fast": Symbol(r"\lambda_1", "rate of the faster small disturbance", "finite", "Eq. (22)"),
+    "rate_slow": Symbol(r"\lambda_2", "rate of the slower small disturbance", "finite", "Eq. (22)"),
+    "M_half_space": Symbol("M_h", "part of M in the half-space", "finite"),
+    "M_cylinder": Symbol("M_c", "part of M in the cylinder", "finite"),
+    "N": Symbol("N", "moment for each unit of V', M = M(V) + N V' in slow changes", "finite"),
     "kappa_V": Symbol(r"\kappa V", "similarity variable kappa V", "> 0", "Eq. (7)"),
     "s": Symbol("s", "creep ratio over its critical value |delta|/delta_star", "[0, 1]", "Eq. (9)"),
-    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)", "kernels/rows/contact.py"),
-    "kappa_M": Symbol(
-        r"\kappa M",
-        "kappa times rolling resistance moment over P R",
-        ">= 0",
-        "Eq. (16)",
-        "kernels/rows/series.py",
-    ),
-    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)", "kernels/rows/stress.py"),
-    "tau": Symbol(
-        r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)", "kernels/rows/stress.py"
-    ),
-    "slip_loss": Symbol(
-        r"E_\mathrm{slip}",
-        "energy lost in slip since t = 0",
-        ">= 0",
-        "Eq. (22)",
-        "kernels/motion/nodes.py",
-    ),
-    "rolling_loss": Symbol(
-        r"E_\mathrm{roll}",
-        "energy lost in rolling since t = 0",
-        "finite",
-        "Eq. (22)",
-        "kernels/motion/nodes.py",
-    ),
-    "work_force": Symbol(r"W_f", "work of the force since t = 0", "finite", "Eq. (22)", "kernels/motion/rates.py"),
-    "work_torque": Symbol(r"W_q", "work of the torque since t = 0", "finite", "Eq. (22)", "kernels/motion/rates.py"),
-    "brake_loss": Symbol(
-        r"E_\mathrm{brake}",
-        "energy lost in the brake since t = 0",
-        ">= 0",
-        "Eq. (22)",
-        "kernels/motion/rates.py",
-    ),
-    "onset_time": Symbol(
-        "t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)", "kernels/motion/phase.py"
-    ),
+    "Q_over_mu": Symbol(r"Q/\mu", "traction over limiting friction", "[0, 1]", "Eq. (15)"),
+    "kappa_M": Symbol(r"\kappa M", "kappa times rolling resistance moment over P R", ">= 0", "Eq. (16)"),
+    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)"),
+    "tau": Symbol(r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)"),
+    "slip_loss": Symbol(r"E_\mathrm{slip}", "energy lost in slip since t = 0", ">= 0", "Eq. (22)"),
+    "rolling_loss": Symbol(r"E_\mathrm{roll}", "energy lost in rolling since t = 0", "finite", "Eq. (22)"),
+    "work_force": Symbol(r"W_f", "work of the force since t = 0", "finite", "Eq. (22)"),
+    "work_torque": Symbol(r"W_q", "work of the torque since t = 0", "finite", "Eq. (22)"),
+    "brake_loss": Symbol(r"E_\mathrm{brake}", "energy lost in the brake since t = 0", ">= 0", "Eq. (22)"),
+    "onset_time": Symbol("t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)"),
 }
 
 
@@ -137,7 +77,8 @@ _MEANINGS = {
     "full_slip": "1 where the contact slips fully", "stable": "1 where small disturbances die",
     "rest_time": "time at which the rest threshold was crossed", "loss_slip": "power lost: slip",
     "loss_half_space": "power lost: half space", "loss_cylinder": "power lost: cylinder", "length": "contact length",
-    "V0": "initial velocity of the axis", "omega0": "initial angular velocity",
+    "V0": "initial velocity of the axis", "omega0": "initial angular velocity", "count": "number of equilibria",
+    "coefficient": "rolling resistance over load", "efficiency": "power out over power in",
 }  # fmt: skip
 
 

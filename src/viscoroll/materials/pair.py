@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -21,9 +21,18 @@ from .prony import Prony
 Plane = Literal["strain", "stress"]
 
 
+class Solid(NamedTuple):
+    """What the law needs of a body, as of a :class:`Material`, with arrays and series of many."""
+
+    E: Any
+    nu: Any
+    prony: Prony
+    T_ref: float
+
+
 @dataclass(frozen=True)
 class Pair:
-    """Cylinder and half-space.
+    """Cylinder and half-space; of a :class:`Solid` the law and the moduli alone are known.
 
     Parameters
     ----------
@@ -37,21 +46,21 @@ class Pair:
         What is no :class:`Material`, or two bodies that are both rigid.
     """
 
-    cylinder: Material
-    base: Material | None = None
+    cylinder: Any
+    base: Any = None
     plane: Plane = "strain"
 
     def __post_init__(self) -> None:
         for name in ("cylinder", "base"):
             body = getattr(self, name)
-            if not isinstance(body, Material) and not (name == "base" and body is None):
+            if not isinstance(body, Material | Solid) and not (name == "base" and body is None):
                 named = "material" if name == "cylinder" else name
                 raise ParameterError(named, f"{body!r:.60}", "a Material")
-        if self.cylinder.is_rigid and self.half_space.is_rigid:
+        if all(np.all(np.isinf(modulus)) for modulus in self._moduli):
             raise ParameterError("base", "rigid", "a body that deforms: the cylinder is rigid")
 
     @property
-    def half_space(self) -> Material:
+    def half_space(self) -> Any:
         """Material of the half-space."""
         return self.cylinder if self.base is None else self.base
 
@@ -59,28 +68,37 @@ class Pair:
     def like(self) -> bool:
         """Whether both bodies deform and relax alike."""
         one, other = self.cylinder, self.half_space
+        if one is other or Solid in (type(one), type(other)):
+            return one is other
         return (one.E, one.nu, one.prony, one.T_ref) == (other.E, other.nu, other.prony, other.T_ref)
 
     @cached_property
-    def _moduli(self) -> tuple[float, float]:
+    def _moduli(self) -> tuple[Any, Any]:
         """E' of either body, of long times."""
         one, other = self.cylinder, self.half_space
         return effective_modulus(one.E, one.nu, self.plane), effective_modulus(other.E, other.nu, self.plane)
 
     @property
-    def E_prime(self) -> float:
+    def E_prime(self) -> Any:
         """E' of the pair, Pa, of long times: 2 E'_1 on a rigid base."""
-        return self._moduli[0] if self.like else float(joint_modulus(*self._moduli))
+        one, other = self._moduli
+        if self.like:
+            return one
+        softer, stiffer = np.minimum(one, other), np.maximum(one, other)
+        found = 2.0 * softer / (1.0 + softer / stiffer)
+        return found if found.ndim else float(found)
 
     @property
-    def share(self) -> float:
+    def share(self) -> Any:
         """The cylinder's part of the long-time compliance: 0 where it is rigid, 1 on a rigid base."""
-        return cylinders_share(*self._moduli)
+        one, other = self._moduli
+        return 1.0 / (1.0 + one / other)
 
     @property
     def T_ref(self) -> float:
         """What times are counted in, s: the cylinder's T_ref, or that of the base where the cylinder does not relax."""
-        return (self.cylinder if self.cylinder.prony.alpha > 1.0 else self.half_space).T_ref
+        series = self.cylinder.prony
+        return (self.cylinder if series.shape or series.alpha > 1.0 else self.half_space).T_ref
 
     @cached_property
     def law(self) -> Prony | Bodies:
@@ -101,17 +119,6 @@ class Pair:
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
     """E' of Sect. 3.1, Pa."""
     return math.pi * E / (1.0 - nu**2 if plane == "strain" else 1.0)
-
-
-def joint_modulus(one: Any, other: Any) -> Any:
-    """E' of a pair from E' of the cylinder and of the base, of which one may be infinite."""
-    softer, stiffer = np.minimum(one, other), np.maximum(one, other)
-    return 2.0 * softer / (1.0 + softer / stiffer)
-
-
-def cylinders_share(one: Any, other: Any) -> Any:
-    """The cylinder's part of the long-time compliance, likewise."""
-    return 1.0 / (1.0 + one / other)
 
 
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,6 @@ import numpy as np
 from ...core.labels import Labels
 from ...core.results import Row, Values, short, unit_of
 from ...core.scale import DIMENSIONS, Scale
-from ...core.symbols import attributes
 from ...core.typed import Floats
 from . import row
 from .loads import Loads
@@ -23,11 +22,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _FIELDS = "V", "delta", "Q", "M_half_space", "M_cylinder", "beta", "omega", "M", "grip", "force", "torque"
-#: of what has no symbol
-_MEANINGS = {
-    "count": "number of equilibria", "coefficient": "rolling resistance over load",
-    "efficiency": "power out over power in",
-}  # fmt: skip
+#: of :class:`Loss`, in datasets
+_LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "efficiency"
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +65,7 @@ class Steady(Values):
     count : number of equilibria, of each load.
     """
 
-    def __init__(self, values: dict[str, Any], reasons: Reasons, scale: Scale, labels: Labels | None = None) -> None:
+    def __init__(self, values: dict[str, Any], reasons: Reasons, scale: Scale, labels: Labels | None) -> None:
         super().__init__(values, title="Steady rolling", si=scale.si)
         self.reasons, self.scale, self._labels = reasons, scale, labels
 
@@ -92,8 +88,10 @@ class Steady(Values):
         powers = np.stack([force * V, torque * omega])
         taken, put_in = (np.maximum(each, 0.0).sum(axis=0) for each in (-powers, powers))
         efficiency = np.divide(taken, put_in, out=np.full(V.shape, np.nan), where=put_in > 0.0)
-        found = dict(zip(fields(Loss), (slip, half_space, cylinder, coefficient, efficiency), strict=True))
-        return Loss(*(labelled(self._labels, of.name, values, "equilibrium") for of, values in found.items()))
+        found: Any = slip, half_space, cylinder, coefficient, efficiency
+        if self._labels is not None:
+            found = map(self._labels.of, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
+        return Loss(*found)
 
     @property
     def success(self) -> Any:  # type: ignore[override]
@@ -116,7 +114,7 @@ class Steady(Values):
     def _card(self) -> tuple[str, list[Row]]:
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
-            speeds = Row("V", short(np.asarray(self.V)), self._unit("V"))
+            speeds = Row("V", short(np.asarray(self.V)), unit_of(self._attributes("V")))
             return f"Steady rolling, {np.size(self.count)} states", [Row("equilibria", found), speeds]
         if not self.count:
             return "Steady rolling: no equilibrium", [Row("reason", str(self.reason))]
@@ -124,11 +122,8 @@ class Steady(Values):
         for n in range(self.count):
             rows.append(Row("equilibrium", "stable" if self.stable[n] else "not stable"))
             for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
-                rows.append(Row(f"  {name}", f"{self[name][n]:.6g}", self._unit(name)))
+                rows.append(Row(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
         return "Steady rolling", rows
-
-    def _unit(self, name: str) -> str:
-        return unit_of(attributes(name, self.scale.si))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over states and ``equilibrium``, with names and units; ``loss_...`` holds the powers."""
@@ -140,21 +135,12 @@ class Steady(Values):
         found = {name: self[name] for name in _FIELDS} | {"stable": np.asarray(self.stable).astype(np.int8)}
         rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
         found |= dict(zip(("rate_fast", "rate_slow"), rates, strict=True))
-        found |= {f"loss_{name}": getattr(self.loss, name) for name in ("slip", "half_space", "cylinder")}
-        found |= {name: getattr(self.loss, name) for name in ("coefficient", "efficiency")}
-        data = {name: ((*dims, "equilibrium"), np.asarray(each), self._about_of(name)) for name, each in found.items()}
-        data["count"] = dims, np.asarray(self.count), self._about_of("count")
+        found |= dict(zip(_LOSSES, vars(self.loss).values(), strict=True))
+        over = (*dims, "equilibrium")
+        data = {name: (over, np.asarray(each), self._attributes(name)) for name, each in found.items()}
+        data["count"] = dims, np.asarray(self.count), self._attributes("count")
         apart = {name: values for name, values in coords.items() if name not in data}
         return xr.Dataset(data, apart, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
-
-    def _about_of(self, name: str) -> dict[str, str]:
-        found = attributes(name, self.scale.si)
-        return found | {"long_name": _MEANINGS[name]} if name in _MEANINGS else found
-
-
-def labelled(labels: Labels | None, name: str, values: Any, *axes: str) -> Any:
-    """Values with the labels of the loads, if they have any."""
-    return values if labels is None else labels.of(name, values, *axes)
 
 
 def behind(unit: Any) -> Any:

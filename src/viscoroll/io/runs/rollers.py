@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -16,10 +16,9 @@ from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
 from ...cylinder import Cylinder
-from ...materials.bodies import Bodies
 from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
-from ...materials.pair import cylinders_share, effective_modulus, joint_modulus
+from ...materials.pair import Pair, Solid
 from ...scaling import scene_of
 from ..config import body_of
 
@@ -63,15 +62,6 @@ class Rollers(Rolls):
         return found
 
 
-class _Solid(NamedTuple):
-    """What a cylinder needs of a body that is uncertain."""
-
-    E: Any
-    nu: Any
-    prony: Any
-    T_ref: float
-
-
 def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
     """What rolls, one or one a motion; raises ParameterError, of a material FileError."""
     bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
@@ -79,8 +69,9 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Rolls:
     if not isinstance(one, Cylinder):
         return one
     each = {name: body for name, (_, body) in bodies.items()}
-    if any(isinstance(body, _Solid) for body in each.values()):
-        return Rollers(one, *_law(one.plane, each.get("material") or one.pair.cylinder, each.get("base")))
+    if any(isinstance(body, Solid) for body in each.values()):
+        pair = Pair(each.get("material") or one.pair.cylinder, each.get("base"), one.plane)
+        return Rollers(one, pair.law, pair.E_prime, pair.T_ref)
     if np.ndim(one.T_epsilon):
         return Rollers(one, one.T_epsilon / one.T_sigma, one.E_prime, one.T_epsilon)
     return one
@@ -101,7 +92,7 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
         raise ParameterError(name, error.value, error.allowed, f"{name}: {error}") from error
 
 
-def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | _Solid]:
+def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid]:
     """One of its draws, and it."""
     if isinstance(given, Material):
         return given, given
@@ -116,7 +107,7 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | _Soli
     if not (series.shape or np.ndim(E) or np.ndim(nu)):
         return typical, typical
     E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
-    return typical, _Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref)
+    return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref)
 
 
 def _first(part: Any) -> Any:
@@ -126,14 +117,3 @@ def _first(part: Any) -> Any:
     if isinstance(part, list):
         return [_first(each) for each in part]
     return float(part[0]) if isinstance(part, np.ndarray) else part
-
-
-def _law(plane: str, one: Any, other: Any = None) -> tuple[Any, Any, float]:
-    """(Series or bodies, one or one for each motion; E' of both; T_ref), as of a pair."""
-    modulus = effective_modulus(one.E, one.nu, plane)
-    if other is None:
-        return one.prony, modulus, one.T_ref
-    relaxes = np.ndim(one.prony.alpha) or one.prony.alpha > 1.0
-    T, base = (one if relaxes else other).T_ref, effective_modulus(other.E, other.nu, plane)
-    first, second = (body.prony.slower(body.T_ref / T) for body in (one, other))
-    return Bodies(first, second, cylinders_share(modulus, base)), joint_modulus(modulus, base), T
