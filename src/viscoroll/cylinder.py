@@ -23,7 +23,6 @@ from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
 from .motion.warned import say
-from .scaling import contact_length, scene_of
 from .scene import Methods, Scene
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
@@ -198,7 +197,7 @@ class Cylinder(Methods):
     @property
     def l0(self) -> Any:
         """Contact length at rest, sqrt(32 R P/E'), m."""
-        return contact_length(self.R, self.load, self.E_prime)
+        return _contact_length(self.R, self.load, self.E_prime)
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
@@ -250,3 +249,21 @@ class Cylinder(Methods):
         """Between which speeds the materials were measured, for datasets."""
         held = self._known.held
         return {} if held is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in held]}
+
+
+def _contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+    """l0 of Sect. 3.1, m."""
+    return np.sqrt(32.0 * R * load / E_prime)
+
+
+def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: Any, j: Any) -> Scene:
+    """The scene of a :class:`Cylinder`, or of many: numbers or arrays, unchecked.
+
+    ``law`` : alpha, one or one each, or what a scene takes for its material, with times over ``T_ref``.
+    """
+    R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
+    # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
+    with np.errstate(all="ignore"):
+        kappa, gamma = R / _contact_length(R, load, E_prime), load * T**2 / (m * R)
+    of = "alpha" if isinstance(law, float | np.ndarray) else "material"
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{of: law})

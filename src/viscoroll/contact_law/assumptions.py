@@ -11,7 +11,6 @@ from ..core.results import Row, as_html, as_text
 from ..materials.law_modes import by_modes
 from ..materials.measured import Measured
 from ..materials.prony import Prony
-from .free_rolling import Strained
 
 #: at this half-width over R the parabola of the theory lies 1 % below the circle: (x/R)^2/4
 REACH_LIMIT = 0.2
@@ -133,10 +132,25 @@ def held_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
     return low, high
 
 
+def smallness(reach: Any) -> Assumption:
+    """Whether the far end of the contact is near the axis."""
+    far = float(np.max(reach, initial=0.0))
+    return Assumption(
+        reach <= REACH_LIMIT, reach,
+        f"the contact reaches {far:.2g} R from the axis, where the parabola that stands for the circle is off by "
+        f"{25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) counts as small",
+    )  # fmt: skip
+
+
+def place(epsilon: Any) -> Assumption:
+    """Whether the axis stands above the contact."""
+    ahead = float(np.max(epsilon, initial=0.0))
+    where = "lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"
+    return Assumption(epsilon <= 1.0, epsilon, f"epsilon = {ahead:.2g}: the contact {where}")
+
+
 def unlike_speeds(delta: Any, full_slip: Any) -> Assumption:
-    """Whether both bodies pass the contact at about one speed; None where the creep is not known."""
-    if delta is None:
-        return UNKNOWN.creep
+    """Whether both bodies pass the contact at about one speed."""
     size, full_slip = np.broadcast_arrays(np.abs(delta), full_slip)
     most = float(np.max(size, initial=0.0, where=full_slip))
     return Assumption(
@@ -200,20 +214,3 @@ def thickness(length: Any, layers: Mapping[str, float | None]) -> Assumption:
         f"the contact is {np.max(ratio, initial=0.0):.2g} times as long as the layer is thick; up to {THICK_LIMIT:.2g} "
         "its length is within 5 % of that on a half-space" + "".join(f"; {text}" for text in unknown),
     )  # fmt: skip
-
-
-def judge(found: Strained, steady: Assumption, creep: Assumption) -> Validity:
-    """Numbers put into words; what only a cylinder in SI units knows is not known."""
-    reach, epsilon = found.reach, found.epsilon
-    far, ahead = float(np.max(reach, initial=0.0)), float(np.max(epsilon, initial=0.0))
-    small = Assumption(
-        reach <= REACH_LIMIT, reach,
-        f"the contact reaches {far:.2g} R from the axis, where the parabola that stands for the circle is off by "
-        f"{25.0 * far * far:.2g} %; up to {REACH_LIMIT} R (1 %) counts as small",
-    )  # fmt: skip
-    under = Assumption(
-        epsilon <= 1.0, epsilon,
-        f"epsilon = {ahead:.2g}: the contact "
-        + ("lies wholly ahead of the axis, which the theory allows" if ahead > 1.0 else "has the axis above it"),
-    )  # fmt: skip
-    return UNKNOWN._replace(small_contact=small, under_axis=under, steady=steady, creep=creep)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..core.checks import broadcast_shape, checked
 from ..core.typed import Numbers
-from .assumptions import UNKNOWN, Validity, judge, unlike_speeds
+from .assumptions import UNKNOWN, Validity, place, smallness, unlike_speeds
 from .parameters import Rolls, framed
 from .steadiness import Steadiness
 
@@ -43,10 +43,9 @@ def validity(roller: Rolls, V: Numbers, *, omega: Numbers | None = None, density
     free = scene.freely(speed)
     found = free.strained(scene.kappa)
     steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
-    delta, full_slip = None, None
+    judged = UNKNOWN._replace(small_contact=smallness(found.reach), under_axis=place(found.epsilon), steady=steady)
     if spin is not None:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
-        full_slip = np.abs(delta) >= scene.mu * np.asarray(found.reach)
-    judged = judge(found, steady, unlike_speeds(delta, full_slip))
+        judged = judged._replace(creep=unlike_speeds(delta, np.abs(delta) >= scene.mu * np.asarray(found.reach)))
     return roller.known(judged, found.lam, given["V"], given.get("omega"), density)

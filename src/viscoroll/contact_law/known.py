@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -36,14 +37,19 @@ _LEAST_PART = 0.01
 _told: set[Measured] = set()
 
 
+@dataclass(frozen=True, eq=False)
 class Known:
     """What is known of the bodies of a cylinder, or of many: how fast waves are in them, where they were measured.
 
     pair : both, or None where both are the paper's, of shear modulus ``G``.  R, l0, T_ref, scene : the cylinder's.
     """
 
-    def __init__(self, pair: Pair | None, G: Any, R: Any, l0: Any, T_ref: float, scene: Parameters) -> None:
-        self.pair, self.G, self.R, self.l0, self.T_ref, self.scene = pair, G, R, l0, T_ref, scene
+    pair: Pair | None
+    G: Any
+    R: Any
+    l0: Any
+    T_ref: float
+    scene: Parameters
 
     @cached_property
     def bodies(self) -> dict[str, Material]:

@@ -16,6 +16,7 @@ Kernels never raise; they return a status.  Motions carry one each, with a sente
 
 from __future__ import annotations
 
+import copyreg
 from collections.abc import Collection, Iterable
 from enum import IntEnum
 from typing import Any
@@ -26,11 +27,7 @@ class ViscorollError(Exception):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Travels between processes, though its arguments are not those of Exception."""
-        return _again, (type(self), self.args), self.__dict__
-
-
-def _again(kind: type[ViscorollError], arguments: tuple[Any, ...]) -> ViscorollError:
-    return kind.__new__(kind, *arguments)
+        return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class ParameterError(ViscorollError, ValueError):

@@ -66,13 +66,10 @@ def _refuse_unknown_within(path: Any, name: str, content: Any, kind: Any) -> Non
     hints = get_type_hints(kind)
     refuse_unknown(path, name, content, hints)
     for key, value in content.items():
-        parts = [each for each in (hints[key], *get_args(hints[key])) if is_dataclass(each) or _is_struct(each)]
+        kinds = hints[key], *get_args(hints[key])
+        parts = [each for each in kinds if is_dataclass(each) or hasattr(each, "__struct_fields__")]
         if parts and isinstance(value, dict):
             _refuse_unknown_within(path, f"{name}.{key}", value, parts[0])
-
-
-def _is_struct(kind: Any) -> bool:
-    return isinstance(kind, type) and issubclass(kind, msgspec.Struct)
 
 
 def refuse_unknown(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:

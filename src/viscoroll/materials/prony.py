@@ -213,14 +213,11 @@ class Prony(OneOrMany):
         return _sums(self._strengths * self._times)
 
     @property
-    def second_moments(self) -> tuple[Any, Any]:
-        """(sum E_i tau_i^2, sum J_j T_j^2) over T_ref^2."""
-        return _sums(self.E * self.tau**2), _sums(self.J * self.T**2)
-
-    @property
     def slow_time(self) -> float:
         """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean over T_ref: kappa V beside its inverse tells slow from fast."""
-        return sum(self.second_moments) / self.T_mean if self.E.size else 1.0
+        if not self.E.size:
+            return 1.0
+        return (_sums(self.E * self.tau**2) + _sums(self.J * self.T**2)) / self.T_mean
 
     def slower(self, factor: ArrayLike) -> Prony:
         """All times longer by a factor, or by one each, as a colder rubber has them."""

@@ -109,7 +109,8 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    times, names = output_times(t), _names(fields)
+    times, names = output_times(t), (fields,) if isinstance(fields, str) else tuple(fields)
+    refuse_unknown("fields", names, FIELDS, "a field")
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V))
@@ -189,23 +190,12 @@ def _answer(many: _Many, method: str, speed: float | None) -> tuple[Answer, dict
     if answer is None:
         answer = Answer.empty(len(rows), count, times.size)
     flow = answer.status >= 0
-    if many.caught.any():
-        _keep_caught(answer, many.caught)
+    if (caught := many.caught).any():  # motions that never leave the imprint of their rest
+        answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
+        answer.status[caught] = MotionStatus.CAUGHT
     steps = _integrate_others(answer, many)
     problem = "" if chosen is None else chosen.problem
     return answer, {"steps": steps, "flow": flow, "flow_error": error, "flow_problem": problem}
-
-
-def _keep_caught(answer: Answer, caught: Booleans) -> None:
-    """Motions that never leave the imprint of their rest."""
-    answer.out[:, caught] = answer.onset[caught] = answer.rest[caught] = np.nan
-    answer.status[caught] = MotionStatus.CAUGHT
-
-
-def _names(fields: Iterable[str]) -> tuple[str, ...]:
-    names = (fields,) if isinstance(fields, str) else tuple(fields)
-    refuse_unknown("fields", names, FIELDS, "a field")
-    return names
 
 
 def _inputs(begun: Begun, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:

@@ -145,6 +145,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
     torque = curve("torque", drive.torque, end, rtol)
     brake = curve("brake", drive.brake, end, rtol, low=0.0)
     rate, prescribed, error = curve("rate", None, end, rtol), NEITHER, 0.0
+    starts = {"omega": omega0, "V": V0}
     for code, name in ((OMEGA, "omega"), (SPEED, "V")):
         given = getattr(drive, name)
         if given is not None:
@@ -152,14 +153,12 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
             rate, prescribed, error = slope_of(name, speed), code, speed.error
             # of a callable itself: its fit is off by rounding, and may be of the other sign
             own = np.array([float(given(0.0))]) if callable(given) else start_value(speed)
-            start = _prescribed_start(f"{name}0", V0 if code == SPEED else omega0, speed, own)
-            V0, omega0 = (start, omega0) if code == SPEED else (V0, start)
-    for name, value, by in (("V0", V0, "V"), ("omega0", omega0, "omega")):
-        if value is None:
-            raise ParameterError(name, None, "a number", f"{name} is not given, and no {by}= prescribes it")
+            starts[name] = _prescribed_start(f"{name}0", starts[name], speed, own)
+        if starts[name] is None:
+            raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")
     pieces = pieces_of((force, torque, rate, brake), end)
     error = max(error, force.error, torque.error, brake.error)
-    return Prepared(pieces, _gains(drive), prescribed, *start_speeds(V0, omega0), error)
+    return Prepared(pieces, _gains(drive), prescribed, *start_speeds(starts["V"], starts["omega"]), error)
 
 
 def _prescribed_start(name: str, given: Any, speed: Curve, start: Floats) -> Any:
@@ -179,12 +178,6 @@ def _gains(drive: Drive) -> Floats:
     rows[3] = rows[3] - checked("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
     return np.array([np.broadcast_to(row, count) for row in rows])
-
-
-def refuse_drives(drives: Prepared) -> None:
-    """Raise ParameterError where a drive is of many motions."""
-    if (many := max(drives.pieces.shape[0], drives.gains.shape[1])) > 1:
-        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
 
 
 def refuse_rest(rest: float, drives: Prepared) -> None:

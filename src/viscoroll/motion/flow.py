@@ -77,14 +77,6 @@ def build(parameters: tuple[Any, ...], octave: int, threads: int | None = None) 
     return replace(made, errors=_measure(made, octave, threads))
 
 
-def kernel_map(made: FlowMap) -> Any:
-    """The record that the kernels of a flow map take."""
-    from ..kernels.flow.records import Flow
-
-    _, kappa, mu, j = made.parameters
-    return Flow(made.table, made.first, kappa, mu, j, made.slow_rate)
-
-
 def _measure(made: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
     """Largest errors against the integrator, times the margin, on motions spread over the map."""
     _, kappa, mu, _ = made.parameters
@@ -170,14 +162,17 @@ def ask(
 ) -> Answer:  # fmt: skip
     """Roll motions by a map; ``rows`` as in ``kernels/flow/loop.py``, ``rest`` = 0 for none."""
     from ..kernels.flow.loop import flow_loop
+    from ..kernels.flow.records import Flow
 
     V0, omega0, times = (flattened(array, array.shape) for array in (V0, omega0, times))
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     answer = Answer.empty(len(rows), count, times.size)
     wanted = np.array(rows, np.int64)
+    _, kappa, mu, j = chosen.parameters
+    flow = Flow(chosen.table, chosen.first, kappa, mu, j, chosen.slow_rate)
 
     def work(start: int, stop: int) -> None:
-        flow_loop(kernel_map(chosen), gamma, rest, V0, omega0, times, wanted, answer, start, stop)
+        flow_loop(flow, gamma, rest, V0, omega0, times, wanted, answer, start, stop)
 
     run_blocks(work, answer.status.size, _BLOCK, threads=threads, progress=progress)
     return answer

@@ -16,7 +16,7 @@ from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
 from ..core.errors import MotionStatus, ParameterError
 from ..core.results import Row, Values
-from ..core.typed import Booleans, Floats
+from ..core.typed import Floats
 from .checks import SPEED_RANGE, output_times
 from .driven import ROWS
 from .result import Rolled
@@ -129,7 +129,10 @@ class Motion(Rolled):
         slowest = -SPEED_RANGE[0] * self.scale["V"]
         V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
         found = contact(self.roller, V, delta=delta, fields=fields, **options)
-        whole = {name: _with_gaps(values, reached) for name, values in found.as_dict().items()}
+        whole = {}
+        for name, values in found.as_dict().items():
+            whole[name] = np.full(reached.shape, False if values.dtype == bool else np.nan)
+            whole[name][reached] = values
         return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
     def validity(self) -> Validity:
@@ -236,10 +239,3 @@ def _course(t: NDArray, values: NDArray) -> str:
         return first
     peak = "" if most in (first, last) else f"largest {most} (at t = {t[at]:.6g}), "
     return f"first {first}, {peak}last {last}"
-
-
-def _with_gaps(values: NDArray, reached: Booleans) -> NDArray:
-    """``values`` where ``reached``, and between them NaN, or False among booleans."""
-    whole = np.full(reached.shape, False if values.dtype == bool else np.nan)
-    whole[reached] = values
-    return whole

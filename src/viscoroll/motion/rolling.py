@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact_law.contact import contact
 from ..contact_law.parameters import Parameters, Rolls, framed
+from ..contact_law.steadiness import CAUGHT
 from ..core.blocks import flattened, run_blocks
+from ..core.checks import checked
 from ..core.drive import over
 from ..core.errors import MotionStatus, ParameterError
 from ..core.typed import Floats, Integers
 from ..materials.law_table import law_table
 from .checks import controls, in_words, refuse_many
-from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_drives, refuse_rest, undriven
-from .unsteady import climbed, refuse_unlike, time_of_rest
+from .driven import LOSSES, ROWS, STATES, Drive, Prepared, prepared, refuse_rest, undriven
 
 _ALL = np.arange(len(ROWS))
 #: of a map's motions: as tight as the integrator goes, where with alpha of 1e10 it takes tens of thousands of steps
@@ -61,19 +64,55 @@ def begin(
         refuse_many(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
         raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+    if unsteady and not scene.like_bodies:
+        sentence = "unsteady = True: the bodies differ, and what either has of the added mass is not known then"
+        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
     try:
         limits, last = controls(rtol, over("rest", rest, scale), max_steps), float(end / scale["t"])
         own = over("V0", starts[0], scale), over("omega0", starts[1], scale)
         ready = prepared(drive.over(scale), *own, last, rtol)
-        if one:
-            refuse_drives(ready)
         refuse_rest(limits[1], ready)
-        if unsteady:
-            refuse_unlike(scene)
-        ready, caught = climbed(ready, scene, time_of_rest(rested) / scale["t"])
+        ready, caught = _climbed(ready, scene, _time_of_rest(rested) / scale["t"])
     except ParameterError as error:
         raise in_words(error, scale) from error
+    if one and (many := max(ready.pieces.shape[0], ready.gains.shape[1])) > 1:
+        raise ParameterError("drive", f"of {many} motions", "one motion's; for many use ensemble")
     return Begun(roller, scene, drive, ready, caught, last, limits, unsteady)
+
+
+def _time_of_rest(rested: bool | float) -> float:
+    """The time of the rest, infinite for a long one.
+
+    Raises
+    ------
+    ParameterError
+        What is not one number >= 0.
+    """
+    if isinstance(rested, bool):
+        return math.inf if rested else 0.0
+    if checked("rested", rested, low=0.0).ndim:
+        raise ParameterError("rested", rested, "one time >= 0, or True")
+    return float(rested)
+
+
+def _climbed(ready: Prepared, scene: Parameters, rested: float) -> tuple[Prepared, Any]:
+    """(What is rolled once the cylinder has left the imprint of a rest, whether it was caught there).
+
+    Raises
+    ------
+    ParameterError
+        A prescribed speed, or a start in full slip, of which the cost is not known.
+    """
+    if rested == 0.0:
+        return ready, False
+    V = np.asarray(ready.V0, np.float64)
+    limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    if ready.prescribed or np.any(np.abs(ready.omega0 - V) > limit):
+        what = "a speed is prescribed" if ready.prescribed else "it starts in full slip"
+        sentence = f"rested is given, but {what}: what leaving the imprint costs is not known then"
+        raise ParameterError("rested", rested, "left out", sentence)
+    lost = scene.freely(V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
+    return ready._replace(V0=V * (1.0 - lost), omega0=ready.omega0 * (1.0 - lost)), lost > CAUGHT
 
 
 def integrate(

@@ -165,10 +165,6 @@ def _moved(terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: 
     whole = np.where(endless, 1.0, last - first)
     scale = np.where(endless, 0.0, np.where(endless, 0.0, ends - starts) / whole)
     begin = (starts - first) / whole * 2.0 - 1.0
-    if terms.shape[-1] == 2:  # by the values at both ends: a ramp that begins with 0 does so in its first part too
-        at_start, rise = terms[..., 0] + terms[..., 1] * np.where(endless, 0.0, begin), terms[..., 1] * scale
-        # a sum and a difference that give the start back
-        return np.stack([0.5 * at_start + 0.5 * (at_start + 2.0 * rise), rise], axis=-1)
     shift = np.where(endless, 0.0, begin + scale)
     moved = np.zeros_like(terms)
     for n in range(terms.shape[-1] - 1, -1, -1):  # Horner's scheme with x -> shift + scale x

@@ -15,11 +15,10 @@ from ...core.checks import checked
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
-from ...cylinder import Cylinder
+from ...cylinder import Cylinder, scene_of
 from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
 from ...materials.pair import Pair, Solid
-from ...scaling import scene_of
 from ..config import body_of
 
 
