@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 import viscoroll as vr
 
@@ -65,7 +66,9 @@ def parts() -> Iterator[tuple[str, Any]]:
     for rtol in (1e-6, 1e-10):
         for name, each in (("motions-own-scene", own), ("motions", scene)):
             yield f"{name}-{rtol:g}", motions(each, rtol=rtol, method="integrate", rest=1e-3)
-    yield "roll", vr.roll(scene.replace(mu=0.01), 1.0, 1.0, t)
+    motion = vr.roll(scene, *starts[:, 0], t, torque=0.3)
+    yield "roll", motion
+    yield "switches", xr.Dataset({"t": ("change", [each.t for each in motion.switches])})
     yield "flow-map", motions(scene, method="flow")
     strengths, times = np.array([3.0, 5.0, 1.0]), (1e-3, 0.1, 10.0)
     rubber, plastic = vr.Prony(strengths, times), vr.Prony((2.0,), (1.0,))

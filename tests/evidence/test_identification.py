@@ -36,6 +36,13 @@ def test_committed_numbers_hold():
     assert len(committed_rows("said")) == 6
 
 
+def test_share_of_few_data_sets_is_no_fault():
+    """Of one, as --quick has it, the share is 0 or 1."""
+    row = {"experiment": "any", "held": {"mu": 1.0}}
+    assert complaint(row | {"sets": 1}) is None
+    assert "mu held" in complaint(row | {"sets": 200})
+
+
 # --- profiles of wide ranges take minutes ---
 
 WIDE = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-5, 1e-1)}

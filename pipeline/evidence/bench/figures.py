@@ -16,10 +16,7 @@ from ..document.blocks import finished, paper_rows
 from ..results import RESULTS, Results, parser
 
 #: line and marker by method: told apart without colour
-_STYLES = {
-    "flow": "*-k", "table": "o-k", "direct": "s--b", "atlas": "^--r", "lsoda": "D-.g", "gsl-adams": "x:c",
-    "gsl-bdf": "+:c", "scipy-lsoda": "v:m", "scipy-radau": "<:m",
-}  # fmt: skip
+_STYLES = {"flow": "*-k", "table": "o-k", "lsoda": "D-.g", "gsl-adams": "x:c", "gsl-bdf": "+:c"}
 #: key of a row -> what it is, over all outputs of the motions
 _ERRORS = {"max": "max", "p99": "99th percentile"}
 

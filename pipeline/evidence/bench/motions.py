@@ -9,7 +9,6 @@ from __future__ import annotations
 import subprocess
 import tempfile
 from collections.abc import Callable
-from contextlib import suppress
 from functools import cache, partial
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -18,16 +17,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 from tqdm import tqdm
 
 import viscoroll as vr
 
-from ...runtime import rolled
 from ..peers import lsoda, paper_method
 from ..timing import seconds_of, steady_seconds
-from . import implicit
 from .problem import (
     Outcome,
     Problem,
@@ -39,8 +34,8 @@ from .problem import (
     reference_difference,
 )
 
-#: right-hand sides after which a peer gives up: 15 s of the paper's method
-_MOST_COMPILED, _MOST_PYTHON = 2_000_000, 300_000
+#: right-hand sides after which the paper's method gives up: 15 s
+_MOST = 2_000_000
 Call = Callable[[], Outcome]
 
 
@@ -51,53 +46,15 @@ def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
     return call
 
 
-def _implicit(problem: Problem, rtol: float, law: Any) -> Call:
-    """The Rosenbrock method of pipeline/runtime.py on another law of one scene."""
-    alpha, kappa, mu, gamma, j = problem.parameters()[0].tolist()
-    state = implicit.differenced(law(alpha, kappa, mu), mu / kappa)
-    one, t = partial(rolled, state, gamma, j, 0.5 * mu / kappa), np.concatenate([[0.0], problem.t])
-
-    def call(count: int | None = None) -> Outcome:
-        found = [one(start, t, rtol) for start in list(zip(problem.V0, problem.omega0))[:count]]
-        return Outcome(*np.array(found)[:, :, 1:].transpose(1, 0, 2))
-
-    call(1)  # compiles
-    return call
-
-
 def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
     program, starts = paper_method.build(Path(_build_folder().name)), np.column_stack([problem.V0, problem.omega0])
-    given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST_COMPILED)
+    given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST)
     return lambda: Outcome(*paper_method.run(*given))
 
 
 @cache
 def _build_folder() -> tempfile.TemporaryDirectory:
     return tempfile.TemporaryDirectory(prefix="viscoroll-peers-")
-
-
-def _scipy(problem: Problem, rtol: float, name: str) -> Call:
-    """SciPy's ``solve_ivp`` in (V, omega) on the printed equations, which are solved in compiled code."""
-    motions = list(zip(problem.parameters().tolist(), zip(problem.V0.tolist(), problem.omega0.tolist())))
-    t = problem.t
-
-    def one(parameters: list[float], start: tuple[float, float]) -> NDArray:
-        alpha, kappa, mu, gamma, j = parameters
-        loads, left = implicit.loaded(implicit.by_roots(alpha, kappa, mu)), iter(range(_MOST_PYTHON))
-
-        def rates(_: float, y: NDArray) -> tuple[float, float]:
-            next(left)
-            Q, half = loads(y[0], y[1])
-            return gamma * (Q - half), -gamma / j * (Q + half)
-
-        found = np.full((2, t.size), np.nan)
-        with suppress(StopIteration):  # more than it may ask for
-            done = solve_ivp(rates, (0.0, t[-1]), start, name, t, rtol=rtol, atol=1e-3 * rtol)
-            found[:, : done.t.size] = done.y
-        return found
-
-    one(*motions[0])  # compiles
-    return lambda: Outcome(*np.array([one(*motion) for motion in motions]).transpose(1, 0, 2))
 
 
 def _lsoda(problem: Problem, rtol: float) -> Call:
@@ -124,14 +81,9 @@ METHODS = {
     # of a fixed scene only; its error is the map's, whatever rtol
     "flow": Method("viscoroll, flow map", partial(_ensemble, method="flow")),
     "table": Method("viscoroll, integrated", partial(_ensemble, method="integrate")),
-    "direct": Method("root solves + Rosenbrock", partial(_implicit, law=implicit.by_roots)),
-    # ends at kappa V = 1e-3: below, its law is held, 1e-3 in M
-    "atlas": Method("3-D atlas spline + Rosenbrock", partial(_implicit, law=implicit.by_atlas)),
     "lsoda": Method("LSODA on the law, compiled", _lsoda, lsoda.missing),
     "gsl-adams": Method("the paper's method (GSL Adams)", partial(_paper_method, name="adams"), paper_method.missing),
     "gsl-bdf": Method("GSL BDF, root solves", partial(_paper_method, name="bdf"), paper_method.missing),
-    "scipy-lsoda": Method("SciPy's LSODA, root solves", partial(_scipy, name="LSODA")),
-    "scipy-radau": Method("SciPy's Radau, root solves", partial(_scipy, name="Radau")),
 }
 
 
@@ -185,7 +137,7 @@ def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, An
 
 def tools() -> dict[str, str]:
     """Versions of what the peers are built with; those that are not there are left out."""
-    found = {name: version(name) for name in ("scipy", "numbalsoda") if find_spec(name)}
+    found = {"numbalsoda": version("numbalsoda")} if find_spec("numbalsoda") else {}
     for name, command in {"cc": "cc -dumpfullversion", "gsl": "pkg-config --modversion gsl"}.items():
         done = subprocess.run(command, shell=True, check=False, capture_output=True, text=True)
         found |= {} if done.returncode else {name: done.stdout.strip()}

@@ -63,7 +63,7 @@ def identify_times(results: Results) -> Iterator[dict[str, Any]]:
 
 def identify_coverage(results: Results) -> Iterator[dict[str, Any]]:
     """How often intervals hold the truth."""
-    for row in results["identification coverage"]["rows"] + results["identification product"]["rows"]:
+    for row in results["identification coverage"]["rows"]:
         yield row | {"shares": ", ".join(f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items())}
 
 

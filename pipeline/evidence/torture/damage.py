@@ -1,14 +1,18 @@
-"""Damage a table file that is there, load it in processes with bounded memory, and see what comes out."""
+"""What is done to files: processes that are killed, small disks, changed bytes; and what a table then loads as."""
 
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 import resource
+import signal
 import subprocess
+import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from multiprocessing import get_context
 from pathlib import Path
 from threading import RLock
 from typing import Any
@@ -28,6 +32,7 @@ BATCH, MEMORY = 100, 1 << 30
 # processes are forked and killed here: no thread beside this one, and no lock that a killed one may hold for ever
 tqdm.monitor_interval = 0
 tqdm.set_lock(RLock())
+_FORK = get_context("fork")
 Change = Callable[[bytes, np.random.Generator], bytes]
 
 
@@ -74,22 +79,55 @@ def edit(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 @contextmanager
-def small_disk(folder: Path, size: int) -> Iterator[bool]:
-    """``folder`` as a tmpfs of that size; False where none can be had."""
-    options = ["-t", "tmpfs", "-o", f"size={max(size // 4096, 4) * 4096}", "tmpfs", str(folder)]
+def small_disk(folder: Path, size: int) -> Iterator[None]:
+    """``folder`` as a tmpfs of that size; raises CalledProcessError where none can be had."""
+    _told("mount", "-t", "tmpfs", "-o", f"size={max(size // 4096, 4) * 4096}", "tmpfs", folder)
     try:
-        mounted = subprocess.run(["mount", *options], capture_output=True, check=False).returncode == 0
-    except FileNotFoundError:
-        mounted = False
-    try:
-        yield mounted
+        yield
     finally:
-        if mounted:
-            subprocess.run(["umount", str(folder)], check=True)
+        _told("umount", folder)
 
 
 def enlarge(disk: Path) -> None:
-    subprocess.run(["mount", "-o", "remount,size=64m", str(disk)], check=True)
+    _told("mount", "-o", "remount,size=64m", disk)
+
+
+def _told(*command: str | Path) -> None:
+    subprocess.run(command, capture_output=True, check=True)
+
+
+def ended(work: Callable[[], Any]) -> int:
+    """Exit code of ``work`` in a process of its own: 2 for an error of a file, 1 for any other."""
+
+    def run() -> None:
+        try:
+            work()
+        except FileError:
+            os._exit(2)
+
+    process = _FORK.Process(target=run)
+    process.start()
+    process.join()
+    return process.exitcode or 0
+
+
+def killed(
+    work: Callable[[], Any], seconds: float, rng: np.random.Generator, begun: Callable[[], bool] = lambda: True
+) -> bool:
+    """Whether ``work`` was killed, within ``seconds`` after it had ``begun``; False where it had ended before."""
+    process = _FORK.Process(target=work)
+    process.start()
+    while process.is_alive() and not begun():
+        time.sleep(2e-4)
+    time.sleep(rng.uniform(0.0, seconds))
+    process.kill()
+    process.join()
+    return process.exitcode == -signal.SIGKILL
+
+
+def trials(done: str, count: int, trial: Callable[[], str]) -> dict[str, Any]:
+    """A row of so many outcomes."""
+    return row(done, [trial() for _ in tqdm(range(count), desc=done, delay=1.0, leave=False)])
 
 
 def damaged(

@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import signal
-import subprocess
-import sys
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 from viscoroll import ViscorollError, tables
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import seal_holds
 from viscoroll.presets import RUBBER_CYLINDER
 
+from ... import offline
 from ...stage import ROOT
-from .damage import damaged, edit, fingerprint, flip, row, truncate, unsealed
+from .damage import damaged, edit, ended, fingerprint, flip, killed, trials, truncate, unsealed
 
 LAW = ROOT / "data/tables/rubber.nc"
 #: what `make tables` builds while it is killed
@@ -51,7 +44,7 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         tables.save(grid(), folder / "table.nc")
         content = (folder / "table.nc").read_bytes()
         found = [
-            *kills(sizes["kills"], folder / "kills", rng),
+            *kills(sizes["kills"], folder, rng),
             writers("two processes save the same table at once", sizes["writers"], folder / "both.nc"),
         ]
         ways = {
@@ -73,71 +66,41 @@ def grid(command: str | None = None) -> Any:
 
 
 def kills(count: int, folder: Path, rng: np.random.Generator) -> list[dict[str, Any]]:
-    """SIGKILL the command of `make tables`, at any moment and in its writes; the tables must be as they were, or new.
-
-    A smaller configuration, so that a command takes seconds; as many at a time as there are cores.
-    """
-    folder.mkdir()
-    whole = folder / "whole"
-    start_tabulate(whole).wait()
-    expected = {path.name: values_hash(path) for path in whole.glob("[!.]*.nc")}
-    cores = os.cpu_count() or 1
-    with ThreadPoolExecutor(cores) as pool:
-        begin = time.perf_counter()
-        list(pool.map(lambda n: start_tabulate(folder / f"timed-{n}").wait(), range(cores)))
-        seconds = time.perf_counter() - begin
-
-        def killed(seed: int, in_write: bool) -> str:
-            own, draw = folder / str(seed), np.random.default_rng(seed)
-            shutil.copytree(whole, own)
-            while not kill_once(own, draw.choice(list(expected)) if in_write else None, seconds, draw):
-                pass  # it had ended before
-            outcome = "unharmed" if survived(own, expected) else "damaged"
-            shutil.rmtree(own)
-            return outcome
-
-        ways = {"SIGKILL of `make tables`": False, "SIGKILL of `make tables` while it writes a table": True}
-        result = []
-        for done, in_write in ways.items():
-            outcomes = pool.map(partial(killed, in_write=in_write), rng.integers(1 << 62, size=count).tolist())
-            result.append(row(done, list(tqdm(outcomes, desc=done, total=count, delay=1.0, leave=False))))
-    return result
-
-
-def start_tabulate(folder: Path) -> subprocess.Popen:
-    """What `make tables` starts, in a group of processes of its own."""
-    folder.mkdir(exist_ok=True)
-    config = folder / "run.toml"
+    """SIGKILL what `make tables` does, at any moment and in its writes; the tables must be as they were, or new."""
+    config, built = folder / "run.toml", folder / "tables"
     config.write_text(CONFIG, encoding="utf-8")
-    command = [sys.executable, "-m", "pipeline.offline", "--config", config, "--tables", folder, "-o", folder]
-    return subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
-    )
+    build = partial(offline.build_all, config, built)
+    build()  # compiles
+    expected, begun = hashes(built), time.perf_counter()
+    ended(build)
+    seconds = time.perf_counter() - begun
+
+    def kill(in_write: bool) -> str:
+        written = f".*.tmp-{rng.choice([*expected])}" if in_write else "*"
+        done = False
+        while not done:  # it may end before
+            for left in built.glob(".*"):
+                left.unlink()
+            done = killed(build, WRITE if in_write else seconds, rng, lambda: any(built.glob(written)))
+        return "unharmed" if hashes(built) == expected else "damaged"
+
+    ways = {"SIGKILL of `make tables`": False, "SIGKILL of `make tables` while it writes a table": True}
+    return [trials(done, count, partial(kill, in_write)) for done, in_write in ways.items()]
 
 
-def kill_once(folder: Path, written: str | None, seconds: float, rng: np.random.Generator) -> bool:
-    """Kill a build within so many seconds from its start, or from when it begins to write that file."""
-    process = start_tabulate(folder)
-    while written is not None and process.poll() is None and not any(folder.glob(f".*.tmp-{written}")):
-        time.sleep(2e-4)
-    time.sleep(rng.uniform(0.0, seconds if written is None else WRITE))
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
-    return process.wait() == -signal.SIGKILL
-
-
-def survived(folder: Path, expected: dict[str, str]) -> bool:
+def hashes(folder: Path) -> dict[str, str] | None:
+    """Of sealed tables: names and values alone, as ``history`` tells when it was made; None where one is not whole."""
     try:
-        return {path.name: values_hash(path) for path in folder.glob("[!.]*.nc")} == expected
+        return {path.name: fingerprint(whole(path).drop_attrs()) for path in folder.glob("[!.]*.nc")}
     except ViscorollError:
-        return False
+        return None
 
 
-def values_hash(path: Path) -> str:
-    """Of a sealed table: names and values alone, as ``history`` tells when it was made."""
+def whole(path: Path) -> Any:
+    """A table whose seal holds."""
     if not seal_holds(path.read_bytes()):
         raise FileError(path, "has no seal that holds")
-    return fingerprint(tables.load(path).drop_attrs())
+    return tables.load(path)
 
 
 def writers(done: str, count: int, path: Path) -> dict[str, Any]:
@@ -151,17 +114,17 @@ def writers(done: str, count: int, path: Path) -> dict[str, Any]:
         while True:
             tables.save(table, path)
 
+    def load() -> str:
+        if not all(process.is_alive() for process in processes):
+            return "a writer failed"
+        return "unharmed" if fingerprint(whole(path)) in expected else "damaged"
+
     processes = [get_context("fork").Process(target=save_all, args=(table,)) for table in made]
     for process in processes:
         process.start()
     try:
-        outcomes = []
-        for _ in range(count):
-            whole = seal_holds(path.read_bytes()) and fingerprint(tables.load(path)) in expected
-            outcomes.append("unharmed" if whole else "damaged")
-        alive = all(process.is_alive() for process in processes)
+        return trials(done, count, load)
     finally:
         for process in processes:
             process.kill()
             process.join()
-    return row(done, outcomes if alive else ["a writer failed"])
