@@ -21,7 +21,7 @@ setup: .venv/stamp ## create .venv with everything pinned in constraints.txt
 	touch $@
 
 demo: out/index.html ## tables, motions from them, validation, a benchmark, an ensemble of 10^6, figures and a page over all
-	@$(RUN) -m pipeline.report --config $(CONFIG) --show
+	@echo "Everything on one page: $<"
 
 tables: $(TABLES) ## build data/tables/*.nc: the law of every alpha, of the paper's material, of a rubber, and of that on steel
 $(TABLES) &: pipeline/offline.py $(SOURCES) $(STAGE)

@@ -2,8 +2,8 @@
 
     python -m pipeline.benchmark [--config FILE] [-o FOLDER]
 
-``roll``; the file of the law with the Rosenbrock method of pipeline/runtime.py; ``vr.law`` in SciPy's Radau; and
-splines in a grid of Q and M over (V, delta), as look-up blocks have it, likewise.  The truth is out/direct.nc, root
+``vr.roll``; ``vr.law`` in SciPy's Radau; and splines in a grid of Q and M over (V, delta), as look-up blocks have it,
+likewise.  The truth is out/direct.nc, root
 solves of the printed equations.  Peers of other houses stand in pipeline/evidence/bench.
 """
 
@@ -23,7 +23,7 @@ import viscoroll as vr
 from viscoroll.core.plots.style import new_figure, save
 
 from . import stage
-from .runtime import Way, from_file, motions
+from .runtime import Way, by_roll, motions
 from .validate import errors, loaded
 
 Rates = Callable[[float, NDArray], Any]
@@ -89,13 +89,7 @@ def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
     V, delta = vr.tables.spread(*settings.V, "log"), np.linspace(-settings.delta[0], *settings.delta)
     law, grid = by_law(scene), by_grid(scene, V, delta)
     for rtol in settings.rtol:
-
-        def roll(V0: float, omega0: float, rtol: float = rtol) -> tuple[NDArray, NDArray]:
-            found = vr.roll(scene, V0, omega0, t, rtol=rtol)
-            return found.V, found.omega
-
-        yield "roll", rtol, roll
-        yield "the file of the law, Rosenbrock", rtol, from_file(scene, t, rtol)
+        yield "roll", rtol, by_roll(scene, t, rtol)
         yield "vr.law, SciPy's Radau", rtol, by_radau(*law, t, rtol)
     for rtol in settings.splines:
         yield f"splines in {V.size} by {delta.size}, SciPy's Radau", rtol, by_radau(grid, None, t, rtol)
@@ -104,7 +98,7 @@ def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error."""
     figure, axes = new_figure("Time against error of the paper's motions")
-    for marker, name in zip("osd^", dict.fromkeys(row["law by"] for row in rows), strict=True):
+    for marker, name in zip("os^", dict.fromkeys(row["law by"] for row in rows), strict=True):
         own = [row for row in rows if row["law by"] == name]
         axes.loglog([row["error"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name)
     axes.set(xlabel="largest error of V and ω over the first speed", ylabel="time of a motion, ms")

@@ -1,8 +1,6 @@
 """Report: one page over all that was made -> out/index.html.
 
-    python -m pipeline.report [--config FILE] [-o FOLDER] [--show]
-
-With --show nothing is written: prints where everything is, the headline errors and the times.
+python -m pipeline.report [--config FILE] [-o FOLDER]
 """
 
 from __future__ import annotations
@@ -11,6 +9,7 @@ import base64
 import json
 import os
 import sys
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -57,26 +56,16 @@ def records(out: Path) -> dict[str, dict[str, Any]]:
     return found
 
 
-def rows(pairs: dict[str, Any]) -> str:
-    """A two-column HTML table."""
-    lines = (
-        f'<tr><td>{escape(str(name))}</td><td class="n">{escape(stage.readable(value))}</td></tr>'
-        for name, value in pairs.items()
-    )
-    return f"<table>{''.join(lines)}</table>"
-
-
-def grid(found: list[dict[str, Any]]) -> str:
-    """An HTML table of rows, their names in the first line."""
-    lines = ["".join(f"<th>{escape(name)}</th>" for name in found[0])]
-    lines += [
+def grid(lines: Iterable[Iterable[Any]]) -> str:
+    """An HTML table."""
+    told = (
         "".join(
             f"<td{' class=n' if isinstance(value, float) else ''}>{escape(stage.readable(value))}</td>"
-            for value in each.values()
+            for value in line
         )
-        for each in found
-    ]
-    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
+        for line in lines
+    )
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in told)}</table>"
 
 
 def link(path: Path, out: Path) -> str:
@@ -105,7 +94,7 @@ def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
     for title, captions in SECTIONS.items():
         parts.append(f"<h2>{escape(title)}</h2>")
         if title in numbers:
-            parts += [rows(found[numbers[title]]["headline"]), links(out, found[numbers[title]])]
+            parts += [grid(found[numbers[title]]["headline"].items()), links(out, found[numbers[title]])]
         parts += [picture(drawn.pop(name), out, caption) for name, caption in captions.items() if name in drawn]
     return parts + [picture(path, out, name) for name, path in drawn.items()]
 
@@ -124,49 +113,33 @@ def introduced(found: dict[str, dict[str, Any]]) -> str:
 def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
     """The whole page: the physics first, then tables and checks, seconds last."""
     failed = found["validate"]["failed"]
+    times = stage.read_rows(out / "benchmark.csv")
     verdict = '<span class="bad">a stated tolerance is exceeded</span>' if failed else "every check passed"
     parts = [
         "<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8"><title>viscoroll</title>',
         f"<style>{_STYLE}</style></head><body>", "<h1>A viscoelastic cylinder, rolling and sliding</h1>",
-        introduced(found), *pictures(out, found), "<h2>Tables</h2>", rows(found["offline"]["headline"]),
+        introduced(found), *pictures(out, found), "<h2>Tables</h2>", grid(found["offline"]["headline"].items()),
         links(out, found["offline"]),
         "<h2>Against direct solves of the printed equations</h2>", f"<p>{verdict}.</p>",
-        rows(found["validate"]["headline"]),
+        grid(found["validate"]["headline"].items()),
         links(out, found["validate"]), f"<pre>{escape((out / 'validation.txt').read_text(encoding='utf-8'))}</pre>",
-        "<h2>Time against error</h2><p>Offline a stage wrote the law of the material into a file; at run time the "
-        "three throws come from that file alone.  Here that stands beside roll, and beside splines in a grid of Q and "
+        "<h2>Time against error</h2><p>Offline a stage wrote the law of the material into a file; at run time roll "
+        "looks it up there.  Here that stands beside the law in SciPy's Radau, and beside splines in a grid of Q and "
         "M over V and δ; the truth is root solves of the printed equations.  Error: the largest of V and ω over the "
         "first speed.</p>",
-        grid(stage.read_rows(out / "benchmark.csv")),
+        grid([times[0], *(row.values() for row in times)]),
         picture(out / "figures/benchmark.png", out, "Time of a motion over its error."),
         f"<h2>How long it took</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
-        rows({STAGES[name]: record["seconds"] for name, record in found.items()}), "</body></html>",
+        grid((STAGES[name], record["seconds"]) for name, record in found.items()), "</body></html>",
     ]  # fmt: skip
     return "\n".join(part for part in parts if part) + "\n"
 
 
-def show(out: Path, found: dict[str, dict[str, Any]]) -> None:
-    """Print the same in short: files, headline numbers, times."""
-    for name, record in found.items():
-        files = [stage.shown(out / file) for file in record["files"]]
-        where = f"{len(files)} pictures in {stage.shown(out / 'figures')}" if name == "figures" else ", ".join(files)
-        print(f"{name} ({record['seconds']:.1f} s): {where}")
-        for text, value in record["headline"].items():
-            print(f"  {text}: {stage.readable(value)}")
+def make(out: Path) -> None:
+    write_text(out / "index.html", page(out, records(out)))
     print(f"Everything on one page: {stage.shown(out / 'index.html')}")
 
 
-def make(out: Path, print_only: bool) -> None:
-    """Write the page, or print the same in short."""
-    found = records(out)
-    if print_only:
-        return show(out, found)
-    write_text(out / "index.html", page(out, found))
-    print(f"report: {stage.shown(out / 'index.html')}")
-
-
 if __name__ == "__main__":
-    options = stage.parser(__doc__)
-    options.add_argument("--show", action="store_true", help="print files, errors and times; write nothing")
-    given = options.parse_args()
-    sys.exit(stage.told("report", lambda: make(given.output, given.show)))
+    given = stage.parser(__doc__).parse_args()
+    sys.exit(stage.told("report", lambda: make(given.output)))

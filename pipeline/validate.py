@@ -86,7 +86,7 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
     write_dataset(truth, out / "direct.nc", stage.plain_encoding(truth))
     tables = tuple(vr.tables.load(stage.ROOT / name) for name in names)
     report = validate(tables, progress=True, **sizes)
-    meaning = f"V and omega by {of_file.law} and a Rosenbrock method, over the first speed"
+    meaning = f"V and omega by {of_file.law}, over the first speed"
     rows = [Check(f"runtime {start}", error, allowed, meaning) for start, error in errors(of_file, truth).items()]
     report = replace(report, checks=(*report.checks, *rows))
     files = [out / "validation.csv", out / "validation.txt", out / "direct.nc"]

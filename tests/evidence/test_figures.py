@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 from matplotlib.figure import Figure
-from processes import made, printed, stage_refused
+from processes import printed, stage_refused
 
 import viscoroll as vr
 from pipeline.figures import FIGURES, GALLERY
@@ -120,14 +120,14 @@ def test_stages_leave_records(demo):
 def test_motions_from_the_file_are_those_of_root_solves(demo):
     rows = list(csv.DictReader((demo[1] / "benchmark.csv").read_text().splitlines()))
     errors = [float(row["error"]) for row in rows]
-    assert [row["law by"].split()[0] for row in rows] == ["roll", "the", "vr.law,", "splines"]
-    assert 0.0 < max(errors[:3]) < tol.DEMO_FILE < errors[3]
+    assert [row["law by"].split()[0] for row in rows] == ["roll", "vr.law,", "splines"]
+    assert 0.0 < max(errors[:2]) < tol.DEMO_FILE < errors[2]
     page = (demo[1] / "index.html").read_text()
     assert all(f"<td>{escape(row['law by'])}</td>" in page for row in rows)
 
 
 def test_summary_page(demo):
-    config, out = demo
+    _, out = demo
     text = (out / "index.html").read_text()
     links = set(re.findall('href="([^"]+)"', text))
     assert all(escape(caption) in text for figures in SECTIONS.values() for caption in figures.values())
@@ -136,11 +136,6 @@ def test_summary_page(demo):
     assert text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1  # and the benchmark's
     assert {"ensemble.nc", "validation.csv", "validation.txt"} <= links
     assert all((out / target).exists() for target in links)
-    before = (out / "index.html").stat().st_mtime_ns
-    shown = made("report", "--config", config, "-o", out, "--show")
-    assert (out / "index.html").stat().st_mtime_ns == before
-    for word in ("paper.nc", "runtime.nc", "ensemble.nc", "index.html", "time per motion"):
-        assert word in shown
 
 
 def test_stage_refuses_in_one_line(demo, tmp_path):

@@ -8,6 +8,7 @@ import inspect
 import re
 import tomllib
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -61,28 +62,19 @@ def _imported(file: Path) -> Iterator[str]:
 
 
 def commands(results: Results) -> str:
-    """A heading and a table of arguments for every command."""
+    """A heading for every command, and what its --help says below its usage."""
     return "\n".join(_commands(parser()))
 
 
-def _commands(program: argparse.ArgumentParser) -> Iterator[str]:
+def _commands(program: Any) -> Iterator[str]:
     below = [action for action in program._actions if isinstance(action, argparse._SubParsersAction)]
     if not below:
-        yield f"## {program.prog}\n\n```text\n{program.description}\n```\n"
-        rows = [
-            (f"`{_called(action)}`".replace("|", "\\|"), (action.help or "").replace("|", "\\|"))
-            for action in program._actions if not isinstance(action, argparse._HelpAction)
-        ]  # fmt: skip
-        yield table(("argument", "what"), rows) if rows else ""
+        program.formatter_class, program.color = partial(program.formatter_class, width=118), False
+        _, _, said = program.format_help().partition("\n\n")
+        yield f"## {program.prog}\n\n```text\n{said}```\n"
     for action in below:
         for command in action.choices.values():
             yield from _commands(command)
-
-
-def _called(action: argparse.Action) -> str:
-    """An option with what follows it, or what stands for an argument."""
-    value = action.metavar or ("|".join(map(str, action.choices)) if action.choices else action.dest)
-    return f"{', '.join(action.option_strings)} {'' if action.nargs == 0 else value}".strip()
 
 
 def sections(results: Results) -> str:
