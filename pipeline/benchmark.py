@@ -38,32 +38,25 @@ class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
     delta: tuple[float, int]
 
 
-def by_law(scene: vr.Scene) -> tuple[Rates, Rates]:
-    """Rates of (V, omega) and their Jacobian by the law of a scene."""
+def by_law(scene: vr.Scene) -> Rates:
+    """Rates of (V, omega) by the law of a scene."""
     law, g, j = vr.law(scene), scene.gamma, scene.j
 
     def rates(_: float, y: NDArray) -> Any:
         f = law(*y)
         return g * (f.Q - f.M_half_space), g / j * (-f.Q - f.M_cylinder)
 
-    def jacobian(_: float, y: NDArray) -> Any:
-        f = law(*y, slopes=True)
-        return [
-            [g * (f.dQ_dV - f.dM_half_space_dV), g * f.dQ_domega],
-            [g / j * (-f.dQ_dV - f.dM_cylinder_dV), -g / j * f.dQ_domega],
-        ]
-
-    return rates, jacobian
+    return rates
 
 
-def by_radau(rates: Rates, jacobian: Rates | None, t: NDArray, rtol: float) -> Way:
+def by_radau(rates: Rates, t: NDArray, rtol: float) -> Way:
     """SciPy's Radau; NaN where it gives up.
 
     V falls by eight decades: its absolute tolerance lies below its end, else its sign, and M with it, flips for ever.
     """
 
     def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
-        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, jac=jacobian, rtol=rtol, atol=1e-6 * rtol)
+        found = solve_ivp(rates, (0.0, t[-1]), (V0, omega0), "Radau", t, rtol=rtol, atol=1e-6 * rtol)
         return (found.y[0], found.y[1]) if found.success else (np.full(t.size, np.nan), np.full(t.size, np.nan))
 
     return way
@@ -90,9 +83,9 @@ def ways(settings: Benchmark, t: NDArray) -> Iterator[tuple[str, float, Way]]:
     law, grid = by_law(scene), by_grid(scene, V, delta)
     for rtol in settings.rtol:
         yield "roll", rtol, by_roll(scene, t, rtol)
-        yield "vr.law, SciPy's Radau", rtol, by_radau(*law, t, rtol)
+        yield "vr.law, SciPy's Radau", rtol, by_radau(law, t, rtol)
     for rtol in settings.splines:
-        yield f"splines in {V.size} by {delta.size}, SciPy's Radau", rtol, by_radau(grid, None, t, rtol)
+        yield f"splines in {V.size} by {delta.size}, SciPy's Radau", rtol, by_radau(grid, t, rtol)
 
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:

@@ -10,8 +10,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+from viscoroll.core.plots import draw
+
 from ..stage import ROOT
-from .ensemble import distribution
 from .geometry import geometry
 from .law import figure_2, figure_3
 from .stresses import figure_7
@@ -36,7 +37,7 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "figure-6": partial(of_page, "motion/b_section_5", "contact"),
     "figure-7": figure_7,
     "phase-portrait": partial(of_page, "motion/c_phase_portrait"),
-    "ensemble": distribution,
+    "ensemble": draw,
     "rolling-resistance": partial(of_page, "materials/b_three_temperatures"),
     "rolling-equilibria": partial(of_page, "drive/a_equilibria"),
     "wheel-spin": partial(of_page, "drive/b_wheel_spin"),

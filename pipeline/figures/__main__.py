@@ -23,8 +23,7 @@ from . import FIGURES
 
 def work(config: Path, out: Path) -> stage.Outcome:
     del config  # nothing of it
-    ensemble = loaded(out / "ensemble.nc")
-    shown: dict[str, tuple[Any, ...]] = {"ensemble": (ensemble, ensemble)}
+    shown: dict[str, tuple[Any, ...]] = {"ensemble": (loaded(out / "ensemble.nc"),)}
     folder, files = stage.make_folder(out / "figures"), []
     for name, draw in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):
         files.append(folder / f"{name}.png")

@@ -22,7 +22,7 @@ SECTIONS: dict[str, dict[str, str]] = {
         "it to rest.",
     },
     "Random throws": {
-        "ensemble": "Left: speeds over time.  Right: when stick begins.",
+        "ensemble": "Left: over time, by quantiles.  Right: at the end.",
     },
     "Under load": {
         "rolling-equilibria": "Where the pull of a slope meets rolling resistance.  Behind a hump the balance is "

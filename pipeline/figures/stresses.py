@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from viscoroll.contact_law.stress import stress
 from viscoroll.core.plots.style import LINES, THIN, labelled, new_figure
@@ -22,8 +21,6 @@ PAPER_TIMES = (1.52e-4, 4e-4, 24e-4, 30e-4)
 _SCENE = ("alpha", "kappa", "mu", "gamma")
 #: Times are shown in units of 1e-4.
 _UNIT = 1e4
-#: Fig. 7: points of 801 that make the front edge, and how much of x/l0 its inset shows
-_FRONT, _NEAR = 30, 0.02
 
 
 def figure_7() -> Figure:
@@ -45,23 +42,9 @@ def figure_7() -> Figure:
         axes.axvline(0.0, color="0.7", linewidth=0.6, linestyle=":")
         text = f"{labelled('delta')} = ${number(motion.delta[n], 2)}$, {labelled('beta')} = {state.beta[n]:.3f}"
         axes.set_title(rf"{labelled('t')} = ${_UNIT * motion.t[n]:.3g}\times 10^{{-4}}$: {text}", fontsize="medium")
-        if found.p[-_FRONT:].max() > found.p[-2 * _FRONT]:  # pressure rises towards the front edge
-            _front_edge(axes, x, found, scene.mu)
     for axes in panels[1]:
         axes.set_xlabel("$x/l_0$")
     for axes in panels[:, 0]:
         axes.set_ylabel(r"$|\tau|/E'$, $\mu p/E'$  ($\times 10^3$)")
     panels[0, 0].legend(frameon=False, loc="upper left")
     return figure
-
-
-def _front_edge(axes: Any, x: NDArray, found: Any, mu: float) -> None:
-    """An inset of the front edge: material that has not relaxed yet makes a narrow peak there."""
-    inset = axes.inset_axes((0.52, 0.5, 0.4, 0.42))
-    inset.plot(x, 1e3 * mu * found.p, **LINES[1])
-    inset.plot(x, 1e3 * np.abs(found.tau), **LINES[0])
-    near = x > x[-1] - _NEAR
-    inset.set(xlim=(x[-1] - _NEAR, x[-1] + 0.15 * _NEAR), ylim=(0.0, 1.3e3 * mu * float(found.p[near].max())))
-    inset.set_title("front edge", fontsize="small")
-    inset.locator_params(nbins=3)
-    inset.tick_params(labelsize="small")

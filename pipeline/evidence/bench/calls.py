@@ -61,21 +61,21 @@ def bound_law(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     base = PAPER.replace(material=vr.Bodies(rubber(3), vr.Prony.elastic(), 0.8))
     calls = {}
     for name, scene in {"one alpha": PAPER, "3 modes": three, "3 modes on an elastic base": base}.items():
-        omega = V * (1.0 + creep(scene, V, share))
-        contact = partial(vr.contact, scene, fields=("Q", "M", "M_half_space", "M_cylinder"))
-        law = vr.law(scene)  # compiled
+        omega, law = V * (1.0 + creep(scene, V, share)), vr.law(scene)  # compiled
         numbers = list(zip(V[:few].tolist(), omega[:few].tolist()))
         (function, data), out = law.ctypes, (ctypes.c_double * 8)()
+
+        def contact(v, w, slopes, scene=scene):
+            return vr.contact(scene, v, omega=w, fields=("Q", "M", "M_half_space", "M_cylinder"), slopes=slopes)
 
         def each(call, numbers=numbers):
             return few, lambda: [call(v, w) for v, w in numbers]
 
         for slopes in (False, True):
-            one = partial(lambda contact, slopes, v, w: contact(v, omega=w, slopes=slopes), contact, slopes)
-            calls[name, "numbers", slopes] = each(partial(law, slopes=slopes))
-            calls[name, "numbers, contact", slopes] = each(one)
-            calls[name, "array", slopes] = n, partial(law, V, omega, slopes=slopes)
-            calls[name, "array, contact", slopes] = n, partial(contact, V, omega=omega, slopes=slopes)
+            for who, call in {"": law, ", contact": contact}.items():
+                one = partial(call, slopes=slopes)
+                calls[name, f"numbers{who}", slopes] = each(one)
+                calls[name, f"array{who}", slopes] = n, partial(one, V, omega)
         calls[name, "jitted", True] = n, partial(jitted_states, law.jitted, V, omega)
         called = partial(lambda call, out, data, v, w: call(v, w, out, data), function, out, data)
         calls[name, "C by ctypes", True] = each(called)
@@ -124,7 +124,7 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     """Many motions of one scene by its flow map: ns a motion by fields and output times; the map's own figures."""
-    request, start = flow.asked(PAPER, 2.0), starts(np.random.default_rng(sizes["seed"]), sizes["motions"])
+    start = starts(np.random.default_rng(sizes["seed"]), sizes["motions"])
     t = np.linspace(0.0, sizes["end"], sizes["times"] + 1)[1:]
 
     def load() -> Any:
@@ -138,7 +138,9 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
             name = f"final {named}" if times.size == 1 else f"{named} at {t.size} times"
             calls[name] = start[0].size, ensemble(PAPER, start, times, fields, method="flow")
     rows = timed(calls, sizes["repeats"])
-    once = timed({"build": (1e9, partial(flow.build, *request, 1)), "load": (1e9, load)}, sizes["repeats"])
+    once = timed(
+        {"build": (1e9, partial(flow.build, *flow.asked(PAPER, 2.0), 1)), "load": (1e9, load)}, sizes["repeats"]
+    )
     few = start[:, : sizes["exact"]]
     mine = ensemble(PAPER, few, t, method="flow")()
     by_map, off = mine.flow, speed_error(mine, ensemble(PAPER, few, t, rtol=1e-11)())

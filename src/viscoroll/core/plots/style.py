@@ -82,15 +82,15 @@ def log_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray, middle: str | None = None) -> None:
-    """Quantiles over t, a row a level: pairs of them as bands, a middle one as a line with the label ``middle``."""
+def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
+    """Quantiles over t, a row a level: pairs of them as bands, a middle one as a line."""
     for n in range(levels.size // 2):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
         grey = _GREYS[min(n, len(_GREYS) - 1)]
         axes.fill_between(t, values[n], values[-1 - n], color=grey, linewidth=0.0, label=text)
     if levels.size % 2:
         n = levels.size // 2
-        axes.plot(t, values[n], ".-", color="black", label=middle or f"{100 * levels[n]:g} %")
+        axes.plot(t, values[n], ".-", color="black", label=f"{100 * levels[n]:g} %")
     axes.axhline(0.0, **THIN)
     if levels.size:
         axes.legend(frameon=False, fontsize="small")
