@@ -6,7 +6,7 @@ from ..compile.held import loaded
 from ..compile.jit import kernel
 from .collocation import NODES, WIDE, N, rise_at, rise_terms
 from .load import BRAKE
-from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, may_end
+from .nodes import DRIVE, EVENT, OF_EVENT, OF_SECOND, OF_V, SECOND, SPEED, V, extremes, may_end
 from .rates import creep_limit, edge
 from .records import EDGE, EVENTS, FREED, NO_EVENT, SLOW, STOP, TURN
 
@@ -31,10 +31,8 @@ _ASIDE, _STEPS, _NEAR_BY = 1e-3, 5, 0.1
 @kernel
 def _node_of(event, last, nodes):
     """Node up to the ``last`` at which an event's function first has fallen below 0; 0 for none."""
-    largest = 0.0
-    for i in range(N + 1):
-        largest = max(largest, nodes[EVENT + WIDE * event + i])
-    inside = nodes[EVENT + WIDE * event] > _ROUNDING * largest
+    _, most = extremes(EVENT + WIDE * event, nodes)
+    inside = nodes[EVENT + WIDE * event] > _ROUNDING * max(most, 0.0)
     for i in range(1, last + 1):
         value = nodes[EVENT + WIDE * event + i]
         if value < 0.0 and inside and (event != EDGE or value < -_NOISE * _scale(event, nodes)):
@@ -44,14 +42,14 @@ def _node_of(event, last, nodes):
 
 
 @kernel(inline=True)
-def first_event(panel, frame, nodes):
+def first_event(panel, frame, case):
     """(Event whose function falls below 0 first, v there); NO_EVENT for none.
 
     Between the same two nodes the interpolants tell which comes first: behind V = 0 no other counts.
     """
-    event, last, v = NO_EVENT, N, 2.0
+    event, last, v, nodes = NO_EVENT, N, 2.0, case.nodes
     for row in range(EVENTS):
-        node = _node_of(row, last, nodes) if may_end(row, panel, frame) else 0
+        node = _node_of(row, last, nodes) if may_end(row, panel, frame, case) else 0
         if node == 0:
             continue
         here = place_of(row, node, nodes)
@@ -65,28 +63,17 @@ def first_event(panel, frame, nodes):
 
 
 @kernel(inline=True)
-def goes_behind(nodes):
-    """Whether V is negative at a node: in partial slip there is no motion there, and none that goes on from there."""
-    least = 0.0
-    for i in range(1, N + 1):
-        least = min(least, nodes[V + i])
-    return least < 0.0
-
-
-@kernel(inline=True)
 def passed_over(panel, frame, case):
     """Event whose function begins at 0 and is negative at all nodes: if the regime lasts at all it has ended before
     the first of them; NO_EVENT for none."""
     nodes = case.nodes
     for row in range(EVENTS):
         # full slip is a case of the equations of partial slip
-        if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame):
+        if row == SLOW or (row == EDGE and not frame.slips) or not may_end(row, panel, frame, case):
             continue
-        most, scale = nodes[EVENT + WIDE * row], _scale(row, nodes)
+        (_, most), scale = extremes(EVENT + WIDE * row, nodes), _scale(row, nodes)
         if row == TURN:
             scale = max(scale, nodes[SPEED + N])
-        for i in range(1, N + 1):
-            most = max(most, nodes[EVENT + WIDE * row + i])
         if most <= _ROUNDING * scale and nodes[EVENT + WIDE * row + N] < -_near(case.limits.rtol) * scale:
             return row
     return NO_EVENT
@@ -164,14 +151,11 @@ def located(event, v, frame, case):
 @kernel
 def _scale(event, nodes):
     """What the function of an event is made of."""
-    largest = 0.0
-    for i in range(N + 1):
-        largest = max(largest, abs(nodes[EVENT + WIDE * event + i]))
-        if event in (EDGE, STOP, SLOW):
-            largest = max(largest, nodes[SPEED + i])
-        elif event == FREED:
-            largest = max(largest, nodes[DRIVE + WIDE * BRAKE + i] * nodes[DRIVE + WIDE * BRAKE + i])
-    return largest
+    least, most = extremes(EVENT + WIDE * event, nodes)
+    most = max(most, -least)
+    if event in (EDGE, STOP, SLOW):
+        return max(most, extremes(SPEED, nodes)[1])
+    return max(most, extremes(DRIVE + WIDE * BRAKE, nodes)[1] ** 2) if event == FREED else most
 
 
 @kernel(inline=True)
@@ -183,8 +167,6 @@ def _near(rtol):
 @kernel
 def ends_on(event, nodes, rtol):
     """Whether a panel ends on an event: its function has fallen to 0, and does not only set out from there."""
-    last, largest = nodes[EVENT + WIDE * event + N], nodes[EVENT + WIDE * event]
-    for i in range(1, N):
-        largest = max(largest, nodes[EVENT + WIDE * event + i])
-    scale = _scale(event, nodes)
-    return last < largest and largest > _NOISE * scale and abs(last) <= _near(rtol) * scale
+    row, scale = EVENT + WIDE * event, _scale(event, nodes)
+    last, (_, most) = nodes[row + N], extremes(row, nodes)
+    return last < most and most > _NOISE * scale and abs(last) <= _near(rtol) * scale

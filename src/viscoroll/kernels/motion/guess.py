@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from .collocation import SHARES, N, rise_at
 from .load import load_at
-from .nodes import DIAGONAL, OF_SECOND, OF_V, RATE, SECOND, SPEED, V_RATE, V, time_at
+from .nodes import OF_SECOND, OF_V, RATE, SECOND, SPEED, V_RATE, V, along, time_at
 from .origin import departing
 from .rates import rates_of
 from .records import State
@@ -36,13 +36,6 @@ def guess(panel, slope, track, frame, case):
 
 
 @kernel(inline=True)
-def _along(tau, panel):
-    """v at a time."""
-    share = max(tau - panel.tau, 0.0) / panel.length
-    return 2.0 * (share if panel.power == 1 else share ** (1.0 / panel.power))
-
-
-@kernel(inline=True)
 def _keep(i, speed, second, slips, nodes):
     """Unknowns at a node; in partial slip V >= 0, |d| <= 1."""
     nodes[V + i] = speed if slips else max(speed, 0.0)
@@ -52,27 +45,21 @@ def _keep(i, speed, second, slips, nodes):
 @kernel
 def _follow(panel, track, frame, nodes):
     """Along the interpolants of a panel."""
-    start = _along(panel.tau, track)
+    start = along(panel.tau, track)
     speed, second = nodes[V] - rise_at(start, nodes, OF_V), nodes[SECOND] - rise_at(start, nodes, OF_SECOND)
     for i in range(1, N + 1):
-        v = _along(time_at(panel, i), track)
+        v = along(time_at(panel, i), track)
         _keep(i, speed + rise_at(v, nodes, OF_V), second + rise_at(v, nodes, OF_SECOND), frame.slips, nodes)
-
-
-@kernel(inline=True)
-def _lasting(slope, since):
-    """How long a pace that relaxes with this slope would have had to last."""
-    return np.expm1(slope * since) / slope if slope < 0.0 and slope * since < -1e-8 else since
 
 
 @kernel
 def _set_out(panel, slope, frame, nodes):
-    """Unknowns at the nodes: on their way to where they come to stand, V if it falls."""
-    pace, fall = nodes[RATE] if frame.slips else nodes[RATE] / nodes[V], nodes[DIAGONAL] if nodes[V_RATE] < 0.0 else 0.0
+    """Unknowns at the nodes: the second on its way to where it comes to stand."""
+    pace = nodes[RATE] if frame.slips else nodes[RATE] / nodes[V]
     for i in range(1, N + 1):
-        since = panel.length * (SHARES[i] if panel.power == 1 else SHARES[i] ** panel.power)
-        speed = nodes[V] + nodes[V_RATE] * _lasting(fall, since)
-        _keep(i, speed, nodes[SECOND] + pace * _lasting(slope, since), frame.slips, nodes)
+        since = panel.length * SHARES[i]
+        lasting = np.expm1(slope * since) / slope if slope * since < -1e-8 else since
+        _keep(i, nodes[V] + nodes[V_RATE] * since, nodes[SECOND] + pace * lasting, frame.slips, nodes)
 
 
 @kernel

@@ -10,9 +10,9 @@ import numpy as np
 from ..compile.held import held
 from ..compile.jit import kernel
 from .load import brakes, goes_on, piece_end, threshold, undriven, unloaded
-from .nodes import PATHS, TOTALS
-from .origin import EITHER, STAYS, STICKS, depart, leaving_time
-from .output import coast, put_here, put_still, regime_of
+from .nodes import ONSET, PATHS, REST_TIME, TOTALS, TURNS
+from .origin import EITHER, SLIDES, STAYS, STICKS, depart, leaving_time
+from .output import coast, note, put_here, put_still, regime_of
 from .phase import creeps, phase
 from .rates import creep_limit, inertia_at, room, speeds
 from .records import (
@@ -47,8 +47,6 @@ _ROUNDING = 1e-13
 _STILL = 1e-75
 #: length of the panel behind that, over the time so far
 _SETTLING = 1e-11
-#: share of the length of panels that is kept where the law bends at delta = 0
-_PAST = 0.7
 
 
 @kernel
@@ -85,30 +83,18 @@ def _still_regime(clock, case):
 @kernel
 def stay(clock, case):
     """At V = omega = 0: (how, state, frame, clock) once the cylinder departs, or the piece of the drive ends."""
-    state = State(0.0, 0.0)
     kind, frame, d = depart(clock.tau, clock.piece, case)
-    if kind == STAYS:
-        until = leaving_time(clock.tau, clock.piece, case)
-        closed = until == case.tau[case.tau.size - 1]
-        clock = put_still(until, closed, _still_regime(clock, case), clock, case)
-        return kind, state, frame, clock
-    clock = clock_at(0.0, clock)
-    return kind, State(0.0, d if kind == STICKS else 0.0), frame, clock
+    if kind == STICKS or kind == SLIDES:
+        return kind, State(0.0, d), frame, clock_at(0.0, clock)
+    until = leaving_time(clock.tau, clock.piece, case) if kind == STAYS else clock.tau
+    closed = kind == EITHER or until == case.tau[case.tau.size - 1]
+    return kind, State(0.0, 0.0), frame, put_still(until, closed, _still_regime(clock, case), clock, case)
 
 
 @kernel(inline=True)
 def clock_at(length, clock):
     """The same clock, with this length to try."""
     return Clock(clock.tau, clock.at, clock.piece, clock.steps, clock.ends, length)
-
-
-@kernel
-def note(what, noted, clock, case):
-    """Note a change of regime or of the sign of V; how many there were."""
-    switches = case.switches
-    if noted < switches.shape[0]:
-        switches[noted, 0], switches[noted, 1] = clock.tau / case.scene.gamma, what
-    return noted + 1
 
 
 @kernel
@@ -124,6 +110,14 @@ def rests(moving, state, frame, clock, case):
     if rest == 0.0 or not moving:
         return rest > 0.0
     return max(abs(state.V), abs(speeds(state, frame, case.scene)[0])) <= rest
+
+
+@kernel
+def spent(event, state, frame, case):
+    """Whether the added mass is beyond its range, or this event is that it has come to the end of it."""
+    left = room(inertia_at(state.V, case.scene)[0], case.scene.j)
+    at_end = event == EDGE and left < 1.0 - frame.sigma * state.second
+    return not frame.slips and (left <= 0.0 or at_end)
 
 
 @kernel
@@ -144,16 +138,10 @@ def vanishes(state, frame, clock, case):
 
 
 @kernel
-def spent(event, state, frame, case):
-    """Whether the added mass is beyond its range, or this event is that it has come to the end of it."""
-    left = room(inertia_at(state.V, case.scene)[0], case.scene.j)
-    at_end = event == EDGE and left < 1.0 - frame.sigma * state.second
-    return not frame.slips and (left <= 0.0 or at_end)
-
-
-@kernel
 def settled(state, frame, clock, case):
-    """(State, frame) once d has relaxed at a time: p stays as it is."""
+    """(Whether V is left, state, frame, clock) once d has relaxed at a time: p stays as it is."""
+    if vanishes(state, frame, clock, case):
+        return False, state, frame, clock
     load, rates = here(state, frame, clock, case)
     n = inertia_at(state.V, case.scene)[0]
     inertia = load.per_omega + load.per_V * load.per_omega * n
@@ -167,85 +155,97 @@ def settled(state, frame, clock, case):
         else:
             high = d
         d = 0.5 * (low + high)
+    clock = clock_at(_SETTLING * clock.tau, clock)
     if low > -1.0 and high < 1.0:
-        return state, frame
-    return State(state.V, state.V * (1.0 + creep_limit(state.V, case.scene) * frame.sigma)), Frame(
-        True, frame.direction, frame.sigma, frame.spin, frame.locked
-    )
+        return True, state, frame, clock
+    omega = state.V * (1.0 + creep_limit(state.V, case.scene) * frame.sigma)
+    return True, State(state.V, omega), Frame(True, frame.direction, frame.sigma, frame.spin, frame.locked), clock
+
+
+@kernel
+def next_piece(moving, state, frame, clock, case):
+    """(Whether the cylinder moves, state, frame, clock) where a piece of the drive ends and there is a next one."""
+    pieces = case.drive.pieces
+    if clock.tau < piece_end(clock.piece, case) or clock.piece + 1 == pieces.shape[0]:
+        return moving, state, frame, clock
+    length = clock.length if goes_on(clock.piece, pieces) else 0.0
+    clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
+    if moving:
+        state, frame = at_new_piece(state, frame, clock, case)
+        moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+    return moving, state, frame, clock
+
+
+@kernel
+def come_to_rest(regime, state, frame, clock, case):
+    """The clock at the end of a motion that comes below the threshold of rest now."""
+    nodes, omega = case.nodes, speeds(state, frame, case.scene)[0]
+    if regime >= 0 and regime != REST:
+        note(REST, clock, case)
+    nodes[REST_TIME] = clock.tau / case.scene.gamma
+    nodes[TOTALS + PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
+    return put_still(case.tau[case.tau.size - 1], True, REST, clock, case)
 
 
 @kernel
 def follow(moving, fresh, state, frame, clock, case):
-    """From phase to phase until outputs end: (status, clock, changes of regime, onset time, rest time)."""
-    event, onset_time, turns, noted, settled_at = NO_EVENT, np.nan, 0, 0, -1.0
-    regime, end = regime_of(frame) if moving else -1, case.tau[case.tau.size - 1]
+    """From phase to phase until outputs end: (status, clock)."""
+    event, settled_at, nodes, regime = NO_EVENT, -1.0, case.nodes, regime_of(frame) if moving else -1
     while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
-            return STEP_LIMIT, clock, turns, onset_time, np.nan
-        if clock.tau >= piece_end(clock.piece, case) and clock.piece + 1 < case.drive.pieces.shape[0]:
-            length = clock.length if goes_on(clock.piece, case.drive.pieces) else 0.0
-            clock = Clock(clock.tau, clock.at, clock.piece + 1, clock.steps, clock.ends, length)
-            if moving:
-                state, frame = at_new_piece(state, frame, clock, case)
-                moving = not frame.slips or state.V != 0.0 or state.second != 0.0
+            return STEP_LIMIT, clock
+        moving, state, frame, clock = next_piece(moving, state, frame, clock, case)
         if moving and spent(event, state, frame, case):
-            return UNSTEADY, put_here(state, frame, clock, case), turns, onset_time, np.nan
+            return UNSTEADY, put_here(state, frame, clock, case)
         event, direction, before = NO_EVENT, frame.direction, clock
         if rests(moving, state, frame, clock, case):
             event = SLOW
-        elif moving and clock.tau >= end:
-            clock = put_here(state, frame, clock, case)
         elif not moving:
             kind, state, frame, clock = stay(clock, case)
             if kind == EITHER:
-                clock = put_still(clock.tau, True, _still_regime(clock, case), clock, case)
-                return UNDECIDED, clock, turns, onset_time, np.nan
+                return UNDECIDED, clock
             moving = kind != STAYS
+        elif clock.tau >= case.tau[case.tau.size - 1]:
+            clock = put_here(state, frame, clock, case)
         elif coasts(state, frame, clock, case):
-            clock, rest_time = coast(state, frame, clock, case)
-            return DONE if np.isnan(rest_time) else RESTED, clock, turns, onset_time, rest_time
+            return coast(state, frame, clock, case)
         else:
             event, state, frame, clock = phase(fresh, state, frame, clock, case)
-        fresh = event == EDGE and frame.slips
-        if event == STUCK and clock.tau > settled_at and unresolved(state, frame, clock, case):
-            settled_at, moving = clock.tau, not vanishes(state, frame, clock, case)
-            if moving:
-                state, frame = settled(state, frame, clock, case)
-                clock = clock_at(_SETTLING * clock.tau, clock)
-            continue
-        if event == STUCK:
-            return STEP_TOO_SMALL, clock, turns, onset_time, np.nan
         if event == SLOW:
-            if regime >= 0 and regime != REST:
-                turns, noted = turns + 1, note(REST, noted, clock, case)
-            rest_time, omega = clock.tau / case.scene.gamma, speeds(state, frame, case.scene)[0]
-            case.nodes[TOTALS + PATHS - 1] += 0.5 * (state.V * state.V + case.scene.j * omega * omega)
-            return RESTED, put_still(end, True, REST, clock, case), turns, onset_time, rest_time
+            return RESTED, come_to_rest(regime, state, frame, clock, case)
+        fresh = event == EDGE and frame.slips
+        if event == STUCK:
+            if clock.tau <= settled_at or not unresolved(state, frame, clock, case):
+                return STEP_TOO_SMALL, clock
+            settled_at = clock.tau
+            moving, state, frame, clock = settled(state, frame, clock, case)
+            continue
         if event != NO_EVENT and not spent(event, state, frame, case):
-            state, frame, still = switch(event, state, frame, clock, case)
-            moving = not still
-            clock = clock_at(_PAST * clock.length if event == KINK else 0.0, clock)
+            moving, state, frame = switch(event, state, frame, clock, case)
+            clock = clock_at(clock.length if event == KINK else 0.0, clock)
         if moving and regime >= 0 and frame.direction != direction:
-            noted = note(REVERSED, noted, clock, case)
+            note(REVERSED, clock, case)
         now = regime_of(frame) if moving else _still_regime(clock, case)
         if now != regime and (moving or event == NO_EVENT):
             if regime >= 0:
-                turns, noted = turns + 1, note(now, noted, clock if moving else before, case)
-            onset_time = clock.tau / case.scene.gamma if fresh and np.isnan(onset_time) else onset_time
+                note(now, clock if moving else before, case)
+            if fresh and np.isnan(nodes[ONSET]):
+                nodes[ONSET] = clock.tau / case.scene.gamma
             regime = now
-    return DONE, clock, turns, onset_time, np.nan
+    return DONE, clock
 
 
 @kernel
 def integrate(V0, omega0, given):
     """Roll one motion from t = 0 to the last of its times: (status, steps, switches, onset time, rest time)."""
     case = held(given)
-    clock = Clock(0.0, 0, 0, 0, 0, 0.0)
+    nodes, clock = case.nodes, Clock(0.0, 0, 0, 0, 0, 0.0)
+    nodes[ONSET] = nodes[REST_TIME] = np.nan
     state, frame, fresh = State(0.0, 0.0), Frame(False, 1.0, 1.0, 0.0, False), False
     fastest = max(abs(V0), abs(omega0))
     moving = fastest >= _STILL or (fastest > 0.0 and undriven(0, case.drive))
     if moving:
         state, frame, fresh = enter(V0 if abs(V0) > _TINY * abs(omega0) else 0.0, omega0, clock, case)
         state, frame = at_new_piece(state, frame, clock, case)
-    status, clock, turns, onset_time, rest_time = follow(moving, fresh, state, frame, clock, case)
-    return status, clock.steps, turns, onset_time, rest_time
+    status, clock = follow(moving, fresh, state, frame, clock, case)
+    return status, clock.steps, nodes[TURNS], nodes[ONSET], nodes[REST_TIME]

@@ -101,10 +101,15 @@ def goes_on(piece, pieces):
     return True
 
 
-@kernel(inline=True)
-def varies(piece, drive):
-    """Whether the drive is not written as a constant within a piece."""
-    return terms_of(drive.pieces[piece]) > 1
+@kernel
+def constant(piece, pieces):
+    """Whether the drive stays as it is within a piece."""
+    row, change = pieces[piece], 0.0
+    terms = terms_of(row)
+    for function in range(FUNCTIONS):
+        for n in range(1, terms):
+            change += abs(row[FIRST + function * terms + n])
+    return change == 0.0
 
 
 @kernel

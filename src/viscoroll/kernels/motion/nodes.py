@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..compile.held import loaded
 from ..compile.jit import kernel
 from .collocation import INTEGRAL, SHARES, WIDE, N
-from .load import FUNCTIONS, load_of, needed, values_at, varies
+from .load import FUNCTIONS, constant, load_of, needed, values_at
 from .rates import edge, rates_of, speeds
 from .records import EDGE, EVENTS, FREED, KINK, SLOW, STOP, TURN, State
 
@@ -30,39 +30,44 @@ OF_V = DRIVE + WIDE * FUNCTIONS
 OF_SECOND, OF_PATH = OF_V + WIDE, OF_V + WIDE * 2
 OF_EVENT = OF_PATH + WIDE * PATHS
 TOTALS = OF_EVENT + WIDE
-NUMBERS = TOTALS + PATHS
+#: of a motion: changes of regime, what was noted, when stick first formed and when rest was reached
+TURNS, NOTED, ONSET, REST_TIME = range(TOTALS + PATHS, TOTALS + PATHS + 4)
+NUMBERS = REST_TIME + 1
 #: |d| up to which either branch of the law serves: they differ by its square
 FAINT = 1e-8
 
 
 class Panel(NamedTuple):
-    """A stretch of time within a piece of the drive; it grows as (v/2)^power, v in [0, 2].
+    """A stretch of time within a piece of the drive.
 
     known : whether the slope of the second unknown at the left end is
-    alone : whether nothing drives from there on: V is measured by its own size
-    rest : speed below which the motion ends at rest; 0 for none
+    alone : whether nothing drives from there on: V is measured by its own size, and may come below the threshold of
+        rest
     """
 
     tau: float
     length: float
-    power: int
     piece: int
     known: bool
     alone: bool
-    rest: float
 
 
 @kernel(inline=True)
-def grade(i, power):
-    """Slope of share^power at node i."""
-    return 1.0 if power == 1 else power * SHARES[i] ** (power - 1)
+def cut(panel, length):
+    """The panel, of this length."""
+    return Panel(panel.tau, length, panel.piece, panel.known, panel.alone)
 
 
 @kernel(inline=True)
 def time_at(panel, i):
     """tau at node i."""
-    share = SHARES[i]
-    return panel.tau + panel.length * (share if panel.power == 1 else share**panel.power)
+    return panel.tau + panel.length * SHARES[i]
+
+
+@kernel(inline=True)
+def along(tau, panel):
+    """v at a time, at the earliest its beginning."""
+    return 2.0 * (max(tau - panel.tau, 0.0) / panel.length)
 
 
 @kernel
@@ -70,7 +75,7 @@ def put_drive(panel, case):
     """Fill the drive at all nodes."""
     nodes = case.nodes
     values = values_at(panel.tau, panel.piece, case.drive)
-    changes = varies(panel.piece, case.drive)
+    changes = not constant(panel.piece, case.drive.pieces)
     for i in range(N + 1):
         if changes:
             values = values_at(time_at(panel, i), panel.piece, case.drive)
@@ -86,20 +91,20 @@ def load_there(i, frame, case):
 
 
 @kernel(inline=True)
-def put_node(i, rates, weight, nodes):
-    """Keep what the equations say at node i, rates times ``weight``."""
-    nodes[P_RATE + i], nodes[RATE + i] = weight * rates.p_rate, weight * rates.rate
+def put_node(i, rates, nodes):
+    """Keep what the equations say at node i."""
+    nodes[P_RATE + i], nodes[RATE + i] = rates.p_rate, rates.rate
     nodes[P + i], nodes[SPEED + i] = rates.p, max(abs(nodes[V + i]), abs(rates.omega))
 
 
 @kernel(inline=True)
-def may_end(event, panel, frame):
+def may_end(event, panel, frame, case):
     """Whether an event may end this regime here."""
     if event == KINK:
         return not frame.slips
     if event == STOP:
         return frame.spin != 0.0 and not frame.locked
-    return frame.locked if event == FREED else event != SLOW or panel.rest > 0.0
+    return frame.locked if event == FREED else event != SLOW or (panel.alone and case.limits.rest > 0.0)
 
 
 @kernel
@@ -114,36 +119,45 @@ def acting_at(i, frame, case):
 @kernel(inline=True)
 def put_events(panel, frame, case):
     """Fill the functions of events at all nodes of a panel that is solved."""
-    nodes, scene = case.nodes, loaded(case.scene)
+    nodes, scene, rest = case.nodes, loaded(case.scene), case.limits.rest
     for i in range(N + 1):
         speed, second = nodes[V + i], nodes[SECOND + i]
         nodes[EVENT + WIDE * TURN + i] = speed
         nodes[EVENT + WIDE * EDGE + i] = edge(speed, second, frame, scene)
         if not frame.slips:
             nodes[EVENT + WIDE * KINK + i] = frame.sigma * second + FAINT
-        if frame.spin != 0.0 or panel.rest > 0.0:
+        if frame.spin != 0.0 or (panel.alone and rest > 0.0):
             omega, delta = speeds(State(speed, second), frame, scene)
             # in partial slip omega vanishes with V, which is another event, and by its own
             stops = omega if frame.slips else 1.0 + delta if speed > 0.0 else 1.0
             nodes[EVENT + WIDE * STOP + i] = frame.spin * stops
-            nodes[EVENT + WIDE * SLOW + i] = max(abs(speed), abs(omega)) - panel.rest
+            nodes[EVENT + WIDE * SLOW + i] = max(abs(speed), abs(omega)) - rest
         if frame.locked:  # of squares: smooth where what the brake takes changes its sign
             most, brake = load_there(i, frame, case).brake, acting_at(i, frame, case)[1][2]
             nodes[EVENT + WIDE * FREED + i] = most * most - brake * brake
 
 
 @kernel(inline=True)
-def put_path(panel, frame, case):
-    """Fill the integrands of the path at all nodes."""
-    nodes = case.nodes
+def put_path(frame, case):
+    """Fill the integrands of the path at all nodes: distance and angle are integrals over t, the rest are energies."""
+    nodes, pace = case.nodes, frame.direction / case.scene.gamma
     for i in range(N + 1):
         rates, (force, torque, brake) = acting_at(i, frame, case)
-        speed, omega, weight = nodes[V + i], rates.omega, grade(i, panel.power)
-        nodes[PATH + i], nodes[PATH + WIDE + i] = weight * speed, weight * omega
-        nodes[PATH + WIDE * 2 + i], nodes[PATH + WIDE * 3 + i] = weight * (force * speed), weight * (torque * omega)
-        nodes[PATH + WIDE * 4 + i] = -weight * (brake * omega)
-        nodes[PATH + WIDE * 5 + i] = weight * ((omega - speed) * rates.Q)
-        nodes[PATH + WIDE * 6 + i] = weight * (speed * rates.M_half_space + omega * rates.M_cylinder)
+        speed, omega = nodes[V + i], rates.omega
+        nodes[PATH + i], nodes[PATH + WIDE + i] = pace * speed, pace * omega
+        nodes[PATH + WIDE * 2 + i], nodes[PATH + WIDE * 3 + i] = force * speed, torque * omega
+        nodes[PATH + WIDE * 4 + i] = -brake * omega
+        nodes[PATH + WIDE * 5 + i] = (omega - speed) * rates.Q
+        nodes[PATH + WIDE * 6 + i] = speed * rates.M_half_space + omega * rates.M_cylinder
+
+
+@kernel
+def extremes(row, nodes):
+    """Least and most of a row."""
+    least = most = nodes[row]
+    for i in range(1, N + 1):
+        least, most = min(least, nodes[row + i]), max(most, nodes[row + i])
+    return least, most
 
 
 @kernel

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .load import FIRST, FUNCTIONS, brakes, load_at, piece_end, terms_of
+from .load import brakes, constant, load_at, piece_end
 from .rates import inertia_at
 from .records import Frame, Load
 
@@ -131,17 +131,6 @@ def leaving_time(tau, piece, case):
                     low = middle
         low = high
     return end
-
-
-@kernel
-def constant(piece, pieces):
-    """Whether the drive stays as it is within a piece."""
-    row, change = pieces[piece], 0.0
-    terms = terms_of(row)
-    for function in range(FUNCTIONS):
-        for n in range(1, terms):
-            change += abs(row[FIRST + function * terms + n])
-    return change == 0.0
 
 
 @kernel

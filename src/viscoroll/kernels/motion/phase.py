@@ -7,7 +7,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..rows.record import ALPHA, E0
 from .collocation import N, rise_at
-from .events import NOWHERE, ends_on, first_event, goes_behind, located, passed_over, place_of
+from .events import NOWHERE, ends_on, first_event, located, passed_over, place_of
 from .load import load_at, piece_end, undriven, unloaded
 from .nodes import (
     DIAGONAL,
@@ -22,6 +22,8 @@ from .nodes import (
     V_RATE,
     Panel,
     V,
+    cut,
+    extremes,
     put_events,
     put_node,
 )
@@ -33,9 +35,8 @@ from .solve import panel_error, solve
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
 _FIRST, _RELAXED = 0.4, 3.0
-#: behind the onset of stick the law bends: nodes of the first panel lie as this power; how far d may go there, over
-#: what slip feeds back by
-_GRADED, _BEND = 3, 12.0
+#: behind the onset of stick the law bends: how far d may go on the first panel there, over what slip feeds back by
+_BEND = 12.0
 #: panels rejected in a row
 _MOST_REJECTIONS = 60
 #: V at the end of a panel, over that at its start, from which on V = 0 is sought
@@ -64,8 +65,8 @@ _RISE = 0.25
 _SOON = 1e-3
 #: relaxation times behind which d follows V, and what V may then change by, over rtol^(1/8)
 _OVER, _SLOW = 6.0, 4.0
-#: growth and shrinkage of panels; growth behind a graded panel, and the order of its error
-_GROW, _SHRINK, _FAILED, _SAFETY, _BEHIND, _BENT = 6.0, 0.1, 0.3, 0.9, 30.0, 3.0
+#: growth and shrinkage of panels
+_GROW, _SHRINK, _FAILED, _SAFETY = 6.0, 0.1, 0.3, 0.9
 #: V over the speed that divides slow from fast rolling, and |d|, both over rtol, below which V decays exponentially
 _SLOWEST, _SETTLED = 1e-4, 1e-2
 
@@ -112,21 +113,10 @@ def _first_length(fresh, clock, frame, case):
 
 
 @kernel(inline=True)
-def _pace_to_zero(panel, state, frame, case):
-    """Time until V = 0 at the pace at the start: there the law bends, and that of partial slip ends.
-
-    In partial slip V only comes to 0 against the drive.
-    """
+def _pace_to_zero(state, frame, case):
+    """Time until V = 0 in full slip at the pace at the start: there the law bends."""
     pace = case.nodes[V_RATE]
-    if not pace < 0.0:
-        return np.inf
-    if frame.slips:
-        return -state.V / pace
-    load = load_at(panel.tau, panel.piece, frame, case)
-    against = load.V_rate + load.omega_rate
-    if against > 0.0 or (against == 0.0 and load.force + load.torque >= 0.0):
-        return np.inf
-    return -state.V / pace
+    return -state.V / pace if frame.slips and pace < 0.0 else np.inf
 
 
 @kernel(inline=True)
@@ -144,8 +134,9 @@ def _attempt(panel, left, aimed, track, frame, case):
         if not size <= _CUTTABLE:
             break
         put_events(panel, frame, case)
-        found, v = first_event(panel, frame, nodes)
-        behind = goes_behind(nodes)
+        found, v = first_event(panel, frame, case)
+        # in partial slip there is no motion behind V = 0, and none that goes on from there
+        behind = extremes(V, nodes)[0] < 0.0
         missed = passed_over(panel, frame, case)
         if missed != NO_EVENT and panel.length <= _INSTANT * (panel.tau + left):
             return missed, 2.0, panel, min(size, 1.0), track
@@ -167,11 +158,11 @@ def _attempt(panel, left, aimed, track, frame, case):
             v = place_of(event, 0, nodes)
             if v >= NOWHERE:  # nowhere near
                 return NO_EVENT, 2.0, panel, size, track
-        length = min(panel.length * (0.5 * v) ** panel.power, longest)
+        length = min(panel.length * 0.5 * v, longest)
         if not (size <= 1.0 or longest == left) or not 0.0 < length < np.inf or length == panel.length:
             return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
         longest = panel.length if found != NO_EVENT else longest
-        panel = Panel(panel.tau, length, panel.power, panel.piece, panel.known, panel.alone, panel.rest)
+        panel = cut(panel, length)
     return NO_EVENT, 2.0, panel, max(size, _HOPELESS), track
 
 
@@ -193,12 +184,10 @@ def _next_length(panel, size, rejected, last, last_size):
     """
     length = _FAILED * panel.length
     if size < 1e300:
-        # the bend of the law at eta = 0 sets the error of graded nodes, and is left behind with them
-        most, order = (_GROW, 1.0 * N) if panel.power == 1 else (_BEHIND, _BENT)
-        length = panel.length * max(_SHRINK, min(most, _SAFETY * (size + 1e-30) ** (-1.0 / order)))
+        length = panel.length * max(_SHRINK, min(_GROW, _SAFETY * (size + 1e-30) ** (-1.0 / N)))
     if not size <= 1.0:
         return min(length, (_LESS if rejected == 0 else _FAR_LESS) * panel.length)
-    if panel.power > 1 or last == 0.0:
+    if last == 0.0:
         return length
     faster = panel.length / last * ((last_size + _TINY) / (size + _TINY)) ** (1.0 / N)
     return length * min(max(faster, 1.0), _FASTER)
@@ -210,7 +199,7 @@ def _begin(state, frame, clock, case):
     nodes = case.nodes
     nodes[V], nodes[SECOND] = state.V, state.second
     rates = rates_of(state, load_at(clock.tau, clock.piece, frame, case), frame, case.scene)
-    put_node(0, rates, 1.0, nodes)
+    put_node(0, rates, nodes)
     # at V = 0 d stands where it relaxes to, and Q is what rounding leaves of it
     nodes[V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.p_V
     nodes[SLOPE], nodes[DIAGONAL] = rates.rate_second / rates.weight, rates.p_rate_V / rates.p_V
@@ -236,20 +225,18 @@ def phase(fresh, state, frame, clock, case):
     nodes, limits = case.nodes, case.limits
     end, length, rejected, last, last_size = piece_end(clock.piece, case), clock.length, 0, 0.0, 1.0
     length = max(length, _INSTANT * clock.tau) if length > 0.0 else length
-    power = _GRADED if fresh else 1
     alone, free = undriven(clock.piece, case.drive), unloaded(clock.piece, case.drive)
-    rest = limits.rest if alone else 0.0
-    track = Panel(clock.tau, 0.0, 1, clock.piece, False, alone, rest)
+    track = Panel(clock.tau, 0.0, clock.piece, False, alone)
     while clock.tau < end and clock.steps < limits.max_steps and not (free and creeps(state, frame, case)):
         frame = _begin(state, frame, clock, case)
         if length == 0.0:
             length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
-        panel = Panel(clock.tau, min(length, left), power, clock.piece, frame.slips or state.V > NO_SPEED, alone, rest)
-        zero = _pace_to_zero(panel, state, frame, case)
+        panel = Panel(clock.tau, min(length, left), clock.piece, frame.slips or state.V > NO_SPEED, alone)
+        zero = _pace_to_zero(state, frame, case)
         aimed = zero <= panel.length and rejected == 0
         if zero < panel.length:
-            panel = Panel(panel.tau, zero, power, panel.piece, panel.known, alone, rest)
+            panel = cut(panel, zero)
         event, v, panel, size, track = _attempt(panel, left, aimed, track, frame, case)
         wanted, length = length, _next_length(panel, size, rejected, last, last_size)
         length = max(length, wanted) if size <= 1.0 and panel.length == left else length
@@ -260,14 +247,12 @@ def phase(fresh, state, frame, clock, case):
                 return STUCK, state, frame, clock
             continue
         whole = v == 2.0 and panel.length == left
-        clock = pass_panel(
-            end if whole else panel.tau + panel.length * (0.5 * v) ** power, v, panel, frame, clock, case
-        )
+        clock = pass_panel(end if whole else panel.tau + panel.length * 0.5 * v, v, panel, frame, clock, case)
         state = State(nodes[V + N], nodes[SECOND + N])
         if v < 2.0:
             state = State(nodes[V] + rise_at(v, nodes, OF_V), nodes[SECOND] + rise_at(v, nodes, OF_SECOND))
         if event != NO_EVENT:
             return event, state, frame, clock
         length = max(length, _slow_length(panel, frame, case))
-        power, rejected, last, last_size = 1, 0, panel.length, size
+        rejected, last, last_size = 0, panel.length, size
     return NO_EVENT, state, frame, clock

@@ -45,7 +45,6 @@ from .nodes import (
     WEIGHTS,
     P,
     V,
-    grade,
     load_there,
     put_drive,
     put_node,
@@ -102,17 +101,16 @@ def _put_equations(anew, panel, frame, case):
     product(SLOPES, SECOND, nodes[SECOND], nodes, SECOND_SLOPE, nodes)
     for i in range(1, WIDE):
         rates = rates_at(nodes[V + i], nodes[SECOND + i], load_there(i, frame, own), frame, own.scene)
-        weight = grade(i, panel.power)
-        put_node(i, rates, weight, nodes)
-        step, slope = half * weight, nodes[SECOND_SLOPE + i]
-        nodes[SECOND_RIGHT + i] = step * rates.rate - rates.weight * slope
+        put_node(i, rates, nodes)
+        slope = nodes[SECOND_SLOPE + i]
+        nodes[SECOND_RIGHT + i] = half * rates.rate - rates.weight * slope
         if anew:
             per = 1.0 / rates.p_V
-            coupled = per * (rates.weight_V * slope - step * rates.rate_V)
+            coupled = per * (rates.weight_V * slope - half * rates.rate_V)
             nodes[PER_P + i], nodes[P_SECOND + i], nodes[COUPLED + i] = per, rates.p_second, coupled
             nodes[WEIGHTS + i], nodes[SLOPE + i] = rates.weight, rates.rate_second / rates.weight
-            nodes[DIAGONAL + i], nodes[FED + i] = step * rates.p_rate_V * per, step * rates.p_rate_second
-            nodes[SECOND_DIAGONAL + i] = step * rates.rate_second + coupled * rates.p_second
+            nodes[DIAGONAL + i], nodes[FED + i] = half * rates.p_rate_V * per, half * rates.p_rate_second
+            nodes[SECOND_DIAGONAL + i] = half * rates.rate_second + coupled * rates.p_second
     product(SLOPES, P, nodes[P], nodes, P_SLOPE, nodes)
     for i in range(1, WIDE):
         nodes[RIGHT + i] = half * nodes[P_RATE + i] - nodes[P_SLOPE + i]
@@ -226,10 +224,10 @@ def _least(panel, case):
 @kernel(inline=True)
 def panel_error(panel, frame, case):
     """Error of the interpolants over their tolerance; of d only what its relaxation leaves of it counts."""
-    nodes, half, smooth = case.nodes, 0.5 * panel.length, panel.power == 1
+    nodes, half = case.nodes, 0.5 * panel.length
     of_V, of_second = scales(panel, frame, case)
     per = abs(nodes[PER_P + N])
-    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half if smooth else 0.0, nodes) * per
+    error = _mismatch(P, P_SLOPE, nodes[P_RATE] * half, nodes) * per
     varies = _variation(half, nodes) * per + case.limits.rtol * of_V
     error *= min(max(_UNRESOLVED * error / varies, 1.0), 1.0 / _OVERSTATED)
     # a mismatch may happen to be small where the last of Chebyshev's terms is not
@@ -242,7 +240,7 @@ def panel_error(panel, frame, case):
         error *= np.sqrt(max(nodes[SPEED + N] / nodes[SPEED], 1.0))
     if panel.known:
         weight = 1.0 if frame.slips else nodes[V]
-        off = _mismatch(SECOND, SECOND_SLOPE, nodes[RATE] / weight * half if smooth else 0.0, nodes)
+        off = _mismatch(SECOND, SECOND_SLOPE, nodes[RATE] / weight * half, nodes)
         # near the edge of the stick zone relaxation comes to an end
         error = max(error, off / ((1.0 + panel.length * abs(nodes[SLOPE])) * of_second))
     if not frame.slips:  # between the nodes

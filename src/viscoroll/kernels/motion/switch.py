@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.jit import kernel
-from .collocation import N
 from .load import acting, brakes, load_at, risen_by
 from .nodes import SPEED as FASTEST
-from .nodes import V
+from .nodes import V, extremes
 from .rates import rates_of
 from .records import EDGE, KINK, NEITHER, SPEED, STOP, TURN, Frame, State
 
@@ -53,13 +52,10 @@ def released(state, frame, clock, case):
 @kernel
 def closed(state, locked, case):
     """Whether the stick band closes at V = 0, where omega is 0 too."""
-    nodes = case.nodes
     if not locked:
-        return state.V <= _CLOSED * nodes[V]
-    largest = 0.0  # slip with omega = 0 ends with V, which is 0 but for the tolerance
-    for i in range(N + 1):
-        largest = max(largest, nodes[V + i])
-    return state.V <= max(_CLOSED, _OFF * case.limits.rtol) * largest
+        return state.V <= _CLOSED * case.nodes[V]
+    # slip with omega = 0 ends with V, which is 0 but for the tolerance
+    return state.V <= max(_CLOSED, _OFF * case.limits.rtol) * extremes(V, case.nodes)[1]
 
 
 @kernel
@@ -80,38 +76,36 @@ def stands(state, frame, clock, case):
     """Whether V and omega, one of them prescribed, are 0 but for what the integration of that one leaves."""
     if case.drive.prescribed == NEITHER:
         return False
-    rates, fastest = here(state, frame, clock, case)[1], 0.0
-    for i in range(N + 1):
-        fastest = max(fastest, case.nodes[FASTEST + i])
-    return max(abs(state.V), abs(rates.omega)) <= drift(fastest, clock, case)
+    omega, (_, fastest) = here(state, frame, clock, case)[1].omega, extremes(FASTEST, case.nodes)
+    return max(abs(state.V), abs(omega)) <= drift(fastest, clock, case)
 
 
 @kernel
 def switch(event, state, frame, clock, case):
-    """(State, frame, whether V = omega = 0) behind an event that changes the regime."""
+    """(Whether the cylinder moves, state, frame) behind an event that changes the regime."""
     slips, direction, sigma, spin, locked = frame
     if slips and stands(state, frame, clock, case):
-        return state, frame, True
+        return False, state, frame
     if event == EDGE and slips:
         if closed(state, locked, case):
-            return state, frame, True
-        return State(state.V, sigma), Frame(False, direction, sigma, spin, locked), False
+            return False, state, frame
+        return True, State(state.V, sigma), Frame(False, direction, sigma, spin, locked)
     if event == EDGE:
         omega = here(state, frame, clock, case)[1].omega
-        return State(state.V, omega), Frame(True, direction, sigma, spin, locked), False
+        return True, State(state.V, omega), Frame(True, direction, sigma, spin, locked)
     if event == KINK:
-        return state, Frame(False, direction, -sigma, spin, locked), False
+        return True, state, Frame(False, direction, -sigma, spin, locked)
     if event == TURN:
         if not slips or state.second == 0.0:
-            return state, frame, True
+            return False, state, frame
         state, frame = turned(state, frame)
-        return state, frame, False
+        return True, state, frame
     if event == STOP:
         still = State(state.V, 0.0) if slips else state
         if locks(still, frame, clock, case):
-            return still, Frame(slips, direction, sigma, spin, True), False
-        return still, released(still, frame, clock, case), False
-    return state, released(state, frame, clock, case), False
+            return True, still, Frame(slips, direction, sigma, spin, True)
+        return True, still, released(still, frame, clock, case)
+    return True, state, released(state, frame, clock, case)
 
 
 @kernel
