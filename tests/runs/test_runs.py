@@ -16,8 +16,7 @@ from viscoroll import sampling
 from viscoroll.io.runs import estimate, store
 from viscoroll.io.runs.evaluate import roll_block
 from viscoroll.io.runs.inputs import Distribution, Inputs
-from viscoroll.motion.quantities import QUANTITIES
-from viscoroll.motion.summaries import histogram, merged, quantiles, summarise
+from viscoroll.motion.summaries import QUANTITIES, histogram, merged, quantiles, summarise
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 

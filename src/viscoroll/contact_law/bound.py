@@ -34,6 +34,11 @@ class Law:
         from ..kernels.rows.jitted import Jitted, Room
 
         _, scene, scale = framed(roller, "law")
+        if scene.each is not None:
+            raise ParameterError(
+                "material", repr(scene.material), "one material, as material[i]: a law is of one scene"
+            )
+        refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._fastest = roller, scene, np.asarray(scene.kappa / scale["V"])
@@ -143,8 +148,4 @@ def law(roller: Rolls) -> Law:
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
     """
-    _, scene, _ = framed(roller, "law")
-    if scene.each is not None:
-        raise ParameterError("material", repr(scene.material), "one material, as material[i]: a law is of one scene")
-    refuse_arrays(scene, ("alpha", "kappa", "mu"), "one number: a law is of one scene")
     return Law(roller)

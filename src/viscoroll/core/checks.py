@@ -12,17 +12,15 @@ from .errors import ParameterError
 from .typed import Booleans, Floats
 
 
-def checked(
-    name: str, value: ArrayLike, *, low: float = -math.inf, strict: bool = False, high: float = math.inf
-) -> Floats:
-    """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``.
+def checked(name: str, value: ArrayLike, **bounds: Any) -> Floats:
+    """``value`` as float64, finite, >= ``low`` (> if ``strict``) and <= ``high``, which may be given.
 
     Raises
     ------
     ParameterError
         If it is not numeric, not finite, below ``low`` or above ``high``.
     """
-    return checked_extent(name, value, low=low, strict=strict, high=high)[0]
+    return checked_extent(name, value, **bounds)[0]
 
 
 def checked_extent(

@@ -117,14 +117,10 @@ def as_toml(material: Material, section: str = "material") -> str:
         f"{{ low = {material.measured.low}, high = {material.measured.high}, misfit = {material.measured.misfit}, "
         f"source = {_text(material.measured.source)} }}"
     )
-    first: dict[str, Any] = {"name": _text(material.name), "E": material.E, "nu": material.nu}
-    more: dict[str, Any] = {
-        "T_ref": material.T_ref, "density": material.density, "thickness": material.thickness, "measured": measured,
-    }  # fmt: skip
-    lines = [f"{name} = {value}" for name, value in first.items()]
-    lines += [series_as_toml(material.prony)]
-    lines += [f"{name} = {value}" for name, value in more.items() if value is not None]
-    return "\n".join([f"[{section}]", *lines, ""])
+    held = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
+    held = {"name": _text(material.name)} | held | {"measured": measured}
+    lines = [f"{name} = {value}" for name, value in held.items() if value is not None]
+    return "\n".join([f"[{section}]", *lines, series_as_toml(material.prony), ""])
 
 
 def series_as_toml(series: Prony) -> str:

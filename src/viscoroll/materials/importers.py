@@ -43,7 +43,7 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths.
         """
-        return cls._relative("E0", E0, nu, "g", g, tau, long_term, more)
+        return cls._relative(E0, nu, "g", g, tau, long_term, more)
 
     @classmethod
     def ansys(cls, E0: float, nu: float, alpha: ArrayLike, tau: ArrayLike, **more: Any) -> Any:
@@ -64,7 +64,7 @@ class FromPrograms:
         ParameterError
             A value out of range, lists of different lengths.
         """
-        return cls._relative("E0", E0, nu, "alpha", alpha, tau, False, more)
+        return cls._relative(E0, nu, "alpha", alpha, tau, False, more)
 
     @classmethod
     def comsol(cls, E: float, nu: float, G: ArrayLike, tau: ArrayLike, **more: Any) -> Any:
@@ -141,14 +141,14 @@ class FromPrograms:
 
     @classmethod
     def _relative(
-        cls, modulus: str, E: float, nu: float, name: str, shares: ArrayLike, tau: ArrayLike, long: bool, more: dict
+        cls, E: float, nu: float, name: str, shares: ArrayLike, tau: ArrayLike, long: bool, more: dict
     ) -> Any:
         """From shares of the instantaneous modulus; ``long``: E is the long-time modulus."""
-        E, values = number(modulus, E, low=0.0, strict=True), pairs(name, shares, "tau", tau)[0]
+        E, values = number("E0", E, low=0.0, strict=True), pairs(name, shares, "tau", tau)[0]
         left = 1.0 - math.fsum(values)
         if not left > 0.0:
             raise ParameterError(name, f"{values.tolist()}", "of a sum below 1: no long-time modulus would be left")
-        return cls(E=E if long else E * left, nu=poisson(nu), prony=Prony(values / left, tau), **more)  # type: ignore[call-arg]
+        return cls(E=E if long else E * left, nu=nu, prony=Prony(values / left, tau), **more)  # type: ignore[call-arg]
 
 
 def poisson(nu: Any) -> float:

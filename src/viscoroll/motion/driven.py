@@ -115,11 +115,9 @@ def undriven() -> tuple[Floats, Floats, int]:
 
 def _added(one: Curve, more: Any) -> Curve:
     """A curve with a number, or one a motion, added."""
-    more = np.asarray(more, float).reshape(-1, 1)
-    count = max(one.terms.shape[0], more.shape[0])
-    terms = np.repeat(one.terms, count, axis=0) if one.terms.shape[0] < count else one.terms.copy()
-    terms[..., 0] += more
-    return one._replace(terms=terms)
+    flat = np.zeros((np.size(more), 1, one.terms.shape[-1]))
+    flat[:, 0, 0] = more
+    return one._replace(terms=one.terms + flat)
 
 
 def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Prepared:

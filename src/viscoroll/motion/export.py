@@ -20,28 +20,21 @@ from .driven import ROWS, STATES
 from .result import Rolled
 
 _LINEAR = "linear between its times, constant outside; a time given twice is a jump"
-_OWN: dict[str, dict[str, Any]] = {
-    "regime": {
-        "long_name": "regime of motion",
-        "flag_values": np.array([-1, 0, 1, 2, 3, 4], dtype=np.int8),
-        "flag_meanings": "not_reached full_slip partial_slip rest locked held",
-    },
-    "status": {
-        "long_name": "how the motion ended",
-        "flag_values": np.array([int(s) for s in MotionStatus], dtype=np.int8),
-        "flag_meanings": " ".join(s.name.lower() for s in MotionStatus),
-    },
-    "flow": {
-        "long_name": "source of the motion",
-        "flag_values": np.array([0, 1], dtype=np.int8),
-        "flag_meanings": "integrated flow_map",
-    },
+#: what it is, the first flag, meanings
+_FLAGS = {
+    "regime": ("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
+    "status": ("how the motion ended", 0, " ".join(status.name.lower() for status in MotionStatus)),
+    "flow": ("source of the motion", 0, "integrated flow_map"),
 }
 
 
 def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
     """Attributes of a field, a start or another column of an ensemble."""
-    return dict(_OWN[name]) if name in _OWN else dict(attributes(name, si))
+    if name not in _FLAGS:
+        return dict(attributes(name, si))
+    about, first, meanings = _FLAGS[name]
+    values = np.arange(first, first + len(meanings.split()), dtype=np.int8)
+    return {"long_name": about, "flag_values": values, "flag_meanings": meanings}
 
 
 def provenance(title: str) -> dict[str, str]:

@@ -9,8 +9,8 @@ its bin, that is to 2^-8 of itself (``tests/runs/test_runs.py``); that of an ens
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from ..core.errors import MotionStatus, ParameterError
 from ..core.typed import Floats, Integers
 from .export import column_attributes, provenance
-from .quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +26,77 @@ if TYPE_CHECKING:
 #: bits of a double below those that name a bin: 52 less the eight that are kept
 _DROPPED = 44
 _MAGNITUDE = np.int64(2**63 - 1)
+
+
+class Quantity(NamedTuple):
+    """``values(motions, k)`` at output time k, or for all times if not ``over_time``.
+
+    They are those of the column ``like``, or the ``share`` of the kinetic energy at the start.
+    """
+
+    fields: tuple[str, ...]
+    values: Callable[[Any, int], NDArray]
+    like: str = ""
+    share: str = ""
+    over_time: bool = True
+
+    def about(self, si: bool) -> dict[str, Any]:
+        """long_name and units."""
+        if self.share:
+            return {"long_name": f"share of the initial kinetic energy {self.share}", "units": "1"}
+        return column_attributes(self.like, si)
+
+
+def _over(motions: Any, name: str, k: int) -> NDArray:
+    """A field without dimension."""
+    return getattr(motions, name)[:, k] / motions.scale[name]
+
+
+def _translation(motions: Any, k: int) -> NDArray:
+    return _over(motions, "V", k) ** 2 / _start_energy(motions)
+
+
+def _rotation(motions: Any, k: int) -> NDArray:
+    return motions.scene.j * _over(motions, "omega", k) ** 2 / _start_energy(motions)
+
+
+def _start_energy(motions: Any) -> NDArray:
+    """Twice the kinetic energy at the start; NaN for those at rest, which have no shares."""
+    V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
+    energy = V**2 + motions.scene.j * omega**2
+    return np.where(energy > 0.0, energy, np.nan)
+
+
+def _field(name: str) -> Quantity:
+    return Quantity((name,), lambda motions, k: getattr(motions, name)[:, k], name)
+
+
+def _loss(name: str, where: str) -> Quantity:
+    """Losses are over m (R/T_epsilon)^2, of which the kinetic energy has a half."""
+    return Quantity(
+        (name,), lambda motions, k: 2.0 * _over(motions, name, k) / _start_energy(motions), share=f"lost in {where}"
+    )
+
+
+def _each(name: str) -> Quantity:
+    return Quantity((), lambda motions, k: getattr(motions, name), name, over_time=False)
+
+
+QUANTITIES = {
+    **{name: _field(name) for name in ("V", "omega", "x", "angle", "delta", "force", "torque")},
+    **{name: _field(name) for name in ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")},
+    "distance": Quantity(("x",), lambda motions, k: np.abs(motions.x[:, k]), "x"),
+    "translation": Quantity(("V",), _translation, share="in translation"),
+    "rotation": Quantity(("omega",), _rotation, share="in rotation"),
+    "lost": Quantity(
+        ("V", "omega"), lambda motions, k: 1.0 - _translation(motions, k) - _rotation(motions, k),
+        share="lost to slip and rolling resistance",
+    ),
+    "lost_to_slip": _loss("slip_loss", "slip"),
+    "lost_to_rolling": _loss("rolling_loss", "rolling"),
+    "onset_time": _each("onset_time"),
+    "rest_time": _each("rest_time"),
+}  # fmt: skip
 
 
 class Histogram(msgspec.Struct):

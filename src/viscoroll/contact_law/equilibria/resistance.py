@@ -7,6 +7,7 @@ which is the same with another curve.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
@@ -18,7 +19,6 @@ from ...core.typed import Booleans, Floats, Integers
 from ...materials.law_table import LawTable
 from ..contact_table import rolling
 from ..parameters import Rolls, framed, refuse_arrays
-from .zeros import zeros
 
 #: octaves of u beyond the rates of a material that are looked at, and closely: farther out the curve has one simple
 #: extremum at most
@@ -28,6 +28,12 @@ _CLOSE, _FAR, _APART = 16, 2, 1e-6
 #: kappa times a load, and a gain over the longest time, that the nodes reach
 LEAST_LOAD, MOST_LOAD = 1e-120, 1e80
 _GAINS = (1e-40, 1e8)
+#: until a bracket is at rounding
+_HALVINGS = 62
+#: where a function comes near 0 and turns back, it is looked at this often with so many points
+_ZOOMS, _ZOOMED = 4, 33
+
+Function = Callable[[Floats], Floats]
 
 
 class Humps(NamedTuple):
@@ -160,3 +166,48 @@ def grid(law: LawTable) -> Floats:
 def _curve(law: LawTable, gain: float, u: Floats) -> Floats:
     """kappa (M - gain V) and its slope over kappa V."""
     return rolling(law, u, "M", "dM_dV") - gain * np.stack([u, np.ones(u.size)])
+
+
+def zeros(function: Function, nodes: Floats, noise: Floats | float = 0.0) -> Floats:
+    """Zeros of a vectorised ``function`` between ascending ``nodes``, pairs closer than the nodes among them.
+
+    A pair is found where |function| has a minimum at a node.  Nodes where it is not above ``noise`` have no sign.
+    Zeros are bisected to rounding of the nodes.
+    """
+    values = function(nodes)
+    known = np.abs(values) > noise
+    nodes, values = nodes[known], values[known]
+    parts = [(nodes, values), *_zoomed(function, nodes, values)]
+    brackets = [_changes(*part) for part in parts]
+    low, high, rising = (np.concatenate(each) for each in zip(*brackets, strict=True))
+    for _ in range(_HALVINGS if low.size else 0):
+        middle = 0.5 * (low + high)
+        before = (function(middle) > 0.0) != rising
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return np.sort(0.5 * (low + high))
+
+
+def _changes(x: Floats, y: Floats) -> tuple[Floats, Floats, Booleans]:
+    """(low, high, whether it rises) of the intervals in which the sign changes."""
+    at = np.flatnonzero(np.sign(y[1:]) * np.sign(y[:-1]) < 0.0)
+    return x[at], x[at + 1], y[at + 1] > 0.0
+
+
+def _zoomed(function: Function, x: Floats, y: Floats) -> list[tuple[Floats, Floats]]:
+    """Points and values around two zeros between two neighbours of a node."""
+    size, sign = np.abs(y), np.sign(y)
+    near = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:]) & (sign[1:-1] == sign[:-2]) & (sign[1:-1] == sign[2:])
+    # a parabola through three nodes reaches 0 between them where it is bent by more than that; rounding is not
+    near &= size[1:-1] < size[:-2] - 2.0 * size[1:-1] + size[2:]
+    found = []
+    for n in np.flatnonzero(near) + 1:
+        low, high = x[n - 1], x[n + 1]
+        for _ in range(_ZOOMS):
+            points = np.linspace(low, high, _ZOOMED)
+            values = function(points)
+            least = int(np.clip(np.argmin(values * sign[n]), 1, _ZOOMED - 2))
+            if values[least] * sign[n] < 0.0:
+                found.append((points, values))
+                break
+            low, high = points[least - 1], points[least + 1]
+    return found

@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 from ...materials.law_table import LawTable
 from . import row
 from .loads import Loads
-from .resistance import grid
+from .resistance import grid, zeros
 from .states import States, contact_at, crossings, rows_at
-from .zeros import zeros
 
 #: nodes that an interval of V within the stick limit is cut into, and those of a slip between its limits
 _FINE, _SLIPS = 16, 129

@@ -36,7 +36,7 @@ from ...materials.file import as_toml, materials_of
 from ...motion.batch import FIELDS, FLOW_PAYS, begin
 from ...motion.checks import output_times
 from ...motion.driven import Drive
-from ...motion.quantities import QUANTITIES
+from ...motion.summaries import QUANTITIES
 from ..config import check_sections, located
 from ..sampling import Design
 from ..tables import spread

@@ -18,7 +18,7 @@ from ...core.blocks import run_blocks
 from ...core.errors import MotionStatus, ParameterError
 from ...core.results import column, unit_of
 from ...motion.export import column_attributes, provenance
-from ...motion.quantities import QUANTITIES
+from ...motion.summaries import QUANTITIES
 from ..sampling import points
 from .evaluate import look_at_materials, roll_inputs
 from .inputs import Inputs, inputs_in
