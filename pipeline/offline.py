@@ -18,10 +18,23 @@ import msgspec
 
 import viscoroll as vr
 from viscoroll.core.errors import FileError
-from viscoroll.materials.file import SUFFIX, materials_of, read_materials
+from viscoroll.materials.file import SECTIONS, materials_of
 from viscoroll.materials.law_store import errors_of
 
 from . import stage
+
+
+class Law(msgspec.Struct, forbid_unknown_fields=True):
+    """[tables.laws.NAME]: a material, and that of the base where it is another, as sections of these names; or, in
+    place of the first, the columns of a DMA, a file seen from that of the configuration, which are fitted; ``nu`` and
+    ``name`` are for the fit.
+    """
+
+    material: dict | None = None
+    base: dict | None = None
+    dma: str = ""
+    nu: float = 0.49
+    name: str = ""
 
 
 class Tables(msgspec.Struct, forbid_unknown_fields=True):
@@ -30,31 +43,15 @@ class Tables(msgspec.Struct, forbid_unknown_fields=True):
     allowed: float
     allowed_N: float
     alpha: tuple[float, float]
-    laws: dict[str, dict]
-
-
-class Law(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables.laws.NAME]: a material, and that of the base where it is another.
-
-    Each is a file seen from that of the configuration: TOML, netCDF of a material, or the columns of a DMA, which are
-    fitted; or the keys of a section [material].  ``nu`` and ``name`` are for a fit.
-    """
-
-    material: str | dict
-    base: str | dict | None = None
-    nu: float = 0.49
-    name: str = ""
+    laws: dict[str, Law]
 
 
 def build_all(config: Path, folder: Path) -> stage.Outcome:
     """Build, save and report every law of the configuration."""
     outcome, settings = stage.Outcome([]), stage.read_section(config, "tables", Tables)
     build(outcome, folder / "law.nc", settings, lambda: vr.tables.law(alpha=settings.alpha))
-    for name, section in settings.laws.items():
-        given = read_law(config, name, section)
-        base = None if given.base is None else body(config, given.base, given)
-        material = body(config, given.material, given)
-        build(outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, material, base))
+    for name, law in settings.laws.items():
+        build(outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, *bodies(config, law)))
     return outcome
 
 
@@ -74,25 +71,17 @@ def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[
     outcome.failed |= worst > settings.allowed or off_N > settings.allowed_N
 
 
-def read_law(config: Path, name: str, section: dict[str, Any]) -> Law:
-    """One of [tables.laws]; raises FileError."""
-    try:
-        return msgspec.convert(section, Law)
-    except msgspec.ValidationError as error:
-        raise FileError(config, f"[tables.laws.{name}] {error}") from error
-
-
-def body(config: Path, given: str | dict[str, Any], law: Law) -> vr.Material:
-    """A material of a file, of the keys of a section, or of a fit."""
-    if isinstance(given, dict):
-        return materials_of(config, {"material": given})["material"]
-    path = config.parent / given
-    if path.suffix in (".toml", SUFFIX):
-        return read_materials(path)["material"]
-    try:
-        return vr.fit_prony(*vr.read_dma(path), source=path.name).material(law.nu, name=law.name or path.stem)
-    except vr.ViscorollError as error:
-        raise FileError(config, str(error)) from error
+def bodies(config: Path, law: Law) -> tuple[vr.Material | None, vr.Material | None]:
+    """The material and that of the base."""
+    found = materials_of(config, {name: each for name in SECTIONS if (each := getattr(law, name)) is not None})
+    if law.dma:
+        path = config.parent / law.dma
+        try:
+            fit = vr.fit_prony(*vr.read_dma(path), source=path.name)
+        except vr.ViscorollError as error:
+            raise FileError(config, str(error)) from error
+        found["material"] = fit.material(law.nu, name=law.name or path.stem)
+    return found.get("material"), found.get("base")
 
 
 if __name__ == "__main__":

@@ -97,9 +97,14 @@ def plain_encoding(dataset: xr.Dataset) -> dict[str, Any]:
     return {str(name): {"_FillValue": None} for name in dataset.variables}
 
 
+def said(doc: str | None) -> argparse.ArgumentParser:
+    """A parser whose --help is a docstring as it stands."""
+    return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawTextHelpFormatter)
+
+
 def parser(doc: str | None) -> argparse.ArgumentParser:
     """Options of every stage."""
-    result = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawTextHelpFormatter)
+    result = said(doc)
     result.add_argument("--config", type=Path, default=CONFIG, help=f"TOML file (default {CONFIG.name})")
     result.add_argument("-o", "--output", type=Path, default=ROOT / "out", help="folder (default out)")
     return result

@@ -14,7 +14,6 @@ that is not found is told, and is no failure.  Exit code 1 if a case fails.
 
 from __future__ import annotations
 
-import argparse
 import os
 import shutil
 import subprocess
@@ -31,7 +30,8 @@ from typing import NamedTuple
 
 from packaging.requirements import Requirement
 
-ROOT = Path(__file__).parents[2]
+from ..stage import ROOT, said
+
 #: what the tests below import beside the package and its extra
 TOOLS = ("hypothesis", "mpmath", "pytest", "python-flint")
 ASKED = ("roll", "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3")
@@ -44,7 +44,6 @@ SAMPLE = (
     "tests/motion/test_flow.py::test_as_the_integrator_to_its_stated_error",
 )
 _VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
-_LIBRARIES = "import importlib.metadata as m, sys; print(*(f'{n} {m.version(n)}' for n in sys.argv[1:]), sep=', ')"
 
 
 class Packages(NamedTuple):
@@ -69,7 +68,7 @@ class Case(NamedTuple):
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = said(__doc__)
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
     found = pythons()
@@ -145,14 +144,13 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     python, program = str(binaries / "python"), str(binaries / "viscoroll")
     package = f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
-    names = sorted({each.name for each in packages.required if each.marker is None or "extra" not in str(each.marker)})
     warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
     quiet = ["-p", "no:cacheprovider", "-o", warnings, "--disable-warnings", "--show-capture=no", "-rfE"]
     test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
     steps = {
         "environment": ([case.python, "-m", "venv", place / "env"], place),
         "installation": ([*pip, "-c", place / "constraints.txt", package, *TOOLS], place),
-        "versions": ([python, "-c", _LIBRARIES, *names], place / "work"),
+        "versions": ([python, "-m", "pip", "freeze"], place / "work"),
         "program": ([program, *ASKED], place / "work"),
         "tests": ([*test, *(("-n", "2") if case.suite else SAMPLE)], packages.tree),
     }
@@ -160,7 +158,7 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     dropped = ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
     environment = {name: value for name, value in os.environ.items() if name not in dropped}
     environment["VISCOROLL_CACHE_DIR"] = str(place / "cache")
-    told: dict[str, str] = {}
+    told: dict[str, list[str]] = {}
     for name, (command, where) in steps.items():
         done = subprocess.run(
             command, cwd=where, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -169,10 +167,10 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
         if done.returncode:
             print(f"matrix: {case}: {name} failed\n{done.stdout[-4000:]}", flush=True)
             return False
-        told[name] = done.stdout.strip().splitlines()[-1] if done.stdout.strip() else ""
+        told[name] = done.stdout.splitlines()
     kind = "the whole suite" if case.suite else "sample"
-    print(f"matrix: {case} ({time.monotonic() - begun:.0f} s): {kind}: {told['tests']}", flush=True)
-    print(f"        {told['versions']}", flush=True)
+    print(f"matrix: {case} ({time.monotonic() - begun:.0f} s): {kind}: {told['tests'][-1]}", flush=True)
+    print(f"        {', '.join(told['versions'])}", flush=True)
     return True
 
 

@@ -8,7 +8,6 @@ repository's address say, is listed as open; with --final that is a failure too.
 
 from __future__ import annotations
 
-import argparse
 import re
 import sys
 import tarfile
@@ -23,11 +22,11 @@ from readme_renderer import markdown
 
 import viscoroll as vr
 
+from ..stage import ROOT, said
 from .matrix import packed
 from .results import RESULTS
 from .stamps import SHORT, kernels_digest, outdated
 
-ROOT = Path(__file__).parents[2]
 #: data that others made: their files need a licence beside them in the sdist
 MATERIALS = "data/materials/"
 #: of the wheel, and of the sdist beside those
@@ -140,7 +139,7 @@ CHECKS = {
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = said(__doc__)
     parser.add_argument("--final", action="store_true", help="what is open is a failure too")
     final = parser.parse_args().final
     with tempfile.TemporaryDirectory(prefix="viscoroll-release-") as folder:

@@ -19,7 +19,7 @@ from viscoroll.core.blocks import cores
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
 
-from ..stage import ROOT, make_folder, read_toml, told
+from ..stage import ROOT, make_folder, read_toml, said, told
 from . import timing
 from .stamps import kernels_digest
 
@@ -34,7 +34,7 @@ Parts = Mapping[str, Callable[[dict[str, Any]], Any]]
 
 def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | None = None) -> argparse.ArgumentParser:
     """-o; where there are sizes to choose, --config and --quick; where there are parts, --only."""
-    result = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawTextHelpFormatter)
+    result = said(doc)
     if sizes:
         result.add_argument("--config", type=Path, default=SIZES, help="TOML file with the sizes")
         result.add_argument("--quick", action="store_true", help="the sizes of a test: does it run?")

@@ -10,7 +10,6 @@ if a block is out of date.  Exit code 2 for results that are missing or incomple
 
 from __future__ import annotations
 
-import argparse
 import re
 import sys
 from pathlib import Path
@@ -18,7 +17,7 @@ from pathlib import Path
 from viscoroll import ViscorollError
 from viscoroll.core.files import write_text
 
-from ...stage import ROOT, told
+from ...stage import ROOT, said, told
 from ..results import RESULTS, Results
 from ..stamps import SHORT, kernels_digest, stamps
 from .blocks import BLOCKS, block
@@ -89,7 +88,7 @@ def document(files: list[Path], results: Path, check: bool) -> int:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = said(__doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a block is out of date")
     parser.add_argument(
         "--results", type=Path, default=RESULTS, metavar="FOLDER", help="results that go before data/results"

@@ -205,33 +205,31 @@ def ratios(found: list[dict[str, Any]], own: str) -> list[dict[str, Any]]:
     return result
 
 
-def bench_peers(results: Results) -> str:
-    """Ratio, method, its us a motion and error, ours, ratio and ours of the look-up: on IC1-IC3, on the random starts,
-    and with own parameters, where nothing is looked up.
+def bench_peers(results: Results) -> Iterator[Row]:
+    """Each peer at the setting with its smallest error, on IC1-IC3, on random starts, and with own parameters, where
+    nothing is looked up.
 
-    Each peer at the setting with its smallest error.  Slow ones were tried on fewer of the random motions than this
-    package, whose error is that over all of them.
+    Slow ones were tried on fewer of the random motions than this package, whose error is that over all of them.
     """
     work, own = results["bench work-precision"], results["bench own-parameters"]
     groups = {
         "IC1-IC3": paper_rows(work["rows"]), "random starts": [r for r in work["rows"] if r["group"] == "random"],
         "own parameters": own["rows"],
     }  # fmt: skip
-    lines, ours = [], "{own_us:.3g} µs at {own_error:.1e}"
     for where, found in groups.items():
-        others = [row for row in found if row["method"] not in (INTEGRATED, LOOKED_UP)]
-        default = [row for row in found if (row["method"], row["rtol"]) == (INTEGRATED, DEFAULT_RTOL)]
-        compared = ratios(default + others, INTEGRATED)
+        default = [row for row in found if row["method"] != INTEGRATED or row["rtol"] == DEFAULT_RTOL]
         looked_up = {(row["method"], row["rtol"]): row for row in ratios(found, LOOKED_UP)}
-        for method in dict.fromkeys(row["method"] for row in compared):
-            row = min((row for row in compared if row["method"] == method), key=lambda row: row["max"])
-            name = f"{work['methods'][method]}, rtol {row['rtol']:.0e}, {where}"
-            name += f" ({row['failed']} of {row['motions']} given up)" if row["failed"] else ""
-            quick = looked_up.get((method, row["rtol"]))
-            last = (two(quick["ratio"]), cell(ours, quick)) if quick else ("", "")
-            lines.append((two(row["ratio"]), name, cell("{us:.3g} µs at {max:.1e}", row), cell(ours, row), *last))
-    head = ("times faster", "than", "its time and max error", "viscoroll, integrated", "times faster", "looked up")
-    return table(head, lines)
+        best: dict[str, Any] = {}
+        for row in sorted(ratios(default, INTEGRATED), key=lambda row: -row["max"]):
+            best[row["method"]] = row
+        for row in best.values():
+            if row["method"] != LOOKED_UP:
+                quick = looked_up.get((row["method"], row["rtol"]))
+                yield row | {
+                    "label": work["methods"][row["method"]], "where": where,
+                    "given_up": cell(" ({failed} of {motions} given up)", row) if row["failed"] else "",
+                    "quick": cell("{ratio!n} times, {own_us:.3g} µs at {own_error:.1e}", quick) if quick else "",
+                }  # fmt: skip
 
 
 def bench_own(results: Results, part: str = "own-parameters") -> Iterator[Row]:

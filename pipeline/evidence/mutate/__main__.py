@@ -13,7 +13,6 @@ killed.
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import os
@@ -32,7 +31,7 @@ import numpy as np
 
 from viscoroll.core.files import write_text
 
-from ...stage import ROOT
+from ...stage import ROOT, said
 from ..stamps import kernels_digest
 from .mutants import MUTANTS, Mutant
 
@@ -44,7 +43,7 @@ LONGEST = 900.0
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = said(__doc__)
     parser.add_argument("--check", action="store_true", help="only list the mutants that have lost their place")
     parser.add_argument("--only", nargs="+", default=[""], metavar="WORD")
     parser.add_argument("--fresh", action="store_true")
