@@ -236,13 +236,18 @@ class Cylinder(Methods):
             self._known.look(V, extent)
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
-        """Warn of starts beyond what was measured, and beyond the speed of shear waves where a density is known."""
-        self.look(V0)
+        """Warn of starts beyond the speed of shear waves, where a density is known."""
         if self._known.wave_speed is None:
             return
         V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
         if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._known.wave_speed:
             say([f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"])
+
+    def look_at_motion(self, V0: Any, V: Any) -> None:
+        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold."""
+        if self._known.speeds is not None:
+            fastest = np.abs(0.0 if V0 is None else V0)
+            self._known.look(fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None)
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]

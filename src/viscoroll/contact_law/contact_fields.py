@@ -33,9 +33,7 @@ def field_names(fields: Iterable[str] | None, like: bool, si: bool, slopes: bool
     """
     if method not in ("table", "direct"):
         raise ParameterError("method", repr(method), "'table' or 'direct'")
-    names = DEFAULT[like, si] if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-    if fields is not None:
-        refuse_unknown("fields", names, KNOWN, "a field")
+    names = DEFAULT[like, si] if fields is None else refuse_unknown("fields", fields, KNOWN, "a field")
     if slopes:
         names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
     if method == "direct" and set(names) & set(SLOPES + SLOPES_OF_BODIES):

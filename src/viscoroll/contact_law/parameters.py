@@ -102,6 +102,9 @@ class Rolls:
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
         """Warn of starts that are beyond the speed of waves."""
 
+    def look_at_motion(self, V0: Any, V: Any) -> None:
+        """Warn where the fastest speed of a motion, or of each, asks more of a material than was measured."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Parameters(Rolls):

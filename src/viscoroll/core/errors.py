@@ -50,11 +50,13 @@ def unknown(name: str, value: Any, known: Iterable[str], kind: str) -> Parameter
     return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
 
 
-def refuse_unknown(name: str, values: Iterable[Any], known: Collection[str], kind: str) -> None:
-    """Raise :func:`unknown` for the first of ``values`` that is none of the ``known`` names."""
-    for value in values:
+def refuse_unknown(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
+    """The names in ``values``, one or several; raises :func:`unknown` for the first that is none of the ``known``."""
+    names = tuple(values) if isinstance(values, Iterable) and not isinstance(values, str) else (values,)
+    for value in names:
         if value not in known:
             raise unknown(name, value, known, kind)
+    return names
 
 
 class OutOfTableError(ParameterError):

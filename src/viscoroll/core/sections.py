@@ -20,6 +20,7 @@ T = TypeVar("T")
 _HEADER = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]")
 _KEYS = re.compile(r"\w+")
 _EXPECTED = re.compile(r"Expected `([^`]*)`, got `[^`]*`")
+_BOUNDS = re.compile(r"Expected `[^`]*` (.*)")
 _MISSING = re.compile(r"Object missing required field `(.*)`")
 #: what msgspec calls a type -> words
 _WORDS = {
@@ -56,6 +57,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         if expected := _EXPECTED.fullmatch(problem):
             kinds = " or ".join(_WORDS[kind] for kind in expected[1].split(" | ") if kind != "null")
             problem = f"{'.'.join(words)} = {value!r:.40}: must be {kinds}"
+        elif bounds := _BOUNDS.fullmatch(problem):
+            problem = f"{words[-1]} = {value!r:.40}: must be {bounds[1]}"
         elif words and not isinstance(value, dict):
             problem = f"{words[-1]} = {value!r:.40}: {problem}"
         raise fault(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error

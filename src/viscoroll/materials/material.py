@@ -143,8 +143,10 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A temperature that the shift does not allow.
+            A temperature that the shift does not allow, a shift that is no function.
         """
+        if not callable(shift):
+            raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
         factor = number("a_T", shift(temperature), low=0.0, strict=True)
         measured = None if self.measured is None else self.measured.shifted(factor)
         return replace(self, T_ref=self.T_ref * factor, measured=measured)

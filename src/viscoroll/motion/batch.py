@@ -109,8 +109,7 @@ def ensemble(
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
-    times, names = output_times(t), (fields,) if isinstance(fields, str) else tuple(fields)
-    refuse_unknown("fields", names, FIELDS, "a field")
+    times, names = output_times(t), refuse_unknown("fields", fields, FIELDS, "a field")
     if method not in ("auto", "flow", "integrate"):
         raise ParameterError("method", repr(method), "'auto', 'flow' or 'integrate'")
     starts, given, labels = bare((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V))
@@ -144,7 +143,7 @@ def ensemble(
     notes |= {"status": answer.status, "switches": answer.switches, "drive_error": begun.ready.error} | found
     kept: dict[str, Any] = dict.fromkeys(FIELDS) | rows | notes
     result = Ensemble(roller=begun.roller, t=times, drive=begun.drive, labels=labels, **kept)
-    begun.roller.look(result.V)
+    begun.roller.look_at_motion(starts[0], result.V)
     return result
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..contact_law.assumptions import Validity
 from ..contact_law.judged import validity
 from ..contact_law.steadiness import Steadiness
+from ..core.checks import checked
 from ..core.errors import MotionStatus
 from ..core.labels import Labels
 from ..core.results import Row
@@ -94,7 +95,7 @@ class Ensemble(Rolled):
         """
         from .summaries import summary_of
 
-        return summary_of(self, tuple(quantiles))
+        return summary_of(self, tuple(checked("quantiles", tuple(quantiles), low=0.0, high=1.0).tolist()))
 
     def validity(self) -> Validity:
         """Which assumptions of the model the motions strain, at the highest speeds that they start with or reach.

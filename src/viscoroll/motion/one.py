@@ -90,7 +90,9 @@ class Motion(Rolled):
         ends = np.full(self.steps + 1, np.nan)
         rolled(self._begun, np.array([self._begun.end]), NO_NOTES[0], ends)
         reached = float(np.nanmax(np.append(ends, 0.0)))
-        return integrated(self._begun._replace(end=reached), np.array([reached * self.scale["t"]]))
+        # a last panel that is cut at this end may take more steps than one that was not
+        limits = (*self._begun.limits[:2], 2 * self.steps + _STEPS)
+        return integrated(self._begun._replace(end=reached, limits=limits), np.array([reached * self.scale["t"]]))
 
     @property
     def power_force(self) -> Floats:

@@ -118,7 +118,7 @@ def roll(
     begun.roller.look_at_starts(V0, omega0)
     look(begun)
     motion = integrated(begun, times)
-    begun.roller.look(motion.V)
+    begun.roller.look_at_motion(V0, motion.V)
     if not motion.success:
         words = f"roll: {motion.status.message}; outputs not reached are NaN, and `message` says where it stood"
         warnings.warn(words, RuntimeWarning, stacklevel=2)

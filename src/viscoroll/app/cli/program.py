@@ -10,6 +10,7 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, NoReturn
 
 from ... import __version__
@@ -39,9 +40,18 @@ class Parser(argparse.ArgumentParser):
         super().__init__(**options, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
         # what is no option: argparse takes a value like -1:1:5 or -1e-3 for one
         self._negative_number_matcher = re.compile(r"-\.?(\d|inf|nan)")
+        for kind, words in ((float, "a number"), (int, "a whole number")):
+            self.register("type", kind, partial(_read, kind, words))
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message} (see {self.prog} --help)")
+
+
+def _read(kind: type, words: str, text: str) -> Any:
+    try:
+        return kind(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} must be {words}") from None
 
 
 def parser() -> Parser:

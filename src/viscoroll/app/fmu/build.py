@@ -58,7 +58,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     co-simulation follows :func:`viscoroll.roll` to 1e-9 of its speed (``tests/fmu/test_fmu.py``).
     """
     if model not in MODELS:
-        raise ParameterError("model", repr(model), f"out of {', '.join(MODELS)}")
+        raise ParameterError("model", repr(model), f"one of {', '.join(MODELS)}")
     if version not in VERSIONS:
         raise ParameterError("version", version, "2 or 3, of FMI")
     table = table_of(given.pair if isinstance(given, Cylinder) else given)

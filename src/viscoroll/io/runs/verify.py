@@ -66,6 +66,8 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
 def start_of(path: str | PathLike[str]) -> Record:
     """The record of its start; raises FileError."""
+    if not Path(path).is_dir():
+        raise FileError(path, "is no results store: there is no such folder")
     start = read_record(Path(path) / RECORDS / "start")
     if start is None:
         raise FileError(path, "is no results store, or its record `start` is damaged: run its command again")

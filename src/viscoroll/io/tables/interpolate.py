@@ -44,8 +44,7 @@ class Interpolant:
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolated ``fields`` at ``points``; see :func:`interpolate`."""
         known = schema.fields_of(self._table)
-        names = known if fields is None else (fields,) if isinstance(fields, str) else tuple(fields)
-        refuse_unknown("fields", names, known, "a field of this table")
+        names = refuse_unknown("fields", known if fields is None else fields, known, "a field of this table")
         places, shape = self._places(points, names)
         results: dict[str, Any] = {}
         for name in names:
