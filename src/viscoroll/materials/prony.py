@@ -163,16 +163,13 @@ class Prony(OneOrMany):
 
     def blocks(self, which: Integers) -> Iterator[Block]:
         """The materials ``which``, those of as many modes together."""
-        counts, form = self._counts[which], of_creep if self.by_creep else of_relaxation
+        form = of_creep if self.by_creep else of_relaxation
+        counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
             rows = np.flatnonzero(counts == count)
             own = which[rows]
             strengths, times = (np.ascontiguousarray(each[own, :count]) for each in (self._strengths, self._times))
             yield Block(rows, form(strengths, times, self.alpha[own]))
-
-    @cached_property
-    def _counts(self) -> Integers:
-        return np.count_nonzero(self._strengths, axis=-1)
 
     @cached_property
     def _other(self) -> tuple[NDArray, NDArray]:

@@ -85,8 +85,10 @@ def steady(
     assert law is not None  # loads_of refuses many
     elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
-    if loads.given is not None:
-        rolling = _at_speed(law, loads)
+    if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
+        moving = np.flatnonzero(loads.V)
+        speed = loads.V[moving]
+        rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
     elif loads.gains.omega:
         rolling = scanned(law, loads)
     else:
@@ -125,11 +127,3 @@ def _under_load(law: LawTable, loads: Loads) -> States:
         return States.none()
     load, sign, u = crossings(law, gain, total)
     return states_at(law, loads, load, sign, u / loads.kappa[load])
-
-
-def _at_speed(law: LawTable, loads: Loads) -> States:
-    """The states at given speeds but 0, where one of force and torque is found."""
-    assert loads.V is not None
-    load = np.flatnonzero(loads.V)
-    speed = loads.V[load]
-    return states_at(law, loads, load, np.sign(speed), np.abs(speed))
