@@ -1,21 +1,21 @@
-"""Equilibria as they are given back: :class:`Steady`, from the :class:`.states.States` that were found."""
+"""Equilibria as they are given back: :class:`Steady`, from the :class:`.states.States` that were found, or why not."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.labels import Labels
 from ...core.results import Row, Values, short, unit_of
 from ...core.scale import DIMENSIONS, Scale
-from ...core.typed import Floats
+from ...core.typed import Floats, Integers
 from . import row
 from .loads import Loads
-from .reason import Reasons
 from .states import States
 
 if TYPE_CHECKING:
@@ -45,6 +45,53 @@ class Loss:
     cylinder: Floats
     coefficient: Floats
     efficiency: Floats
+
+
+class Reasons(NamedTuple):
+    """What is needed to say why.
+
+    states : load, V and Q of all that were found, friction sufficing or not.  number : equilibria of each load.
+    top : largest kappa M, and its kappa V; NaN with feedback.  elastic : whether nothing resists.
+    """
+
+    loads: Loads
+    states: tuple[NDArray, NDArray, NDArray]
+    number: Integers
+    top: tuple[float, float]
+    elastic: bool
+
+    def text(self, scale: Scale) -> Any:
+        """One string, or an array of them; empty where there is an equilibrium."""
+        shape = self.loads.shape
+        found = [self._of(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)]
+        return np.array(found, dtype=object).reshape(shape) if shape else found[0]
+
+    def _of(self, n: int, scale: Scale) -> str:
+        name, moment, of_load, of_speed = "force + torque", "rolling moment", "", ""
+        if scale.si:
+            name, moment, of_load, of_speed = "force + torque/R", "rolling moment over R", " N/m", " m/s"
+        loads = self.loads
+        load, speed = (np.broadcast_to(scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
+        at_rest, mu, kappa = loads.force[n] + loads.torque[n], loads.mu[n], loads.kappa[n]
+        total, (own, V, Q) = at_rest * load, self.states
+        if (own == n).any():  # the state that asks for the least friction
+            V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
+            at = f"at V = {V * speed:.6g}{of_speed}"
+            if abs(Q) == mu:
+                beyond = f"{at} any omega beyond the stick limit is steady"
+                return f"a continuum: Q = {Q:.6g} is all of the friction, and {beyond}"
+            return f"Q = {Q:.6g} is needed {at}, beyond the friction mu = {mu:.6g}"
+        if self.elastic:
+            if at_rest == 0.0:
+                return "a continuum: elastic bodies roll without resistance, so that any V is steady"
+            return f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without resistance"
+        M, V = (value / kappa for value in self.top)
+        if np.isnan(M):
+            return f"{name} with its feedback, {total:.6g}{of_load} at rest, meets the rolling moment at no speed"
+        return (
+            f"{name} = {total:.6g}{of_load} exceeds the largest {moment} {M * load:.6g}{of_load}"
+            f" (at V = {V * speed:.6g}{of_speed})"
+        )
 
 
 class Steady(Values):
@@ -106,7 +153,7 @@ class Steady(Values):
     @property
     def reason(self) -> Any:
         """Why there is no equilibrium; "" where there is one.  Of arrays of loads an array of strings."""
-        return self.reasons.text()
+        return self.reasons.text(self.scale)
 
     #: as :attr:`reason`
     message = reason

@@ -18,9 +18,8 @@ from ...materials.law_table import LawTable
 from ..parameters import Rolls, framed
 from . import row
 from .loads import Loads, loads_of
-from .reason import Reasons
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
-from .result import Steady, packed
+from .result import Reasons, Steady, packed
 from .scan import scanned
 from .states import States, crossings, states_at
 
@@ -101,7 +100,7 @@ def steady(
     count = np.bincount(held.load, minlength=loads.mu.size)
     top = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).top
     states = rolling.load, rolling.rows[row.V], rolling.rows[row.Q]
-    reasons = Reasons(loads, states, count, top, neutral, scale)
+    reasons = Reasons(loads, states, count, top, neutral)
     found = packed(loads, held, reasons, scale, labels)
     roller.look(found.V)
     return found
