@@ -201,12 +201,10 @@ COPULA = 1e-3
 #: Mean and variance against numpy's: other orders of summation of up to 1e5 numbers of size 1.
 MOMENT = 1e-12
 
-# --- motions in extended precision (tests of truth, evidence/test_precise.py) ---
-#: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20.
+# --- motions in extended precision (evidence/test_precise.py) ---
+#: V, omega, x, switch times by two choices of nodes and tolerance; the accuracy asked for is 1e-15; measured 1e-20,
+#: of driven ones 2e-27.
 PRECISE_MOTION = 1e-17
-
-#: Driven ones likewise (truth/test_driven.py); the accuracy asked for is 1e-15; measured 2e-27.
-PRECISE_DRIVEN = 1e-17
 
 # --- sensitivity (test_sensitivity.py) ---
 #: Sobol index of an input that a motion does not feel: sums of a thousand differences that round; measured 8e-17.

@@ -1,37 +1,67 @@
-"""Motions in extended precision: the integrator, and the check motions made again by it."""
+"""Motions in extended precision: the check motions, and the integrator, which makes them again.
 
+``roll`` has them by the claims of ``test_claims.py``.
+"""
+
+import json
 import math
+from itertools import groupby
+from operator import itemgetter
 
 import numpy as np
 import pytest
-from truth.test_driven import MOTIONS as DRIVEN
-from truth.test_motions import check_motions, inputs
+import tolerances as tol
 
 from pipeline.evidence.truth import roll_precise
 from pipeline.evidence.truth.motion import PATHS
-from pipeline.evidence.truth.reference import driven_motion
+from pipeline.evidence.truth.reference import DRIVEN, FREE, driven_motion, free_motion
+from pipeline.stage import read_rows
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 
-OUTPUTS = ("V", "omega", "x", "angle")
+FREE_MOTIONS = [list(rows) for _, rows in groupby(read_rows(FREE), itemgetter("motion"))]
+DRIVEN_MOTIONS = json.loads(DRIVEN.read_text(encoding="utf-8"))["motions"]
+
+
+def found_again(case, values, names):
+    """By fewer nodes and a larger tolerance, the same doubles."""
+    motion = roll_precise(*case[:3], case.t.tolist(), **case.drive, nodes=18, tolerance=1e-19)
+    for name in names:
+        assert [float(value) for value in getattr(motion, name)] == list(values[name]), name
+    return motion
+
+
+def test_free_motions_hold_together():
+    """Fifty motions, each shown to 1e-17 by a second one."""
+    assert len(FREE_MOTIONS) == 50
+    assert max(row["difference"] for rows in FREE_MOTIONS for row in rows) < tol.PRECISE_MOTION
+    assert {rows[0]["switches"] for rows in FREE_MOTIONS} >= {0.0, 1.0, 2.0}
+
+
+def test_driven_motions_hold_together():
+    """Thirty motions, each shown to 1e-17 by a second one; every regime and V = 0 in stick and in slip among them."""
+    assert len(DRIVEN_MOTIONS) == 30
+    assert max(row["difference"] for row in DRIVEN_MOTIONS) < tol.PRECISE_MOTION
+    assert {regime for row in DRIVEN_MOTIONS for _, regime in row["switches"]} == {
+        "full slip", "partial slip", "locked", "held"
+    }  # fmt: skip
+    assert sum(bool(row["reversals"]) for row in DRIVEN_MOTIONS) >= 6
+    assert {name for row in DRIVEN_MOTIONS for name in row["drive"]} == {
+        "force", "torque", "slope", "brake", "V", "omega"
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("number", [0, 9, 10, 37])
-def test_check_motions_are_found_again(number):
-    """The same doubles as by an integrator in other unknowns, which made them: IC1, two of large alpha, one of 1."""
-    rows = check_motions()[number]
-    motion = roll_precise(*inputs(rows), nodes=18, tolerance=1e-19)
-    for name in OUTPUTS:
-        assert [float(value) for value in getattr(motion, name)] == [row[name] for row in rows]
-    assert np.array_equal(float(motion.onset_time or math.nan), rows[0]["onset_time"], equal_nan=True)
+def test_free_motions_are_found_again(number):
+    """IC1, two of large alpha, one of 1; an integrator in other unknowns made them."""
+    rows = FREE_MOTIONS[number]
+    case, values = free_motion(rows)
+    motion = found_again(case, vars(values), ("V", "omega", "x", "angle"))
+    assert np.array_equal(float(motion.onset_time or math.nan), values.onset_time, equal_nan=True)
     assert len(motion.switches) == rows[0]["switches"]
 
 
 @pytest.mark.parametrize("name", ["pushed from rest", "slid off rest by a torque", "a jump there and back"])
-def test_driven_ones_are_found_again(name):
-    """The same doubles by fewer nodes and a larger tolerance."""
-    row = next(row for row in DRIVEN if row["name"] == name)
-    case = driven_motion(row)
-    found = roll_precise(*case[:3], row["t"], **case.drive, nodes=18, tolerance=1e-19)
-    for field in ("V", "omega", *PATHS):
-        assert [float(value) for value in getattr(found, field)] == row[field], field
+def test_driven_motions_are_found_again(name):
+    row = next(row for row in DRIVEN_MOTIONS if row["name"] == name)
+    found_again(driven_motion(row), row, ("V", "omega", *PATHS))

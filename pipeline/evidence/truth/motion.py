@@ -88,7 +88,7 @@ def roll_precise(
     Notes
     -----
     ``data/reference/check_driven.json`` states for every motion there how far other nodes and tolerances are off
-    (``tests/truth/test_driven.py``).
+    (``tests/evidence/test_precise.py``).
     """
     with flint.ctx.workprec(bits):
         theta = arb(float(slope or 0.0))
