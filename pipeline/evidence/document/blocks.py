@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import re
 import statistics
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
@@ -26,14 +28,14 @@ def block(name: str, results: Results) -> str:
     """The text of a block."""
     given = BLOCKS[name]
     values = results[given["of"]] if "of" in given else {}
-    found = MAKERS[name](results) if name in MAKERS else values
+    found = MAKERS[name](results) if name in MAKERS else values.get(given.get("rows"), values)
     if "claims" in given:
         found = [row for part, words in given["claims"].items() for row in claims(results, part, words)]
     if "lines" in given:
         head, *lines = given["lines"]
         text = table(head, ([cell(each, values | found) for each in line] for line in lines))
     elif "columns" in given:
-        rows = [*(found["rows"] if isinstance(found, dict) else found)]
+        rows = [*(rows_of(found.get("parts", {"": found})) if isinstance(found, dict) else found)]
         text = listed({cell(head, values): template for head, template in given["columns"].items()}, rows)
         values = values | rows[-1]
     else:
@@ -78,16 +80,6 @@ def ensembles(results: Results) -> list[Row]:
     return [*(row | {"name": name} for name, row in rows), m["loop"] | alone]
 
 
-def ensembles_cluster(results: Results) -> list[Row]:
-    """What dask costs."""
-    found = results["ensembles"]["cluster"]
-    return [
-        {"name": name, "overhead": found[f"overhead_{clock}"]}
-        | {where: found[f"{where}_{clock}_a_block"] for where in ("threads", "dask")}
-        for name, clock in {"seconds a block": "seconds", "of processor": "cpu_s"}.items()
-    ]  # fmt: skip
-
-
 def ensembles_plan(results: Results) -> Iterator[Row]:
     """10^11 motions on 100 machines like the one measured on."""
     m = results["ensembles"]
@@ -116,15 +108,10 @@ def proofs(results: Results) -> Iterator[Row]:
         yield closest | {"title": name.replace("_", " "), "claims": len(found), "points": points}
 
 
-def independent(results: Results) -> list[Row]:
-    """Deviations from other implementations, worst and mean."""
-    return results["independent"]["deviations"]
-
-
 def independent_paper(results: Results) -> Iterator[Row]:
     """Numbers that the paper prints, and the same computed here."""
     for row in results["independent"]["paper"]:
-        yield row | {"greek": _GREEK.get(row["quantity"], row["quantity"]).replace("beta", "β")}
+        yield row | {"greek": re.sub(r"\w+", lambda m: (m[0] in SYMBOLS and greek(m[0])) or m[0], row["quantity"])}
 
 
 #: of the motions without sliding: those of the table over gamma
@@ -157,11 +144,6 @@ def unsteady_ways(results: Results) -> Iterator[Row]:
     """How far the motions go, in contact lengths."""
     rows = results["transient"]["rows"][FEW:]
     return (row | {"cost": row["steady"]["shift"] - row["rest"]["shift"]} for row in rows)
-
-
-def torture(results: Results) -> list[Row]:
-    """One table of all its parts."""
-    return rows_of(results["torture"]["parts"])
 
 
 # --- bench ---
@@ -257,11 +239,13 @@ def bench_series(results: Results) -> Iterator[Row]:
 
 # --- nothing is measured ---
 
-_GREEK = {
-    "alpha": "α", "kappa": "κ", "mu": "μ", "gamma": "γ", "omega": "ω", "angle": "θ", "delta": "δ", "delta_star": "δ*",
-    "lam": "λ", "epsilon": "ε", "zeta": "ζ", "beta": "β", "force": "f", "torque": "q", "brake": "B", "slope": "ϑ",
-    "tau": "τ", "onset_time": "t*",
-}  # fmt: skip
+
+def greek(name: str) -> str:
+    """A sign for a symbol, as its LaTeX has it; empty where that is the name, or no sign alone."""
+    sign = html.unescape(re.sub(r"\\(?:var(?=eps))?(\w+)", r"&\1;", SYMBOLS[name].latex)).replace("^", "")
+    return sign if re.fullmatch(r"[^\W\d_](\*|/E')?", sign) and sign != name else ""
+
+
 #: units as "m s-1"
 _POWERS = str.maketrans({"-": "⁻", "1": "¹", "2": "²"})
 
@@ -271,14 +255,14 @@ def symbols(_: Results) -> Iterator[Row]:
     for name, symbol in SYMBOLS.items():
         unit = si_unit(name).translate(_POWERS) if name in DIMENSIONS else ""
         said = {"meaning": meaning(name), "range": symbol.range, "equation": symbol.equation}
-        yield said | {"name": name, "greek": _GREEK.get(name, ""), "unit": unit}
+        yield said | {"name": name, "greek": greek(name), "unit": unit}
 
 
 MAKERS: dict[str, Callable[[Results], Any]] = {
     made.__name__: made
     for made in (
-        three, headline, ensembles, ensembles_cluster, ensembles_plan, proofs, independent, independent_paper,
-        unsteady_gamma, unsteady, unsteady_ways, torture, bench_peers, bench_own, bench_driven, bench_bound_law,
+        three, headline, ensembles, ensembles_plan, proofs, independent_paper,
+        unsteady_gamma, unsteady, unsteady_ways, bench_peers, bench_own, bench_driven, bench_bound_law,
         bench_series, symbols, house.rooms, house.commands, house.sections, *identification.MAKERS,
     )
 }  # fmt: skip
