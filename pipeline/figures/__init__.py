@@ -29,21 +29,20 @@ def of_page(page: str, name: str = "figure") -> Figure:
     return figure
 
 
-FIGURES: dict[str, Callable[..., Figure]] = {
-    "geometry": geometry,
-    "figure-2": figure_2,
-    "figure-3": figure_3,
-    "figure-5": partial(of_page, "motion/b_section_5"),
-    "figure-6": partial(of_page, "motion/b_section_5", "contact"),
-    "figure-7": figure_7,
-    "phase-portrait": partial(of_page, "motion/c_phase_portrait"),
-    "ensemble": draw,
-    "rolling-resistance": partial(of_page, "materials/b_three_temperatures"),
-    "rolling-equilibria": partial(of_page, "drive/a_equilibria"),
-    "wheel-spin": partial(of_page, "drive/b_wheel_spin"),
-    "reversal": partial(of_page, "drive/c_reversal"),
-    "slope": partial(of_page, "drive/d_slope"),
-    "law-of-modes": partial(of_page, "contact/d_broad_rubber"),
-    "law-of-pairs": partial(of_page, "materials/c_rubber_on_steel"),
-    "broad-stresses": partial(of_page, "contact/d_broad_rubber", "stresses"),
+#: picture -> page of the gallery, and the name of its figure there if it is another
+PAGES = {
+    "figure-5": "motion/b_section_5",
+    "figure-6": "motion/b_section_5 contact",
+    "phase-portrait": "motion/c_phase_portrait",
+    "rolling-resistance": "materials/b_three_temperatures",
+    "rolling-equilibria": "drive/a_equilibria",
+    "wheel-spin": "drive/b_wheel_spin",
+    "reversal": "drive/c_reversal",
+    "slope": "drive/d_slope",
+    "law-of-modes": "contact/d_broad_rubber",
+    "law-of-pairs": "materials/c_rubber_on_steel",
+    "broad-stresses": "contact/d_broad_rubber stresses",
 }
+FIGURES: dict[str, Callable[..., Figure]] = {
+    "geometry": geometry, "figure-2": figure_2, "figure-3": figure_3, "figure-7": figure_7, "ensemble": draw,
+} | {name: partial(of_page, *page.split()) for name, page in PAGES.items()}  # fmt: skip
