@@ -176,9 +176,9 @@ def states(
     if solved != names:
         rows |= {name: 0.5 * rows[of] for name, of in _HALVES.items() if name in names and name not in rows}
         rows |= {name: rows[of] for name, of in SAME.items() if name in names}
-    if not shape:
-        return {name: rows[name] != 0.0 if name == "full_slip" else rows[name] for name in names}
-    return {name: shaped(name, rows[name], shape) for name in names}
+    if "full_slip" in names:
+        rows["full_slip"] = rows["full_slip"] != 0.0
+    return {name: rows[name].reshape(shape) if shape else rows[name] for name in names}
 
 
 @lru_cache(maxsize=64)
@@ -186,11 +186,3 @@ def _solved(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
     """What the kernels are asked for: not what is half of it, or the same in other units."""
     made = SAME if unlike else SAME | _HALVES
     return tuple(dict.fromkeys(made.get(name, name) for name in names))
-
-
-def shaped(name: str, row: NDArray, shape: tuple[int, ...]) -> Any:
-    """A row of a kernel in the shape of the call; a number where that is ()."""
-    values = np.reshape(row, shape)
-    if name == "full_slip":
-        values = values != 0.0
-    return values if shape else values.item()

@@ -15,7 +15,7 @@ from ..core.results import Values
 from ..core.typed import Floats, Numbers
 from ..materials.bodies import one_series
 from ..materials.law_modes import kernel_series
-from .contact import shaped, states
+from .contact import states
 from .parameters import Parameters, Rolls, framed
 
 _BLOCK = 1 << 15
@@ -87,7 +87,8 @@ def stress(
         tau[start:stop] = sign_of(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, count, _BLOCK)
-    found = {name: scale.of(name, shaped(name, row, shape)) for name, row in (("p", p), ("tau", tau))}
+    rows = {"p": p, "tau": tau}
+    found = {name: scale.of(name, row.reshape(shape) if shape else row.item()) for name, row in rows.items()}
     return Values(found, places, si=scale.si, title="Stresses", labels=labels)
 
 

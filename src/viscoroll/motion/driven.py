@@ -15,7 +15,7 @@ from ..core.labels import Labels, unlabelled
 from ..core.scale import Scale
 from ..core.typed import Floats
 from .checks import start_speeds
-from .schedule import Curve, curve, pieces_of, slope_of, start_value
+from .schedule import Curve, at_start, curve, pieces_of, slope_of
 
 STATES, LOSSES = ("V", "omega", "x", "angle", "delta", "regime"), ("slip_loss", "rolling_loss")
 ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
@@ -150,7 +150,7 @@ def prepared(drive: Drive, V0: Any, omega0: Any, end: float, rtol: float) -> Pre
             speed = curve(name, given, end, rtol)
             rate, prescribed, error = slope_of(name, speed), code, speed.error
             # of a callable itself: its fit is off by rounding, and may be of the other sign
-            own = np.array([float(given(0.0))]) if callable(given) else start_value(speed)
+            own = np.array([float(given(0.0))]) if callable(given) else at_start(speed.terms[:, 0])
             starts[name] = _prescribed_start(f"{name}0", starts[name], speed, own)
         if starts[name] is None:
             raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")

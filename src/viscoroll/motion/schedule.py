@@ -69,9 +69,9 @@ def curve(name: str, given: Any, end: float, rtol: float, *, low: float = -np.in
 def _linear(times: Floats, values: Floats) -> Curve:
     """Linear between times, constant outside; a time given twice is a jump."""
     times, values = np.atleast_2d(times, values)
+    values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
     first, second = values[:, :-1], values[:, 1:]
     terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
-    terms = np.concatenate([_flat(values[:, :1]), terms, _flat(values[:, -1:])], axis=1)
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
     kept = (_ends(starts) > starts).any(axis=0)
@@ -83,15 +83,10 @@ def _ends(starts: Floats) -> Floats:
     return np.pad(starts[:, 1:], [(0, 0), (0, 1)], constant_values=np.inf)
 
 
-def _flat(values: Floats) -> Floats:
-    """Terms of pieces with these values."""
-    return np.stack([values, np.zeros_like(values)], axis=-1)
-
-
 def slope_of(name: str, speed: Curve) -> Curve:
     """The slope over t of a prescribed speed, which must not jump."""
     lengths = speed.ends - speed.starts
-    first, last = _at_start(speed.terms), speed.terms.sum(axis=-1)
+    first, last = at_start(speed.terms), speed.terms.sum(axis=-1)
     scale = max(float(np.abs(speed.terms).max(initial=0.0)), 1e-300)
     least = 1e-12 * scale + 4.0 * speed.error
     jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # of pieces without length
@@ -105,19 +100,14 @@ def slope_of(name: str, speed: Curve) -> Curve:
     return speed._replace(terms=_from_zero(terms, _ROUNDING_OF_SLOPE) if order.size else np.zeros_like(speed.terms))
 
 
-def _at_start(terms: Floats) -> Floats:
+def at_start(terms: Floats) -> Floats:
     """Values at x = -1."""
     return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
 
 
-def start_value(speed: Curve) -> Floats:
-    """Value of a curve at t = 0."""
-    return _at_start(speed.terms[:, 0])
-
-
 def _from_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
     """Pieces that begin at 0 where their first value is rounding: by that a motion from rest would set out."""
-    first, size = _at_start(terms), np.abs(terms).sum(axis=-1)
+    first, size = at_start(terms), np.abs(terms).sum(axis=-1)
     found = terms.copy()
     found[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
     return found
