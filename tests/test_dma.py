@@ -1,7 +1,5 @@
 """From storage and loss modulus to a Prony series: what is recovered, what is said, what is refused."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -178,17 +176,14 @@ def test_units_are_asked_for(tmp_path):
 
 
 def test_what_the_contact_sees_of_the_data():
-    """The passage of the contact at rest takes l0/V; a shift of the material shifts the data with it."""
+    """As of the cylinder, of which ``si/test_warned.py`` holds where the data end."""
     fit = vr.fit_prony(*vr.read_dma(ROOT / "docs/examples/dma.csv"))
     cylinder = vr.Cylinder(R=0.1, m=30.0, material=fit.material(0.5), mu=0.5)
     V = np.geomspace(1e-6, 1e4, 30)
     found = fit.validity(cylinder, V)
-    lam = vr.contact(cylinder.scene(), V / cylinder.scale["V"], delta=0.0).lam
-    assert close(found.value, V / (lam * cylinder.l0), rel=1e-14)
+    assert close(found.value, cylinder.validity(V).measured.value, rel=1e-14)
     assert found.holds.any()
     assert not found.holds[[0, -1]].any()
-    cold = replace(cylinder, material=fit.material(0.5).at(0.0, lambda _: 100.0))
-    assert close(fit.validity(cold, V / 100.0).value, found.value, rel=1e-12)
 
 
 def test_what_was_measured_stays_with_the_material():

@@ -80,13 +80,6 @@ def test_axes_are_named_after_what_varies(results):
     assert table["V"].iloc[0] == 1.5
 
 
-def test_scenes_hash_and_are_short():
-    many = SCENE.replace(mu=np.linspace(0.1, 0.3, 1000))
-    assert {SCENE: 1}[SCENE.replace(mu=0.2)] == 1
-    assert len(repr(many)) < 120
-    assert eval(repr(SCENE), {"Scene": vr.Scene}) == SCENE
-
-
 def test_a_table_of_pandas_has_a_row_each(results):
     """Of a driven motion too, whose drive has corners of its own; units are in the names of columns."""
     table = results["driven"].to_pandas()

@@ -124,6 +124,8 @@ def test_a_scene_is_a_value():
     assert rounded == vr.presets.PAPER_SECTION_5_ROUNDED
     assert rounded.replace(mu=0.3).mu == 0.3 != rounded.mu
     assert scene != "scene"
+    assert eval(repr(rounded), {"Scene": vr.Scene}) == rounded
+    assert len(repr(scene.replace(mu=np.linspace(0.1, 0.3, 1000)[:, None]))) < 120
     assert type(rounded.alpha) is float
     for frozen in (scene, vr.Cylinder(**SI)):
         with pytest.raises(dataclasses.FrozenInstanceError):

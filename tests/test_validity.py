@@ -40,6 +40,9 @@ def test_wave_speed():
     share = np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT
     found = cylinder.validity(share * wave, density=density).quasistatic
     assert found.holds.tolist() == [True, False, False]
+    fast = cylinder.validity(0.1 * wave, omega=0.5 * wave / cylinder.R, density=density)  # the circumference counts
+    assert close((fast.quasistatic.value, fast.creep.value), (0.5, 4.0), rel=tol.PAIR)
+    assert not fast.creep.holds
 
 
 def test_beyond_all_bounds():

@@ -4,8 +4,6 @@
 #: Units in the last place of the textbook Bessel ratios; measured 2.7 (I) and 3.6 (K, where Temme's two sums are
 #: divided).
 BESSEL_ULP = 4.0
-#: Q/mu, absolute: K1/K0 <= 1e3 (kappa V = 1e3) magnifies the rounding of Eq. (15)'s bracket; measured 1.1e-13.
-DIRECT_TRACTION = 4e-13
 #: Q itself at |delta| below 1e-4 delta_star, as the difference of M/2 and a force: rounding of M and of omega - V over
 #: Q; measured 4e-13.  A slope in place of a mean one is off by 2e-7 and more.
 SMALL_TRACTION = 1e-11
@@ -313,10 +311,6 @@ DMA_SHIFT_NOISY = 0.02
 SI_MOTION = 1e-12
 #: The same on a slope, where kappa is rounded by another way and brake and reversals magnify it; measured 3e-12.
 SI_TILTED = 3e-11
-#: Terminal speed of a motion against that of ``steady``, relative, at rtol 1e-8; measured 5e-14.
-SI_TERMINAL = 1e-11
-#: Trapezoids over 2e4 points, square roots at both ends of the contact: (2/2e4)^1.5.
-SI_INTEGRAL = 1e-5
 #: Motions of an ensemble against roll at rtol 1e-8: equal steps, other rounding of inputs.
 SI_ENSEMBLE = 1e-9
 
@@ -383,8 +377,6 @@ CALLABLE_FOOT, CALLABLE_ROUNDING = 1e-6, 5e-10
 LATE_CREEP = 1e-14
 #: Steps of motions under callables, up to 330; those from rest once took 100,000.
 CALLABLE_STEPS = 500
-#: Tables of 4,000 to 10,000 values: h^2/8 of the second derivative.
-CALLABLE_TABLE = 1e-5
 #: A jump a number's distance away.
 CALLABLE_JUMP = 1e-14
 

@@ -7,6 +7,11 @@ from .materials.material import Material
 from .materials.prony import Prony
 from .scene import Scene
 
+__all__ = [
+    "PAPER_CYLINDER", "PAPER_FIGURES_2_3", "PAPER_SECTION_5", "PAPER_SECTION_5_ROUNDED", "PAPER_STARTS",
+    "RUBBER_CYLINDER", "RUBBER_ROLLER",
+]  # fmt: skip
+
 #: Sect. 5 as it was computed: from the dimensional list of Sect. 4 with g = 9.81 m/s^2 and
 #: mu = 0.2.  Gives alpha = 11.031, kappa = 2.9210, gamma = 11231 and the paper's numbers.
 PAPER_CYLINDER = Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)

@@ -13,6 +13,7 @@ from closeness import close
 import viscoroll as vr
 from viscoroll import fmu
 from viscoroll.app.cli import main
+from viscoroll.app.fmu.variables import MODELS
 from viscoroll.core.errors import MissingDependencyError
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
@@ -90,7 +91,7 @@ def opened(path, **given):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-@pytest.mark.parametrize("model", fmu.MODELS)
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("name", CYLINDERS)
 def test_the_standard_is_kept(built, name, model, version):
     assert validation.validate_fmu(built(name, model, version)) == []

@@ -77,16 +77,6 @@ def test_the_unit_of_time_is_free(unit):
 # --- two bodies ---
 
 
-def test_like_bodies_are_one_material():
-    p, t = vr.Prony([2.0, 5.0], [1.0, 1e-3]), np.linspace(0.0, 1e-3, 5)
-    like, V = scene(vr.Bodies(p, p)), np.geomspace(1e-6, 1e8, 60)
-    assert like.like_bodies
-    found = vr.contact(like, V, delta=0.0, fields=("M_half_space", "M_cylinder", "M"))
-    assert np.array_equal(found.M_half_space, found.M_cylinder)
-    assert np.array_equal(found.M, vr.contact(scene(p), V, delta=0.0, fields="M").M)
-    assert np.array_equal(vr.roll(like, 0.5, 0.4, t).V, vr.roll(scene(p), 0.5, 0.4, t).V)
-
-
 PARTS = ("M_half_space", "M_cylinder")
 
 
@@ -103,8 +93,9 @@ def test_slopes_of_the_parts_of_M():
     rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
     half_space, cylinder = 0.7 * UNLIKE.base.T_mean, 0.3 * UNLIKE.cylinder.T_mean
     assert close((rest.dM_half_space_dV, rest.dM_cylinder_dV), (half_space, cylinder), rel=tol.BODIES)
-    like = vr.contact(scene(WIDE), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV"))
+    like = vr.contact(scene(vr.Bodies(WIDE, WIDE)), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV", "M", *PARTS))
     assert like.dM_cylinder_dV == 0.5 * like.dM_dV
+    assert like.M_cylinder == like.M_half_space == 0.5 * like.M
 
 
 @pytest.mark.parametrize("V", [1e130, 1e150, 1e200, 1e290])

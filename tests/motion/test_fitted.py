@@ -83,29 +83,6 @@ def course(m: Any) -> np.ndarray:
     return np.stack([m.V, m.omega])
 
 
-def table(name: str) -> vr.Schedule:
-    """A callable as values at times that lie close where it is steep."""
-    near = {"tanh": (1.0, 0.4), "Gauss pulse": (3.0, 0.6)}.get(name)
-    t = np.linspace(0.0, END, 4001)
-    if near:
-        t = np.unique(np.r_[t, np.linspace(near[0] - near[1], near[0] + near[1], 6001)])
-    return vr.Schedule(t, [CALLABLES[name](one) for one in t])
-
-
-@pytest.mark.parametrize("start", [0.0, 0.5])
-@pytest.mark.parametrize("name", ["tanh", "Gauss pulse", "exp(-1/t)", "cubes"])
-def test_motions_under_callables_are_those_under_tables(name, start):
-    """At every tolerance, from rest and not."""
-    t = np.linspace(0.0, END, 41)
-    best = vr.roll(ROLLER, start, start, t, rtol=1e-9, torque=table(name))
-    fastest = np.abs(course(best)).max()
-    for rtol in (1e-2, 1e-4, 1e-8, 1e-11):
-        m = vr.roll(ROLLER, start, start, t, rtol=rtol, torque=CALLABLES[name])
-        assert m.status == vr.MotionStatus.DONE
-        assert m.steps < tol.CALLABLE_STEPS
-        assert close(course(m), course(best), rel=max(30.0 * rtol, tol.CALLABLE_TABLE), scale=fastest)
-
-
 @pytest.mark.parametrize("name", ["tanh", "Gauss pulse", "exp(-1/t)", "half waves"])
 def test_speeds_prescribed_by_callables(name):
     """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""

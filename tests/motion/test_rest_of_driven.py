@@ -34,12 +34,3 @@ def test_force_after_rest_is_what_is_given():
     assert np.array_equal(e.rest_time, [5.0, 2.0])
     assert np.array_equal(e.force[0], m.force)
     assert not e.V[1, T >= 2.0].any()
-
-
-def test_rest_at_the_start_is_rest():
-    """Nothing is given but zeros: as without a drive."""
-    still = vr.roll(SCENE, 0.0, 0.0, T, rest=1e-3)
-    m = vr.roll(SCENE, 0.0, 0.0, T, rest=1e-3, force=vr.Schedule([0.0, 1.0], [0.0, 0.0]))
-    assert (m.status, m.rest_time, m.switches) == (still.status, still.rest_time, still.switches)
-    slow = vr.roll(SCENE, 1e-4, 1e-4, T, rest=1e-3, force=vr.Schedule([0.0, 1.0], [0.0, 0.0]))
-    assert (slow.status, slow.rest_time) == (vr.MotionStatus.RESTED, 0.0)

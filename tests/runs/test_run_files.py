@@ -312,6 +312,5 @@ def test_a_cylinder_of_its_own_numbers_on_a_base_that_is_uncertain(read):
         base = { E = { distribution = "uniform", loc = 1e6, scale = 1e6 }, nu = 0.5 }
     """)
     values, motions = roll_block(run, 0)
-    for i, E in enumerate(values["base_E"]):
-        alone = vr.Cylinder(**run.inputs.content["cylinder"], base=vr.Material(E, 0.5)).roll(2.0, 0.0, run.t)
-        assert close(motions.V[i], alone.V, rel=tol.MOTION_RTOL * run.settings.rtol)
+    for i in range(5):
+        assert close(motions.V[i], alone(run, values, i).V, rel=tol.MOTION_RTOL * run.settings.rtol)

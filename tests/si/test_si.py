@@ -129,39 +129,6 @@ def test_functions_are_the_methods():
 # --- newtons, by other laws ---
 
 
-def test_stresses_hold_load_and_traction():
-    """The integrals of p and tau over the contact are P and the traction Q, N per m."""
-    state = ON_STEEL.contact(0.3, delta=0.002)
-    x = np.linspace(-state.length, state.length, 20001)
-    found = ON_STEEL.stress(x, 0.3, delta=0.002)
-    assert close(np.trapezoid(found.p, x), ON_STEEL.load, rel=tol.SI_INTEGRAL)
-    assert close(np.trapezoid(found.tau, x), state.Q, rel=tol.SI_INTEGRAL)
-    assert close(state.length, state.lam * ON_STEEL.l0, rel=tol.SI_MOTION)
-
-
-def test_equilibria_balance_and_motions_end_there():
-    """On a slope P sin(slope) holds against the moment, at a load of more than the weight, on a rigid base."""
-    slope = np.radians(1.0)
-    tread = vr.Material(3e5, 0.49, vr.Prony([0.5, 1.0], [1.0, 0.1]), T_ref=2.0)
-    pressed = vr.Cylinder(R=0.1, m=5.0, mu=0.4, material=tread, base=vr.Material.rigid(), load=500.0)
-    s, pull = pressed.steady(slope=slope), 500.0 * np.sin(slope)
-    assert close(s.force, pull, rel=tol.SI_MOTION)
-    assert close(s.M_half_space / pressed.R - s.Q, pull, rel=tol.SI_TERMINAL)
-    assert close(s.Q, -s.M_cylinder / pressed.R, rel=tol.SI_TERMINAL)
-    m = pressed.roll(0.0, 0.0, [50.0], slope=slope)
-    assert close(m.V[-1], s.V[s.stable][0], rel=tol.SI_TERMINAL)
-    assert close(m.force[-1], pull, rel=tol.SI_MOTION)
-
-
-def test_speeds_of_validity_are_metres_a_second():
-    """Waves: sqrt(G/density); the circumference counts where omega is given."""
-    wave = np.sqrt(RUBBER.G / RUBBER.density)
-    assert close(ON_STEEL.validity(0.1 * wave).quasistatic.value, 0.1, rel=tol.PAIR)
-    fast = ON_STEEL.validity(0.1 * wave, omega=0.5 * wave / ON_STEEL.R)
-    assert close((fast.quasistatic.value, fast.creep.value), (0.5, 4.0), rel=tol.PAIR)
-    assert not fast.creep.holds
-
-
 # --- many cylinders ---
 
 SLOW, FAST = np.array([1e-3, 1e-2, 2e-2]), np.array([1e-3, 1e-3, 5e-3])
@@ -214,7 +181,6 @@ def test_dataset_in_si():
     data = m.to_xarray()
     said = {name: data[name].attrs["units"] for name in ("t", "V", "force", "slip_loss", "drive_brake_time")}
     assert said == {"t": "s", "V": "m s-1", "force": "N m-1", "slip_loss": "J m-1", "drive_brake_time": "s"}
-    assert data["drive_brake"].values.tolist() == [0.0, 3.0]
     assert [data.attrs[name] for name in ("R", "load", "T_ref")] == [ROLLER.R, ROLLER.load, ROLLER.T_ref]
     e = ROLLER.replace(mu=[0.2, 0.3]).ensemble(0.02, 0.1, TIMES)
     assert e.to_xarray()["V"].attrs["units"] == e.summary().V_mean.attrs["units"] == "m s-1"

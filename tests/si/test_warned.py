@@ -22,23 +22,6 @@ BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=
 LAST = 2.866
 
 
-@pytest.fixture
-def told(monkeypatch):
-    """What a call, made twice, warns of."""
-
-    def of(call) -> list[str]:
-        monkeypatch.setattr(known, "_told", set())
-        with warnings.catch_warnings(record=True) as found:
-            warnings.simplefilter("always")
-            call()
-            call()
-        assert all(issubclass(each.category, vr.ModelWarning) for each in found)
-        assert all(each.filename == __file__ for each in found)
-        return [str(each.message) for each in found if "as measured" in str(each.message)]
-
-    return of
-
-
 def test_where_the_data_end():
     """Of the same contact, by the law itself: the two ends are passed at the frequencies of the data."""
     for at, end in zip(BELT._known.held, (DATA.low, DATA.high), strict=True):
@@ -48,13 +31,15 @@ def test_where_the_data_end():
     assert found.holds.tolist() == [True, False]
 
 
-def test_a_word_once_a_material(told):
-    assert len(told(lambda: BELT.contact(10.0, delta=0.0))) == 1
-
-
-def test_workers_are_quiet(told, monkeypatch):
-    monkeypatch.setattr(known, "is_worker", lambda: True)
-    assert told(lambda: BELT.contact(10.0, delta=0.0)) == []
+@pytest.mark.parametrize("worker", [False, True])
+def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
+    monkeypatch.setattr(known, "_told", set())
+    monkeypatch.setattr(known, "is_worker", lambda: worker)
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        for _ in range(2):
+            BELT.contact(10.0, delta=0.0)
+    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)] * (not worker)
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")

@@ -1,16 +1,11 @@
-"""Certified enclosures, and the digits of contact against check values made of them."""
+"""Certified enclosures; that check values are theirs: ``evidence/test_prove.py``."""
 
-import csv
 from typing import Any
 
 import flint
 import numpy as np
-from places import DATA
 
 from pipeline.evidence.truth.enclosures import contact_enclosure, ratio_k, ratio_r
-
-CHECK_VALUES = DATA / "reference/check_values.csv"
-
 
 # --- enclosures ---
 
@@ -63,20 +58,3 @@ def test_creep_of_exactly_delta_star():
     """alpha = 1: delta_star is a double, and a creep of that is full slip, one ULP below it is not."""
     for delta, slip in ((0.25, True), (np.nextafter(0.25, 0.0), False)):
         assert contact_enclosure(1.0, 2.0, 1.0, 0.7, float(delta))["full_slip"] is slip
-
-
-# --- check values ---
-
-
-def check_rows() -> list[dict[str, float]]:
-    with CHECK_VALUES.open(encoding="utf-8", newline="") as file:
-        return [{name: float(text) for name, text in row.items()} for row in csv.DictReader(file)]
-
-
-def test_check_values_sample_is_enclosed():
-    """A sample of the file, each value the double nearest to its enclosure."""
-    rows = check_rows()
-    for row in rows[:: len(rows) // 60]:
-        exact = contact_enclosure(*(row[name] for name in ("alpha", "kappa", "mu", "V", "delta")))
-        for name in row.keys() & exact.keys():
-            assert row[name] == float(exact[name]), name

@@ -24,6 +24,8 @@ from numpy.typing import NDArray
 from ..core.checks import checked, number
 from ..core.errors import ParameterError, one_of, unknown
 
+__all__ = ["Sample", "sample"]
+
 Design = Literal["random", "latin", "sobol"]
 #: no design draws a point closer to 0 or 1 than this
 SMALLEST, LARGEST = 2.0**-54, 1.0 - 2.0**-53

@@ -9,6 +9,5 @@ cylinder is.  ``Roller`` is the cylinder itself; in co-simulation it takes its o
 """
 
 from .build import build
-from .variables import MODELS
 
-__all__ = ["MODELS", "build"]
+__all__ = ["build"]
