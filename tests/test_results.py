@@ -91,6 +91,14 @@ def test_a_table_of_pandas_has_a_row_each(results):
     assert len(many.to_pandas()) == 4
 
 
+def test_figures_bend_as_results_do():
+    """A motion to one time in few steps; terminal speeds of a gentle slope beside the unstable ones."""
+    m = ROLLER.roll(2.0, 0.0, 10.0)
+    t, x = m.plot().axes[2].lines[0].get_data()
+    assert close(np.interp(5.0, t, x), m.at([5.0]).x[0], rel=tol.FIGURE)
+    assert ROLLER.steady(slope=np.radians([0.0, 0.1, 0.2])).plot().axes[0].get_yscale() == "symlog"
+
+
 def test_the_figure_of_a_motion_has_no_panel_for_what_does_not_act():
     t = np.linspace(0.0, 4.0, 5)
     for drive, panels in ({"brake": 5.0}, 3), ({"torque": 0.5}, 4):

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: changes of regime that are kept
 _SWITCHES_KEPT = 1000
+#: times of a figure, beside the ends of steps, between which lines are straight
+_DRAWN = 201
 #: room for the ends of steps at first
 _STEPS = 1000
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
@@ -200,7 +202,10 @@ class Motion(Rolled):
 
     def _figure(self) -> Figure:
         """All of it where it was asked for at one time."""
-        return Rolled._figure(self if self.t.size > 1 else self.course)
+        if self.t.size > 1:
+            return Rolled._figure(self)
+        t = self.course.t
+        return Rolled._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
     def to_xarray(self) -> xr.Dataset:
         """Dataset over t with V, omega, x, angle, delta, regime and the scene as attributes."""

@@ -85,9 +85,11 @@ def equilibria(data: xr.Dataset) -> Figure:
     for which, face, text in ((stable != 0, style["color"], "stable"), (stable == 0, "white", "not stable")):
         held = which & np.isfinite(V)
         box.plot(x[held], V[held], markerfacecolor=face, label=text, **style)
-    speeds = _finite(data["V"])
-    wide = speeds.min() > 0.0 and speeds.max() > 100.0 * speeds.min()
-    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]), yscale="log" if wide else "linear")
+    box.set(xlabel=axis(data[over]), ylabel=axis(data["V"]))
+    moving = np.abs(_finite(data["V"]))
+    moving = moving[moving > 0.0]
+    if moving.max(initial=0.0) > 100.0 * moving.min(initial=np.inf):
+        box.set_yscale("symlog", linthresh=moving.min())  # with rest, at V = 0
     box.legend(frameon=False)
     return figure
 
