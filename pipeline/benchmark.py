@@ -64,7 +64,7 @@ def by_radau(rates: Rates, t: NDArray, rtol: float) -> Way:
 
 def by_grid(scene: vr.Scene, V: NDArray, delta: NDArray) -> Rates:
     """Rates by splines in a grid of Q and M; at the edges its last values are held."""
-    look_up, g, j = vr.tables.Interpolant(vr.tables.build(scene, V, delta)), scene.gamma, scene.j
+    look_up, g, j = vr.tables.Interpolant(vr.tables.build(scene, V, delta=delta)), scene.gamma, scene.j
 
     def rates(_: float, y: NDArray) -> Any:
         speed, turn = np.clip(abs(y[0]), V[0], V[-1]), np.sign(y[0])

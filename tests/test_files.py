@@ -171,7 +171,7 @@ FORMATS: dict[str, tuple[Callable[[Path], object], Callable[[Path], object]]] = 
         lambda path: vr.load_law(path, 11.0),
     ),
     "grid": (
-        lambda path: vr.tables.save(vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01]), path),
+        lambda path: vr.tables.save(vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01]), path),
         vr.tables.load,
     ),
     "material": (RUBBER.to_netcdf, vr.Material.from_netcdf),

@@ -162,6 +162,8 @@ def test_anything(a, bounds):
 
 def tables(made=[]):  # noqa: B006 - built once
     if not made:
-        made.append(vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], [-0.01, 0.0, 0.03]))
-        made.append(vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.3, 2.0], [-0.01, 0.0, 0.03], [1.0, 11.0]))
+        made.append(vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], delta=[-0.01, 0.0, 0.03]))
+        made.append(
+            vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], alpha=[1.0, 11.0])
+        )
     return made

@@ -80,8 +80,8 @@ def parts() -> Iterator[tuple[str, Any]]:
         yield f"motions-{name}-each", motions(scene.replace(material=many), 50, method="integrate")
         yield f"driven-{name}", motions(scene, 200, force=0.03, torque=np.linspace(-0.1, 0.1, 200))
         yield f"steady-{name}", vr.steady(scene, torque=np.geomspace(1e-4, 0.1, 50))
-    axes = np.geomspace(0.01, 10.0, 9), np.linspace(-0.1, 0.1, 11), np.array([1.0, 3.0, 11.0])
-    yield "grid", vr.tables.build(vr.Scene(2.0, 2.9, 0.2), *axes)
+    axes = {"delta": np.linspace(-0.1, 0.1, 11), "alpha": np.array([1.0, 3.0, 11.0])}
+    yield "grid", vr.tables.build(vr.Scene(2.0, 2.9, 0.2), np.geomspace(0.01, 10.0, 9), **axes)
     yield "law", vr.tables.law(vr.presets.RUBBER_CYLINDER.material)
 
 

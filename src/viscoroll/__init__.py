@@ -1,7 +1,7 @@
 """viscoroll: a viscoelastic cylinder rolling with partial slip on a half-space of its material.
 
-Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  Everything
-is dimensionless unless its name says SI.  Names load on first use: importing the package
+Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  A
+``Scene`` is dimensionless, a ``Cylinder`` in SI units.  Names load on first use: importing the package
 imports neither numba nor xarray nor matplotlib.
 """
 

@@ -85,7 +85,8 @@ def tables(tmp_path_factory):
     folder = tmp_path_factory.mktemp("tables")
     vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), folder / "rubber.nc")
     vr.tables.save(
-        vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], [0.0, 0.01], [1.0, 11.0]), folder / "grid.nc"
+        vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01], alpha=[1.0, 11.0]),
+        folder / "grid.nc",
     )
     return folder
 

@@ -32,7 +32,9 @@ WHAT = {
 
 
 def built(name: str) -> xr.Dataset:
-    return vr.tables.build(WHAT[name], V, DELTA, ALPHA if name == "alphas" else None, command="made by a test")
+    return vr.tables.build(
+        WHAT[name], V, delta=DELTA, alpha=ALPHA if name == "alphas" else None, command="made by a test"
+    )
 
 
 @pytest.fixture(scope="module", params=list(WHAT))
@@ -108,7 +110,7 @@ def test_interpolation(table):
 
 def test_axes_of_few_nodes():
     for few in ([0.5], [0.4, 0.5], [0.4, 0.5, 0.6]):
-        table = vr.tables.build(vr.presets.PAPER_SECTION_5, few, [0.0, 0.01], 11.0)
+        table = vr.tables.build(vr.presets.PAPER_SECTION_5, few, delta=[0.0, 0.01], alpha=11.0)
         found = vr.tables.interpolate(table, "Q", V=0.5, delta=0.01, alpha=11.0)
         assert close(found.Q, table.Q.sel(V=0.5, delta=0.01, alpha=11.0).item(), rel=tol.TABLE_SPLINE_NODE)
 

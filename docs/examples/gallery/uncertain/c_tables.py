@@ -63,7 +63,7 @@ if shutil.which("octave-cli"):
 # %%
 # A grid for look-up blocks, and what linear look-up in it is worth.
 V = vr.tables.spread(1e-2, 1e4, 60, "log")
-grid = vr.tables.build(scene, V, np.linspace(-0.03, 0.03, 61))
+grid = vr.tables.build(scene, V, delta=np.linspace(-0.03, 0.03, 61))
 speeds = np.geomspace(1e-2, 1e4, 400)
 looked_up = grid.Q.interp(V=speeds, delta=0.0053)
 truth = vr.contact(scene, speeds, delta=0.0053, fields="Q").Q

@@ -59,7 +59,7 @@ def build(given: Namespace) -> None:
     example:
       viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc
     """
-    vr.tables.export(vr.tables.build(body_of(given.scene), given.V, given.delta, given.alpha), given.output)
+    vr.tables.export(vr.tables.build(body_of(given.scene), given.V, delta=given.delta, alpha=given.alpha), given.output)
     _size(given.output)
 
 

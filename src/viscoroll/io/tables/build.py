@@ -54,9 +54,9 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
 def build(
     what: Scene | Cylinder | LawTable | xr.Dataset,
     V: ArrayLike,
+    *,
     delta: ArrayLike,
     alpha: ArrayLike | None = None,
-    *,
     command: str | None = None,
 ) -> xr.Dataset:
     """Table of the contact over (V, delta) or (V, delta, alpha), with what interpolation makes of it.
