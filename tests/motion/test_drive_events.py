@@ -115,3 +115,12 @@ def test_a_prescribed_speed_stands_at_0(rtol, then):
     assert close(turning.V, np.interp(t, stands.times, stands.values), rel=BOUND * rtol, scale=1.0)
     assert turning.status == vr.MotionStatus.DONE
     assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-8, 1e-12])
+@pytest.mark.parametrize(("values", "turns"), [([1, 0, -1], [1.0]), ([1, 0, 0, -1], [2.0]), ([1, 0, 0, 1], [])])
+def test_a_prescribed_V_turns_where_it_leaves_0_the_other_way(values, turns, rtol):
+    """Not where it comes to 0 with a piece of the drive, whatever rounding makes of that."""
+    V = vr.Schedule(np.arange(len(values)), values)
+    m = vr.roll(vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5), None, -2.0, V.times[-1], rtol=rtol, V=V, torque=-0.051)
+    assert m.reversals.tolist() == turns

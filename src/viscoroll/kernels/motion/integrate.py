@@ -194,7 +194,10 @@ def follow(moving, fresh, state, frame, clock, case):
     while clock.at < case.tau.size:
         if clock.steps >= case.limits.max_steps:
             return STEP_LIMIT, clock
+        direction = frame.direction
         moving, state, frame, clock = next_piece(moving, state, frame, clock, case)
+        if frame.direction != direction:
+            note(REVERSED, clock, case)
         if moving and spent(event, state, frame, case):
             return UNSTEADY, put_here(state, frame, clock, case)
         event, direction, before = NO_EVENT, frame.direction, clock

@@ -31,6 +31,7 @@ from .origin import departing
 from .output import pass_panel
 from .rates import last_pulls, rates_of
 from .records import EDGE, NO_EVENT, SLOW, STUCK, TURN, Clock, Frame, State
+from .records import SPEED as VELOCITY
 from .solve import panel_error, solve
 
 #: first panel: share of what the unknowns may change by, and time over that of relaxation
@@ -54,6 +55,9 @@ _CUTS, _HOPELESS = 8, 10.0
 _EARLY, _BEHIND_IT = 0.5, 1.1
 #: length, over the time so far and to come, of a regime that ends where it begins
 _INSTANT = 1e-14
+#: share of the way to the end of a piece beyond which a prescribed V that comes to 0 does so at that end: where it goes
+#: from there the next piece knows
+_BEFORE_END = 1.0 - 1e-13
 #: growth of panels beyond that by the last error, and what keeps an error from being 0
 _FASTER, _TINY = 1.3, 1e-12
 #: shrinkage, at least, of a panel that is rejected, and of the next ones
@@ -113,10 +117,21 @@ def _first_length(fresh, clock, frame, case):
 
 
 @kernel(inline=True)
-def _pace_to_zero(state, frame, case):
-    """Time until V = 0 in full slip at the pace at the start: there the law bends."""
+def _pace_to_zero(panel, state, frame, case):
+    """Time until V = 0 at the pace at the start: there the law bends, and that of partial slip ends.
+
+    In partial slip V only comes to 0 against the drive.
+    """
     pace = case.nodes[V_RATE]
-    return -state.V / pace if frame.slips and pace < 0.0 else np.inf
+    if not pace < 0.0:
+        return np.inf
+    if frame.slips:
+        return -state.V / pace
+    load = load_at(panel.tau, panel.piece, frame, case)
+    against = load.V_rate + load.omega_rate
+    if against > 0.0 or (against == 0.0 and load.force + load.torque >= 0.0):
+        return np.inf
+    return -state.V / pace
 
 
 @kernel(inline=True)
@@ -135,6 +150,8 @@ def _attempt(panel, left, aimed, track, frame, case):
             break
         put_events(panel, frame, case)
         found, v = first_event(panel, frame, case)
+        if found == TURN and v > 2.0 * _BEFORE_END and panel.length == left and case.drive.prescribed == VELOCITY:
+            found = NO_EVENT
         # in partial slip there is no motion behind V = 0, and none that goes on from there
         behind = extremes(V, nodes)[0] < 0.0
         missed = passed_over(panel, frame, case)
@@ -233,7 +250,9 @@ def phase(fresh, state, frame, clock, case):
             length = max(_first_length(fresh, clock, frame, case), _INSTANT * clock.tau)
         left = end - clock.tau
         panel = Panel(clock.tau, min(length, left), clock.piece, frame.slips or state.V > NO_SPEED, alone)
-        zero = _pace_to_zero(state, frame, case)
+        zero = _pace_to_zero(panel, state, frame, case)
+        if zero > _BEFORE_END * left and case.drive.prescribed == VELOCITY:
+            zero = np.inf
         aimed = zero <= panel.length and rejected == 0
         if zero < panel.length:
             panel = cut(panel, zero)

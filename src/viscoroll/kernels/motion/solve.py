@@ -55,7 +55,7 @@ from .rates import rates_at, strong
 _MOST_ITERATIONS = 12
 #: error per panel is kept at this share of rtol; Newton's iteration stops at this share of that; the least that it can
 #: leave
-SHARE, _NEWTON, _LEAST = 0.4, 0.01, 1e-14
+SHARE, _NEWTON, _LEAST = 0.25, 0.016, 1e-14
 #: change of the unknowns, and gain by the last iteration, above which new slopes are taken; gain by the first, at most,
 #: and over its change
 _ANEW, _SLOWED, _FIRST_GAIN, _SQUARED = 1e-2, 1e-3, 0.1, 10.0
