@@ -37,8 +37,8 @@ def identify(
     cylinder : what is known, and where the search starts.
     unknown : range (low, high) of each, SI, by the names of run files: R, m, mu, j, g, load; E, nu, T_ref of the
         material, E_1, tau_1 of its first, longest mode, over T_ref; the same of another half-space as base_E, base_E_1;
-        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega; V0, omega0 and t0
-        of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times: with mu they
+        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega, both >= 0; V0,
+        omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times: with mu they
         are the whole job for a material of a DMA.
     data : :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, all with values, or none: then what would be
         learnt if the cylinder, without a bearing, were the truth.

@@ -198,9 +198,7 @@ class Identification(Shown):
     def _coordinates(self, values: Mapping[str, float]) -> Vector:
         refuse_unknown("values", values, self.values, "an unknown")
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array(
-            [one.to_u(number(one.name, value, low=-math.inf if one.unit else 0.0, strict=True)) for one, value in given]
-        )
+        return np.array([one.to_u(number(one.name, value, **one.bounds(one.name))) for one, value in given])
 
     def _card(self) -> tuple[str, list[Row]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
