@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .checks import whole
 from .errors import ParameterError
 from .typed import Floats
 
@@ -70,9 +71,7 @@ def thread_count(threads: int | None = None) -> int:
         Where either is no whole number >= 1.
     """
     if threads is not None:
-        if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)) or threads < 1:
-            raise ParameterError("threads", repr(threads), "a whole number >= 1, or None")
-        return int(threads)
+        return whole("threads", threads, 1)
     if not (asked := os.environ.get("VISCOROLL_THREADS")):
         return cores()
     with suppress(ValueError):

@@ -117,7 +117,7 @@ def whole(name: str, value: Any, least: int, most: float = math.inf) -> int:
     ParameterError
         Otherwise.
     """
-    if not (isinstance(value, int | np.integer) and least <= value <= most):
-        allowed = f"a whole number >= {least}" + ("" if most == math.inf else f", <= {most}")
+    if isinstance(value, bool) or not (isinstance(value, int | np.integer) and least <= value <= most):
+        allowed = f"a whole number >= {least}" if most == math.inf else f"a whole number in [{least}, {most}]"
         raise ParameterError(name, f"{value!r:.60}", allowed)
     return int(value)

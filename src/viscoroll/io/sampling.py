@@ -16,16 +16,18 @@ from __future__ import annotations
 
 import copy
 from functools import lru_cache
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import checked, number
+from ..core.checks import checked, number, whole
 from ..core.errors import ParameterError, one_of, unknown
+from ..core.typed import Floats
 
 __all__ = ["Sample", "sample"]
 
+Words: TypeAlias = NDArray[np.uint64]
 Design = Literal["random", "latin", "sobol"]
 #: no design draws a point closer to 0 or 1 than this
 SMALLEST, LARGEST = 2.0**-54, 1.0 - 2.0**-53
@@ -34,7 +36,7 @@ _ROUNDS = 6
 _BITS = 52
 
 
-class Sample(dict[str, NDArray[np.float64]]):
+class Sample(dict[str, Floats]):
     """Named columns of n draws, with what is needed to draw them again."""
 
     seed: int
@@ -73,19 +75,17 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
         raise one_of("seed", "rng", both=rng is not None)
     if seed is None:
         seed = int(np.random.default_rng(rng).integers(2**63))
-    for name, value, low, high in (("n", n, 1, 10**12), ("seed", seed, 0, 2**63 - 1)):
-        if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
-            raise ParameterError(name, value, f"a whole number in [{low}, {high}]")
+    n, seed = whole("n", n, 1, 10**12), whole("seed", seed, 0, 2**63 - 1)
     if design not in get_args(Design):
         raise unknown("design", design, get_args(Design), "a design")
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
-    rows = points(design, int(seed), int(n), len(random), 0, int(n), 0)
+    rows = points(design, seed, n, len(random), 0, n, 0)
     with np.errstate(all="ignore"):  # what overflows is infinite, and refused
         drawn = {name: checked(name, quantities[name].ppf(column)) for name, column in zip(random, rows, strict=True)}
     found = Sample()
     for name, value in quantities.items():
         found[name] = drawn[name] if name in drawn else np.full(n, float(value))
-    found.seed, found.design = int(seed), design
+    found.seed, found.design = seed, design
     return found
 
 
@@ -101,9 +101,7 @@ def _is_distribution(name: str, value: Any) -> bool:
     return random
 
 
-def points(
-    design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int
-) -> NDArray[np.float64]:
+def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop: int, block: int) -> Floats:
     """Points start..stop of n, which are block number ``block``: (dimensions, stop - start), inside (0, 1)."""
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -122,12 +120,12 @@ def _stream(seed: int, number: int) -> np.random.Generator:
     return np.random.Generator(np.random.Philox(key=np.array([seed, number], np.uint64)))
 
 
-def _keys(seed: int, dimensions: int) -> NDArray[np.uint64]:
+def _keys(seed: int, dimensions: int) -> Words:
     """A key for each round of each dimension; of a stream that no block has."""
     return _stream(seed, 2**64 - 1).integers(0, 2**64, (dimensions, _ROUNDS), dtype=np.uint64)
 
 
-def permuted(index: NDArray[np.uint64], n: int, key: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def permuted(index: Words, n: int, key: Words) -> Words:
     """Where a permutation of 0 ... n - 1 takes each of ``index``."""
     half = max((int(n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)
@@ -138,7 +136,7 @@ def permuted(index: NDArray[np.uint64], n: int, key: NDArray[np.uint64]) -> NDAr
     return result
 
 
-def _feistel(index: NDArray[np.uint64], half: int, key: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def _feistel(index: Words, half: int, key: Words) -> Words:
     """A permutation of the numbers of 2 half bits."""
     width, mask = np.uint64(half), np.uint64(2**half - 1)
     left, right = index >> width, index & mask
@@ -147,7 +145,7 @@ def _feistel(index: NDArray[np.uint64], half: int, key: NDArray[np.uint64]) -> N
     return (left << width) | right
 
 
-def _scrambled(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+def _scrambled(x: Words) -> Words:
     """The finaliser of splitmix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014)."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -161,7 +159,7 @@ def _sequence(seed: int, dimensions: int) -> Any:
     return qmc.Sobol(dimensions, bits=_BITS, rng=np.random.default_rng(seed))
 
 
-def _sobol(seed: int, dimensions: int, start: int, stop: int) -> NDArray[np.float64]:
+def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     """Points start..stop of the sequence.
 
     ``fast_forward`` of scipy passes over all points before, which at 10^11 would take minutes a

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import ParameterError
+from ...core.typed import Floats
 from .curve import Curve
 from .spectrum import Spectrum, has_plateau, misfits, on_times, polished
 
@@ -74,7 +74,7 @@ def _starts(curve: Curve, target: float | None) -> list[tuple[Spectrum, tuple[fl
     return starts
 
 
-def grid_of_times(ends: tuple[float, float], density: float) -> NDArray[np.float64]:
+def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
     """Times from the longest down, so many a decade, both ends among them."""
     decades = math.log10(ends[1] / ends[0])
     return np.geomspace(ends[1], ends[0], max(2, 1 + round(decades * density)))
@@ -102,7 +102,7 @@ def _with_one_less(
     return None
 
 
-def _one_less(spectrum: Spectrum) -> list[NDArray[np.float64]]:
+def _one_less(spectrum: Spectrum) -> list[Floats]:
     """Times with one left out, and with two neighbours at their mean time, weighted by strength."""
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

@@ -6,10 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.checks import checked
 from ...core.errors import ParameterError
+from ...core.typed import Floats
 
 #: points that a curve must have
 FEWEST_POINTS = 3
@@ -22,9 +23,9 @@ _APART = 1e-12
 class Curve(NamedTuple):
     """Storage and loss modulus over angular frequency, ascending, all positive."""
 
-    omega: NDArray[np.float64]
-    storage: NDArray[np.float64]
-    loss: NDArray[np.float64]
+    omega: Floats
+    storage: Floats
+    loss: Floats
 
 
 class KramersKronig(NamedTuple):
@@ -35,8 +36,8 @@ class KramersKronig(NamedTuple):
     median : of the ratios; near 1 where the spectrum is broad and the data are sound.
     """
 
-    omega: NDArray[np.float64]
-    ratio: NDArray[np.float64]
+    omega: Floats
+    ratio: Floats
     median: float
 
 

@@ -8,15 +8,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...contact_law.assumptions import Assumption, measurement, passage
 from ...contact_law.contact import contact
-from ...core.checks import checked, number
+from ...core.checks import checked, number, whole
 from ...core.errors import ParameterError
 from ...core.plots.measured import fitted
 from ...core.results import Shown
-from ...core.typed import Numbers
+from ...core.typed import Booleans, Floats, Numbers
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
@@ -67,11 +67,11 @@ class Fit(Shown):
     target: float
     reached: bool
     kramers_kronig: KramersKronig
-    outside: NDArray[np.bool_]
+    outside: Booleans
     shifts: Shifts | None
-    omega: NDArray[np.float64]
-    storage: NDArray[np.float64]
-    loss: NDArray[np.float64]
+    omega: Floats
+    storage: Floats
+    loss: Floats
     grid: tuple[float, float]
     source: str = ""
 
@@ -85,7 +85,7 @@ class Fit(Shown):
         """Whether E is what the data ask for, not the least that is allowed (1 % of the lowest storage modulus)."""
         return self.E > 1.001 * FLOOR * float(self.storage.min())
 
-    def modulus(self, omega: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
         """Storage and loss modulus of the fit at angular frequencies in rad/s, in the unit of the data."""
         own, given = Spectrum(self.E, self.prony.E * self.E, self.prony.tau * self.T_ref), np.asarray(omega, np.float64)
         storage, loss = own.modulus(given.ravel())
@@ -218,8 +218,7 @@ def fit_prony(
         not level off at low frequencies; neighbouring curves that do not overlap.
     """
     target = number("misfit", misfit, low=0.0, strict=True)
-    if modes is not None and (isinstance(modes, bool) or modes != int(modes) or not 1 <= modes <= MOST_MODES):
-        raise ParameterError("modes", modes, f"a whole number from 1 to {MOST_MODES}, or None")
+    modes = None if modes is None else whole("modes", modes, 1, MOST_MODES)
     if temperature is None:
         for name, value in (("reference", reference), ("shift", shift)):
             if value is not None:

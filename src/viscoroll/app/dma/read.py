@@ -9,9 +9,9 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import FileError, ModelWarning, ParameterError
+from ...core.typed import Floats
 
 _FREQUENCY = {"hz": 2.0 * math.pi, "khz": 2e3 * math.pi, "rad/s": 1.0, "1/s": 1.0, "s^-1": 1.0}
 _MODULUS = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9}
@@ -24,9 +24,7 @@ _NAMES = (
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
 
 
-def read_dma(
-    path: str | PathLike[str], *, units: tuple[str, str] | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def read_dma(path: str | PathLike[str], *, units: tuple[str, str] | None = None) -> tuple[Floats, Floats, Floats]:
     """Read a master curve: columns of frequency, storage modulus, loss modulus.
 
     Columns are parted by blanks, tabs, commas or semicolons.  Lines before the numbers are headings, as are those

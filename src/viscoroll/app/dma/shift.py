@@ -8,10 +8,11 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.checks import checked, number
 from ...core.errors import ParameterError
+from ...core.typed import Floats
 from .curve import Curve, curve_of
 
 #: points of both curves that must lie in the overlap, and share of the shorter range
@@ -32,10 +33,10 @@ class Shifts(NamedTuple):
         they do not overlap or the factors were given.
     """
 
-    temperature: NDArray[np.float64]
-    a_T: NDArray[np.float64]
+    temperature: Floats
+    a_T: Floats
     reference: float
-    mismatch: NDArray[np.float64]
+    mismatch: Floats
 
 
 def master_curve(
@@ -75,7 +76,7 @@ def master_curve(
     return curve_of(whole[0] * factor[which], whole[1], whole[2]), Shifts(temperatures, factor, base, mismatch)
 
 
-def _points(temperature: Any, *columns: Any) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
+def _points(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats]]:
     """A temperature each point, and the columns; of lists of curves as well."""
     given = checked("temperature", temperature)
     if given.ndim != 1:
@@ -93,7 +94,7 @@ def _points(temperature: Any, *columns: Any) -> tuple[NDArray[np.float64], list[
     return given, flat
 
 
-def _by_overlap(curves: list[_Smooth], temperatures: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _by_overlap(curves: list[_Smooth], temperatures: Floats) -> tuple[Floats, Floats]:
     """ln a_T from the coldest on, and the mismatch of neighbours."""
     found = [_aligned(*both) for both in pairwise(curves)]
     for (_, error), pair in zip(found, pairwise(temperatures), strict=True):

@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.typed import Floats
 from .curve import Curve
 
 #: modes whose part of the curve is smaller, relative to it, are left out
@@ -24,23 +24,23 @@ class Spectrum(NamedTuple):
     """Long-time modulus, strengths and times of the modes, times descending; units of the curve."""
 
     E: float
-    strength: NDArray[np.float64]
-    tau: NDArray[np.float64]
+    strength: Floats
+    tau: Floats
 
-    def modulus(self, omega: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def modulus(self, omega: Floats) -> tuple[Floats, Floats]:
         """Storage and loss modulus."""
         storage, loss = responses(omega, self.tau)
         return self.E + storage @ self.strength, loss @ self.strength
 
 
-def responses(omega: NDArray, tau: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def responses(omega: Floats, tau: Floats) -> tuple[Floats, Floats]:
     """Storage and loss modulus of modes of strength 1, a column each: z^2/(1 + z^2), z/(1 + z^2), z = omega tau."""
     z = omega[:, None] * tau
     loss = 1.0 / (z + 1.0 / z)
     return z * loss, loss
 
 
-def _relative(curve: Curve, constant: float, storage: NDArray, loss: NDArray) -> NDArray[np.float64]:
+def _relative(curve: Curve, constant: float, storage: Floats, loss: Floats) -> Floats:
     """Columns of a constant and of modes: parts of E' and, below, of E'', over those of the curve."""
     found = np.zeros((2, curve.omega.size, 1 + storage.shape[1]))
     found[0, :, 0], found[0, :, 1:], found[1, :, 1:] = constant, storage, loss
@@ -48,7 +48,7 @@ def _relative(curve: Curve, constant: float, storage: NDArray, loss: NDArray) ->
     return found.reshape(2 * curve.omega.size, -1)
 
 
-def _residuals(curve: Curve, values: NDArray) -> NDArray[np.float64]:
+def _residuals(curve: Curve, values: Floats) -> Floats:
     """Relative errors of E' and, behind them, of E'', by long-time modulus, strengths and times."""
     count = values.size // 2
     return _relative(curve, 1.0, *responses(curve.omega, values[1 + count :])) @ values[: 1 + count] - 1.0
@@ -61,7 +61,7 @@ def misfits(curve: Curve, spectrum: Spectrum) -> tuple[float, float]:
     return storage, loss
 
 
-def on_times(curve: Curve, tau: NDArray) -> Spectrum:
+def on_times(curve: Curve, tau: Floats) -> Spectrum:
     """The least squares with non-negative strengths on given times; modes without strength are left out."""
     from scipy.optimize import nnls
 
@@ -99,7 +99,7 @@ _DAMPING, _LEAST_DAMPING = 1e-3, 1e-12
 _ALONE = 1 << 17
 
 
-def _descended(curve: Curve, logs: NDArray, low: NDArray, high: NDArray, calls: int) -> NDArray[np.float64]:
+def _descended(curve: Curve, logs: Floats, low: Floats, high: Floats, calls: int) -> Floats:
     """Levenberg's and Marquardt's iteration between bounds.
 
     On the normal equations: a SVD of some hundred rows takes ten times as long on several threads as on one, and the
@@ -128,14 +128,14 @@ def _descended(curve: Curve, logs: NDArray, low: NDArray, high: NDArray, calls: 
     return logs
 
 
-def _squared(slopes: NDArray) -> NDArray[np.float64]:
+def _squared(slopes: Floats) -> Floats:
     """slopes.T @ slopes, in products too small for BLAS to share among threads."""
     rows = max(1, _ALONE // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))
     return sum((part.T @ part for part in parts), np.zeros(2 * (slopes.shape[1],)))
 
 
-def _slopes(logs: NDArray, curve: Curve) -> NDArray[np.float64]:
+def _slopes(logs: Floats, curve: Curve) -> Floats:
     """Of the residuals over the logarithms of long-time modulus, strengths and times."""
     values, count = np.exp(logs), logs.size // 2
     strength = values[1 : 1 + count]

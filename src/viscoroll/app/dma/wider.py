@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...contact_law.assumptions import passage
 from ...contact_law.contact import contact
+from ...core.typed import Floats
 from ...materials.prony import Prony
 from ...scene import Scene
 from .choose import grid_of_times
@@ -34,9 +34,9 @@ class Wider:
     E: float
     alpha: float
     prony: Prony
-    V: NDArray[np.float64]
-    M: NDArray[np.float64]
-    M_fit: NDArray[np.float64]
+    V: Floats
+    M: Floats
+    M_fit: Floats
 
     @property
     def M_change(self) -> float:
@@ -58,7 +58,7 @@ def wider(curve: Curve, prony: Prony, E: float, T_ref: float, grid: tuple[float,
     return Wider(decades, found.E, other.alpha, other, V, M, M_fit)
 
 
-def _seen(prony: Prony, omega: NDArray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _seen(prony: Prony, omega: Floats) -> tuple[Floats, Floats]:
     """kappa V and kappa M where the contact is passed, lam l0/V, in a time between 1/omega of both ends."""
     low, high = np.log10(omega[0] / np.sqrt(prony.alpha)), np.log10(omega[-1])
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))
@@ -68,5 +68,5 @@ def _seen(prony: Prony, omega: NDArray) -> tuple[NDArray[np.float64], NDArray[np
     return V[held], state.M[held]
 
 
-def _state(prony: Prony, kappa: float, V: NDArray) -> Any:
+def _state(prony: Prony, kappa: float, V: Floats) -> Any:
     return contact(Scene(material=prony, kappa=kappa, mu=1.0), V, delta=0.0, fields=("lam", "M"))

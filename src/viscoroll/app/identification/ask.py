@@ -8,10 +8,11 @@ import numpy as np
 
 from ...core.checks import whole
 from ...core.errors import ParameterError, refuse_unknown
+from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials.file import SECTIONS
 from .fit import Identification
-from .problem import Found, Problem, Vector
+from .problem import Found, Problem
 from .records import OF_RECORDS, Record
 from .unknowns import Shift, cylinder_of, unknowns_of
 
@@ -37,9 +38,9 @@ def identify(
     cylinder : what is known, and where the search starts.
     unknown : range (low, high) of each, SI, by the names of run files: R, m, mu, j, g, load; E, nu, T_ref of the
         material, E_1, tau_1 of its first, longest mode, over T_ref; the same of another half-space as base_E, base_E_1;
-        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega; V0, omega0 and t0
-        of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times: with mu they
-        are the whole job for a material of a DMA.
+        brake, a constant torque of the bearing, N m/m, and drag, N m s/m, one that grows with omega, both >= 0; V0,
+        omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole relaxation curve and T_ref all its times:
+        with mu they are the whole job for a material of a DMA.
     data : :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, all with values, or none: then what would be
         learnt if the cylinder, without a bearing, were the truth.
     prior : (value, standard deviation) of what is known beforehand; that of the logarithm, but for brake, drag, nu
@@ -122,7 +123,7 @@ def _minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Fou
     return kept
 
 
-def _spread(problem: Problem, count: int, seed: int) -> Iterator[Vector]:
+def _spread(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
     """A Latin hypercube over the ranges, but one place; what data start, as V0, stays there."""
     from scipy.stats import qmc
 
@@ -134,7 +135,7 @@ def _spread(problem: Problem, count: int, seed: int) -> Iterator[Vector]:
             yield u
 
 
-def _beyond(problem: Problem, u: Vector) -> list[Vector]:
+def _beyond(problem: Problem, u: Floats) -> list[Floats]:
     """Places on either side of one far from the start, along what it knows least: ridges of a valley lie across it."""
     if np.abs(u - problem.start).max() < _NEAR:
         return []

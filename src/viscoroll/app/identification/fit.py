@@ -13,7 +13,8 @@ from ...core.checks import number, whole
 from ...core.errors import ParameterError, refuse_unknown
 from ...core.plots.measured import compared
 from ...core.results import Row, Shown, Values
-from .problem import Found, Problem, Vector
+from ...core.typed import Floats
+from .problem import Found, Problem
 from .profile import Likelihood, Product
 from .records import Record
 from .report import as_dataset, report
@@ -163,7 +164,7 @@ class Identification(Shown):
     def _predicted(self, record: Record, called: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         problem, cov, u = self._problem, self._about.cov, self._about.best.u
 
-        def seen(u: Vector) -> Vector:
+        def seen(u: Floats) -> Floats:
             values = problem.predicted(record, u, called)
             return np.array([values[name] for name in record.KINDS])
 
@@ -183,24 +184,22 @@ class Identification(Shown):
         units = {name: record.unit(name.split("_")[0]) for name in (*found, *places)}
         return Prediction(found, places, units, f"Prediction, {level:.0%} bands", labels=record.labels)
 
-    def residuals(self, values: Mapping[str, float]) -> Vector:
+    def residuals(self, values: Mapping[str, float]) -> Floats:
         """Residuals over sigma of all records, in their order, and of the prior, at values by name.
 
         What is not named is at its start.  For optimisers and samplers of one's own; a motion that fails is 1e6 off.
         """
         return self._problem.residuals(self._coordinates(values))
 
-    def jacobian(self, values: Mapping[str, float]) -> Vector:
+    def jacobian(self, values: Mapping[str, float]) -> Floats:
         """Slopes of :meth:`residuals` over the values, (residuals, unknowns), by central differences."""
         J = self._problem.jacobian(self._coordinates(values))
         return J / [one.spread(values.get(one.name, one.start)) for one in self._problem.unknowns]
 
-    def _coordinates(self, values: Mapping[str, float]) -> Vector:
+    def _coordinates(self, values: Mapping[str, float]) -> Floats:
         refuse_unknown("values", values, self.values, "an unknown")
         given = ((one, values.get(one.name, one.start)) for one in self._problem.unknowns)
-        return np.array(
-            [one.to_u(number(one.name, value, low=-math.inf if one.unit else 0.0, strict=True)) for one, value in given]
-        )
+        return np.array([one.to_u(number(one.name, value, **one.bounds(one.name))) for one, value in given])
 
     def _card(self) -> tuple[str, list[Row]]:
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"

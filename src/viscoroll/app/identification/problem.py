@@ -10,15 +10,13 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import ViscorollError
+from ...core.typed import Floats
 from ...cylinder import Cylinder
 from .records import Record
 from .unknowns import Shift, Unknown, cylinder_of
 
-#: of numbers, of coordinates mostly, or of residuals
-Vector = NDArray[np.float64]
 #: of central differences in a coordinate: their error is 1e-8 of the largest slope (1e-7 where motions are driven)
 _STEP = 3e-4
 #: of those to one side, which a search takes: 1e-5; at less the last digits of a motion show, and it stops early
@@ -63,7 +61,7 @@ class Noise(NamedTuple):
 class Found(NamedTuple):
     """A minimum: coordinates and chi2."""
 
-    u: Vector
+    u: Floats
     chi2: float
 
 
@@ -108,17 +106,17 @@ class Problem:
             idle = [i for i, column in zip(idle, J.T, strict=True) if np.linalg.norm(column) < _NONE]
         return [i for i in range(middle.size) if i not in idle]
 
-    def values(self, u: Vector) -> dict[str, float]:
+    def values(self, u: Floats) -> dict[str, float]:
         """By name, at coordinates."""
         return {one.name: float(one.to_value(x)) for one, x in zip(self.unknowns, u, strict=True)}
 
-    def predicted(self, record: Record, u: Vector, called: str = "") -> dict[str, NDArray]:
+    def predicted(self, record: Record, u: Floats, called: str = "") -> dict[str, Floats]:
         """What would be seen of a record."""
         values = self.values(u)
         own = {name.removesuffix(f":{called}"): value for name, value in values.items()}
         return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
-    def _modelled(self, u: bytes) -> Vector:
+    def _modelled(self, u: bytes) -> Floats:
         """All data as predicted; of values that make no cylinder or no motion NaN."""
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
@@ -127,12 +125,12 @@ class Problem:
             return np.concatenate([np.ravel(seen[one.record][one.quantity]) for one in self.columns])
         return np.full(self.y.size, np.nan)
 
-    def residuals(self, u: Vector) -> Vector:
+    def residuals(self, u: Floats) -> Floats:
         """Of data and what is known beforehand, over their sigma; where there is no motion as far off as it gets."""
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAR), -FAR, FAR)
         return np.append(r, ((u - self._mean) / self._sd)[self._known])
 
-    def slopes(self, of: Callable[[Vector], Vector], u: Vector, which: Sequence[int], step: float = _STEP) -> Vector:
+    def slopes(self, of: Callable[[Floats], Floats], u: Floats, which: Sequence[int], step: float = _STEP) -> Floats:
         """Of a vector over some coordinates within their ranges: central differences, or of ``_SIDE`` to one side."""
         columns = []
         for i in which:
@@ -143,22 +141,22 @@ class Problem:
             columns.append((of(up) - of(down)) / (up[i] - down[i]))
         return np.array(columns).T
 
-    def jacobian(self, u: Vector) -> Vector:
+    def jacobian(self, u: Floats) -> Floats:
         """Slopes of the residuals over the coordinates."""
         return self.slopes(self.residuals, u, range(u.size))
 
-    def cost(self, u: Vector) -> float:
+    def cost(self, u: Floats) -> float:
         """chi2: squares of the residuals, or what outliers count less in."""
         z = self.residuals(u) ** 2
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
-    def weighed(self, u: Vector) -> tuple[Vector, Vector]:
+    def weighed(self, u: Floats) -> tuple[Floats, Floats]:
         """Residuals and slopes by the weight that each has in chi2."""
         r, J = self.residuals(u), self.jacobian(u)
         weight = (1.0 + r * r) ** -0.25 if self.robust else np.ones_like(r)
         return r * weight, J * weight[:, np.newaxis]
 
-    def least(self, u: Vector, held: Vector | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
+    def least(self, u: Floats, held: Floats | None = None, tolerance: float = 1e-10, steps: int = 200) -> Found:
         """The least chi2 near ``u``, perhaps with a combination of coordinates, of powers ``held``, as it is there."""
         from scipy.optimize import least_squares
 
@@ -168,15 +166,15 @@ class Problem:
         rule = _STIFF * powers[np.newaxis, free] if powers[free].any() else np.empty((0, len(free)))
         whole = np.clip(u, self.low, self.high)
 
-        def at(v: Vector) -> Vector:
+        def at(v: Floats) -> Floats:
             inside = whole.copy()
             inside[free] = v
             return inside
 
-        def residuals(v: Vector) -> Vector:
+        def residuals(v: Floats) -> Floats:
             return np.append(self.residuals(at(v)), rule @ (v - u[free]))
 
-        def jacobian(v: Vector) -> Vector:
+        def jacobian(v: Floats) -> Floats:
             return np.vstack([self.slopes(self.residuals, at(v), free, _SIDE), rule])
 
         if free:
@@ -202,7 +200,7 @@ class Problem:
                 break
         return best
 
-    def noise(self, u: Vector) -> dict[str, Noise]:
+    def noise(self, u: Floats) -> dict[str, Noise]:
         """Of each column, by record and quantity; lag by the order of its places."""
         found, r = {}, self.residuals(u)
         for one in self.columns:
@@ -214,7 +212,7 @@ class Problem:
             found[str(one)] = Noise(rms, lag, allowed, lag * rms**2 <= allowed and not large)
         return found
 
-    def at_end(self, u: Vector) -> list[int]:
+    def at_end(self, u: Floats) -> list[int]:
         """Unknowns that lie at an end of their range."""
         width = self.high - self.low
         return np.flatnonzero(np.minimum(u - self.low, self.high - u) <= _AT_END * width).tolist()

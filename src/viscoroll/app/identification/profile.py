@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .problem import Found, Problem, Vector
+from ...core.typed import Floats
+from .problem import Found, Problem
 
 #: of a coordinate, first and longest step: farther ones land in other minima
 _FIRST, _STEP = 0.25, 0.7
@@ -45,7 +46,7 @@ class Profile(NamedTuple):
     made_by: list[list[str]]
     pieces: bool
     best: Found
-    within: Vector
+    within: Floats
 
 
 class Product(NamedTuple):
@@ -72,10 +73,10 @@ class Likelihood:
         J = problem.weighed(u)[1]
         self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
         self.others = [v for v in (*(one.u for one in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
-        self.ends: list[Vector] = []
+        self.ends: list[Floats] = []
         self._walked = cache(lambda rise, *powers: Walk(self, np.array(powers)).both_ways(rise))
 
-    def profile(self, powers: Vector, rise: float) -> Profile:
+    def profile(self, powers: Floats, rise: float) -> Profile:
         """The interval of a combination within which chi2 rises by no more than ``rise``.
 
         Beyond the ends that a walk finds it looks from other minima, the start, and the ends of other unknowns.
@@ -116,7 +117,7 @@ class Likelihood:
         near = self._narrow(steep, rise, near=True)
         return found + [one for one in near if one.high - one.low < _SHARPER * least]
 
-    def _narrow(self, family: Iterable[Vector], rise: float, near: bool = False) -> list[Product]:
+    def _narrow(self, family: Iterable[Floats], rise: float, near: bool = False) -> list[Product]:
         """Products with their intervals, by profiles or ``near`` the best, up to the first one that is open or wide."""
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
@@ -132,7 +133,7 @@ class Likelihood:
             found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
         return found
 
-    def _by_places(self, which: list[int], rise: float) -> Iterator[Vector]:
+    def _by_places(self, which: list[int], rise: float) -> Iterator[Floats]:
         """Combinations in which all places that fit lie nearest to each other, best first, as round as that allows."""
         axes = self.axes(rise)
         within = np.concatenate([axes[i].within for i in which])[:, which]
@@ -143,7 +144,7 @@ class Likelihood:
             powers = next((p for p in rounded if np.ptp(within @ p) <= width), np.round(exact, 2))
             yield powers @ np.eye(self.best.u.size)[which]
 
-    def _by_slopes(self, which: list[int]) -> Iterator[Vector]:
+    def _by_slopes(self, which: list[int]) -> Iterator[Floats]:
         """Combinations that are known best, whatever other unknowns are."""
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
@@ -152,21 +153,21 @@ class Likelihood:
 class Walk:
     """A walk outwards from the best fit along a combination, each step from the last one's place."""
 
-    def __init__(self, about: Likelihood, powers: Vector) -> None:
+    def __init__(self, about: Likelihood, powers: Floats) -> None:
         self.about, self.problem, self.best = about, about.problem, about.best
         self.powers, along = powers, about.cov @ powers
         self.sd, self.slope = math.sqrt(powers @ along), along / (powers @ along)
         self.passed = [self.best]
 
-    def way(self, u: Vector) -> float:
+    def way(self, u: Floats) -> float:
         """How far a place is from the best."""
         return float(self.powers @ (u - self.best.u))
 
-    def moved(self, d: float, u: Vector) -> Vector:
+    def moved(self, d: float, u: Floats) -> Floats:
         """A place so far from the best: ``u`` moved along the covariance."""
         return u + self.slope * (d - self.way(u))
 
-    def at(self, d: float, u: Vector) -> Found:
+    def at(self, d: float, u: Floats) -> Found:
         """The least chi2 so far from the best, near ``u``."""
         self.passed.append(self.problem.least(self.moved(d, u), self.powers, _LOOSE, _FEW))
         return self.passed[-1]
@@ -226,7 +227,7 @@ class Walk:
         lower = [one for one in found if one.chi2 - self.best.chi2 < _LOWER * rise]
         return sorted(lower, key=lambda one: abs(self.way(one.u)))
 
-    def made_by(self, u: Vector, rise: float) -> list[str]:
+    def made_by(self, u: Floats, rise: float) -> list[str]:
         """Unknowns at an end of their range that would lower chi2 by going beyond, by slopes, the combination held."""
         problem = self.problem
         if not (at := [i for i in problem.at_end(u) if not self.powers[i]]):

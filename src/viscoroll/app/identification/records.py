@@ -11,13 +11,12 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.checks import broadcast_shape, checked, number
 from ...core.errors import ParameterError, refuse_unknown
 from ...core.labels import Labels, unlabelled
 from ...core.scale import refuse_other_unit, si_unit
-from ...core.typed import Numbers
+from ...core.typed import Floats, Numbers
 from ...cylinder import Cylinder
 
 #: what a start may be in place of a number: V0/R
@@ -105,7 +104,7 @@ class Record:
         """What it may have unknown: where that starts, and the range of what is unknown without being asked for."""
         return {}
 
-    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, NDArray]:
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """What the ``cylinder`` would show of all :attr:`KINDS`; ``values`` of bearing and record by their names."""
         raise NotImplementedError
 
@@ -137,7 +136,7 @@ class Resistance(Record):
     _: KW_ONLY
     F: Numbers | None = None
 
-    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, NDArray]:
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
         return {"M": M, "F": M / cylinder.R}
@@ -166,7 +165,7 @@ class Traction(Record):
     delta: Numbers
     Q: Numbers | None = None
 
-    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, NDArray]:
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
 
@@ -236,7 +235,7 @@ class Coastdown(Record):
         first, most = float(given[0]), float(np.max(np.abs(given)))
         return first, (first - most, first + most)
 
-    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, NDArray]:
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """As all do, and which of its points fall into full slip."""
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

@@ -26,8 +26,10 @@ Shift = Callable[[float], float]
 _OWN = ("R", "m", "mu", "j", "g", "load")
 _OF_BODY = ("E", "nu", "T_ref")
 _PREFIX = {"material": "", "base": "base_"}
-#: what goes linearly, others go by their logarithm
-_LINEAR = ("brake", "drag", "nu", "base_nu", *OF_RECORDS)
+#: of the bearing
+_BEARING = {"brake": 0.0, "drag": 0.0}
+#: what goes linearly, and its least value; others, above 0, go by their logarithm
+_LINEAR = _BEARING | dict.fromkeys(("nu", "base_nu", *OF_RECORDS), -math.inf)
 #: of its range, the least unit of what is counted from 0
 _UNIT = 0.1
 
@@ -45,6 +47,12 @@ class Unknown(NamedTuple):
     unit: float | None
     mean: float = 0.0
     sd: float = math.inf
+
+    @staticmethod
+    def bounds(name: str) -> dict[str, Any]:
+        """What its values have to be, as of :func:`checked`."""
+        kind = name.split(":")[0]
+        return {"low": _LINEAR.get(kind, 0.0), "strict": kind not in _LINEAR}
 
     def to_u(self, value: Any) -> Any:
         """The coordinate of a value."""
@@ -69,7 +77,7 @@ def unknowns_of(
     ParameterError
         A name that is none, a range that does not hold the start, a cylinder with arrays; a prior of what is known.
     """
-    starts = {name: getattr(cylinder, name) for name in _OWN} | {"brake": 0.0, "drag": 0.0}
+    starts = {name: getattr(cylinder, name) for name in _OWN} | _BEARING
     for section, body in _bodies(cylinder).items():
         starts |= {_PREFIX[section] + name: value for name, value in _inputs(body).items()}
     starts, ranges = {name: number(name, value) for name, value in starts.items()}, dict(given)
@@ -84,23 +92,25 @@ def unknowns_of(
 
 
 def _unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
-    linear = name.split(":")[0] in _LINEAR
-    low, high = _pair(f"unknown {name}", span, "(low, high), low < high", linear)
+    low, high = _pair("unknown", name, span, "(low, high), low < high")
+    if not low < high:
+        raise ParameterError(f"unknown {name}", f"{span!r:.60}", "(low, high), low < high")
     if not low <= start <= high:
         raise ParameterError(f"unknown {name}", f"({low:g}, {high:g})", f"a range that holds the start, {start:.6g}")
+    linear = name.split(":")[0] in _LINEAR
     one = Unknown(name, start, low, high, max(abs(start), _UNIT * (high - low)) if linear else None)
     if prior is None:
         return one
-    mean, sd = _pair(f"prior {name}", prior, "(value, standard deviation)", linear)
+    mean, sd = _pair("prior", name, prior, "(value, standard deviation)")
     sd = number(f"standard deviation of prior {name}", sd, low=0.0, strict=True)
     return one._replace(mean=float(one.to_u(mean)), sd=sd / (one.unit or 1.0))
 
 
-def _pair(called: str, given: Any, allowed: str, linear: bool) -> list[float]:
-    """Two numbers, of a range ascending, above 0 where they go by their logarithm."""
-    pair = checked(called, given, low=-math.inf if linear else 0.0, strict=True)
-    if pair.shape != (2,) or ("<" in allowed and not pair[0] < pair[1]):
-        raise ParameterError(called, f"{given!r:.60}", allowed)
+def _pair(what: str, name: str, given: Any, allowed: str) -> list[float]:
+    """Two numbers, each a value that the unknown may have."""
+    pair = checked(f"{what} {name}", given, **Unknown.bounds(name))
+    if pair.shape != (2,):
+        raise ParameterError(f"{what} {name}", f"{given!r:.60}", allowed)
     return pair.tolist()
 
 

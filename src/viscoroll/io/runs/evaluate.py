@@ -8,8 +8,8 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.typed import Floats
 from ...motion.batch import ensemble
 from ...motion.many import Ensemble
 from ..sampling import points
@@ -17,7 +17,7 @@ from .rollers import drive_of, roller_of
 from .runfile import START, Run
 
 
-def block_inputs(run: Run, block: int) -> dict[str, NDArray[np.float64]]:
+def block_inputs(run: Run, block: int) -> dict[str, Floats]:
     """Inputs of the motions of a block, by name."""
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)
@@ -53,7 +53,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     )  # fmt: skip
 
 
-def roll_block(run: Run, block: int) -> tuple[dict[str, NDArray[np.float64]], Ensemble]:
+def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
     """(inputs, motions) of a block."""
     start, stop = run.edges(block)
     values = block_inputs(run, block)

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.typed import Floats
 from ..sampling import LARGEST, SMALLEST
 
 #: in place of a time of a drive: that before once more, so that the value jumps
@@ -37,7 +37,7 @@ class Distribution:
     high: float
 
     @np.errstate(all="ignore")  # what overflows is infinite, which a motion refuses
-    def ppf(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def ppf(self, u: Floats) -> Floats:
         """Inverse of the distribution function; from above where that keeps the digits of a cut tail."""
         if (self.low, self.high) == self.law.support():
             return self.law.ppf(u)
@@ -65,9 +65,9 @@ class Inputs:
 
     content: dict[str, Any]
     random: dict[str, Distribution] = field(default_factory=dict)
-    joint: dict[str, dict[str, NDArray[np.float64]]] = field(default_factory=dict)
+    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
     correlated: tuple[str, ...] = ()
-    mixing: NDArray[np.float64] | None = None
+    mixing: Floats | None = None
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ class Inputs:
         """Every input in the middle of its draws; of a file the row in its middle."""
         return {name: each.item() for name, each in self.values(np.full((len(self.dimensions), 1), 0.5)).items()}
 
-    def values(self, points: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    def values(self, points: Floats) -> dict[str, Floats]:
         """Every input (n,) at ``points`` (dimensions, n) in (0, 1)."""
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
@@ -101,14 +101,14 @@ class Inputs:
             values |= {each: column[picked] for each, column in columns.items()}
         return values
 
-    def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> NDArray[np.float64]:
+    def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
         """The least and the largest draw of an input, or those of these shares."""
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
         column = next(columns[name] for columns in self.joint.values() if name in columns)
         return np.array([column.min(), column.max()])
 
-    def corners(self) -> dict[str, NDArray[np.float64]]:
+    def corners(self) -> dict[str, Floats]:
         """Each input at its one end while all others are at their other, and all at the same."""
         names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
         own = np.hstack([np.eye(len(names), dtype=bool), np.zeros((len(names), 1), dtype=bool)])

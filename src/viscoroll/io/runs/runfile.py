@@ -27,11 +27,10 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
-import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import FileError, ParameterError, refuse_unknown
 from ...core.sections import fault, read
+from ...core.typed import Floats
 from ...materials.file import as_toml, materials_of
 from ...motion.batch import FIELDS, FLOW_PAYS, begin
 from ...motion.checks import output_times
@@ -136,7 +135,7 @@ class Run:
     text: str
     settings: RunSection
     inputs: Inputs
-    t: NDArray[np.float64]
+    t: Floats
     digest: str
 
     @property
@@ -297,7 +296,7 @@ def _begin(run: Run, values: dict[str, Any]) -> None:
     begin(roller, start, drive, run.t[-1], asked, unsteady=settings.unsteady, rested=settings.rested)
 
 
-def _digest(settings: RunSection, times: NDArray, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
+def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
     """SHA-256 of what the results depend on; comments and the order of keys are not among it."""
     sections = {name: given for name, given in content.items() if name != "run"}
     samples = [

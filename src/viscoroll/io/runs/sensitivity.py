@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blocks import run_blocks
+from ...core.checks import whole
 from ...core.errors import MotionStatus, ParameterError
 from ...core.results import column, unit_of
+from ...core.typed import Floats
 from ...motion.export import column_attributes, provenance
 from ...motion.summaries import QUANTITIES
 from ..sampling import points
@@ -30,8 +32,6 @@ if TYPE_CHECKING:
 
 CONFIDENCE = 0.95
 _RESAMPLES = 100
-#: base points
-_LEAST, _MOST = 16, 1 << 16
 #: bytes that the outcomes of all motions may take
 _BYTES = 1 << 29
 #: motions a block: about a second where they are integrated
@@ -81,15 +81,13 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
     from .store import about
 
     names = _independent(run.inputs)
-    if not _LEAST <= n <= _MOST:
-        raise ParameterError("n", n, f"a whole number in [{_LEAST}, {_MOST}]")
-    base = 1 << (n - 1).bit_length()  # a Sobol sequence is even only over so many points
+    base = 1 << (whole("n", n, 16, 1 << 16) - 1).bit_length()  # a Sobol sequence is even only over so many points
     rows = base * (len(names) + 2)
     summaries = tuple(dict.fromkeys(run.settings.summaries))
     settings = msgspec.structs.replace(run.settings, n=rows, keep="summaries", summaries=summaries)
-    whole = replace(run, settings=settings)
-    look_at_materials(whole)
-    outcomes, status = _outcomes(whole, _points(len(names), base, run.settings.seed), threads, progress)
+    rolled = replace(run, settings=settings)
+    look_at_materials(rolled)
+    outcomes, status = _outcomes(rolled, _points(len(names), base, run.settings.seed), threads, progress)
     refused: list[str] = []
     data: dict[str, Any] = {}
     for name, values in outcomes.items():
@@ -109,7 +107,7 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         "t": ("t", run.t, column_attributes("t", run.si)),
         "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
     }
-    described = about(whole) | provenance("Sobol indices of motions of a viscoelastic cylinder")
+    described = about(rolled) | provenance("Sobol indices of motions of a viscoelastic cylinder")
     for of_blocks in ("motions_a_block", "blocks"):
         del described[of_blocks]
     ended = zip(*np.unique(status, return_counts=True), strict=True)
@@ -135,7 +133,7 @@ def _independent(inputs: Inputs) -> tuple[str, ...]:
     return inputs.uncertain
 
 
-def _points(count: int, base: int, seed: int) -> NDArray[np.float64]:
+def _points(count: int, base: int, seed: int) -> Floats:
     """Points (input, motion) of the unit cube: base points, as many others, and the first with each of the second."""
     one, other = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, other, one) for n in range(count)]
@@ -143,8 +141,8 @@ def _points(count: int, base: int, seed: int) -> NDArray[np.float64]:
 
 
 def _outcomes(
-    run: Run, places: NDArray[np.float64], threads: int | None, progress: bool
-) -> tuple[dict[str, NDArray[np.float64]], NDArray[np.int8]]:
+    run: Run, places: Floats, threads: int | None, progress: bool
+) -> tuple[dict[str, Floats], NDArray[np.int8]]:
     """(values of each quantity over (t, motion), how the motions ended): block by block, no motion is kept."""
     rows = places.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
@@ -167,7 +165,7 @@ def _outcomes(
     return outcomes, status
 
 
-def _indices(values: NDArray[np.float64], noise: float, seed: int) -> tuple[NDArray[np.float64], str]:
+def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
     """(The rows of ``_INDICES`` over inputs from outcomes (point, base), ""); or NaN, and why there are none.
 
     ``noise`` : what rtol leaves open of the largest outcome at any t.
@@ -186,7 +184,7 @@ def _indices(values: NDArray[np.float64], noise: float, seed: int) -> tuple[NDAr
     return found, ""
 
 
-def _estimated(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _estimated(values: Floats) -> Floats:
     """First-order and total indices of outcomes (point, base)."""
     one, other, *others = values - values[:2].mean()
     mixed = np.array(others)

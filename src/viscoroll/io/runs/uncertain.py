@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import FileError
 from ...core.extras import imported
 from ...core.sections import fault, hint, refuse_unknown
+from ...core.typed import Floats
 from ...materials.file import SECTIONS
 from ..config import SCHEMA
 from .inputs import Distribution, Input, Inputs
@@ -40,7 +40,7 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.random: dict[str, Distribution] = {}
-        self.joint: dict[str, dict[str, NDArray[np.float64]]] = {}
+        self.joint: dict[str, dict[str, Floats]] = {}
         #: file -> how it was first written: 'rows.csv' and './rows.csv' share their rows
         self.files: dict[Path, str] = {}
 
@@ -134,7 +134,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def read_column(path: Path, column: str) -> NDArray[np.float64]:
+def read_column(path: Path, column: str) -> Floats:
     """One column of numbers."""
     import pandas as pd
 

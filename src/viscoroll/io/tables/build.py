@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...core.checks import checked, number
+from ...core.checks import checked, number, whole
 from ...core.errors import ParameterError
+from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials.law_file import described, law_of
 from ...materials.law_store import content_of
@@ -30,7 +31,7 @@ _NUMBERS = ("alpha", "kappa", "mu"), ("R", "m", "mu", "load")
 _UNITS = "dimensionless", "in SI units, per m of length"
 
 
-def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> NDArray[np.float64]:
+def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> Floats:
     """``count`` values from ``low`` to ``high``, both exact, in equal steps or equal ratios.
 
     Raises
@@ -46,9 +47,7 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
         raise ParameterError("high", high, f"> low = {low:g}")
     if high - low == np.inf:
         raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
-    if not isinstance(count, int) or not 2 <= count <= _MAX_NODES:
-        raise ParameterError("count", count, f"an integer in [2, {_MAX_NODES}]")
-    return (np.geomspace if spacing == "log" else np.linspace)(low, high, count)
+    return (np.geomspace if spacing == "log" else np.linspace)(low, high, whole("count", count, 2, _MAX_NODES))
 
 
 def build(
@@ -119,7 +118,7 @@ def build(
     return table
 
 
-def increasing(name: str, nodes: Any, **bound: Any) -> NDArray[np.float64]:
+def increasing(name: str, nodes: Any, **bound: Any) -> Floats:
     """Nodes of an axis as a vector of its own; raises ParameterError where they are out of range or do not increase."""
     axis = np.atleast_1d(checked(name, nodes, **bound)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
@@ -141,7 +140,7 @@ def _single(what: Any) -> Scene | Cylinder:
     return what
 
 
-def _fields(what: Scene | Cylinder, at: dict[str, NDArray], names: tuple[str, ...]) -> dict[str, NDArray]:
+def _fields(what: Scene | Cylinder, at: dict[str, Floats], names: tuple[str, ...]) -> dict[str, Floats]:
     """Fields at V, perhaps delta, and perhaps an alpha each."""
     one = what.replace(alpha=at["alpha"]) if "alpha" in at else what
     return one.contact(at["V"], delta=at.get("delta", np.zeros(1)), fields=names).as_dict()
@@ -159,7 +158,7 @@ def _state_errors(table: xr.Dataset, what: Scene | Cylinder) -> None:
             table[name].attrs[key] = float(np.abs(look_up(name, **own)[name] - exact[name]).max())
 
 
-def _between(nodes: NDArray, random: np.random.Generator) -> NDArray[np.float64]:
+def _between(nodes: Floats, random: np.random.Generator) -> Floats:
     """Random points within random cells of an axis; its node where it has only one."""
     if nodes.size == 1:
         return np.full(SAMPLE, nodes[0])

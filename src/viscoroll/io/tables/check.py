@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from ... import __version__
-from ...core.errors import FileError, ParameterError
+from ...core.checks import whole
+from ...core.errors import FileError
 from ...materials.law_file import axis_of, law_of
 from ...materials.law_store import AXIS, KIND, content_of, errors_of
 from .law import measured_errors
@@ -79,10 +80,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     FileError
         A table that is no law: a grid states its errors when it is built.
     """
-    if count < 1:
-        raise ParameterError("n", count, "a whole number >= 1")
-    if seed < 0:
-        raise ParameterError("seed", seed, "a whole number >= 0")
+    count, seed = whole("n", count, 1), whole("seed", seed, 0)
     source = table.encoding.get("source", "table")
     if not is_law(table):
         raise FileError(source, "is no law file (viscoroll tables law): grids state their errors when they are built")

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import __version__
 from ...core.errors import ParameterError
 from ...core.files import replacing, write_text
 from ...core.symbols import PAPER
+from ...core.typed import Floats
 from ...materials.law_file import law_of
 from ...materials.law_store import CHECKSUM, content_of
 from . import schema, store
@@ -162,7 +162,7 @@ static const vr_law {name} = {{
     )
 
 
-def _numbers(values: NDArray) -> str:
+def _numbers(values: Floats) -> str:
     """Digits that read back to the same bits."""
     return ",".join(map(repr, values.tolist()))
 

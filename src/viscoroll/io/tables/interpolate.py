@@ -6,11 +6,12 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...core.checks import broadcast_shape, checked
 from ...core.errors import OutOfTableError, ParameterError, refuse_unknown
 from ...core.results import Values
+from ...core.typed import Floats
 from . import schema
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Interpolant:
 
     def _places(
         self, points: dict[str, ArrayLike], names: tuple[str, ...]
-    ) -> tuple[dict[str, NDArray], tuple[int, ...]]:
+    ) -> tuple[dict[str, Floats], tuple[int, ...]]:
         """Coordinates in which the splines run, of the shape of the answer."""
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() or not points.keys() <= set(self._axes):
@@ -72,7 +73,7 @@ class Interpolant:
                 raise OutOfTableError(name, array[outside].flat[0] if array.ndim else float(array), low, high)
         return {name: np.broadcast_to(self._mapped(name, array), shape) for name, array in arrays.items()}, shape
 
-    def _mapped(self, name: str, values: NDArray) -> NDArray[np.float64]:
+    def _mapped(self, name: str, values: Floats) -> Floats:
         """The coordinate of an axis in which the law is smooth."""
         if self._linear or name == "delta":
             return values
@@ -88,7 +89,7 @@ class Interpolant:
         return self._splines[name]
 
 
-def spline(values: NDArray, axes: list[NDArray], degree: int) -> Any:
+def spline(values: Floats, axes: list[Floats], degree: int) -> Any:
     """The tensor spline through values on a grid, not-a-knot, along few nodes of lower degree; no axes: the value."""
     from scipy.interpolate import NdBSpline, make_interp_spline
 

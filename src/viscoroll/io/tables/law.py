@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.errors import ParameterError, one_of
+from ...core.typed import Floats
 from ...cylinder import Cylinder
 from ...materials import law_axis
 from ...materials.law_file import as_dataset, table_of
@@ -98,7 +98,7 @@ def measured_errors(
     return errors
 
 
-def _polynomial(table: LawTable, function: int, x: NDArray) -> NDArray[np.float64]:
+def _polynomial(table: LawTable, function: int, x: Floats) -> Floats:
     """A function at places before its fast limit, by its coefficients."""
     m, e = np.frexp(x)
     row = np.maximum(e - table.e0, 0)
