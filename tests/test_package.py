@@ -12,7 +12,7 @@ from processes import printed
 import viscoroll as vr
 
 PACKAGE = Path(vr.__file__).parent
-HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "msgspec", "tqdm"}
+HEAVY = {"numba", "xarray", "matplotlib", "scipy", "dask", "h5py", "pandas", "pint", "msgspec", "tqdm"}
 
 
 # --- the public interface ---
