@@ -2,6 +2,7 @@
 
 from . import presets as presets
 from .app import fmu as fmu
+from .app.dma import DynamicModuli as DynamicModuli
 from .app.dma import Fit as Fit
 from .app.dma import fit_prony as fit_prony
 from .app.dma import read_dma as read_dma

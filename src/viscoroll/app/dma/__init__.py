@@ -1,4 +1,5 @@
-"""From a dynamic mechanical analysis (DMA) to a Prony series: :func:`read_dma`, :func:`fit_prony`, :class:`Fit`.
+"""From a dynamic mechanical analysis (DMA) to a Prony series: :func:`read_dma` gives :class:`DynamicModuli`,
+:func:`fit_prony` makes of them a :class:`Fit`.
 
 Storage and loss modulus over angular frequency are fitted alike, by relative errors, since rolling resistance is
 made of the loss modulus.  What the data do not say is said: misfit, modes beyond the measured frequencies, whether
@@ -7,5 +8,6 @@ storage and loss go together, and what wider grids of times would change.
 
 from .fit import Fit, fit_prony
 from .read import read_dma
+from .record import DynamicModuli
 
-__all__ = ["Fit", "fit_prony", "read_dma"]
+__all__ = ["DynamicModuli", "Fit", "fit_prony", "read_dma"]
