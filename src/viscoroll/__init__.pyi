@@ -4,7 +4,9 @@ from . import presets as presets
 from .app import fmu as fmu
 from .app.dma import DynamicModuli as DynamicModuli
 from .app.dma import Fit as Fit
+from .app.dma import RelaxationFit as RelaxationFit
 from .app.dma import fit_prony as fit_prony
+from .app.dma import fit_relaxation as fit_relaxation
 from .app.dma import read_dma as read_dma
 from .app.identification import Coastdown as Coastdown
 from .app.identification import Resistance as Resistance

@@ -19,8 +19,8 @@ GAS_CONSTANT = 8.31446261815324
 #: degrees Celsius
 ABSOLUTE_ZERO = -273.15
 #: degrees Celsius between which rubbers and polymers are measured and used.  300 K, room temperature in kelvin, lies
-#: above, and room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below the glass transition of nearly
-#: every rubber, so that a number above 200 is one of kelvin more likely than one of degrees Celsius
+#: above, and room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below the glass transition of
+#: nearly every rubber, so that a number above 200 is one of kelvin more likely than one of degrees Celsius
 USUAL_RANGE = -150.0, 200.0
 
 

@@ -6,8 +6,8 @@ made of the loss modulus.  What the data do not say is said: misfit, modes beyon
 storage and loss go together, and what wider grids of times would change.
 """
 
-from .fit import Fit, fit_prony
+from .fit import Fit, RelaxationFit, fit_prony, fit_relaxation
 from .read import read_dma
 from .record import DynamicModuli
 
-__all__ = ["DynamicModuli", "Fit", "fit_prony", "read_dma"]
+__all__ = ["DynamicModuli", "Fit", "RelaxationFit", "fit_prony", "fit_relaxation", "read_dma"]
