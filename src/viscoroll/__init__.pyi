@@ -1,5 +1,6 @@
 """The public names, a line each, for type checkers, editors and ``__init__.py``, which loads them on first use."""
 
+from . import datasets as datasets
 from . import presets as presets
 from .app import fmu as fmu
 from .app.dma import Fit as Fit
