@@ -23,7 +23,7 @@ for axes, scene, title in zip(
     ("a) one relaxation time", "b) five relaxation times"),
     strict=True,
 ):
-    hump = vr.humps(scene)
+    hump = vr.resistance_extrema(scene)
     V = np.geomspace(hump.V[0] / 30.0, 30.0 * hump.V[-1], 801)
     axes.semilogx(V, vr.contact(scene, V, delta=0.0, fields="M").M, "k", label="M")
     for pull in (0.35, 0.7, 0.95):  # of the largest M

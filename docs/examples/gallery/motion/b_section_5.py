@@ -5,7 +5,7 @@ The example of the paper
 Sect. 5 of the paper throws a soft, slow cylinder in three ways; its Fig. 5 shows V and
 omega.  A caveat: this is the exact solution of the paper's Eq. (22), but not the motion of
 such a cylinder, which at 9 mm/s would rock in its own imprint: it is too slow for the law of
-steady rolling (:doc:`/may_i`).
+steady rolling (:doc:`/validity`).
 """
 
 import matplotlib.pyplot as plt

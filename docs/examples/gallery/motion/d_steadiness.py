@@ -49,4 +49,4 @@ print(cold.validity(1.0).steady.sentence)
 
 # %%
 # The dots are where V is right to 1 % and 10 %; rolling ends little behind.  A thousand
-# times slower rubber is as right.  What is known of lower speeds: :doc:`/may_i`.
+# times slower rubber is as right.  What is known of lower speeds: :doc:`/validity`.
