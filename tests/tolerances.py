@@ -289,6 +289,8 @@ DMA_MANY = 0.02
 #: E' and E'' of a series fitted to E(t) to 0.1 and 0.3 %, a decade inside the band: E'' has the ripple of one mode a
 #: decade, which E(t) does not show; measured 0.007 and 0.11.
 DMA_RELAXATION, DMA_RELAXATION_LOSS = 0.02, 0.2
+#: contact length at the speed from which on a layer counts as thick: the bisection.
+LAYER_SPEED = 1e-8
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
 DMA_EXACT = 1e-6
 #: Ten modes over eight decades, 0.5 % noise: rms misfit of E' and E'' each, as asked for by default.

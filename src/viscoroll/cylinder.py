@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_law.assumptions import WAVE_LIMIT, Validity
-from .contact_law.known import Known
+from .contact_law.known import Known, say
 from .core.checks import broadcast_shape, checked, frozen
 from .core.drive import slope_factor
 from .core.errors import ParameterError, one_of
@@ -22,7 +22,6 @@ from .materials.law_table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
-from .motion.warned import say
 from .scene import Methods, Scene
 
 _SOLID = ("E", "nu", "T_epsilon", "T_sigma")
@@ -230,9 +229,15 @@ class Cylinder(Methods):
     def known(self, found: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         return self._known.judge(found, lam, V, omega, density, self.plane)
 
+    @property
+    def watched(self) -> bool:
+        return self._known.silent is not None
+
     def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where the contact at a speed of V, m/s, asks for frequencies that the data of a body do not hold."""
-        if V is not None and self._known.speeds is not None:
+        """Warn where the contact at a speed of V, m/s, is longer than the radius or than a layer allows, or asks for
+        frequencies that the data of a body do not hold.
+        """
+        if V is not None and self._known.silent is not None:
             self._known.look(V, extent)
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
@@ -241,13 +246,18 @@ class Cylinder(Methods):
             return
         V, omega = (0.0 if speed is None else speed for speed in (V0, omega0))
         if float(np.max(np.maximum(np.abs(V), np.abs(omega) * self.R), initial=0.0)) > self._known.wave_speed:
-            say([f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"])
+            fault = f"speeds are beyond those of shear waves (up to {WAVE_LIMIT:g} of them counts as slow)"
+            say([fault], "motion", "validity() of cylinder or result")
 
     def look_at_motion(self, V0: Any, V: Any) -> None:
-        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold."""
-        if self._known.speeds is not None:
+        """Warn where the fastest speed of a motion, or of each, asks for frequencies that the data do not hold, or its
+        contact is longer than a layer allows.
+        """
+        if self._known.silent is not None:
             fastest = np.abs(0.0 if V0 is None else V0)
-            self._known.look(fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None)
+            self._known.look(
+                fastest if V is None else np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1)), None, motion=True
+            )
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]

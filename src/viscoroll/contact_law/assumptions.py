@@ -23,6 +23,12 @@ CREEP_LIMIT = 0.3
 #: contact length over the thickness of a layer, up to which the length is within 5 % of that on a half-space of any
 #: Poisson's ratio (pipeline/evidence/prove/layer.py)
 THICK_LIMIT = 2.0 / 3.0
+#: kappa = R/l0 at which the contact at rest reaches half a radius from the axis: below, contacts and motions warn
+LEAST_KAPPA = 1.0
+NOT_SMALL = (
+    "kappa = R/l0 is below 1: the contact at rest is longer than the radius, where no half-space stands for a cylinder "
+    "(are moduli in Pa, the load in N/m?)"
+)
 #: root mean square of relative errors up to which a fit counts as the material that was measured
 MISFIT_LIMIT = 0.05
 

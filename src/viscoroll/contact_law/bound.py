@@ -120,6 +120,16 @@ class Law:
         return f"law of {self.roller!r}"
 
 
+class WatchedLaw(Law):
+    """The law of a cylinder that has speeds to warn of: each call with numbers looks at its speed."""
+
+    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
+        found: Any = super().__call__(V, omega, slopes=slopes)  # type: ignore[call-overload]
+        if type(V) in _NUMBERS and type(omega) in _NUMBERS:  # of arrays contact looks
+            self.roller.look(V, (V, V))
+        return found
+
+
 def law(roller: Rolls) -> Law:
     """The contact law of one scene, checked once, for integrators of one's own: Eqs. (6)-(10), (15)-(18).
 
@@ -147,5 +157,8 @@ def law(roller: Rolls) -> Law:
     For numbers the digits are those of :func:`contact` to the bit, and for arrays it is :func:`contact` that is called
     (``tests/test_bound_law.py``).  At rest, V = omega = 0, the slopes of Q are infinite.  Where full slip begins, Q has
     a corner in V only; the slopes there are those of full slip.  A call without slopes does not pay for them.
+
+    Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
     """
-    return Law(roller)
+    watched = isinstance(roller, Rolls) and roller.watched
+    return WatchedLaw(roller) if watched else Law(roller)

@@ -18,7 +18,10 @@ from ..materials.material import Material
 from ..materials.measured import Measured
 from ..materials.pair import Pair
 from .assumptions import (
+    LEAST_KAPPA,
     MISFIT_LIMIT,
+    NOT_SMALL,
+    THICK_LIMIT,
     Assumption,
     Validity,
     coupling,
@@ -33,8 +36,12 @@ from .parameters import Parameters
 
 #: of the compliance, a part below which a body may be as thin and as little known as it likes
 _LEAST_PART = 0.01
-#: said once a process for each
-_told: set[Measured] = set()
+#: speeds of what no speed makes right
+NOWHERE = math.inf, 0.0
+#: kappa V below which every contact is as long as at rest; and the accuracy of the speed at which a layer is thick enough
+_SLOWEST, _NEAR = 1e-100, 1e-9
+#: what was warned of in this process, once for each: data of a material, thickness of a layer
+_told: set[Measured | float] = set()
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +89,7 @@ class Known:
         if self.held is None:
             return None
         if any(data.misfit > MISFIT_LIMIT for data in self.measured.values()):
-            return math.inf, 0.0
+            return NOWHERE
         return self.held[0] * float(np.max(self.l0)), self.held[1] * float(np.min(self.l0))
 
     @cached_property
@@ -106,26 +113,95 @@ class Known:
             plane=Assumption(None, None, long if plane == "strain" else "a thin disc (plane stress)"),
         )
 
-    def look(self, V: Any, extent: tuple[float, float] | None) -> None:
-        """Warn where a contact at V asks for frequencies that the data do not hold; where :attr:`speeds` are known.
+    @cached_property
+    def thick(self) -> tuple[float, float] | None:
+        """|V| between which the contact is short beside the layer, m/s; None where it is so at any speed.
+
+        The contact is longest at rest and the shorter the faster.  Where thicknesses or moduli are many, by the worst.
+        """
+        layers = [body.thickness for body in self.bodies.values() if body.thickness is not None]
+        if not layers or self.scene.table is None:
+            return None
+        l0 = float(np.max(self.l0, initial=0.0))
+        longest = THICK_LIMIT * min(layers) / l0 if l0 else math.inf
+        if longest >= 1.0:
+            return None
+        material, unit = self.scene.in_own_time()
+        table = law_table(material)
+        if table.alpha**-0.5 >= longest:  # lam at the highest speeds
+            return math.inf, math.inf
+        slow, fast = _SLOWEST, 1.0 / _SLOWEST
+        while fast > slow * (1.0 + _NEAR):
+            middle = math.sqrt(slow) * math.sqrt(fast)
+            (lam,) = rolling(table, np.array([middle]), "lam")
+            slow, fast = (middle, fast) if lam[0] > longest else (slow, middle)
+        return fast * l0 / (unit * self.T_ref), math.inf
+
+    @cached_property
+    def small(self) -> bool:
+        """Whether the contact at rest is no longer than the radius, of every one of the cylinders."""
+        return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
+
+    @cached_property
+    def silent(self) -> tuple[float, float] | None:
+        """|V| between which :meth:`look` has nothing to say, m/s; None where it has nothing at any speed."""
+        bands = [band for band in (self.speeds, self.thick, None if self.small else NOWHERE) if band is not None]
+        return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
+
+    def look(self, V: Any, extent: tuple[float, float] | None, *, motion: bool = False) -> None:
+        """Warn where contacts at V are outside of what the model or the data hold; where :attr:`silent` is not None.
 
         Only extremes are looked at, and rest is passed over: M is 0 there.
+
+        Parameters
+        ----------
+        V : speeds, m/s.
+        extent : the least and the largest of them, where they are known.
+        motion : whether they are of a motion, whose start was judged by ``motion/warned.py`` already.
         """
-        assert self.speeds is not None
-        assert self.held is not None
-        if not beyond(extent or extent_of(V), self.speeds) or _told.issuperset(self.measured.values()) or is_worker():
+        assert self.silent is not None
+        ends = extent or extent_of(V)
+        if not beyond(ends, self.silent) or is_worker():
             return
+        if not (self.small or motion):
+            say([NOT_SMALL], "contact", "validity(V).small_contact")
+        if self.thick is not None and beyond(ends, self.thick):
+            self._look_at_layer(ends)
+        if self.speeds is not None and beyond(ends, self.speeds) and not _told.issuperset(self.measured.values()):
+            self._look_at_data(V)
+
+    def _look_at_layer(self, ends: tuple[float, float]) -> None:
+        """Warn of the layer that is thinner than a contact at the slowest speed needs, once for each thickness."""
+        layers = {name: body.thickness for name, body in self.bodies.items()}
+        key = min(given for given in layers.values() if given is not None)
+        if key in _told:
+            return
+        _told.add(key)
+        l0 = float(np.max(self.l0))
+        sentence = thickness(self._lam(slowest_of(ends) / l0) * l0, layers).sentence
+        text = (
+            f"the law is that of a half-space: {sentence}.  Contact length and M are a guess; validity(V).thick tells "
+        )
+        warnings.warn(f"{text}where", ModelWarning, stacklevel=outside())
+
+    def _look_at_data(self, V: Any) -> None:
+        """Warn of speeds at which a contact asks for what was not measured, once for each material."""
+        assert self.held is not None
         # the extremes of V and of l0 may be of different cylinders
         l0 = np.reshape(self.l0, np.shape(self.l0) + (1,) * (np.ndim(V) - np.ndim(self.l0)))
         rates = extent_of(np.abs(V) / l0)
-        if self.speeds != (math.inf, 0.0) and not beyond(rates, self.held):
+        if self.speeds != NOWHERE and not beyond(rates, self.held):
             return
-        material, unit = self.scene.in_own_time()
-        (lam,) = rolling(law_table(material), np.array(rates) * unit * self.T_ref, "lam")
         _told.update(self.measured.values())
-        sentence = measurement(passage(np.array(rates), lam), self.measured).sentence
+        sentence = measurement(passage(np.array(rates), self._lam(np.array(rates))), self.measured).sentence
         text = f"the material is not known here as measured: {sentence}.  M and the contact length are a guess of the "
         warnings.warn(text + "fit then; validity(V).measured tells where", ModelWarning, stacklevel=outside())
+
+    def _lam(self, rate: Any) -> Any:
+        """Contact length over that at rest, of |V|/l0 in 1/s, for the one material."""
+        material, unit = self.scene.in_own_time()
+        (lam,) = rolling(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
+        return lam
 
     def _slowness(self, speed: Any, density: float | None) -> tuple[Any, list[str]]:
         """(Speed over that of the slowest shear wave, or None; bodies whose density is not known)."""
@@ -143,9 +219,30 @@ class Known:
         return (np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None), unknown
 
 
+def say(faults: list[str], of: str, where: str) -> None:
+    """Warn of faults of the model, in workers never.
+
+    Without numbers: Python says the same words once for each line of a program.
+
+    Parameters
+    ----------
+    faults : sentences; none: no warning.
+    of : what the model is not good for, "motion" or "contact".
+    where : what tells more.
+    """
+    if faults and not is_worker():
+        text = f"the model is not good for this {of}: {'; '.join(faults)}.  See {where}"
+        warnings.warn(text, ModelWarning, stacklevel=outside())
+
+
+def slowest_of(extent: tuple[float, float]) -> float:
+    """The least |V| of speeds between these."""
+    return max(extent[0], -extent[1], 0.0)
+
+
 def beyond(extent: tuple[float, float], ends: tuple[float, float]) -> bool:
     """Whether speeds leave what is held; rest is passed over: M is 0 there."""
-    slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
+    slowest, fastest = slowest_of(extent), max(extent[1], -extent[0])
     return fastest > ends[1] or 0.0 < slowest < ends[0]
 
 

@@ -43,6 +43,11 @@ class Rolls:
     #: attributes of datasets
     about: ClassVar[dict[str, Any]] = {}
 
+    @property
+    def watched(self) -> bool:
+        """Whether there are speeds of which :meth:`look` warns."""
+        return False
+
     def scene(self) -> Parameters:
         """The dimensionless parameters."""
         raise NotImplementedError
@@ -97,7 +102,10 @@ class Rolls:
         return found
 
     def look(self, V: Any, extent: tuple[float, float] | None = None) -> None:
-        """Warn where a contact at V asks more of a material than was measured; ``extent`` of V, where it is known."""
+        """Warn where a contact at V is outside of what the model or the data of a material hold.
+
+        V : speeds, in the unit of what rolls.  extent : the least and the largest of them, where they are known.
+        """
 
     def look_at_starts(self, V0: Any, omega0: Any) -> None:
         """Warn of starts that are beyond the speed of waves."""

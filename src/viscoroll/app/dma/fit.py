@@ -361,7 +361,7 @@ def fit_prony(
     Examples
     --------
     >>> import viscoroll as vr
-    >>> fit = vr.fit_prony(vr.read_dma("docs/examples/dma.csv"))
+    >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
     >>> fit.reached, fit.mode
     (True, 'tension')
 
