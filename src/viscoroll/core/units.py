@@ -69,6 +69,15 @@ def factor(unit: str, wanted: str) -> tuple[float, float]:
     return one, 0.0
 
 
+def is_unit(text: str) -> bool:
+    """Whether pint reads a text as a unit of whatever dimension; degrees Celsius as "C" are coulombs to it."""
+    try:
+        registry().parse_units(_spelled(text))
+    except Exception:  # pint raises errors of its parser and of Python's
+        return False
+    return True
+
+
 def _spelled(unit: str) -> str:
     """A unit in pint's spelling: signs as words, and powers with ``**``."""
     text = unit.strip()

@@ -61,8 +61,8 @@ def fit(given: Namespace) -> None:
     """
     from ...materials.file import as_toml
 
-    columns = vr.read_dma(given.data, units=given.units and tuple(given.units.split(",")))
-    found = vr.fit_prony(*columns, given.modes, misfit=given.misfit, source=Path(given.data).name)
+    omega, storage, loss = vr.read_dma(given.data, units=given.units and tuple(given.units.split(",")))
+    found = vr.fit_prony(omega, storage, loss, given.modes, misfit=given.misfit, source=Path(given.data).name)
     material = found.material(given.nu, name=given.name)
     if given.output is not None and given.output.suffix == ".nc":
         material.to_netcdf(given.output)
