@@ -144,6 +144,7 @@ def test_example_of_help_runs(run, tables, here, monkeypatch, command):
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
     (here / "docs").symlink_to(ROOT / "docs")
+    (here / "src").symlink_to(ROOT / "src")
     (here / "run.toml").write_text(UNCERTAIN)
     _, *examples = run(*command.split(), "--help").partition("example:")[2].split("\n  viscoroll ")
     for example in examples:
@@ -176,8 +177,46 @@ def test_material_fit(run, here):
     fit = vr.fit_prony(*vr.read_dma(data), source="dma.csv")
     assert report == f"{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
-    assert "Prony series of 2 modes" in run("material", "fit", data, "--modes", "2")
+    assert "Prony series of 4 modes" in run("material", "fit", data, "--modes", "4", "--misfit", "0.05")
     assert f"measured          {fit.measured}" in run("material", "show", "a.toml")
+
+
+def test_a_fit_that_misses_writes_no_file(here, capsys):
+    """Exit code 1, whether the misfit was asked for in vain or is above 5 %; with --force a file that says so."""
+    data = str(ROOT / "src/viscoroll/datasets/dma.csv")
+    for more, words in ((["--misfit", "1e-4"], "0.01% was not reached"), (["--misfit", "0.9"], "is above 5%")):
+        fit = ["material", "fit", data, *more, "--modes", "1", "-o"]
+        for name in ("poor.toml", "poor.nc"):
+            assert main([*fit, name]) == 1
+            told = capsys.readouterr().err
+            assert words in told
+            assert f"{name} is not written" in told
+            assert not (here / name).exists()
+            assert main([*fit, name, "--force"]) == 0
+            assert words in capsys.readouterr().err
+            assert "forced: the misfit of" in read_materials(here / name)["material"].measured.source
+            (here / name).unlink()
+
+
+def test_a_fit_of_shear_at_several_temperatures(run, here):
+    """Columns by their names, WLF whose constants are of another temperature than the reference."""
+    rubber, shift = vr.Material(3e6, 0.5, vr.Prony([1.0, 2.0], [1.0, 0.01])), vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    f, rows = np.geomspace(0.01, 100.0, 13), []
+    for T in (0.0, 20.0, 40.0):
+        omega = 2.0 * np.pi * f
+        at = rubber.at(T, shift)
+        rows += [*zip(f, at.storage(omega) / 3e6, at.loss(omega) / 3e6, np.full(f.size, T), strict=True)]
+    np.savetxt(
+        here / "a.csv", rows, delimiter=";", header="f [Hz];Module A [MPa];Module B [MPa];T [°C]", encoding="utf8"
+    )
+    run(
+        "material", "fit", "a.csv", "--column", "storage=Module A", "--column", "loss=Module B", "--mode", "shear",
+        "--wlf", f"{8.86 * 101.6 / 61.6},61.6,-20", "--reference", "40", "--nu", "0.5", "-o", "a.toml",
+    )  # fmt: skip
+    found, true = read_materials(here / "a.toml")["material"], rubber.at(40.0, shift)
+    assert found.temperature == 40.0
+    assert close(found.storage(omega), true.storage(omega), rel=0.01)
+    assert close(found.loss(omega), true.loss(omega), rel=0.05)
 
 
 def test_a_belt_of_a_fit_that_was_saved(run, here):
@@ -344,6 +383,7 @@ def test_answered(run, refuse, here, tables):
     (here / "half.nc").write_bytes(whole[: len(whole) // 2])
     (here / "law.nc").write_bytes(whole)
     (here / "rubber.nc").write_bytes(whole)
+    (here / "dma.csv").write_bytes((ROOT / "src/viscoroll/datasets/dma.csv").read_bytes())
     for name, text in (
         ("file", "as it was"), ("s.toml", SCENE), ("bad.toml", "[scene]\nalhpa = 11\n"), ("rubber.toml", ONE),
         ("tread.toml", RUBBER), ("warm.toml", RUBBER + "temperature = 30.0\n"),

@@ -70,8 +70,8 @@ def test_from_which_speed_on_a_layer_is_thick_enough():
     ],
 )
 def test_every_call_warns_of_thin_layers_and_large_contacts(monkeypatch, call):
-    """Contact, stress, steady rolling, bound law and motion: of a layer once, of a contact larger than the radius once a
-    line; and not of a thick layer.
+    """Contact, stress, steady rolling, bound law and motion: of a layer once, of a contact larger than the radius
+    once a line; and not of a thick layer.
     """
     large = vr.Cylinder(R=0.1, m=30.0, material=replace(RUBBER, measured=None, E=2.0), mu=0.5)
     for roller, words in ((ON_LAYER, "times as long as the layer is thick"), (large, "kappa = R/l0 is below 1")):

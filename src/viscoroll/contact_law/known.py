@@ -38,8 +38,10 @@ from .parameters import Parameters
 _LEAST_PART = 0.01
 #: speeds of what no speed makes right
 NOWHERE = math.inf, 0.0
-#: kappa V below which every contact is as long as at rest; and the accuracy of the speed at which a layer is thick enough
-_SLOWEST, _NEAR = 1e-100, 1e-9
+#: kappa V below which every contact is as long as at rest
+_SLOWEST = 1e-100
+#: accuracy of the speed at which a layer is thick enough
+_NEAR = 1e-9
 #: what was warned of in this process, once for each: data of a material, thickness of a layer
 _told: set[Measured | float] = set()
 
