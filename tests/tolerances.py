@@ -291,6 +291,8 @@ DMA_MANY = 0.02
 DMA_RELAXATION, DMA_RELAXATION_LOSS = 0.02, 0.2
 #: contact length at the speed from which on a layer counts as thick: the bisection.
 LAYER_SPEED = 1e-8
+#: share of 1000 random draws, 27 %, and that lam changes with a_T too: three standard deviations and 5 %.
+SHARE = 0.2
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.
 DMA_EXACT = 1e-6
 #: Ten modes over eight decades, 0.5 % noise: rms misfit of E' and E'' each, as asked for by default.

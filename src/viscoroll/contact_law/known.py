@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -235,6 +236,26 @@ def say(faults: list[str], of: str, where: str) -> None:
     if faults and not is_worker():
         text = f"the model is not good for this {of}: {'; '.join(faults)}.  See {where}"
         warnings.warn(text, ModelWarning, stacklevel=outside())
+
+
+def warn_of_share(share: float, records: Iterable[Measured]) -> bool:
+    """Warn of the share of motions that start where a material was not measured; returns whether it did.
+
+    Parameters
+    ----------
+    share : of the motions, 0 to 1; none: no warning.
+    records : what was measured of the bodies; contacts do not warn of them any more.
+    """
+    known = list(records)
+    if share <= 0.0 or is_worker() or _told.issuperset(known):
+        return False
+    _told.update(known)
+    said = "; ".join(map(str, known))
+    text = f"for {share:.1%} of the motions the material is not known as measured at the start (measured from {said}, "
+    warnings.warn(
+        f"{text}at the medians of the inputs): M is a guess of the fit there", ModelWarning, stacklevel=outside()
+    )
+    return True
 
 
 def slowest_of(extent: tuple[float, float]) -> float:

@@ -18,6 +18,7 @@ from ...core.scale import Scale
 from ...cylinder import Cylinder, scene_of
 from ...materials.file import SECTIONS, materials_of, series_of, shifts_of
 from ...materials.material import Material
+from ...materials.measured import Measured
 from ...materials.pair import Pair, Solid
 from ..config import body_of
 
@@ -107,6 +108,33 @@ def _body(path: Path, name: str, given: Any) -> tuple[Material, Material | Solid
         return typical, typical
     E = checked("E", E, low=0.0, strict=True) if np.ndim(E) else typical.E
     return typical, Solid(E, checked("nu", nu, low=-1.0, strict=True, high=0.5), series, typical.T_ref)
+
+
+def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
+    """Angular frequencies between which the data of each body hold, at the temperature of each motion.
+
+    Parameters
+    ----------
+    path : of the run file.
+    content : its sections with the inputs of some motions.
+
+    Returns
+    -------
+    dict
+        What was measured of a body -> lowest and highest frequency, rad/s, numbers or one a motion; of bodies that
+        tell.
+    """
+    found = {}
+    for name in SECTIONS:
+        given = content.get(name)
+        if given is None or (record := _body(path, name, given)[0].measured) is None:
+            continue
+        factor: Any = 1.0
+        if isinstance(given, dict) and np.ndim(given.get("temperature", 0.0)):  # the record is at the first of them
+            shift = shifts_of(path, {name: _first(given)})[name]
+            factor = np.array([shift(each) for each in given["temperature"]])
+        found[record] = record.low / factor, record.high / factor
+    return found
 
 
 def _first(part: Any) -> Any:
