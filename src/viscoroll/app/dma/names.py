@@ -105,6 +105,8 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
 def _meaning(name: str) -> tuple[str, str] | None:
     """Meaning and mode of a name without unit, None where one of its words is unknown or they go with nothing."""
     kinds: set[str] = set()
+    if re.search("[%°º]", name):  # of a unit
+        return None
     text = unicodedata.normalize("NFKD", name.replace("\u2033", "''"))
     for pattern, words in _SIGNS:
         text = pattern.sub(words, "".join(sign for sign in text if not unicodedata.combining(sign)))
