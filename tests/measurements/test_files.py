@@ -1,4 +1,4 @@
-"""Files of moduli as instruments and spreadsheets write them, in files.toml: each is read right, or refused in words."""
+"""Files of moduli as instruments and spreadsheets write them, in files.toml: each is read right, or refused."""
 
 import tomllib
 import warnings
