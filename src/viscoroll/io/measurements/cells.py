@@ -230,8 +230,10 @@ def _cut(text: list[str], separator: str) -> Iterable[_Line]:
         mark = _COMMENT.match(line)
         if mark and separator == " ":
             cells = _by_blanks(line[mark.end() :])  # noqa: PLW2901
-        elif mark and cells:
-            cells[0] = _COMMENT.sub("", cells[0], count=1)
+        elif mark and cells and (bare := _COMMENT.sub("", cells[0], count=1)):
+            cells[0] = bare
+        else:  # a first cell of "%" alone is a unit, of "#" a number of points
+            mark = None
         yield _Line(number, line.strip(), cells, mark is not None, mark is None and _numeric(cells))
 
 
