@@ -310,6 +310,8 @@ DMA_WINDOW_MOMENT = 0.1
 DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
+#: Files written with seven digits: half a unit of the last one, of loss over storage twice.
+DMA_DIGITS = 2e-6
 #: that of the curve shipped from pyvisco, "about 1.65"; measured 1.68.
 DMA_PYVISCO = (1.55, 1.75)
 #: log10 a_T of WLF-made data: 21 points in three decades without noise (the interpolant; measured 1.3e-4), and 11

@@ -48,8 +48,8 @@ class Columns:
             return self.given.get(meaning, unit)
         if name == "temperature":
             return "degC"
-        if name == "tan delta":
-            return "1"
+        if name in ("tan delta", "phase angle"):
+            return "1" if name == "tan delta" else "deg"
         if UNITS[name] == "rad/s":
             if self.default:
                 return self.default[0]
@@ -77,21 +77,17 @@ class Columns:
         """
         index, said = self.found[meaning][place]
         values, half = self.table.numbers(index)
-        if meaning == "phase angle" and said.unit in NO_UNIT and meaning not in self.given:
-            if values.max() <= 0.5 * math.pi:
-                raise FileError(
-                    self.table.path, f"{self.table.headings[index]!r} has no unit: give units={{{meaning!r}: 'deg'}}"
-                )
-            unit = "deg"
-        else:
-            unit = self.unit(meaning, place)
+        unit, stated = self.unit(meaning, place), said.unit not in NO_UNIT or meaning in self.given
+        if meaning == "phase angle" and not stated and values.max() <= 0.5 * math.pi:
+            problem = f"{self.table.headings[index]!r} has no unit: give units={{{meaning!r}: 'deg'}}, or 'rad'"
+            raise FileError(self.table.path, problem)
         if said.log:
             values = 10.0**values
             half = values * math.log(10.0) * half
         factor, offset = conversion(unit, UNITS[meaning])
         if UNITS[meaning] == "rad/s" and not meaning.endswith("angular frequency") and not _CYCLES.search(unit):
             factor *= 2.0 * math.pi
-        if meaning == "temperature" and said.unit in NO_UNIT and meaning not in self.given and values.max() > _KELVIN:
+        if meaning == "temperature" and not stated and values.max() > _KELVIN:
             problem = f"{self.table.headings[index]!r} goes to {values.max():g} without a unit"
             raise FileError(self.table.path, f"{problem}: give units={{'temperature': 'K'}}, or 'degC'")
         return Numbers(factor * values + offset, factor * half)

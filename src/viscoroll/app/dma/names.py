@@ -16,8 +16,8 @@ _VOCABULARY = {
         angle: angle angular ang circular radian winkel kreis lag
         angle frequency: w omega
         reduced: reduced red shifted reduziert reduzierte verschoben master at
-        storage: storage stor sto speicher elastic elastischer elastique conservation real single
-        loss: loss los verlust viscous viskoser visqueux perte imaginary imag double
+        storage: storage stor sto speicher elastic elastischer elastique conservation real re single
+        loss: loss verlust viscous viskoser visqueux perte imaginary imag im double
         whole: complex komplexer komplex complexe absolute abs betrag magnitude star
         tan: tan tangent tangens tg
         delta: delta d
@@ -30,8 +30,9 @@ _VOCABULARY = {
         temperature: temperature temperatur temp T
         tension: e young youngs tensile tension extension extensional zug axial
         shear: g shear schub scher torsion torsional
-        -: modulus modul module moduli modulen mod dynamic dynamischer part teil of the de oscillation oscillatory
-        -: test mess messung pruf measured actual sample probe proben average avg mean mechanical mechanischer
+        -: modulus modul module moduli modulen mod dynamic dynamischer part component teil of the de
+        -: oscillation oscillatory test mess messung pruf measured actual sample probe proben average avg mean
+        -: mechanical mechanischer
         """.strip().splitlines()
     for kind, words in [line.strip().split(": ")]
     for word in words.split()
@@ -47,8 +48,10 @@ _MEANINGS = {
         storage: storage; storage whole
         loss: loss; loss whole
         modulus: whole
-        tan delta: tan; tan delta; loss factor; loss tan; damping; damping factor
+        tan delta: tan; tan delta; loss factor; loss tan; damping; damping factor; loss factor tan; loss factor delta
+        tan delta: loss factor tan delta; damping factor tan delta; damping tan delta; damping tan; loss tan delta
         phase angle: delta; phase; phase angle; phase delta; phase angle delta; loss angle; phase shift
+        phase angle: loss angle delta; phase shift delta
         storage compliance: compliance storage; compliance storage whole
         loss compliance: compliance loss; compliance loss whole
         whole compliance: compliance whole
@@ -68,7 +71,7 @@ UNITS = {
 }
 _LONG = sorted((word for word in _VOCABULARY if len(word) > 2), key=len, reverse=True)
 #: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
-_COMPOUND = re.compile(rf"([eg](?=sto|los))?((?:{'|'.join(_LONG)})+)")
+_COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
 _WORD = re.compile("|".join(_LONG))
 #: sign -> words, in this order
 _SIGNS = [(re.compile(pattern), words) for pattern, words in (
@@ -105,6 +108,8 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
 def _meaning(name: str) -> tuple[str, str] | None:
     """Meaning and mode of a name without unit, None where one of its words is unknown or they go with nothing."""
     kinds: set[str] = set()
+    if re.search("[%°º]", name):  # of a unit
+        return None
     text = unicodedata.normalize("NFKD", name.replace("\u2033", "''"))
     for pattern, words in _SIGNS:
         text = pattern.sub(words, "".join(sign for sign in text if not unicodedata.combining(sign)))

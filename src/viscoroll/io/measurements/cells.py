@@ -230,8 +230,10 @@ def _cut(text: list[str], separator: str) -> Iterable[_Line]:
         mark = _COMMENT.match(line)
         if mark and separator == " ":
             cells = _by_blanks(line[mark.end() :])  # noqa: PLW2901
-        elif mark and cells:
-            cells[0] = _COMMENT.sub("", cells[0], count=1)
+        elif mark and cells and (bare := _COMMENT.sub("", cells[0], count=1)):
+            cells[0] = bare
+        else:  # a first cell of "%" alone is a unit, of "#" a number of points
+            mark = None
         yield _Line(number, line.strip(), cells, mark is not None, mark is None and _numeric(cells))
 
 
@@ -273,6 +275,10 @@ def _tables(path: str | PathLike[str], lines: list[_Line], known: Callable[[list
     spans = [(head, end) for head, end in ends if any(line.numeric for line in lines[head:end])]
     if not spans:
         spans = [(_above(lines, width, by), len(lines))]
+        for line in lines if spans[0][0] < 0 else ():
+            if line.comment and known(re.split(r"[\s,;|]+", line.text)):
+                problem = f"line {line.number} names columns, but is not cut by {by} into {width} as the rows"
+                raise FileError(path, f"{problem}: {line.text[:60]!r}")
     for line in lines[: max(spans[0][0], 0)]:
         if line.numeric and len(line.cells) == width and _plain(line.cells):
             raise FileError(path, f"line {line.number} has numbers above the headings: keep one table of the file")

@@ -59,8 +59,9 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     for group in reversed([*_BRACKETS.finditer(heading)]):
         ways.append((heading[: group.start()].rstrip(" /") + " " + heading[group.end() :], group[1] or group[2] or ""))
     for gap in _BETWEEN.finditer(heading):
-        if looks_like_unit(heading[gap.end() :]) and heading[gap.end()] not in "[({<":
-            ways.append((heading[: gap.start()], heading[gap.end() :]))
+        unit = heading[gap.end() :]
+        if unit in NO_UNIT[1:] or (looks_like_unit(unit) and not re.search(r"[\[\](){}]", unit)):
+            ways.append((heading[: gap.start()], unit))
     bare = re.fullmatch(r"[\[({<]?\s*(.*?)\s*[\])}>]?", row.strip())
     found_row = bare[1] if bare and bare[1].count("(") == bare[1].count(")") else row.strip()
     return [_with_logarithm(Reading(" ".join(name.split()), unit or found_row, log)) for name, unit in ways if name]
