@@ -61,7 +61,7 @@ def of_dynamic(fit: Any) -> list[Row]:
     rows = [Row("misfit", misfit + _asked(fit)), Row(f"{symbol}''", _together(fit.kramers_kronig.median, symbol))]
     if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
         return rows
-    factors = ", ".join(f"{T:g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
+    factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
     rows.append(Row("shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"))
     if shifts.distinct > shifts.temperature.size:
         text = f"{shifts.distinct} temperatures, within 0.5 K of one another, were taken for {shifts.temperature.size}"
