@@ -178,6 +178,24 @@ def test_temperatures_as_they_were_measured():
         assert "were taken for" not in str(exact)
 
 
+@settings(max_examples=15, deadline=None)
+@given(st.permutations(range(8)), st.sampled_from([None, -30.0, 0.0, 20.0]), st.booleans(), st.floats(1e-3, 1e3))
+def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(order, reference, by_points, scale):
+    """Curves in any order with factors in the same, all factors times a number: one fit, at the reference."""
+    curves = isotherms(7, 0.0)
+    base = 0.0 if reference is None else reference
+    expected = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=wlf, reference=base)
+    turned = [[column[n] for n in order] for column in curves]
+    temperature = TEMPERATURES[list(order)]
+    factors = (wlf(TEMPERATURES) * (scale if reference is not None else 1.0))[list(order)]
+    if by_points:
+        turned, temperature = [np.concatenate(column) for column in turned], np.repeat(temperature, 7)
+    fit = vr.fit_prony(*turned, temperature=temperature, shift=factors, reference=reference)
+    assert fit.temperature == base
+    assert close(fit.omega, expected.omega, rel=tol.DMA_SHIFTED_TIMES)
+    assert close(fit.shifts.a_T, expected.shifts.a_T, rel=tol.DMA_SHIFTED_TIMES)
+
+
 def test_a_plateau_fixes_no_shift():
     """Two decades below the slowest mode nothing moves: a warning and the report say so; storage alone is offered."""
     omega = np.logspace(-5.0, -3.0, 11)

@@ -92,9 +92,9 @@ class ConvergenceError(ViscorollError):
 
 
 class ModelWarning(UserWarning):
-    """The model is grossly at fault for a motion, a material was not measured at what a contact asks of it, or a file
-    of measurements gives no units.  Every call is looked at; Python says the same words once for each line of a
-    program, those on a material or a file are said once for each.
+    """The model is grossly at fault for a motion or a contact, a material was not measured at what a contact asks of
+    it, or a file of measurements gives no units.  Every call is looked at; Python says the same words once for each
+    line of a program, those on a material or a file are said once for each.
     """
 
 

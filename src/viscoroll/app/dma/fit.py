@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 #: highest over lowest frequency; times reach a decade beyond on either side
 MOST_SPREAD = WIDEST / 100.0
 Mode = Literal["tension", "shear"]
+#: last over first relaxation modulus from which on it is none: noise on a plateau stays below
+_RISES = 1.1
 
 
 class Misfit(NamedTuple):
@@ -433,8 +435,8 @@ def fit_relaxation(
     Raises
     ------
     ParameterError
-        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a modulus that does
-        not level off at long times.
+        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a modulus that rises,
+        or does not level off at long times.
 
     Examples
     --------
@@ -446,6 +448,10 @@ def fit_relaxation(
     (0.5, 100.0)
     """
     whole_data = data_of(Relaxation, {"t": t, "relaxation": relaxation})
+    first, *_, last = whole_data.relaxation.tolist()
+    if last > _RISES * first:
+        found = f"from {first:g} to {last:g} as time goes on"
+        raise ParameterError("relaxation", found, "a modulus, which falls (a creep compliance rises)")
     data = thinned(whole_data)
     series = _series(whole_data, data, modes, misfit)
     return RelaxationFit(

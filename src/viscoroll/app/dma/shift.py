@@ -199,7 +199,9 @@ def _near(base: float, temperatures: Floats, name: str) -> int:
 
 def _of_list(shift: Any, sets: _Sets, base: float | None) -> tuple[Floats, float]:
     """Factors of the sets, 1 at the reference, and the reference, of factors in the order of the curves."""
-    factors, temperatures = checked("shift", shift, low=0.0, strict=True), sets.temperature
+    factors, temperatures = checked("shift", shift), sets.temperature
+    if not (factors > 0.0).all():
+        raise ParameterError("shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms")
     if factors.shape != sets.given.shape:
         allowed = f"a factor each of {sets.given.size} temperatures, in the order of the curves"
         raise ParameterError("shift", f"of shape {factors.shape}", allowed)
