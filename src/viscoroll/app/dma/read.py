@@ -82,7 +82,7 @@ def read_dma(
     Examples
     --------
     >>> import viscoroll as vr
-    >>> omega, storage, loss = vr.read_dma("docs/examples/dma.csv")  # rad/s, Pa, Pa
+    >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
     named = dict(columns or {})
     refuse_unknown("columns", named, UNITS, "a meaning")
