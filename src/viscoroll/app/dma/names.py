@@ -54,7 +54,7 @@ _MEANINGS = {
         phase angle: loss angle delta; phase shift delta
         storage compliance: compliance storage; compliance storage whole
         loss compliance: compliance loss; compliance loss whole
-        whole compliance: compliance whole
+        modulus compliance: compliance whole
         temperature: temperature
         """.strip().splitlines()
     for meaning, names in [line.strip().split(": ")]
@@ -64,11 +64,13 @@ _MEANINGS = {
 UNITS = {
     **dict.fromkeys(("frequency", "angular frequency", "reduced frequency", "reduced angular frequency"), "rad/s"),
     **dict.fromkeys(("storage", "loss", "modulus"), "Pa"),
-    **dict.fromkeys(("storage compliance", "loss compliance", "whole compliance"), "1/Pa"),
+    **dict.fromkeys(("storage compliance", "loss compliance", "modulus compliance"), "1/Pa"),
     "tan delta": "1",
     "phase angle": "rad",
     "temperature": "degC",
 }
+#: columns beside moduli without E or G that only a test in shear has
+OF_SHEAR = re.compile(r"(?i)shear|schub|scher|torque|torsion|drehmoment|viscosity|viskosit|gamma|γ")
 _LONG = sorted((word for word in _VOCABULARY if len(word) > 2), key=len, reverse=True)
 #: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
 _COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")

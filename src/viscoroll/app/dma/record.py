@@ -42,7 +42,7 @@ class DynamicModuli(Shown):
     Examples
     --------
     >>> import viscoroll as vr
-    >>> record = vr.read_dma("docs/examples/dma.csv")
+    >>> record = vr.read_dma(vr.datasets.path("dma.csv"))
     >>> record.mode, record.omega.size
     ('tension', 25)
     """

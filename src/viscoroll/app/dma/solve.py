@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from ...core.errors import FileError
 from ...core.typed import Floats
 from ...io.measurements import Numbers, Table
 
-#: two of these give the others, the pairs that lose the least first
-PAIRS = (
-    ("storage", "loss"), ("storage", "tan delta"), ("loss", "tan delta"), ("modulus", "tan delta"),
-    ("loss", "modulus"), ("storage", "modulus"),
-)  # fmt: skip
+#: pair of names -> storage and loss from them, the pairs that lose the least first
+PAIRS: dict[tuple[str, str], Callable[[Any, Any], tuple[Any, Any]]] = {
+    ("storage", "loss"): lambda storage, loss: (storage, loss),
+    ("storage", "tan delta"): lambda storage, tan: (storage, storage * tan),
+    ("loss", "tan delta"): lambda loss, tan: (loss / tan, loss),
+    ("modulus", "tan delta"): lambda whole, tan: (whole / np.hypot(1.0, tan), whole / np.hypot(1.0, tan) * tan),
+    ("loss", "modulus"): lambda loss, whole: (np.sqrt(whole**2 - loss**2), loss),
+    ("storage", "modulus"): lambda storage, whole: (storage, np.sqrt(whole**2 - storage**2)),
+}
 #: beside rounding, instruments average each quantity over cycles: a mean of ratios is off the ratio of means by parts
 #: of a per cent
 AVERAGED = 0.01
@@ -20,34 +27,7 @@ AVERAGED = 0.01
 _ROUNDED = 0.05
 
 
-def solved(a: str, b: str, first: Floats, second: Floats) -> tuple[Floats, Floats]:
-    """Storage and loss from two of the four, named ``a`` and ``b`` as in :data:`PAIRS`; NaN where there is none."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        if (a, b) == ("storage", "loss"):
-            return first, second
-        if (a, b) == ("storage", "tan delta"):
-            return first, first * second
-        if (a, b) == ("loss", "tan delta"):
-            return first / second, first
-        if (a, b) == ("modulus", "tan delta"):
-            storage = first / np.hypot(1.0, second)
-            return storage, storage * second
-        other = np.sqrt(second**2 - first**2)
-        return (other, first) if a == "loss" else (first, other)
-
-
-def spread(a: str, b: str, first: Numbers, second: Numbers) -> tuple[Floats, Floats]:
-    """By how much storage and loss may be off for the rounding of the digits of both, shape (n,) each."""
-    storage, loss = solved(a, b, first.values, second.values)
-    off = np.zeros((2, storage.size))
-    for moved in (
-        solved(a, b, first.values + first.half, second.values),
-        solved(a, b, first.values, second.values + second.half),
-    ):
-        off += np.abs(np.array(moved) - (storage, loss))
-    return off[0], off[1]
-
-
+@np.errstate(all="ignore")  # what a pair leaves open is NaN or infinite, and refused
 def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Numbers]) -> tuple[Floats, Floats]:
     """Storage and loss from a pair of columns; all others must agree with them.
 
@@ -62,26 +42,21 @@ def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Num
     FileError
         A third column contradicts; the digits of the file leave storage or loss uncertain by more than 5 %.
     """
-    a, b = pair
-    storage, loss = solved(a, b, columns[a].values, columns[b].values)
-    off = spread(a, b, columns[a], columns[b])
-    if pair[1] == "modulus":
-        bad = ~((off[0] <= _ROUNDED * storage) & (off[1] <= _ROUNDED * loss))
-        if bad.any():
-            line = table.lines[int(np.argmax(bad))]
-            raise FileError(
-                table.path, f"line {line}: {a} and {b} leave the other modulus open: give tan delta beside them"
-            )
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = loss / storage
-        exact = {"storage": (storage, off[0]), "loss": (loss, off[1])}
-        exact["tan delta"] = ratio, (off[1] + np.abs(ratio) * off[0]) / np.abs(storage)
-        exact["modulus"] = np.hypot(storage, loss), off[0] + off[1]
+    storage, loss = PAIRS[pair](*(columns[name].values for name in pair))
+    exact = {"storage": storage, "loss": loss, "tan delta": loss / storage, "modulus": np.hypot(storage, loss)}
+    rounding = sum(columns[name].half / np.abs(columns[name].values) for name in pair)
+    if pair[1] == "modulus":  # a difference of squares
+        other = exact["loss" if pair[0] == "storage" else "storage"]
+        rounding = rounding * (exact["modulus"] / other) ** 2
+        refuse(table, rounding <= _ROUNDED, f"{' and '.join(pair)} leave the other modulus open: give tan delta too")
     for name in columns.keys() - set(pair):
-        value, rounding = exact[name]
-        differs = ~(np.abs(columns[name].values - value) <= AVERAGED * np.abs(value) + rounding + columns[name].half)
-        if differs.any():
-            n = int(np.argmax(differs))
-            found = f"{name} is {columns[name].values[n]:.4g}, but {value[n]:.4g} by {a} and {b}"
-            raise FileError(table.path, f"line {table.lines[n]}: columns contradict each other: {found}")
+        values, half = columns[name]
+        agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
+        refuse(table, agrees, f"{name} contradicts {' and '.join(pair)}")
     return storage, loss
+
+
+def refuse(table: Table, holds: Any, problem: str) -> None:
+    """Raise FileError with the line of the first row where something does not hold."""
+    if not holds.all():
+        raise FileError(table.path, f"line {table.lines[int(np.argmin(holds))]}: {problem}")
